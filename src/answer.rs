@@ -1,0 +1,298 @@
+//! One solved state in the words of the structure: pairs, forces, displacements and the check of all of it.
+//! The field names are the keys of the JSON result (`stickslip-result/1`).
+
+use serde::Serialize;
+
+/// How the run ended, as the user reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OutcomeKind {
+    /// The main system is the answer; no pivot.
+    Trivial,
+    /// p reached zero.
+    Normal,
+    /// No answer found: see [`Ray`].
+    Ray,
+    /// The pivot limit was reached (a cycle ends here too).
+    PivotLimit,
+    /// The numbers no longer belonged together.
+    Breakdown,
+    /// An answer was found that failed its fresh check.
+    CheckFailed,
+}
+
+/// Class of a ray (theory §4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RayClass {
+    /// The loads do work on a motion that costs no energy.
+    Mechanism,
+    /// z⁺ = z⁻ grow together; says nothing about the structure.
+    Artefact,
+    /// The structure stands without its contacts, so an answer exists: the run failed.
+    Fault,
+    /// None of these.
+    NoEquilibrium,
+}
+
+/// What has been proved of a mechanism or no equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The equilibrium LP is infeasible.
+    Certified,
+    /// Enumeration found no answer.
+    Proved,
+    /// Statically admissible forces exist, but none that obeys the law of slip was found.
+    Undecided,
+}
+
+/// Direction of a ray at one pair.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairDirection {
+    /// Pair id.
+    pub pair: String,
+    /// z̄_n.
+    pub z_n: f64,
+    /// z̄_τ.
+    pub z_t: f64,
+}
+
+/// A run that ended in a ray.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ray {
+    /// Class.
+    pub class: RayClass,
+    /// Verdict; `None` where it is not examined or does not apply.
+    pub verdict: Option<Verdict>,
+    /// p at the last vertex.
+    pub p: f64,
+    /// Direction, scaled to largest 1.
+    pub direction: Vec<PairDirection>,
+    /// The motion in words.
+    pub mode: String,
+    /// What it means and what would help, in words.
+    pub explanation: String,
+}
+
+/// One try of the solver.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Attempt {
+    /// Covering of this try (`cohesive`, `ones`, `weight`, `given`).
+    pub covering: String,
+    /// Tie-break of this try.
+    pub tie_break: String,
+    /// Engine of this try.
+    pub engine: String,
+    /// How it ended.
+    pub outcome: OutcomeKind,
+}
+
+/// Joint of a pair that a pivot turned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TurnedJoint {
+    /// Along n.
+    Normal,
+    /// Along t.
+    Tangential,
+}
+
+/// Change of working scheme at a pivot.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Turned {
+    /// Pair id.
+    pub pair: String,
+    /// Which joint.
+    pub joint: TurnedJoint,
+    /// State word before.
+    pub from: String,
+    /// State word after.
+    pub to: String,
+}
+
+/// One pivot as told to the user.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PivotRecord {
+    /// 0 is the entry of p.
+    pub step: usize,
+    /// Name of the entering variable: `p`, `z+[c6]`, `w[1]`.
+    pub entering: String,
+    /// Name of the leaving variable.
+    pub leaving: String,
+    /// p after the pivot, in the user's units.
+    pub p: f64,
+    /// All tied rows, the leaving one among them.
+    pub ties: Vec<String>,
+    /// What it did to the working scheme; `None` at the entry of p and for a bare LCP.
+    pub turned: Option<Turned>,
+    /// The pivot in a sentence.
+    pub sentence: String,
+}
+
+/// State of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+pub enum State {
+    /// Normal joint off.
+    #[serde(rename = "open")]
+    Open,
+    /// Both joints on.
+    #[serde(rename = "stick")]
+    Stick,
+    /// Slips along +t.
+    #[serde(rename = "slip+")]
+    SlipPlus,
+    /// Slips along −t.
+    #[serde(rename = "slip-")]
+    SlipMinus,
+    /// A frictionless pair in contact.
+    #[serde(rename = "closed")]
+    Closed,
+}
+
+impl State {
+    /// The word used everywhere.
+    pub fn word(self) -> &'static str {
+        match self {
+            State::Open => "open",
+            State::Stick => "stick",
+            State::SlipPlus => "slip+",
+            State::SlipMinus => "slip-",
+            State::Closed => "closed",
+        }
+    }
+}
+
+/// Forces, displacements and reserves of one pair, in the user's units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairState {
+    /// Pair id.
+    pub id: String,
+    /// `coulomb`, `frictionless`, `bound`.
+    pub law: &'static str,
+    /// Its state.
+    pub state: State,
+    /// What holds an open pair (cohesion, or p > 0): `stick`, `slip+`, `slip-`.
+    pub held: Option<State>,
+    /// Compressive force.
+    pub x_n: f64,
+    /// Tangential joint force.
+    pub x_t: f64,
+    /// Distance open.
+    pub z_n: f64,
+    /// Slip.
+    pub z_t: f64,
+    /// Friction bound r_f (with the covering at p > 0).
+    pub bound: f64,
+    /// x⁺.
+    pub reserve_plus: f64,
+    /// x⁻.
+    pub reserve_minus: f64,
+    /// Place; for a contact system [s, 0] or null.
+    pub position: Option<[f64; 2]>,
+}
+
+/// Fresh check of an answer from R, RF, f and K, all relative to the largest force and displacement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Check {
+    /// Smallest w.
+    pub min_w: f64,
+    /// Smallest z.
+    pub min_z: f64,
+    /// Largest |w_i z_i|.
+    pub complementarity: f64,
+    /// ‖K u − F − Bᵀλ‖; `None` where there is no K.
+    pub equilibrium: Option<f64>,
+    /// Whether all are within bounds.
+    pub passed: bool,
+}
+
+/// Displacements of a node.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NodeDisplacement {
+    /// Node id.
+    pub node: String,
+    /// Along x.
+    pub ux: f64,
+    /// Along y.
+    pub uy: f64,
+    /// Rotation, counter-clockwise; 0 at nodes without one.
+    pub rz: f64,
+}
+
+/// Internal forces at one end of an element, bar axes (N > 0 tension, Q = dM/dx, M > 0 tension on −y).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct EndForces {
+    /// Normal force.
+    #[serde(rename = "N")]
+    pub n: f64,
+    /// Shear force.
+    #[serde(rename = "Q")]
+    pub q: f64,
+    /// Bending moment.
+    #[serde(rename = "M")]
+    pub m: f64,
+}
+
+/// Internal forces of one element of a bar.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MemberForces {
+    /// Bar id.
+    pub bar: String,
+    /// Element along the bar, from 0.
+    pub element: usize,
+    /// At its start.
+    pub start: EndForces,
+    /// At its end.
+    pub end: EndForces,
+}
+
+/// Force of the supports of a node on the structure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reaction {
+    /// Node id.
+    pub node: String,
+    /// Along x.
+    pub fx: f64,
+    /// Along y.
+    pub fy: f64,
+    /// Moment, counter-clockwise.
+    pub m: f64,
+}
+
+/// How large the problem is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Size {
+    /// Nodal components before supports and ties; structures only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unknowns: Option<usize>,
+    /// After supports and ties; structures only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub free: Option<usize>,
+    /// Contact pairs.
+    pub pairs: usize,
+    /// Rows of the LCP.
+    pub lcp: usize,
+}
+
+/// Seconds spent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Timings {
+    /// Ordering and factorization of the main system.
+    pub factor: f64,
+    /// R and RF.
+    pub condense: f64,
+    /// Lemke's algorithm.
+    pub lemke: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+/// z and w of a bare LCP.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlainSolution {
+    /// z.
+    pub z: Vec<f64>,
+    /// w.
+    pub w: Vec<f64>,
+}

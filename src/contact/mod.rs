@@ -1,0 +1,3 @@
+//! Unilateral joints: from the condensed structure to the complementarity problem and back.
+
+pub mod system;

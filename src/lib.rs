@@ -1,0 +1,6 @@
+//! stickslip: what a structure with frictional contact really does.
+
+pub mod answer;
+pub mod contact;
+pub mod lcp;
+pub mod model;

@@ -1,0 +1,110 @@
+//! Contact pairs: the two nodes that may touch, their normal and tangent, their law.
+
+use super::parameter::Number;
+
+/// Law of contact of one pair, with its numbers (each may be a parameter).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// Unilateral contact with Coulomb friction, bound r_f = f x_n + c.
+    Coulomb {
+        /// Friction coefficient f ≥ 0.
+        friction: Number,
+        /// Cohesion c ≥ 0.
+        cohesion: Number,
+        /// Initial gap g ≥ 0.
+        gap: Number,
+    },
+    /// Unilateral contact without friction: x_τ = 0.
+    Frictionless {
+        /// Initial gap g ≥ 0.
+        gap: Number,
+    },
+    /// Bilateral along n, with a known friction bound along t.
+    Bound {
+        /// Friction bound r_f ≥ 0.
+        bound: Number,
+    },
+}
+
+impl Law {
+    /// Its word in files and results.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Law::Coulomb { .. } => "coulomb",
+            Law::Frictionless { .. } => "frictionless",
+            Law::Bound { .. } => "bound",
+        }
+    }
+}
+
+/// A contact pair of a structure.
+///
+/// z_n = n·(u_node − u_against) > 0 when the two part; z_τ = t·(u_node − u_against); `against = None` is the
+/// ground (u = 0).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// `c1`, `joint[0]`.
+    pub id: String,
+    /// Index of the second side's node.
+    pub node: usize,
+    /// Index of the first side's node; `None` for the ground.
+    pub against: Option<usize>,
+    /// Unit normal n, from `against` to `node`.
+    pub normal: [f64; 2],
+    /// The law.
+    pub law: Law,
+}
+
+impl Pair {
+    /// Unit tangent t: n turned by −90° (clockwise); n = (0, 1) gives t = (1, 0).
+    pub fn tangent(&self) -> [f64; 2] {
+        [self.normal[1], -self.normal[0]]
+    }
+}
+
+/// Direction of a joint of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JointDirection {
+    /// Along n.
+    Normal,
+    /// Along t.
+    Tangential,
+}
+
+/// One joint and its row of B: z = Σ a·u over its `terms`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Index of the pair.
+    pub pair: usize,
+    /// Along n or along t.
+    pub direction: JointDirection,
+    /// (node, a): one term for a pair with the ground, two between nodes.
+    pub terms: Vec<(usize, [f64; 2])>,
+}
+
+/// The joints of the main system: all normals in the order of the pairs, then the tangentials of those pairs
+/// that have one (all but the frictionless ones). This is the order of the rows of R and RF.
+pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
+    let row = |pair: &Pair, a: [f64; 2]| {
+        let mut terms = vec![(pair.node, a)];
+        if let Some(against) = pair.against {
+            terms.push((against, [-a[0], -a[1]]));
+        }
+        terms
+    };
+    let normals = pairs.iter().enumerate().map(|(index, pair)| Joint {
+        pair: index,
+        direction: JointDirection::Normal,
+        terms: row(pair, pair.normal),
+    });
+    let tangentials = pairs
+        .iter()
+        .enumerate()
+        .filter(|(_, pair)| !matches!(pair.law, Law::Frictionless { .. }))
+        .map(|(index, pair)| Joint {
+            pair: index,
+            direction: JointDirection::Tangential,
+            terms: row(pair, pair.tangent()),
+        });
+    normals.chain(tangentials).collect()
+}

@@ -1,0 +1,214 @@
+//! The checked, resolved structure: names have become indices, lists are complete, every number is finite.
+//!
+//! Node indices point into [`Structure::nodes`]; that list holds the author's nodes first (file order), then
+//! the generated ones (bar divisions `AB/1`, plate nodes `lower[i,j]`), so that results keep the author's order.
+
+use super::pair::Pair;
+use super::parameter::Number;
+
+/// A node: its name and its place in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// `A`, `AB/1`, `lower[0,8]`.
+    pub id: String,
+    /// Coordinates (x, y), in the author's unit of length.
+    pub position: [f64; 2],
+}
+
+/// One of the three displacement components of a node, in the global axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Component {
+    /// Displacement along x.
+    X,
+    /// Displacement along y.
+    Y,
+    /// Rotation, counter-clockwise. Exists only at nodes of frame bars.
+    R,
+}
+
+/// Linear elastic material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Young's modulus, > 0.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio in (−1, 0.5].
+    pub poisson_ratio: f64,
+    /// Mass per volume.
+    pub density: f64,
+    /// Coefficient of thermal expansion.
+    pub expansion: f64,
+}
+
+/// Stress state of a plate or quad.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// ε_zz = 0.
+    Strain,
+    /// σ_zz = 0.
+    Stress,
+}
+
+/// What an element is made of and how it carries force.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ElementKind {
+    /// Two-node Euler–Bernoulli frame element, `nodes` = [start, end].
+    Frame {
+        /// Cross-section area.
+        area: f64,
+        /// Second moment of area.
+        inertia: f64,
+        /// Moment hinge at start, at end.
+        hinges: [bool; 2],
+    },
+    /// Two-node bar that carries axial force only, `nodes` = [start, end].
+    Truss {
+        /// Cross-section area.
+        area: f64,
+    },
+    /// Four-node bilinear membrane, `nodes` counter-clockwise.
+    Quad {
+        /// Thickness out of the plane.
+        thickness: f64,
+        /// Stress state.
+        plane: Plane,
+    },
+}
+
+/// One finite element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// 2 nodes (frame, truss) or 4 (quad).
+    pub nodes: Vec<usize>,
+    /// Index into [`Structure::materials`].
+    pub material: usize,
+    /// Kind and its data.
+    pub kind: ElementKind,
+}
+
+/// A bar of the file: a chain of equal elements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bar {
+    /// Name in the file.
+    pub id: String,
+    /// Its elements, from start to end: a range of [`Structure::elements`].
+    pub elements: std::ops::Range<usize>,
+}
+
+/// A rectangular plate of the file: a grid of quads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plate {
+    /// Name in the file.
+    pub id: String,
+    /// Its elements, row by row from the bottom: a range of [`Structure::elements`].
+    pub elements: std::ops::Range<usize>,
+    /// Node grid: `nodes[j][i]` is `id[i,j]`.
+    pub nodes: Vec<Vec<usize>>,
+}
+
+/// A displacement component held by a support.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    /// The node.
+    pub node: usize,
+    /// The component that is held.
+    pub component: Component,
+}
+
+/// Nodes that share displacement components.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tie {
+    /// Two or more nodes.
+    pub nodes: Vec<usize>,
+    /// The shared components.
+    pub components: Vec<Component>,
+}
+
+/// Linear spring from a node to the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// The node.
+    pub node: usize,
+    /// Unit vector.
+    pub direction: [f64; 2],
+    /// Force per displacement along `direction`, ≥ 0.
+    pub stiffness: f64,
+}
+
+/// One resolved part of a load case, per unit factor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Load {
+    /// Force (and moment, counter-clockwise) at a node. Edge loads (`point` on an edge, `traction`) arrive here
+    /// already made consistent, one per edge node.
+    Nodal {
+        /// The node.
+        node: usize,
+        /// (F_x, F_y).
+        force: [f64; 2],
+        /// Moment; not zero only at nodes with a rotation.
+        moment: f64,
+    },
+    /// Uniform force per unit length on one frame or truss element, global axes.
+    Line {
+        /// Index into [`Structure::elements`].
+        element: usize,
+        /// (q_x, q_y).
+        value: [f64; 2],
+    },
+    /// Weight: acceleration × density on every element.
+    Gravity {
+        /// (g_x, g_y).
+        acceleration: [f64; 2],
+    },
+    /// Uniform change of temperature of one element.
+    Temperature {
+        /// Index into [`Structure::elements`].
+        element: usize,
+        /// ΔT.
+        change: f64,
+    },
+    /// Prescribed displacement of a supported component.
+    Settlement {
+        /// The node.
+        node: usize,
+        /// X or Y; held by a support.
+        component: Component,
+        /// Displacement per unit factor.
+        value: f64,
+    },
+}
+
+/// A named load case: `factor` × the sum of its loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadCase {
+    /// Name in the file.
+    pub name: String,
+    /// Factor, may be a parameter.
+    pub factor: Number,
+    /// The loads per unit factor.
+    pub loads: Vec<Load>,
+}
+
+/// A structure with its contact pairs and load cases, ready for the finite elements.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Structure {
+    /// All nodes, the author's first.
+    pub nodes: Vec<Node>,
+    /// Materials by index.
+    pub materials: Vec<Material>,
+    /// All elements: of bars, of plates, then single quads, in file order.
+    pub elements: Vec<Element>,
+    /// The bars.
+    pub bars: Vec<Bar>,
+    /// The plates.
+    pub plates: Vec<Plate>,
+    /// Held components, without repetition.
+    pub supports: Vec<Support>,
+    /// Ties.
+    pub ties: Vec<Tie>,
+    /// Springs to the ground.
+    pub springs: Vec<Spring>,
+    /// Contact pairs in the order of the file.
+    pub pairs: Vec<Pair>,
+    /// Load cases in the order of the file.
+    pub load_cases: Vec<LoadCase>,
+}
