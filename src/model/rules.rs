@@ -80,7 +80,8 @@ impl Covering {
 
 impl TieBreak {
     /// Accepted words.
-    pub const WORDS: &'static str = "lexicographic, natural, first-row or random:SEED (e.g. random:7)";
+    pub const WORDS: &'static str =
+        "lexicographic, natural, first-row or random:SEED (e.g. random:7)";
 }
 
 impl Engine {
@@ -126,7 +127,11 @@ impl FromStr for Covering {
             "cohesive" => Ok(Covering::Cohesive),
             "ones" => Ok(Covering::Ones),
             "weight" => Ok(Covering::Weight),
-            _ => Err(UnknownChoice { what: "covering", word: word.into(), expected: Covering::WORDS }),
+            _ => Err(UnknownChoice {
+                what: "covering",
+                word: word.into(),
+                expected: Covering::WORDS,
+            }),
         }
     }
 }
@@ -134,7 +139,11 @@ impl FromStr for Covering {
 impl FromStr for TieBreak {
     type Err = UnknownChoice;
     fn from_str(word: &str) -> Result<Self, UnknownChoice> {
-        let unknown = || UnknownChoice { what: "tie-break", word: word.into(), expected: TieBreak::WORDS };
+        let unknown = || UnknownChoice {
+            what: "tie-break",
+            word: word.into(),
+            expected: TieBreak::WORDS,
+        };
         match word {
             "lexicographic" => Ok(TieBreak::Lexicographic),
             "natural" => Ok(TieBreak::Natural),
@@ -154,7 +163,11 @@ impl FromStr for Engine {
             "scheme" => Ok(Engine::Scheme),
             "tableau" => Ok(Engine::Tableau),
             "exact" => Ok(Engine::Exact),
-            _ => Err(UnknownChoice { what: "engine", word: word.into(), expected: Engine::WORDS }),
+            _ => Err(UnknownChoice {
+                what: "engine",
+                word: word.into(),
+                expected: Engine::WORDS,
+            }),
         }
     }
 }

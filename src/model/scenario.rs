@@ -105,6 +105,9 @@ pub struct Scenario {
 impl Scenario {
     /// Every parameter at the value of the file.
     pub fn parameter_values(&self) -> ParameterValues {
-        self.parameters.iter().map(|(name, parameter)| (name.clone(), parameter.value)).collect()
+        self.parameters
+            .iter()
+            .map(|(name, parameter)| (name.clone(), parameter.value))
+            .collect()
     }
 }

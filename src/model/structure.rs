@@ -154,27 +154,6 @@ pub enum Load {
         /// (q_x, q_y).
         value: [f64; 2],
     },
-    /// Weight: acceleration × density on every element.
-    Gravity {
-        /// (g_x, g_y).
-        acceleration: [f64; 2],
-    },
-    /// Uniform change of temperature of one element.
-    Temperature {
-        /// Index into [`Structure::elements`].
-        element: usize,
-        /// ΔT.
-        change: f64,
-    },
-    /// Prescribed displacement of a supported component.
-    Settlement {
-        /// The node.
-        node: usize,
-        /// X or Y; held by a support.
-        component: Component,
-        /// Displacement per unit factor.
-        value: f64,
-    },
 }
 
 /// A named load case: `factor` × the sum of its loads.
