@@ -1,5 +1,8 @@
 //! Linear complementarity problems and Lemke's algorithm: pure algebra, knows no structures.
 
+pub mod driver;
 pub mod outcome;
+pub mod problem;
+pub mod ratio_test;
 pub mod trace;
 pub mod variable;
