@@ -26,14 +26,14 @@ pub trait Engine {
     fn point(&self) -> Point<Self::Number>;
 }
 
-/// Steps `engine` until it ends, `limit` pivots are made, or `observer` (called after every pivot) breaks.
+/// Steps `engine` until it ends, more than `limit` pivots are made, or `observer` (called after every pivot) breaks.
 pub fn run<E: Engine>(
     engine: &mut E,
     limit: usize,
     observer: &mut dyn FnMut(&Pivot) -> ControlFlow<()>,
 ) -> Run<E::Number> {
     let outcome = loop {
-        if engine.pivots().len() >= limit {
+        if engine.pivots().len() > limit {
             break Outcome::PivotLimit;
         }
         match engine.step() {

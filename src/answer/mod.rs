@@ -1,0 +1,3 @@
+//! From a scenario and its parameter values to one checked answer.
+
+pub mod record;

@@ -1,0 +1,1 @@
+//! The pipeline: scenario → prepared geometry (once) → solved state (for every change of a parameter).
