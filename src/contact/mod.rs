@@ -1,3 +1,4 @@
 //! Unilateral joints: from the condensed structure to the complementarity problem and back.
 
+pub mod numbers;
 pub mod system;

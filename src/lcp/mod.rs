@@ -1,6 +1,10 @@
 //! Linear complementarity problems and Lemke's algorithm: pure algebra, knows no structures.
 
+mod dense;
+mod dictionary;
 pub mod driver;
+pub mod lemke;
+pub mod mirrored;
 pub mod outcome;
 pub mod problem;
 pub mod ratio_test;
