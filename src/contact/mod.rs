@@ -1,4 +1,5 @@
 //! Unilateral joints: from the condensed structure to the complementarity problem and back.
 
+pub mod complementarity;
 pub mod numbers;
 pub mod system;

@@ -10,3 +10,4 @@ pub mod problem;
 pub mod ratio_test;
 pub mod trace;
 pub mod variable;
+pub mod vertex;
