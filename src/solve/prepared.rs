@@ -11,9 +11,9 @@ use crate::fem::error::MainSystemError;
 use crate::fem::main_system::MainSystem;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
-use crate::model::pair::{Joint, JointDirection, joints};
+use crate::model::pair::{JointDirection, joints};
 use crate::model::parameter::Number;
-use crate::model::problem::Problems;
+use crate::model::problem::{LISTED, Problems};
 use crate::model::scenario::{GivenLcp, Scenario, Source};
 use crate::model::structure::Structure;
 use crate::watch::Watch;
@@ -141,6 +141,43 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
     }
 }
 
+/// Gives an error of the main system its place in the file.
+fn main_system_problem(
+    scenario: &Scenario,
+    structure: &Structure,
+    error: MainSystemError,
+) -> PrepareError {
+    let places = &scenario.places;
+    let node = |node: usize| places.nodes.get(node).map_or(String::new(), ToString::to_string);
+    let path = match &error {
+        MainSystemError::Interrupted => return PrepareError::Interrupted,
+        MainSystemError::DependentJoints(joints) => {
+            let mut all: Option<Problems> = None;
+            for joint in joints {
+                let path = places.pairs.get(joint.pair).map_or("contacts", |path| path);
+                let one = scenario.problem_at(path, joint.to_string(), "");
+                match &mut all {
+                    None => all = Some(one),
+                    Some(all) if all.problems.len() < LISTED => all.problems.extend(one.problems),
+                    Some(all) => all.more += 1,
+                }
+            }
+            return PrepareError::Problems(
+                all.unwrap_or_else(|| scenario.problem_at("contacts", error.to_string(), "")),
+            );
+        }
+        MainSystemError::Mechanism { node: free, .. } => node(*free),
+        MainSystemError::MomentWithoutRotation { case, .. } => format!("loads.{case}"),
+        MainSystemError::Element { nodes, .. } => structure
+            .nodes
+            .iter()
+            .position(|candidate| Some(&candidate.id) == nodes.first())
+            .map_or(String::new(), node),
+        _ => String::new(),
+    };
+    PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
+}
+
 fn prepare_structure(
     scenario: &Scenario,
     structure: &Structure,
@@ -148,7 +185,7 @@ fn prepare_structure(
 ) -> Result<Prepared, PrepareError> {
     let joints = joints(&structure.pairs);
     let main = MainSystem::new(structure, &joints, watch)
-        .map_err(|error| main_system_problem(scenario, structure, &joints, error))?;
+        .map_err(|error| main_system_problem(scenario, structure, error))?;
     let tangential = |pair: usize| {
         joints
             .iter()
@@ -177,7 +214,7 @@ fn prepare_structure(
         loads,
         kernel: main.kernel().clone(),
     };
-    let (factor_seconds, condense_seconds) = main.seconds();
+    let seconds = main.timings();
     Ok(Prepared {
         geometry: Geometry::Structure {
             system,
@@ -189,8 +226,8 @@ fn prepare_structure(
             .iter()
             .map(|case| (case.name.clone(), case.factor.clone()))
             .collect(),
-        factor_seconds,
-        condense_seconds,
+        factor_seconds: seconds.factor,
+        condense_seconds: seconds.condense,
         seconds: 0.0,
     })
 }
