@@ -1,17 +1,17 @@
-//! The numbers of the contact laws and the load under one set of parameter values.
+//! The numbers of a contact system under the present parameter values.
 
 use nalgebra::DVector;
 
-/// What changes when a parameter moves; R does not.
+/// Numbers of the laws, one entry per pair (0 where the law has no such number), and the total load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactNumbers {
-    /// f per pair; 0 where the law has none.
+    /// Friction coefficient f ≥ 0.
     pub friction: Vec<f64>,
-    /// c per pair; 0 where the law has none.
+    /// Cohesion c ≥ 0, a force.
     pub cohesion: Vec<f64>,
-    /// Initial gap g per pair; 0 where the law has none.
+    /// Initial gap g ≥ 0, a length.
     pub gap: Vec<f64>,
-    /// Friction bound r_f per pair; 0 where the law has none.
+    /// Known friction bound r_f ≥ 0, a force.
     pub bound: Vec<f64>,
     /// Σ factor·RF over the joints.
     pub load: DVector<f64>,

@@ -4,6 +4,7 @@ pub mod driver;
 pub mod outcome;
 pub mod problem;
 pub mod ratio_test;
+pub mod rational_solve;
 pub mod scalar;
 pub mod tableau;
 pub mod trace;
