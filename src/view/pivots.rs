@@ -12,6 +12,16 @@ use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::PivotRecord;
 use crate::model::scenario::Units;
 
+/// Whether the pivots are those of a contact problem, where p is a force; in a bare LCP it has no unit. Told by
+/// the names: `w[1]` and `z[1]` occur in a bare LCP only.
+pub fn of_contact(pivots: &[PivotRecord]) -> bool {
+    pivots.iter().any(|pivot| {
+        [&pivot.entering, &pivot.leaving]
+            .into_iter()
+            .any(|name| name.as_str() != "p" && !name.starts_with("w[") && !name.starts_with("z["))
+    })
+}
+
 /// Writes the pivots whose step lies in `range` (all without one); the row of step `current` is marked. The
 /// sentence stands on the row where the width allows it, else beneath.
 pub fn write(
@@ -43,11 +53,7 @@ pub fn write(
         };
         return writeln!(out, "{}", style.fit(&text, style.width));
     }
-    let unit = chosen
-        .iter()
-        .any(|pivot| pivot.turned.is_some())
-        .then(|| force_unit(units))
-        .flatten();
+    let unit = force_unit(units).filter(|_| of_contact(pivots));
     let scale = largest(pivots.iter().map(|pivot| pivot.p));
     let mut table = Table::new(vec![
         Column::count("step"),

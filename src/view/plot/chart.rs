@@ -110,14 +110,6 @@ impl Chart {
                 share * height
             }
         };
-        // The zero line, faint.
-        let zero = to_y(0.0);
-        let faint: Vec<(f64, f64)> = (0..columns)
-            .step_by(2)
-            .map(|column| (2.0 * column as f64, zero))
-            .collect();
-        canvas.draw(Role::Muted, vec![Stroke::Dots(faint)]);
-
         for curve in &self.curves {
             let role = Role::Series(curve.number);
             let dots: Vec<(f64, f64)> = curve
@@ -128,7 +120,9 @@ impl Chart {
                 .map(|&(x, y)| (to_x(x), to_y(y)))
                 .collect();
             match curve.line {
-                Line::Dotted => canvas.draw(role, vec![Stroke::Dots(dotted(&dots, 4.0))]),
+                Line::Dotted => {
+                    canvas.draw_under(role, vec![Stroke::Dots(dotted(&dots, 4.0))]);
+                }
                 Line::Marked => {
                     canvas.draw(role, vec![Stroke::Line(dots.clone())]);
                     let stride = dots.len().div_ceil((columns / 4).max(1)).max(1);
@@ -139,6 +133,14 @@ impl Chart {
                 }
             }
         }
+
+        // The zero line, faint.
+        let zero = to_y(0.0);
+        let faint: Vec<(f64, f64)> = (0..columns)
+            .step_by(2)
+            .map(|column| (2.0 * column as f64, zero))
+            .collect();
+        canvas.draw_under(Role::Muted, vec![Stroke::Dots(faint)]);
 
         let mut at_row: Vec<Option<&str>> = vec![None; rows];
         for (value, label) in ticks.values.iter().zip(&labels) {
@@ -155,7 +157,7 @@ impl Chart {
             };
             let label = pad_left(label, gutter);
             let axis = style.paint(Role::Muted, &axis.to_string());
-            writeln!(out, "{} ", format!("{label} {axis}{line}").trim_end()).map(|()| ())?;
+            writeln!(out, "{label} {axis}{line}")?;
         }
         self.write_abscissa(out, style, gutter + 2, columns, &|x| {
             canvas.cell(to_x(x), 0.0).map_or(0, |(column, _)| column)
@@ -190,8 +192,11 @@ impl Chart {
             ('└', '─', '┴')
         };
         let mut axis = vec![plain; columns];
-        for (x, _) in &self.names {
-            axis[column(*x).min(columns - 1)] = tick;
+        // Ticks closer than every third character say nothing.
+        if 3 * self.names.len() <= columns.max(9) {
+            for (x, _) in &self.names {
+                axis[column(*x).min(columns - 1)] = tick;
+            }
         }
         let axis: String = std::iter::once(corner).chain(axis).collect();
         let axis = style.paint(Role::Muted, &axis);
@@ -216,10 +221,14 @@ impl Chart {
     }
 
     fn write_legend(&self, out: &mut dyn Write, style: &Style, indent: usize) -> io::Result<()> {
-        let entries: Vec<(char, Role, String)> = self
+        let (marked, dotted): (Vec<&Curve>, Vec<&Curve>) = self
             .curves
             .iter()
             .filter(|curve| !curve.series.label.is_empty())
+            .partition(|curve| curve.line == Line::Marked);
+        let entries: Vec<(char, Role, String)> = marked
+            .into_iter()
+            .chain(dotted)
             .map(|curve| {
                 let sign = match (curve.line, style.ascii) {
                     (Line::Marked, _) => marker(curve.number, style),
@@ -277,6 +286,9 @@ pub fn dotted(points: &[(f64, f64)], pitch: f64) -> Vec<(f64, f64)> {
     for ends in points.windows(2) {
         let ((x0, y0), (x1, y1)) = (ends[0], ends[1]);
         let length = (x1 - x0).hypot(y1 - y0);
+        if !length.is_finite() {
+            continue;
+        }
         let mut at = left;
         while at <= length {
             let share = at / length;

@@ -86,17 +86,35 @@ pub fn series(
     })
 }
 
-/// Draws the force along `bar` and names its extremes; says so where there is no such bar.
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Diagram<'a> {
+    /// The structure with the bar.
+    pub structure: &'a Structure,
+    /// End forces of its members.
+    pub members: &'a [MemberForces],
+    /// Id of the bar.
+    pub bar: &'a str,
+    /// Which force.
+    pub force: Force,
+    /// Rows of the drawing.
+    pub height: usize,
+}
+
+/// Draws the force along a bar and names its extremes; says so where there is no such bar.
 pub fn write(
     out: &mut dyn Write,
-    structure: &Structure,
-    members: &[MemberForces],
-    bar: &str,
-    force: Force,
+    diagram: &Diagram<'_>,
     units: &Units,
-    height: usize,
     style: &Style,
 ) -> io::Result<()> {
+    let Diagram {
+        structure,
+        members,
+        bar,
+        force,
+        height,
+    } = *diagram;
     let Some(series) = series(structure, members, bar, force) else {
         let text = format!("no member forces of a bar {bar}");
         return writeln!(out, "{}", style.fit(&style.text(&text), style.width));

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::canvas::{Canvas, Stroke};
 use super::chart::{dotted, range, write_legend};
 use crate::answer::record::{NodeDisplacement, PairState, State};
-use crate::model::structure::{Component, Element, ElementKind, Structure};
+use crate::model::structure::{Element, ElementKind, Structure};
 use crate::view::number::short;
 use crate::view::style::{Role, Style};
 
@@ -290,10 +290,17 @@ pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::R
         (canvas.dots_y() - high * pitch) / 2.0,
     );
     let place = |(x, y): (f64, f64)| ((x - left) * pitch + shift_x, (y - bottom) * pitch + shift_y);
+    let ends = (canvas.dots_x(), canvas.dots_y());
     let placed = |lines: &[Vec<(f64, f64)>]| -> Vec<Vec<(f64, f64)>> {
         lines
             .iter()
-            .map(|line| line.iter().map(|&point| place(point)).collect())
+            .map(|line| {
+                let finite = line.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+                finite
+                    .map(|&point| place(point))
+                    .map(|(x, y)| (x.clamp(0.0, ends.0), y.clamp(0.0, ends.1)))
+                    .collect()
+            })
             .collect()
     };
     let is_deformed = moved.iter().any(|u| *u != [0.0; 3]) && factor != 0.0;
@@ -302,14 +309,14 @@ pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::R
             .iter()
             .map(|line| Stroke::Dots(dotted(line, 4.0)))
             .collect();
-        canvas.draw(Role::Muted, strokes);
+        canvas.draw_under(Role::Muted, strokes);
     }
     if grid_pitch(structure, pitch) >= GRID_PITCH {
         let strokes = placed(&now.grid)
             .iter()
             .map(|line| Stroke::Dots(dotted(line, 2.0)))
             .collect();
-        canvas.draw(Role::Muted, strokes);
+        canvas.draw_under(Role::Muted, strokes);
     }
     let strokes = placed(&now.outline).into_iter().map(Stroke::Line).collect();
     canvas.draw(Role::Plain, strokes);
@@ -348,6 +355,7 @@ pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::R
         };
         let (x, y) = at(pair.node);
         canvas.put(x, y, sign, role);
+        canvas.label(x, y, &style.text(&pair.id), Role::Muted);
         note(sign, role, word);
     }
     for line in canvas.lines(style) {
@@ -372,7 +380,7 @@ fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Nodes with supports and how many components each holds. A node without rotation counts as clamped never.
+/// Nodes with supports and how many components each holds.
 fn supported(structure: &Structure) -> Vec<(usize, usize)> {
     let mut held: Vec<(usize, usize)> = Vec::new();
     let mut place: HashMap<usize, usize> = HashMap::new();
@@ -381,11 +389,7 @@ fn supported(structure: &Structure) -> Vec<(usize, usize)> {
             held.push((support.node, 0));
             held.len() - 1
         });
-        held[index].1 += match support.component {
-            Component::X | Component::Y => 1,
-            // A held rotation alone is no pin.
-            Component::R => 1,
-        };
+        held[index].1 += 1;
     }
     held
 }

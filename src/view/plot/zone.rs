@@ -153,8 +153,6 @@ pub fn write(
             }
         }
     }
-    // Names of the curves first, then those of the bounds.
-    curves.sort_by_key(|curve| curve.line == Line::Marked);
     let pairs = states.first().map_or(&[][..], |(_, pairs)| pairs);
     chart(name, unit, curves, pairs, units, height).write(out, style)
 }
