@@ -7,7 +7,7 @@ use unicode_width::UnicodeWidthStr;
 
 use super::force_unit;
 use super::number::{denoised, engineering, largest};
-use super::style::Style;
+use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::PivotRecord;
 use crate::model::scenario::Units;
@@ -60,8 +60,11 @@ pub fn write(
         Column::words("entering"),
         Column::words("leaving"),
         Column::numbers("p", unit),
-        Column::words("ties").droppable(1),
     ]);
+    let ties = chosen.iter().any(|pivot| pivot.ties.len() > 1);
+    if ties {
+        table.columns.push(Column::words("ties").droppable(1));
+    }
     let longest = chosen
         .iter()
         .map(|pivot| pivot.sentence.width())
@@ -72,18 +75,21 @@ pub fn write(
         table.columns.push(Column::words("what happens"));
     }
     for pivot in chosen {
-        let ties = if pivot.ties.len() > 1 {
-            format!("{} tied", pivot.ties.len())
-        } else {
-            String::new()
-        };
         let mut row = Row::new(vec![
             Cell::from(pivot.step.to_string()),
             Cell::from(pivot.entering.as_str()),
             Cell::from(pivot.leaving.as_str()),
             Cell::from(engineering(denoised(pivot.p, scale))),
-            Cell::from(ties),
         ]);
+        if ties {
+            let count = pivot.ties.len();
+            let text = if count > 1 {
+                format!("{count} tied")
+            } else {
+                String::new()
+            };
+            row.cells.push(Cell::new(text, Role::Warning));
+        }
         if on_the_row {
             row.cells.push(Cell::from(pivot.sentence.as_str()));
         } else if !pivot.sentence.is_empty() {

@@ -222,6 +222,8 @@ proptest! {
                 magnification: factor.map_or(Magnification::Auto, Magnification::Factor),
             };
             narrow(s, |out| structure::write(out, &picture, s));
+            let values = [("F2".to_owned(), u[0][0])].into();
+            narrow(s, |out| structure::write_with_loads(out, &picture, &values, s));
             let members: Vec<MemberForces> = (0..5).map(|element| MemberForces {
                 bar: "AF".into(), element,
                 start: EndForces { n: u[element][0], q: u[element][1], m: u[element][2] },

@@ -224,6 +224,18 @@ pub fn beam_structure() -> Structure {
         pairs: (0..SUPPORTS)
             .map(|i| ground_pair(&format!("c{}", i + 1), i))
             .collect(),
+        load_cases: vec![
+            LoadCase {
+                name: "weight".into(),
+                factor: Number::Value(1.0),
+                loads: (0..SUPPORTS).map(|i| point(i, [0.0, -WEIGHT])).collect(),
+            },
+            LoadCase {
+                name: "pull".into(),
+                factor: Number::Parameter("F2".into()),
+                loads: vec![point(SUPPORTS - 1, [1.0, 0.0])],
+            },
+        ],
         ..Structure::default()
     }
 }
@@ -289,6 +301,68 @@ pub fn plates() -> Structure {
         });
     }
     structure
+}
+
+fn point(node: usize, force: [f64; 2]) -> Load {
+    Load::Nodal {
+        node,
+        force,
+        moment: 0.0,
+    }
+}
+
+/// A cantilever, clamped at A, 4 m in two elements, under q = 10 kN/m downwards: Q = q (L − x), M = −q (L − x)²/2.
+pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
+    let mut structure = beam_structure();
+    structure.nodes.truncate(3);
+    for (node, x) in structure.nodes.iter_mut().zip([0.0, 2.0, 4.0]) {
+        node.position[0] = x;
+    }
+    structure.elements.truncate(2);
+    structure.bars[0].elements = 0..2;
+    structure.pairs.clear();
+    structure.supports = [Component::X, Component::Y, Component::R]
+        .map(|component| Support { node: 0, component })
+        .to_vec();
+    let (q, l, ei) = (10.0, 4.0, 2.1e4);
+    structure.load_cases = vec![LoadCase {
+        name: "line".into(),
+        factor: Number::Value(1.0),
+        loads: (0..2)
+            .map(|element| Load::Line {
+                element,
+                value: [0.0, -q],
+            })
+            .collect(),
+    }];
+    let at = |x: f64| EndForces {
+        n: 0.0,
+        q: q * (l - x),
+        m: -q * (l - x) * (l - x) / 2.0,
+    };
+    let members = [(0, 0.0, 2.0), (1, 2.0, 4.0)]
+        .map(|(element, start, end)| MemberForces {
+            bar: "AF".into(),
+            element,
+            start: at(start),
+            end: at(end),
+        })
+        .to_vec();
+    // v = −q x² (6 L² − 4 L x + x²)/24 EI and its derivative.
+    let displacements = structure
+        .nodes
+        .iter()
+        .map(|node| {
+            let x = node.position[0];
+            NodeDisplacement {
+                node: node.id.clone(),
+                ux: 0.0,
+                uy: -q * x * x * (6.0 * l * l - 4.0 * l * x + x * x) / (24.0 * ei),
+                rz: -q * x * (12.0 * l * l - 12.0 * l * x + 4.0 * x * x) / (24.0 * ei),
+            }
+        })
+        .collect();
+    (structure, members, displacements)
 }
 
 fn steel() -> Material {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use unicode_width::UnicodeWidthStr;
 
 use super::plot::{diagram, structure, trace, zone};
-use super::sample::{beam, beam_ray, beam_structure, plates, scenario, units};
+use super::sample::{beam, beam_ray, beam_structure, cantilever, plates, scenario, units};
 use super::style::Style;
 use super::*;
 use crate::answer::record::*;
@@ -95,6 +95,48 @@ fn pictures(style: &Style) -> String {
             height: 16,
         };
         structure::write(&mut out, &picture, style)?;
+        let values = [("F2".to_owned(), 130.0)].into();
+        structure::write_with_loads(&mut out, &picture, &values, style)?;
+        let (held, forces, moved) = cantilever();
+        for force in [diagram::Force::Shear, diagram::Force::Moment] {
+            let drawn = diagram::Diagram {
+                structure: &held,
+                members: &forces,
+                bar: "AF",
+                force,
+                height: 9,
+            };
+            diagram::write(&mut out, &drawn, &units, style)?;
+        }
+        let picture = structure::Picture {
+            title: "cantilever",
+            structure: &held,
+            displacements: Some(&moved),
+            pairs: None,
+            magnification: structure::Magnification::Auto,
+            height: 16,
+        };
+        structure::write_with_loads(&mut out, &picture, &values, style)?;
+        let one = &last.pairs[5..];
+        zone::write(
+            &mut out,
+            zone::Quantity::Pressure,
+            &[("", one)],
+            &units,
+            6,
+            style,
+        )?;
+        zone::write(
+            &mut out,
+            zone::Quantity::Gap,
+            &states[1..],
+            &units,
+            6,
+            style,
+        )?;
+        if let Some(ray) = beam_ray().ray {
+            zone::mode(&mut out, &ray, &last.pairs, &units, 6, style)?;
+        }
         let plates = plates();
         let moved: Vec<NodeDisplacement> = plates
             .nodes
@@ -241,34 +283,16 @@ fn an_open_pair_says_what_holds_it() {
     assert_eq!(pairs::state_words(&pair), "open (slip +)");
 }
 
-/// A cantilever of two elements of 2 m under q = 10 kN/m downwards: M(x) = −q (L − x)²/2, Q = q (L − x).
+/// M(x) = −q (L − x)²/2 of the cantilever, q = 10, L = 4.
 #[test]
 fn moments_between_nodes_are_exact_under_a_line_load() {
-    let mut structure = beam_structure();
-    structure.bars[0].elements = 0..2;
-    for (node, x) in structure.nodes.iter_mut().zip([0.0, 2.0, 4.0]) {
-        node.position[0] = x;
-    }
-    let (q, l) = (10.0, 4.0);
-    let at = |x: f64| EndForces {
-        n: 0.0,
-        q: q * (l - x),
-        m: -q * (l - x) * (l - x) / 2.0,
-    };
-    let members: Vec<MemberForces> = [(0, 0.0, 2.0), (1, 2.0, 4.0)]
-        .into_iter()
-        .map(|(element, start, end)| MemberForces {
-            bar: "AF".into(),
-            element,
-            start: at(start),
-            end: at(end),
-        })
-        .collect();
+    let (structure, members, _) = cantilever();
     let series = diagram::series(&structure, &members, "AF", diagram::Force::Moment);
     let points = series.expect("there is a bar AF").points;
     assert!(points.len() > 10);
     for (x, m) in points {
-        assert!((m - at(x).m).abs() < 1e-12 * 80.0, "{m} at {x}");
+        let exact = -10.0 * (4.0 - x) * (4.0 - x) / 2.0;
+        assert!((m - exact).abs() < 1e-12 * 80.0, "{m} at {x}");
     }
     assert_eq!(
         diagram::series(&structure, &members, "AG", diagram::Force::Moment),

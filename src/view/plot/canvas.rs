@@ -276,7 +276,8 @@ fn ascii(ink: u8) -> char {
         (l, 0) if l >= 3 => '|',
         (0, _) => dot(right_at),
         (_, 0) => dot(left_at),
-        (l, r) if l + r >= 4 && rise.abs() < 0.6 => '|',
+        // Two lines one above the other.
+        (l, r) if l + r >= 4 && rise.abs() < 0.6 => '=',
         (l, r) if l + r >= 3 && rise >= 1.4 => '/',
         (l, r) if l + r >= 3 && rise <= -1.4 => '\\',
         _ if level < 0.75 => '\'',

@@ -14,6 +14,10 @@ use crate::view::style::{Role, Style, pad_left};
 pub enum Line {
     /// Joined points, each with the curve's marker.
     Marked,
+    /// Joined points without markers.
+    Plain,
+    /// Markers that nothing joins.
+    Points,
     /// A dotted line without markers, for bounds.
     Dotted,
 }
@@ -123,12 +127,15 @@ impl Chart {
                 Line::Dotted => {
                     canvas.draw_under(role, vec![Stroke::Dots(dotted(&dots, 4.0))]);
                 }
-                Line::Marked => {
-                    canvas.draw(role, vec![Stroke::Line(dots.clone())]);
+                Line::Plain => canvas.draw(role, vec![Stroke::Line(dots)]),
+                Line::Marked | Line::Points => {
                     let stride = dots.len().div_ceil((columns / 4).max(1)).max(1);
                     let mark = marker(curve.number, style);
                     for &(x, y) in dots.iter().step_by(stride) {
                         canvas.put(x, y, mark, role);
+                    }
+                    if curve.line == Line::Marked {
+                        canvas.draw(role, vec![Stroke::Line(dots)]);
                     }
                 }
             }
@@ -162,7 +169,7 @@ impl Chart {
         self.write_abscissa(out, style, gutter + 2, columns, &|x| {
             canvas.cell(to_x(x), 0.0).map_or(0, |(column, _)| column)
         })?;
-        if self.values {
+        if self.values && last > first {
             let unit = self.unit.as_deref();
             let (left, right) = (short(first), with_unit(&short(last), unit));
             let mut line = Slots::new(columns);
@@ -225,15 +232,15 @@ impl Chart {
             .curves
             .iter()
             .filter(|curve| !curve.series.label.is_empty())
-            .partition(|curve| curve.line == Line::Marked);
+            .partition(|curve| curve.line != Line::Dotted);
         let entries: Vec<(char, Role, String)> = marked
             .into_iter()
             .chain(dotted)
             .map(|curve| {
                 let sign = match (curve.line, style.ascii) {
-                    (Line::Marked, _) => marker(curve.number, style),
                     (Line::Dotted, true) => ':',
                     (Line::Dotted, false) => '┈',
+                    _ => marker(curve.number, style),
                 };
                 (
                     sign,

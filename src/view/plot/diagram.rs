@@ -86,6 +86,20 @@ pub fn series(
     })
 }
 
+/// The points of `series` at the ends of the elements of `bar`.
+fn node_points(structure: &Structure, bar: &str, series: &Series) -> Vec<(f64, f64)> {
+    let mut at = 0.0;
+    let mut ends = vec![at];
+    for length in lengths(structure, bar).unwrap_or_default() {
+        at += length;
+        ends.push(at);
+    }
+    // The abscissas of `series` are the same sums.
+    let is_end = |x: f64| ends.contains(&x);
+    let points = series.points.iter().copied();
+    points.filter(|(x, _)| is_end(*x)).collect()
+}
+
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Diagram<'a> {
@@ -161,13 +175,18 @@ pub fn write(
         .first()
         .zip(series.points.last())
         .map(|(first, last)| vec![(first.0, "start".to_owned()), (last.0, "end".to_owned())]);
+    let nodes = Series {
+        label: String::new(),
+        points: node_points(structure, bar, &series),
+    };
+    let curve = |series: Series, line: Line| Curve {
+        series,
+        number: 0,
+        line,
+    };
     Chart {
         title,
-        curves: vec![Curve {
-            series,
-            number: 0,
-            line: Line::Marked,
-        }],
+        curves: vec![curve(series, Line::Plain), curve(nodes, Line::Points)],
         names: joints.unwrap_or_default(),
         values: true,
         abscissa: format!("along {bar}"),

@@ -6,7 +6,8 @@ use std::io::{self, Write};
 use super::canvas::{Canvas, Stroke};
 use super::chart::{dotted, range, write_legend};
 use crate::answer::record::{NodeDisplacement, PairState, State};
-use crate::model::structure::{Element, ElementKind, Structure};
+use crate::model::parameter::ParameterValues;
+use crate::model::structure::{Element, ElementKind, Load, Structure};
 use crate::view::number::short;
 use crate::view::style::{Role, Style};
 
@@ -237,6 +238,90 @@ fn support_sign(held: usize, ascii: bool) -> (char, &'static str) {
 
 /// Draws the picture with a legend of the signs it uses.
 pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::Result<()> {
+    draw(out, picture, &[], style)
+}
+
+/// The same with an arrow beside every node and bar that carries load under these parameter values.
+pub fn write_with_loads(
+    out: &mut dyn Write,
+    picture: &Picture<'_>,
+    parameters: &ParameterValues,
+    style: &Style,
+) -> io::Result<()> {
+    draw(out, picture, &arrows(picture.structure, parameters), style)
+}
+
+/// Where a load acts and in which direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrow {
+    /// The node, or the ends of the element.
+    pub nodes: Vec<usize>,
+    /// Sum of all cases, each by its factor.
+    pub force: [f64; 2],
+}
+
+/// Forces on nodes and elements, all cases added up; those that cancel out are left out.
+pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow> {
+    let mut arrows: Vec<Arrow> = Vec::new();
+    let mut places: HashMap<Vec<usize>, usize> = HashMap::new();
+    for case in &structure.load_cases {
+        let factor = case.factor.value(parameters);
+        for load in &case.loads {
+            let (nodes, force) = match load {
+                Load::Nodal { node, force, .. } => (vec![*node], force),
+                Load::Line { element, value } => match structure.elements.get(*element) {
+                    Some(element) => (element.nodes.clone(), value),
+                    None => continue,
+                },
+            };
+            let place = *places.entry(nodes.clone()).or_insert_with(|| {
+                arrows.push(Arrow {
+                    nodes,
+                    force: [0.0; 2],
+                });
+                arrows.len() - 1
+            });
+            arrows[place].force[0] += factor * force[0];
+            arrows[place].force[1] += factor * force[1];
+        }
+    }
+    let size = |arrow: &Arrow| arrow.force[0].hypot(arrow.force[1]);
+    let most = arrows.iter().map(size).fold(0.0, f64::max);
+    arrows.retain(|arrow| size(arrow) > 1e-9 * most);
+    arrows
+}
+
+/// A component below this share of a load gets no arrow of its own.
+const COMPONENT: f64 = 0.05;
+
+/// Signs of the components of a load and the steps from its node to their places, in dots: a force down or up stands
+/// before its node, one sideways behind it.
+fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
+    let signs = if ascii {
+        ['V', 'U', '{', '}']
+    } else {
+        ['↓', '↑', '←', '→']
+    };
+    let least = COMPONENT * force[0].hypot(force[1]);
+    let mut shown = Vec::new();
+    if force[1].abs() > least {
+        let up = force[1] > 0.0;
+        shown.push((signs[usize::from(up)], 0.0, if up { -4.0 } else { 4.0 }));
+    }
+    if force[0].abs() > least {
+        let right = force[0] > 0.0;
+        let step = if right { 2.0 } else { -2.0 };
+        shown.push((signs[2 + usize::from(right)], step, 0.0));
+    }
+    shown
+}
+
+fn draw(
+    out: &mut dyn Write,
+    picture: &Picture<'_>,
+    arrows: &[Arrow],
+    style: &Style,
+) -> io::Result<()> {
     let structure = picture.structure;
     let rest = vec![[0.0; 3]; structure.nodes.len()];
     let u = picture
@@ -357,6 +442,19 @@ pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::R
         canvas.put(x, y, sign, role);
         canvas.label(x, y, &style.text(&pair.id), Role::Muted);
         note(sign, role, word);
+    }
+    for arrow in arrows {
+        let count = arrow.nodes.len().max(1) as f64;
+        let (mut x, mut y) = (0.0, 0.0);
+        for &node in &arrow.nodes {
+            let (node_x, node_y) = at(node);
+            x += node_x / count;
+            y += node_y / count;
+        }
+        for (sign, step_x, step_y) in load_signs(arrow.force, style.ascii) {
+            canvas.put(x + step_x, y + step_y, sign, Role::Accent);
+            note(sign, Role::Accent, "load");
+        }
     }
     for line in canvas.lines(style) {
         writeln!(out, "{line}")?;
