@@ -6,7 +6,7 @@ use crate::answer::record::*;
 use crate::model::pair::{Law, Pair};
 use crate::model::parameter::{Number, Parameter};
 use crate::model::rules::Rules;
-use crate::model::scenario::{Scenario, Source, Units};
+use crate::model::scenario::{Places, Scenario, Source, Units};
 use crate::model::structure::*;
 
 /// Metres and kilonewtons.
@@ -424,6 +424,7 @@ pub fn scenario() -> Scenario {
         parameters,
         source: Source::Structure(beam_structure()),
         stages: Vec::new(),
+        places: Places::default(),
         rules: Rules::default(),
     }
 }
