@@ -1,6 +1,8 @@
 //! Linear complementarity problems and Lemke's algorithm: pure algebra, knows no structures.
 
 pub mod driver;
+pub mod exact;
+pub mod filtered;
 pub mod outcome;
 pub mod problem;
 pub mod ratio_test;
