@@ -236,6 +236,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::contact::system::ContactPair;
     use crate::lcp::driver::run;
+    use crate::lcp::exact::Exact;
     use crate::lcp::outcome::Outcome;
     use crate::lcp::ratio_test::TieRule;
     use crate::lcp::tableau::Tableau;
@@ -427,5 +428,84 @@ pub(crate) mod tests {
         assert_eq!(lcp.covering, [1.0, 1.0, 1.0, 1.5, 1.0, 1.5]);
         // x⁻ of c against z⁻ of b: −(f R_n − R_τ) on the tangential joint of b.
         assert!((lcp.matrix[5][4] - (r(4, 3) - 0.5 * r(2, 3))).abs() < 1e-15);
+    }
+
+    /// Random positive definite R with stiffness contrasts up to `contrast`, reals.
+    fn random_contact(
+        random: &mut rand_chacha::ChaCha8Rng,
+        m: usize,
+        contrast: f64,
+    ) -> ContactSystem {
+        use rand::Rng;
+        let k = 2 * m;
+        let a = DMatrix::from_fn(k, k, |_, _| random.random_range(-1.0..1.0));
+        let scale = DMatrix::from_diagonal(&DVector::from_fn(k, |_, _| {
+            contrast.powf(random.random_range(0.0..0.5))
+        }));
+        let r = &scale * (&a * a.transpose() + DMatrix::identity(k, k) * 0.1) * &scale;
+        coulomb((&r + r.transpose()) * 0.5)
+    }
+
+    fn run_exact(input: &WholeInput) -> crate::lcp::outcome::Run<BigRational> {
+        let lcp = whole_lcp::<BigRational>(input);
+        let mut engine = Exact::new(lcp, tangential_first(input.system));
+        run(&mut engine, 5000, &mut |_| ControlFlow::Continue(()))
+    }
+
+    #[test]
+    fn exact_engine_solves_stiffness_contrasts() {
+        use rand::{Rng, SeedableRng};
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(31);
+        for case in 0..60 {
+            let m = 1 + case % 6;
+            let system = random_contact(&mut random, m, 1e9);
+            let load: Vec<f64> = (0..2 * m).map(|_| random.random_range(-1.0..1.0)).collect();
+            let numbers = plain([0.3, 1.0, 4.0][case % 3], &load);
+            let got = run_exact(&WholeInput {
+                system: &system,
+                numbers: &numbers,
+                covering: Covering::Cohesive,
+            });
+            assert!(
+                matches!(
+                    got.outcome,
+                    Outcome::Trivial | Outcome::Normal { marginal: false }
+                ),
+                "case {case}: {:?}",
+                got.outcome
+            );
+        }
+    }
+
+    /// `cargo test --release --lib whole -- --ignored --nocapture`
+    #[test]
+    #[ignore = "a measurement"]
+    fn exact_engine_with_sixty_pairs() {
+        use rand::{Rng, SeedableRng};
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(32);
+        for (contrast, f) in [(1.0, 0.3), (1.0, 2.0), (1e9, 0.5)] {
+            let m = 60;
+            let system = random_contact(&mut random, m, contrast);
+            let load: Vec<f64> = (0..2 * m).map(|_| random.random_range(-1.0..1.0)).collect();
+            let numbers = plain(f, &load);
+            let start = std::time::Instant::now();
+            let got = run_exact(&WholeInput {
+                system: &system,
+                numbers: &numbers,
+                covering: Covering::Cohesive,
+            });
+            let outcome = format!("{:?}", got.outcome);
+            std::io::Write::write_all(
+                &mut std::io::stderr(),
+                format!(
+                    "contrast {contrast:e}, f {f}: {:?}, {} pivots, {}\n",
+                    start.elapsed(),
+                    got.pivots.len(),
+                    &outcome[..outcome.len().min(40)]
+                )
+                .as_bytes(),
+            )
+            .unwrap();
+        }
     }
 }

@@ -5,6 +5,8 @@ mod dictionary;
 pub mod driver;
 pub mod lemke;
 pub mod mirrored;
+pub mod exact;
+pub mod filtered;
 pub mod outcome;
 pub mod problem;
 pub mod ratio_test;

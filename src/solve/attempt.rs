@@ -42,9 +42,9 @@ pub(super) fn watched<E: Engine>(engine: &mut E, name: &str, watch: &dyn Watch) 
                 &format!("{name}, pivot {}", pivot.step),
                 (1.0 - left).clamp(0.0, 1.0),
             );
-            if watch.stop() {
-                return ControlFlow::Break(());
-            }
+        }
+        if watch.stop() {
+            return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     };

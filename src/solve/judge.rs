@@ -11,6 +11,7 @@ use crate::contact::complementarity::{ContactLcp, Couple};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::kernel::clean;
+use crate::lcp::exact::Exact;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, RayDirection, Run};
 use crate::lcp::problem::{Lcp, Scale};
@@ -109,7 +110,7 @@ pub fn run_exact_contact(
 }
 
 fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run<BigRational> {
-    watched(&mut Tableau::new(&problem, rule), "exact tableau", watch)
+    watched(&mut Exact::new(problem, rule), "exact arithmetic", watch)
 }
 
 fn rational(value: f64) -> BigRational {
