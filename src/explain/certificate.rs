@@ -136,10 +136,7 @@ impl Motions<'_> {
             };
             let mut cone = terms(&normal, 1.0);
             if let Some(tangential) = tangential.filter(|_| f > 0.0 || c > 0.0) {
-                let t = problem.add_var(
-                    if power { c / size } else { 0.0 },
-                    (0.0, f64::INFINITY),
-                );
+                let t = problem.add_var(if power { c / size } else { 0.0 }, (0.0, f64::INFINITY));
                 for sign in [1.0, -1.0] {
                     let mut terms = terms(&tangential, sign);
                     terms.push((t, -1.0));
@@ -182,11 +179,7 @@ impl Motions<'_> {
             }
             let terms: Vec<(Variable, f64)> =
                 y.iter().copied().zip(along.iter().copied()).collect();
-            problem.add_constraint(
-                terms.as_slice(),
-                ComparisonOp::Eq,
-                along.norm_squared(),
-            );
+            problem.add_constraint(terms.as_slice(), ComparisonOp::Eq, along.norm_squared());
         }
         Self::solve(&problem, &y)
     }
@@ -255,13 +248,17 @@ impl Motions<'_> {
         };
         // −(RF·ζ + Σ c |ζ_τ|), and the sum of the sizes of its terms.
         let mut surplus = BigRational::zero();
-        let (mut power, mut dissipation, mut terms) = (0.0, 0.0, 0.0);
         let f64_zeta = &self.z * y;
+        let (power, mut terms) = self
+            .load
+            .iter()
+            .zip(f64_zeta.iter())
+            .fold((0.0, 0.0), |(power, terms), (load, zeta)| {
+                (power - load * zeta, terms + (load * zeta).abs())
+            });
+        let mut dissipation = 0.0;
         let mut add = |joint: usize, zeta: &BigRational| -> Option<()> {
             surplus -= exact(self.load[joint])? * zeta;
-            let work = self.load[joint] * f64_zeta[joint];
-            power -= work;
-            terms += work.abs();
             Some(())
         };
         let mut taken = BigRational::zero();
@@ -359,18 +356,11 @@ pub fn balanced_multipliers(
             put(slip, joint);
             if f > 0.0 {
                 for sign in [1.0, -1.0] {
-                    problem.add_constraint(
-                        [(slip, sign), (normal, -f)],
-                        ComparisonOp::Le,
-                        c,
-                    );
+                    problem.add_constraint([(slip, sign), (normal, -f)], ComparisonOp::Le, c);
                 }
             }
         }
-        let (right, left) = (
-            z.transpose() * fixed / size,
-            z.transpose() * varied / size,
-        );
+        let (right, left) = (z.transpose() * fixed / size, z.transpose() * varied / size);
         for (k, mut row) in balance.into_iter().enumerate() {
             if left[k] != 0.0 {
                 row.push((alpha, -left[k]));

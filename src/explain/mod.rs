@@ -1,5 +1,9 @@
 //! Why: pivots in sentences, rays by class, in the words of the structure.
 
+pub mod certificate;
+pub mod kernel;
+pub mod mode;
 pub mod ray;
+pub mod remedy;
 pub mod sentence;
 pub mod words;

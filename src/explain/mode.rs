@@ -65,7 +65,12 @@ fn members(structure: &Structure) -> Vec<Member> {
         .bars
         .iter()
         .map(|bar| (&bar.id, &bar.elements))
-        .chain(structure.plates.iter().map(|plate| (&plate.id, &plate.elements)))
+        .chain(
+            structure
+                .plates
+                .iter()
+                .map(|plate| (&plate.id, &plate.elements)),
+        )
         .map(|(id, elements)| Member {
             id: format!("`{id}`"),
             nodes: nodes_of(elements.clone()),
@@ -82,7 +87,10 @@ fn members(structure: &Structure) -> Vec<Member> {
     }
     for (index, element) in structure.elements.iter().enumerate() {
         if !named[index] {
-            let first = element.nodes.first().map_or("", |&n| &structure.nodes[n].id);
+            let first = element
+                .nodes
+                .first()
+                .map_or("", |&n| &structure.nodes[n].id);
             all.push(Member {
                 id: format!("the element at {first}"),
                 nodes: element.nodes.clone(),
@@ -125,7 +133,9 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
             .map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1])
             .sum()
     };
-    let b = DMatrix::from_fn(joints.len(), motions.len(), |joint, k| at(&motions[k], joint));
+    let b = DMatrix::from_fn(joints.len(), motions.len(), |joint, k| {
+        at(&motions[k], joint)
+    });
     let amounts = b.clone().svd(true, true).solve(direction, 1e-12).ok()?;
     if (&b * &amounts - direction).amax() > 1e-6 * direction.amax() {
         return None;
@@ -181,8 +191,10 @@ pub fn parts(structure: &Structure, displacements: &[[f64; 3]]) -> Option<Vec<Pa
         groups
             .into_iter()
             .map(|(rigid, group)| {
-                let names: Vec<String> =
-                    group.iter().map(|&member| members[member].id.clone()).collect();
+                let names: Vec<String> = group
+                    .iter()
+                    .map(|&member| members[member].id.clone())
+                    .collect();
                 PartMotion {
                     name: part_name(&names, members.len()),
                     motion: describe(rigid, extent, largest),
@@ -196,19 +208,19 @@ fn part_name(names: &[String], all: usize) -> String {
     if names.len() == all && all > 1 {
         "the whole structure".to_owned()
     } else if names.len() > 4 {
-        format!("{} to {} ({} members)", names[0], names[names.len() - 1], names.len())
+        format!(
+            "{} to {} ({} members)",
+            names[0],
+            names[names.len() - 1],
+            names.len()
+        )
     } else {
         list(names)
     }
 }
 
 /// Rigid motion (u_x and u_y at the centre of the nodes, then moved to the origin; angle) of these nodes.
-fn fit(
-    structure: &Structure,
-    nodes: &[usize],
-    u: &[[f64; 3]],
-    tolerance: f64,
-) -> Option<[f64; 3]> {
+fn fit(structure: &Structure, nodes: &[usize], u: &[[f64; 3]], tolerance: f64) -> Option<[f64; 3]> {
     let count = nodes.len() as f64;
     let mean = |read: &dyn Fn(usize) -> f64| nodes.iter().map(|&n| read(n)).sum::<f64>() / count;
     let x = |n: usize| structure.nodes[n].position;
@@ -242,7 +254,13 @@ fn describe([x, y, angle]: [f64; 3], extent: f64, largest: f64) -> RigidMotion {
     if angle.abs() * extent <= 1e-6 * largest {
         return RigidMotion::Translation([x, y]);
     }
-    let tidy = |value: f64| if value.abs() <= 1e-6 * extent { 0.0 } else { value };
+    let tidy = |value: f64| {
+        if value.abs() <= 1e-6 * extent {
+            0.0
+        } else {
+            value
+        }
+    };
     // u = (x − θ Y, y + θ X) is zero at the centre.
     RigidMotion::Rotation {
         centre: [tidy(-y / angle), tidy(x / angle)],
@@ -269,21 +287,33 @@ impl PartMotion {
     pub fn words(&self) -> String {
         match &self.motion {
             RigidMotion::Translation(u) => {
-                format!("rigid translation of {} along {}", self.name, direction_word(*u))
+                format!(
+                    "rigid translation of {} along {}",
+                    self.name,
+                    direction_word(*u)
+                )
             }
             RigidMotion::Rotation { centre, angle } => format!(
                 "rotation of {} about ({}, {}), {}",
                 self.name,
                 coordinate(centre[0]),
                 coordinate(centre[1]),
-                if *angle > 0.0 { "counter-clockwise" } else { "clockwise" }
+                if *angle > 0.0 {
+                    "counter-clockwise"
+                } else {
+                    "clockwise"
+                }
             ),
         }
     }
 }
 
 fn coordinate(value: f64) -> String {
-    if value == 0.0 { "0.0".to_owned() } else { short(value) }
+    if value == 0.0 {
+        "0.0".to_owned()
+    } else {
+        short(value)
+    }
 }
 
 /// What a direction does to the pairs: "all pairs slip +", "base[0] to base[3] open".
@@ -292,7 +322,9 @@ pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<Strin
     let mut kinds: HashMap<&str, Vec<usize>> = HashMap::new();
     for i in 0..system.pairs.len() {
         let z_n = direction[i];
-        let z_t = system.pairs[i].tangential.map_or(0.0, |joint| direction[joint]);
+        let z_t = system.pairs[i]
+            .tangential
+            .map_or(0.0, |joint| direction[joint]);
         let kind = if z_n > STILL * largest {
             "open"
         } else if z_n < -STILL * largest {

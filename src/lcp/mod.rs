@@ -3,10 +3,10 @@
 mod dense;
 mod dictionary;
 pub mod driver;
-pub mod lemke;
-pub mod mirrored;
 pub mod exact;
 pub mod filtered;
+pub mod lemke;
+pub mod mirrored;
 pub mod outcome;
 pub mod problem;
 pub mod ratio_test;

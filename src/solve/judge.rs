@@ -16,7 +16,6 @@ use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, RayDirection, Run};
 use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::scalar::Scalar;
 use crate::lcp::tableau::Tableau;
 use crate::lcp::variable::Variable;
 use crate::model::pair::Law;
@@ -62,8 +61,7 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
         };
         let k = mirror.whole;
         let normal = |j: usize| mirror.normal.map_or(0.0, |n| lcp.matrix[(n, j)]);
-        whole.matrix[k] =
-            spread(&|j| 2.0 * mirror.friction * normal(j) - lcp.matrix[(i, j)]);
+        whole.matrix[k] = spread(&|j| 2.0 * mirror.friction * normal(j) - lcp.matrix[(i, j)]);
         (whole.q[k], whole.covering[k]) = lcp.mirror_start(i, mirror);
         whole.scale.row[k] = lcp.scale.row[i];
     }
@@ -114,18 +112,14 @@ fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run
 }
 
 fn rational(value: f64) -> BigRational {
-    <BigRational as Scalar>::from_f64(value)
+    <BigRational as crate::lcp::scalar::Scalar>::from_f64(value)
 }
 
 /// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ.
 pub fn exact_stiffness(system: &ContactSystem) -> Vec<Vec<BigRational>> {
     let k = system.joint_count();
     let r: Vec<Vec<BigRational>> = (0..k)
-        .map(|i| {
-            (0..k)
-                .map(|j| rational(system.stiffness[(i, j)]))
-                .collect()
-        })
+        .map(|i| (0..k).map(|j| rational(system.stiffness[(i, j)])).collect())
         .collect();
     let free = system.kernel.ncols();
     if free == 0 {
@@ -319,7 +313,7 @@ fn exact_lcp(
 /// An exact run in f64, forces divided by `force` and displacements by `length` (powers of two).
 fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
     let all = |values: &[BigRational], unit: f64| -> Vec<f64> {
-        values.iter().map(|v| Scalar::to_f64(v) / unit).collect()
+        values.iter().map(|v| nearest(v) / unit).collect()
     };
     let mut pivots = run.pivots;
     for pivot in &mut pivots {
@@ -336,7 +330,7 @@ fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
                 entering: ray.entering,
                 z: all(&ray.z, length),
                 w: all(&ray.w, force),
-                p: Scalar::to_f64(&ray.p) / force,
+                p: nearest(&ray.p) / force,
             }),
             Outcome::Trivial => Outcome::Trivial,
             Outcome::Normal { marginal } => Outcome::Normal { marginal },
@@ -348,8 +342,12 @@ fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
         point: Point {
             z: all(&run.point.z, length),
             w: all(&run.point.w, force),
-            p: Scalar::to_f64(&run.point.p) / force,
+            p: nearest(&run.point.p) / force,
         },
         pivots,
     }
+}
+
+fn nearest(value: &BigRational) -> f64 {
+    crate::lcp::scalar::Scalar::to_f64(value)
 }

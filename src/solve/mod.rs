@@ -1,8 +1,11 @@
 //! The pipeline: scenario → prepared geometry (once) → solved state (for every change of a parameter).
 
 pub mod attempt;
+pub mod judge;
 pub mod numbers;
+pub mod plain_answers;
 pub mod prepared;
+pub mod retry;
 pub mod solved;
 
 pub use prepared::{PrepareError, Prepared, prepare};
