@@ -9,7 +9,7 @@
 //! do more. The LP crate only *proposes* ζ, by f64 and with tolerances; what it proposes is then verified in exact
 //! rational arithmetic, with a margin for the rounding of RF. No verified motion, no certificate.
 
-use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome, Variable};
+use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOptions, SolveOutcome, Variable};
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -21,6 +21,13 @@ use crate::model::pair::Law;
 
 /// The power of the loads has to exceed this multiple of the terms that it sums.
 const MARGIN: f64 = 256.0 * f64::EPSILON;
+
+/// Solves with the tightest tolerance that still allows for the rounding of the data.
+fn run(problem: &Problem) -> Result<SolveOutcome, microlp::Error> {
+    let mut options = SolveOptions::default();
+    options.tolerances.feasibility = 1e-9;
+    problem.solve_with(options)
+}
 
 /// A motion that proves that no contact forces within the laws' bounds balance the loads.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,7 +164,7 @@ impl Motions<'_> {
     }
 
     fn solve(problem: &Problem, y: &[Variable]) -> Option<DVector<f64>> {
-        match problem.solve() {
+        match run(problem) {
             Ok(SolveOutcome::Solution(solution)) => Some(DVector::from_iterator(
                 y.len(),
                 y.iter().map(|y| solution.var_value(*y)),
@@ -367,7 +374,7 @@ pub fn balanced_multipliers(
             }
             problem.add_constraint(row.as_slice(), ComparisonOp::Eq, right[k]);
         }
-        match problem.solve() {
+        match run(&problem) {
             Ok(SolveOutcome::Solution(solution)) => Some(solution.var_value(alpha)),
             _ => None,
         }

@@ -163,10 +163,14 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
             .loads
             .iter()
             .zip(cases)
-            .map(|(load, (case, factor))| CasePower {
-                case: case.clone(),
-                factor: *factor,
-                power: factor * power(&load.vector, &direction).0 + 0.0,
+            .map(|(load, (case, factor))| {
+                let (power, terms) = power(&load.vector, &direction);
+                let noise = power.abs() <= 1e-12 * terms;
+                CasePower {
+                    case: case.clone(),
+                    factor: *factor,
+                    power: if noise { 0.0 } else { factor * power },
+                }
             })
             .collect()
     } else {

@@ -214,7 +214,7 @@ impl Remedy {
         match self {
             Remedy::Restraint { part, against } => {
                 format!(
-                    "a restraint of {part} {against} (it stops this motion; that no other follows is not proved)"
+                    "a restraint of {part} {against} (stops this motion; that no other follows is not proved)"
                 )
             }
             Remedy::Friction { needed: None, .. } => {

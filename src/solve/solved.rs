@@ -387,11 +387,11 @@ pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer 
     let [covering, tie_break, engine] = words;
     let failure = match &run.outcome {
         Outcome::PivotLimit => Some(format!(
-            "the limit of {} pivots was reached",
+            "the limit of {} pivots was reached.",
             super::attempt::PIVOT_LIMIT
         )),
         Outcome::Cycle => Some(format!(
-            "the tie-break {tie_break} cycles: after {} pivots a working scheme came back",
+            "the tie-break {tie_break} cycles: after {} pivots a working scheme came back.",
             run.pivots.len()
         )),
         Outcome::Breakdown(why) => Some(why.clone()),
