@@ -41,6 +41,9 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
     for (index, bar) in bars.into_iter().enumerate() {
         divide(builder, bar, format!("bars[{index}]").into());
     }
+    for end in std::mem::take(&mut builder.ends_of_broken_bars) {
+        builder.node(end);
+    }
     for (index, (_, plate)) in plates.iter().enumerate() {
         let Structure {
             plates, elements, ..
@@ -193,6 +196,14 @@ fn bar<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<BarOutline<'
     let outline = bar_outline(builder, cursor, &fields, id);
     if outline.is_none() {
         builder.broken.extend(id);
+        // The rest of the entry is wrong, but its nodes are looked up all the same.
+        let ends = fields
+            .optional("nodes")
+            .filter(|nodes| nodes.is_list())
+            .and_then(Cursor::list);
+        builder
+            .ends_of_broken_bars
+            .extend(ends.into_iter().flatten().filter(|end| end.is_string()));
     }
     outline
 }
@@ -231,14 +242,15 @@ fn bar_outline<'d>(
         Some((cursor, name, section?))
     });
     let is_frame = is_frame?;
-    if !is_frame && let (Some(count), Some(at)) = (divisions, fields.optional("divisions")) {
-        if count > 1 {
-            at.problem(
-                format!("a truss bar cannot be divided, found {count} divisions"),
-                "its inner nodes would move sideways freely: remove `divisions`, or make it a frame",
-            );
-            return None;
-        }
+    if !is_frame
+        && let (Some(count), Some(at)) = (divisions, fields.optional("divisions"))
+        && count > 1
+    {
+        at.problem(
+            format!("a truss bar cannot be divided, found {count} divisions"),
+            "its inner nodes would move sideways freely: remove `divisions`, or make it a frame",
+        );
+        return None;
     }
     if !is_frame && hinges.is_some_and(|hinges| hinges != [false; 2]) {
         fields.refuse(
@@ -469,7 +481,7 @@ fn increasing(cursor: Cursor<'_>) -> Option<Vec<f64>> {
     if entries.len() < 2 {
         cursor.problem(
             format!("expected at least two grid lines, found {}", entries.len()),
-            "",
+            "give the first and the last at least",
         );
         return None;
     }

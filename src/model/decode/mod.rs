@@ -10,6 +10,8 @@ mod matrix_market;
 mod reader;
 mod structure;
 mod supports;
+#[cfg(test)]
+mod tests;
 mod words;
 
 use std::path::PathBuf;
@@ -223,7 +225,7 @@ fn parameter(entry: Entry<'_>) -> Option<Parameter> {
                     "expected a number or an object with `value`, found {}",
                     cursor.found()
                 ),
-                "",
+                "write e.g. 0.3 or { \"value\": 0.3, \"min\": 0, \"max\": 1 }",
             );
             return None;
         }

@@ -10,13 +10,16 @@ use std::fmt::Display;
 use jsonc_parser::ast::{ObjectProp, Value};
 use jsonc_parser::common::Ranged;
 
-use super::words::{did_you_mean, listed, quoted};
+use super::words::{counted, did_you_mean, is_id, listed, quoted};
 use crate::model::locate::{self, Document};
 use crate::model::parameter::{Number, Parameter};
 use crate::model::problem::{LISTED, Problem, Problems};
 
 /// Numbers beyond this are refused: their squares must stay finite.
 const LARGEST: f64 = 1e150;
+
+const PLAIN_NUMBER: &str = "write a plain number, like 0.5 or 2e8";
+const NO_PARAMETER: &str = "write a plain number: only factors, friction, cohesion, gap, bound and the q of an lcp take the name of a parameter";
 
 /// Problems beyond this many are only counted.
 const KEPT: usize = 10_000;
@@ -146,11 +149,16 @@ impl<'d> Cursor<'d> {
         }
     }
 
-    fn wrong_type(self, expected: &str) {
-        self.problem(
-            format!("expected {expected}, found {}", self.found()),
-            String::new(),
-        );
+    /// The text of the string here in quotation marks; of anything else, what it is.
+    pub fn quoted(self) -> String {
+        match self.value {
+            Value::StringLit(string) => quoted(&string.value),
+            _ => self.found(),
+        }
+    }
+
+    fn wrong_type(self, expected: &str, help: &str) {
+        self.problem(format!("expected {expected}, found {}", self.found()), help);
     }
 
     /// Whether a string stands here.
@@ -173,7 +181,7 @@ impl<'d> Cursor<'d> {
         match self.value {
             Value::StringLit(string) => Some(string.value.as_ref()),
             _ => {
-                self.wrong_type("a string");
+                self.wrong_type("a string", "write a text in \"…\"");
                 None
             }
         }
@@ -193,7 +201,7 @@ impl<'d> Cursor<'d> {
     /// Reports a word that names nothing known.
     pub fn unknown(self, what: &str, word: &str, known: &[&str]) {
         let help = match known {
-            [] => format!("there is no {what} here to name"),
+            [] => format!("the scenario defines no {what}"),
             _ => format!("expected {}", listed(known)),
         };
         self.problem(
@@ -209,12 +217,9 @@ impl<'d> Cursor<'d> {
     /// A finite number.
     pub fn number(self) -> Option<f64> {
         let Value::NumberLit(number) = self.value else {
-            let help = if self.is_string() {
-                "only factors, friction, cohesion, gap, bound and the q of an lcp take the name of a parameter"
-            } else {
-                ""
-            };
-            self.problem(format!("expected a number, found {}", self.found()), help);
+            let is_name = matches!(self.value, Value::StringLit(string) if is_id(&string.value));
+            let help = if is_name { NO_PARAMETER } else { PLAIN_NUMBER };
+            self.wrong_type("a number", help);
             return None;
         };
         self.magnitude(number.value)
@@ -224,7 +229,7 @@ impl<'d> Cursor<'d> {
         let value: f64 = match literal.parse() {
             Ok(value) => value,
             Err(_) => {
-                self.wrong_type("a number");
+                self.wrong_type("a number", PLAIN_NUMBER);
                 return None;
             }
         };
@@ -261,7 +266,7 @@ impl<'d> Cursor<'d> {
         }
         self.problem(
             format!("{what} must be {expected}, found {}", self.found()),
-            format!("give {what} a value {expected}"),
+            format!("give {what} a value that is {expected}"),
         );
         None
     }
@@ -283,7 +288,7 @@ impl<'d> Cursor<'d> {
                 "{what} must be a whole number from {least}, found {}",
                 self.found()
             ),
-            "",
+            "write it without a fraction",
         );
         None
     }
@@ -309,7 +314,10 @@ impl<'d> Cursor<'d> {
             }
             Value::NumberLit(number) => self.magnitude(number.value).map(Number::Value),
             _ => {
-                self.wrong_type("a number or the name of a parameter");
+                self.wrong_type(
+                    "a number or the name of a parameter",
+                    "write one of the two",
+                );
                 None
             }
         }
@@ -346,7 +354,7 @@ impl<'d> Cursor<'d> {
     /// The entries of a list.
     pub fn list(self) -> Option<impl ExactSizeIterator<Item = Cursor<'d>>> {
         let Value::Array(array) = self.value else {
-            self.wrong_type("a list");
+            self.wrong_type("a list", "write the entries in [ … ]");
             return None;
         };
         Some(array.elements.iter().map(move |value| Cursor {
@@ -362,10 +370,18 @@ impl<'d> Cursor<'d> {
         what: &str,
     ) -> Option<impl ExactSizeIterator<Item = Cursor<'d>>> {
         let entries = self.list()?;
-        if entries.len() != count {
+        let found = entries.len();
+        if found != count {
             self.problem(
-                format!("expected {count} entries, {what}, found {}", entries.len()),
-                "",
+                format!(
+                    "expected {}, {what}, found {found}",
+                    counted(count, "entry", "entries")
+                ),
+                if found < count {
+                    "add the missing ones"
+                } else {
+                    "remove those too many"
+                },
             );
             return None;
         }
@@ -383,7 +399,7 @@ impl<'d> Cursor<'d> {
             Some(_) => {
                 self.problem(
                     format!("expected two numbers [x, y], found {}", self.found()),
-                    "",
+                    "points and vectors lie in the plane: give x and y",
                 );
                 None
             }
@@ -418,7 +434,7 @@ impl<'d> Cursor<'d> {
     /// The entries of an object as a map from names the author chose; a repeated name is reported.
     pub fn entries(self) -> Option<Vec<Entry<'d>>> {
         let Value::Object(object) = self.value else {
-            self.wrong_type("an object { … }");
+            self.wrong_type("an object { … }", "write \"key\": value entries in { … }");
             return None;
         };
         let mut seen: HashMap<&str, ()> = HashMap::new();
