@@ -1,12 +1,16 @@
 //! Text of a scenario → checked [`Scenario`], collecting every problem on the way.
 
+mod bars;
 mod contact_system;
 mod contacts;
 mod elements;
+mod findings;
 mod law;
 mod lcp;
 mod loads;
 mod matrix_market;
+mod numbers;
+mod plates;
 mod reader;
 mod structure;
 mod supports;
