@@ -2,5 +2,9 @@
 
 pub mod answer;
 pub mod contact;
+pub mod explain;
+pub mod fem;
 pub mod lcp;
 pub mod model;
+pub mod solve;
+pub mod watch;

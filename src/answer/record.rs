@@ -288,6 +288,56 @@ pub struct Timings {
     pub total: f64,
 }
 
+/// Everything about one solved state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// How it ended.
+    pub outcome: OutcomeKind,
+    /// Normal, but p stopped within 1e-12 of largest |q|.
+    pub marginal: bool,
+    /// Where the run ended in a ray.
+    pub ray: Option<Ray>,
+    /// p at the end.
+    pub p: f64,
+    /// Covering of the last attempt: `cohesive`, `ones`, `weight`, `given`.
+    pub covering: String,
+    /// Tie-break of the last attempt.
+    pub tie_break: String,
+    /// Engine of the last attempt.
+    pub engine: String,
+    /// All tries, in order.
+    pub attempts: Vec<Attempt>,
+    /// The pivots of the last attempt.
+    pub pivots: Vec<PivotRecord>,
+    /// The pairs at the end (at the last vertex of a ray).
+    pub pairs: Vec<PairState>,
+    /// The fresh check.
+    pub check: Check,
+    /// Displacements of the nodes; `None` where there is no structure or no answer.
+    pub displacements: Option<Vec<NodeDisplacement>>,
+    /// Member end forces; likewise.
+    pub members: Option<Vec<MemberForces>>,
+    /// Support reactions; likewise.
+    pub reactions: Option<Vec<Reaction>>,
+    /// z and w, bare LCP only.
+    pub solution: Option<PlainSolution>,
+    /// Sizes.
+    pub size: Size,
+    /// Times.
+    pub timings: Timings,
+    /// Remarks for the user that are no errors (cohesion in an open pair, several answers …).
+    pub notes: Vec<String>,
+    /// Why there is no answer, where `outcome` is no ray and no answer.
+    pub failure: Option<String>,
+}
+
+impl Answer {
+    /// Whether this is an answer (trivial or normal, and checked).
+    pub fn is_answer(&self) -> bool {
+        matches!(self.outcome, OutcomeKind::Trivial | OutcomeKind::Normal)
+    }
+}
+
 /// z and w of a bare LCP.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlainSolution {

@@ -1,0 +1,5 @@
+//! One solved state in the words of the structure, and its independent check.
+
+pub mod check;
+pub mod pairs;
+pub mod record;
