@@ -3,8 +3,10 @@
 pub mod answer;
 pub mod contact;
 pub mod explain;
+pub mod export;
 pub mod fem;
 pub mod lcp;
 pub mod model;
 pub mod solve;
+pub mod view;
 pub mod watch;
