@@ -2,5 +2,6 @@
 
 pub mod answer;
 pub mod contact;
+pub mod fem;
 pub mod lcp;
 pub mod model;
