@@ -84,7 +84,7 @@ impl Dofs {
     }
 
     /// Displacements [u_x, u_y, θ] per node from base dofs; θ = 0 where there is none.
-    pub fn to_nodes(&self, u: &[f64]) -> Vec<[f64; 3]> {
+    pub fn scatter(&self, u: &[f64]) -> Vec<[f64; 3]> {
         std::iter::zip(&self.first, &self.has_rotation)
             .map(|(&first, &rotation)| {
                 let first = first as usize;
@@ -95,7 +95,7 @@ impl Dofs {
     }
 
     /// Base dofs from displacements per node.
-    pub fn from_nodes(&self, u: &[[f64; 3]]) -> Vec<f64> {
+    pub fn gather(&self, u: &[[f64; 3]]) -> Vec<f64> {
         let mut base = vec![0.0; self.count];
         for (node, values) in u.iter().enumerate() {
             for (component, value) in COMPONENTS.into_iter().zip(values) {
@@ -185,9 +185,9 @@ impl Elimination {
         // Number the classes that are left, then write out the rows.
         let mut master = vec![u32::MAX; dofs.count()];
         let mut masters = 0;
-        for dof in 0..dofs.count() {
+        for (dof, master) in master.iter_mut().enumerate() {
             if is_class(dof) && !reduction.slaves.contains_key(&(dof as u32)) {
-                master[dof] = masters;
+                *master = masters;
                 masters += 1;
             }
         }

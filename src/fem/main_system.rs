@@ -120,7 +120,7 @@ impl MainSystem {
                 FactorError::Other(error) => error,
                 FactorError::Singular(v) => {
                     let u = elimination.expand(&v, &vec![0.0; joints.len()]);
-                    kernel::mechanism(structure, &dofs.to_nodes(&u))
+                    kernel::mechanism(structure, &dofs.scatter(&u))
                 }
             })?;
         drop(main.k_m);
@@ -190,7 +190,7 @@ impl MainSystem {
             }
             if let Some(extended) = kernel::extend(&self.z, &z) {
                 self.z = extended;
-                let mut u = self.dofs.to_nodes(&u);
+                let mut u = self.dofs.scatter(&u);
                 let largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
                 if largest > 0.0 {
                     u.iter_mut().flatten().for_each(|u| *u /= largest);
@@ -229,7 +229,7 @@ impl MainSystem {
     /// # Panics
     /// If there are not as many factors as load cases and as many z as joints.
     pub fn displacements(&self, factors: &[f64], z: &DVector<f64>) -> Displacements {
-        Displacements(self.dofs.to_nodes(&self.base_displacements(factors, z)))
+        Displacements(self.dofs.scatter(&self.base_displacements(factors, z)))
     }
 
     fn base_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
@@ -255,7 +255,7 @@ impl MainSystem {
         lambda: &DVector<f64>,
         factors: &[f64],
     ) -> Vec<f64> {
-        let mut forces = self.k.times(&self.dofs.from_nodes(&u.0));
+        let mut forces = self.k.times(&self.dofs.gather(&u.0));
         for (f, factor) in std::iter::zip(&self.f, factors) {
             for (force, f) in std::iter::zip(&mut forces, f) {
                 *force -= factor * f;
@@ -310,7 +310,7 @@ impl MainSystem {
     ) -> f64 {
         let unbalanced = self.unbalanced(u, lambda, factors);
         let joint_forces = self.joint_forces(lambda);
-        let terms = self.k.times_absolute(&self.dofs.from_nodes(&u.0));
+        let terms = self.k.times_absolute(&self.dofs.gather(&u.0));
         let rotation = self.dofs.is_rotation();
         // Index 0: forces, 1: moments.
         let mut scale = [0.0_f64; 2];
@@ -371,7 +371,7 @@ fn balance(rf: &mut DVector<f64>, rigid: &RigidKernel, motions: &[Motion], f: &[
     let work = DVector::from_iterator(
         motions.len(),
         motions.iter().map(|motion| {
-            let u = dofs.from_nodes(&motion.u);
+            let u = dofs.gather(&motion.u);
             -std::iter::zip(u, f).map(|(u, f)| u * f).sum::<f64>()
         }),
     );

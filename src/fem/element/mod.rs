@@ -116,7 +116,7 @@ impl Axis {
     }
 
     /// Components in bar axes (x from start to end, y = x turned +90°) of a global vector.
-    pub fn to_local(&self, v: [f64; 2]) -> [f64; 2] {
+    pub fn to_local(self, v: [f64; 2]) -> [f64; 2] {
         [
             self.cos * v[0] + self.sin * v[1],
             self.cos * v[1] - self.sin * v[0],

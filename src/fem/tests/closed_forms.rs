@@ -210,8 +210,8 @@ fn patch_of_distorted_quads() {
     let u = system.displacements(&[], &z);
     for (i, place) in places.into_iter().enumerate() {
         let exact = field(place);
-        for c in 0..2 {
-            assert!((u.0[n[i]][c] - exact[c]).abs() < 1e-15);
+        for (u, exact) in std::iter::zip(u.0[n[i]], exact) {
+            assert!((u - exact).abs() < 1e-15);
         }
     }
     // MacNeal & Harder 1985: σ_x = σ_y = 1333, τ = 400.
