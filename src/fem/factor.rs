@@ -309,24 +309,41 @@ impl Factor {
         Ok(Trailing { start, w })
     }
 
-    /// K_m⁻¹ b for every column of `b`, in place; gives also L⁻¹ Pᵀ S b.
-    pub fn solve(&self, b: &mut DMatrix<f64>) -> ForwardPart {
-        let n = self.order();
-        let mut x = Mat::<f64>::zeros(n, b.ncols());
-        for j in 0..b.ncols() {
-            for i in 0..b.nrows() {
-                x[(self.position[i] as usize, j)] = self.scale[i] * b[(i, j)];
-            }
+    /// K_m⁻¹ b, in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        let mut x = Mat::<f64>::zeros(self.order(), 1);
+        for (i, b) in b.iter().enumerate() {
+            x[(self.position[i] as usize, 0)] = self.scale[i] * b;
         }
         self.forward(x.as_mut(), 0, 0);
-        let forward = ForwardPart(x.clone());
         self.backward(x.as_mut());
-        for j in 0..b.ncols() {
-            for i in 0..b.nrows() {
-                b[(i, j)] = self.scale[i] * x[(self.position[i] as usize, j)];
+        for (i, b) in b.iter_mut().enumerate() {
+            *b = self.scale[i] * x[(self.position[i] as usize, 0)];
+        }
+    }
+
+    /// Cᵀ K_m⁻¹ b = Wᵀ L⁻¹ Pᵀ S b for every b, as columns.
+    pub fn project(&self, trailing: &Trailing, b: &[Vec<f64>]) -> DMatrix<f64> {
+        let (n, cases) = (self.order(), b.len());
+        // Row by row: the sweep goes down the rows, and the cases lie side by side.
+        let mut x = vec![0.0; n * cases];
+        for (case, b) in b.iter().enumerate() {
+            for (i, b) in b.iter().enumerate() {
+                x[self.position[i] as usize * cases + case] = self.scale[i] * b;
             }
         }
-        forward
+        let mut x = MatMut::from_row_major_slice_mut(&mut x, n, cases);
+        self.forward(x.as_mut(), 0, 0);
+        let mut out = DMatrix::zeros(trailing.w.ncols(), cases);
+        matmul(
+            MatMut::from_column_major_slice_mut(out.as_mut_slice(), trailing.w.ncols(), cases),
+            Accum::Replace,
+            trailing.w.transpose(),
+            x.as_ref().subrows(trailing.start, trailing.w.nrows()),
+            1.0,
+            PAR,
+        );
+        out
     }
 
     fn supernodes(&self) -> &SymbolicSupernodalCholesky<u32> {
@@ -423,10 +440,6 @@ pub fn plain_seconds(k: &SymmetricSparse) -> f64 {
     seconds
 }
 
-/// L⁻¹ Pᵀ S b of a solve.
-#[derive(Debug)]
-pub struct ForwardPart(Mat<f64>);
-
 impl Trailing {
     /// D − Wᵀ W, exactly symmetric.
     pub fn schur(&self, d: &DMatrix<f64>) -> DMatrix<f64> {
@@ -445,23 +458,6 @@ impl Trailing {
         );
         r.fill_upper_triangle_with_lower_triangle();
         r
-    }
-
-    /// Wᵀ y for every column of the forward part y = L⁻¹ Pᵀ S b: Cᵀ K_m⁻¹ b.
-    pub fn project(&self, y: &ForwardPart) -> DMatrix<f64> {
-        let rows = self.w.nrows();
-        let below = y.0.as_ref().subrows(self.start, rows);
-        let mut out = DMatrix::zeros(self.w.ncols(), y.0.ncols());
-        let (k, cases) = out.shape();
-        matmul(
-            MatMut::from_column_major_slice_mut(out.as_mut_slice(), k, cases),
-            Accum::Replace,
-            self.w.transpose(),
-            below,
-            1.0,
-            PAR,
-        );
-        out
     }
 }
 

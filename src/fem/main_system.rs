@@ -65,8 +65,6 @@ pub struct MainSystem {
     pub(super) f: Vec<Vec<f64>>,
     factor: Factor,
     c: Vec<(u32, u32, f64)>,
-    /// v per load case with z = 0.
-    v: DMatrix<f64>,
     r: DMatrix<f64>,
     rf: Vec<DVector<f64>>,
     z: DMatrix<f64>,
@@ -129,14 +127,9 @@ impl MainSystem {
         let clock = Instant::now();
         let trailing = factor.trailing(&main.c, joints.len(), watch)?;
         let mut r = trailing.schur(&main.d);
-        let mut v = DMatrix::zeros(elimination.masters(), f.len());
-        for (case, f) in f.iter().enumerate() {
-            v.column_mut(case)
-                .copy_from_slice(&on_masters(&elimination, f));
-        }
-        let forward = factor.solve(&mut v);
-        let condensed = trailing.project(&forward);
-        drop((trailing, forward));
+        let loads: Vec<Vec<f64>> = f.iter().map(|f| on_masters(&elimination, f)).collect();
+        let condensed = factor.project(&trailing, &loads);
+        drop((trailing, loads));
         let rf = f.iter().zip(condensed.column_iter()).map(|(f, column)| {
             let mut rf = column - DVector::from_vec(on_joints(&elimination, f));
             balance(&mut rf, &rigid, &motions, f, &dofs);
@@ -152,7 +145,6 @@ impl MainSystem {
             f,
             factor,
             c: main.c,
-            v,
             r,
             rf,
             z: rigid.z,
@@ -235,17 +227,19 @@ impl MainSystem {
     fn base_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
         assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
         assert_eq!(z.len(), self.joints.len(), "a z for every joint");
-        let mut v = DMatrix::zeros(self.elimination.masters(), 1);
+        // K_m v = Tᵀ F − C z.
+        let mut f = vec![0.0; self.dofs.count()];
+        for (case, factor) in std::iter::zip(&self.f, factors) {
+            for (sum, f) in std::iter::zip(&mut f, case) {
+                *sum += factor * f;
+            }
+        }
+        let mut v = on_masters(&self.elimination, &f);
         for &(row, joint, value) in &self.c {
             v[row as usize] -= value * z[joint as usize];
         }
-        if z.iter().any(|z| *z != 0.0) {
-            self.factor.solve(&mut v);
-        }
-        for (case, factor) in factors.iter().enumerate() {
-            v.column_mut(0).axpy(*factor, &self.v.column(case), 1.0);
-        }
-        self.elimination.expand(v.as_slice(), z.as_slice())
+        self.factor.solve(&mut v);
+        self.elimination.expand(&v, z.as_slice())
     }
 
     /// Nodal forces K u − F − Bᵀ λ on the base dofs: what supports and ties have to give.
