@@ -184,11 +184,11 @@ fn bar_end_forces(
         return [[0.0; 3]; 2];
     };
     let values: Vec<f64> = slots(element)
-        .into_iter()
+        .iter()
         .map(|slot| match slot {
-            Some((node, Component::X)) => u.0[node][0],
-            Some((node, Component::Y)) => u.0[node][1],
-            Some((node, Component::R)) => u.0[node][2],
+            Some((node, Component::X)) => u.0[*node][0],
+            Some((node, Component::Y)) => u.0[*node][1],
+            Some((node, Component::R)) => u.0[*node][2],
             None => 0.0,
         })
         .collect();

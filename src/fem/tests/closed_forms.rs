@@ -225,8 +225,8 @@ fn patch_of_distorted_quads() {
 }
 
 /// Unit square, E = 1, ν = 0, t = 1, its top fixed, its two bottom nodes the pairs: R is the block of its
-/// stiffness. By hand: ∫N1x² = ∫N1y² = 1/3, ∫N1x N2x = −1/3, ∫N1y N2y = 1/6, ∫N1x N1y = 1/4, ∫N1y N2x = −1/4,
-/// ∫N1x N2y = 1/4; D = diag(1, 1, ½).
+/// stiffness, with D = diag(1, 1, ½). By hand: ∫N1x² = ∫N1y² = 1/3, ∫N1x N2x = −1/3, ∫N1y N2y = 1/6,
+/// ∫N1y N1x = ∫N1x N2y = 1/4, ∫N2y N2x = ∫N2x N1y = −1/4.
 #[test]
 fn unit_square_element() {
     let mut model = Model::default();
@@ -238,24 +238,16 @@ fn unit_square_element() {
     model.pair(n[0], None, [0.0, 1.0], coulomb());
     model.pair(n[1], None, [0.0, 1.0], coulomb());
     let system = model.solve();
-    // n1, n2 = u_y; τ1, τ2 = u_x.
-    let (diagonal, n12, t12) = (0.5, 1.0 / 6.0 - 1.0 / 6.0, -1.0 / 3.0 + 1.0 / 12.0);
-    // (y1, x1): ½∫N1y N1x = 1/8; (y1, x2): ½∫N1x N2y = …
+    // Rows n1, n2 = u_y; τ1, τ2 = u_x. n1–n2: 1/6 − ½·1/3; τ1–τ2: −1/3 + ½·1/6.
     #[rustfmt::skip]
     let exact = DMatrix::from_row_slice(4, 4, &[
-        diagonal, n12,      0.125,    0.125 * cross(0, 1),
-        n12,      diagonal, 0.125 * cross(1, 0), -0.125,
-        0.125,    0.125 * cross(1, 0), diagonal, t12,
-        0.125 * cross(0, 1), -0.125, t12, diagonal,
+         0.5,    0.0,    0.125,  0.125,
+         0.0,    0.5,   -0.125, -0.125,
+         0.125, -0.125,  0.5,   -0.25,
+         0.125, -0.125, -0.25,   0.5,
     ]);
     assert!((system.stiffness() - exact).amax() < 1e-14);
     assert_eq!(system.kernel().ncols(), 0);
-}
-
-/// Sign of ∫N_ix N_jy / (1/4) … of the rows (y_i, x_j): ½ ∫ N_ix N_jy with i ≠ j at the bottom.
-fn cross(y: usize, _x: usize) -> f64 {
-    // y1 with x2: N1x = −(1−y), N2y = −x: ∫ = +1/4. y2 with x1: N2x = (1−y), N1y = −(1−x): ∫ = −1/4.
-    if y == 0 { 1.0 } else { -1.0 }
 }
 
 /// A bar on m frictional supports every L: R_ττ = EA/L·tridiag(−1, 2, −1) with 1 at both ends, R_nτ = 0, kernel 1 (it
@@ -373,13 +365,16 @@ fn frame_on_turned_supports() {
         let lambda = system.stiffness() * &z + &system.loads()[0];
         let u = system.displacements(&[1.0], &z);
         assert!(system.equilibrium_residual(&model.0, &u, &lambda, &[1.0]) < 1e-12);
+        // A joint force that is off by a millionth is seen.
+        let wrong = &lambda * (1.0 + 1e-6);
+        assert!(system.equilibrium_residual(&model.0, &u, &wrong, &[1.0]) > 1e-7);
         let turned = model.joints();
         let found = crate::fem::kernel::mutual_displacements(&turned, &u.0);
         assert!((found - z).amax() < 1e-16);
     }
 }
 
-/// The same structure in N, mm: forces × 1e3, lengths × 1e3, R × 1, and R, RF agree after scaling.
+/// The same structure in kN, m and in MN, km.
 #[test]
 fn units_do_not_matter() {
     let build = |force: f64, length: f64| {
@@ -409,9 +404,9 @@ fn units_do_not_matter() {
         model.solve()
     };
     let (a, b) = (build(1.0, 1.0), build(1e-3, 1e-3));
-    let ratio = 1e-3 / 1e-3;
+    // R is force per length: its numbers stay.
     let scale = a.stiffness().amax();
-    assert!((a.stiffness() * ratio - b.stiffness()).amax() < 1e-12 * scale);
+    assert!((a.stiffness() - b.stiffness()).amax() < 1e-12 * scale);
     for (a, b) in std::iter::zip(a.loads(), b.loads()) {
         assert!((a * 1e-3 - b).amax() < 1e-12 * b.amax());
     }

@@ -267,3 +267,18 @@ fn everything_held() {
     assert!((r[(1, 1)] - 5.0).abs() < 1e-15 && r[(0, 0)] == 0.0);
     assert_eq!(system.kernel().ncols(), 1);
 }
+
+#[test]
+fn too_large_says_how_large() {
+    let error = MainSystemError::TooLarge {
+        unknowns: 50_000_000,
+        joints: 800,
+        needed: 123_400_000_000,
+        available: 900_000_000,
+    };
+    assert_eq!(
+        error.to_string(),
+        "the model is too large: 50000000 unknowns and 800 joints need 123.4 GB of memory, 900 MB are available; \
+         use fewer divisions"
+    );
+}
