@@ -1,11 +1,12 @@
 //! K and F of the free structure, and their share in the main system.
 //!
-//! With u = T v + G z (see `dof`): K_m = Tᵀ K T, C = Tᵀ K G, D = Gᵀ K G.
+//! With u = T v + G z (see `elimination`): K_m = Tᵀ K T, C = Tᵀ K G, D = Gᵀ K G.
 
 use nalgebra::DMatrix;
 
-use super::dof::{Dofs, Elimination};
+use super::dof::Dofs;
 use super::element::{line_load, slots, spring, stiffness};
+use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
 use crate::model::structure::{Component, Load, Structure};

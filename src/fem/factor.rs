@@ -9,8 +9,6 @@
 //! The other rows are ordered by approximate minimum degree, whose order is a postorder of its elimination tree;
 //! appending rows keeps it one, as faer's supernodes need.
 
-use std::ops::Range;
-
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::matmul::{matmul, triangular};
 use faer::linalg::triangular_solve::{
@@ -32,7 +30,7 @@ use nalgebra::DMatrix;
 use super::error::MainSystemError;
 use super::memory::available_memory;
 use super::sparse::SymmetricSparse;
-use super::watch::Watch;
+use super::watch::{Watch, check_stop};
 
 /// One thread: results do not depend on the machine's number of cores.
 const PAR: Par = Par::Seq;
@@ -101,7 +99,7 @@ impl Factor {
             touched
         };
         let n = k_m.order();
-        let scale = scale_to_unit_diagonal(k_m);
+        let scale = k_m.scale_to_unit_diagonal();
         watch.progress("ordering the unknowns", 0.0);
         let forward = order_touched_last(k_m, touched)?;
         let tail = n - touched.iter().filter(|touched| **touched).count();
@@ -459,37 +457,6 @@ impl Trailing {
         r.fill_upper_triangle_with_lower_triangle();
         r
     }
-}
-
-fn check_stop(watch: &dyn Watch) -> Result<(), MainSystemError> {
-    if watch.stop() {
-        Err(MainSystemError::Interrupted)
-    } else {
-        Ok(())
-    }
-}
-
-/// S K S with S the powers of two nearest to 1/√K_ii (1 where K_ii is not positive); returns S.
-fn scale_to_unit_diagonal(k: &mut SymmetricSparse) -> Vec<f64> {
-    let scale: Vec<f64> = k
-        .diagonal()
-        .into_iter()
-        .map(|d| {
-            if d > 0.0 {
-                (-0.5 * d.log2()).round().exp2()
-            } else {
-                1.0
-            }
-        })
-        .collect();
-    for column in 0..k.order() {
-        let range: Range<usize> =
-            k.column_start[column] as usize..k.column_start[column + 1] as usize;
-        for at in range {
-            k.values[at] *= scale[column] * scale[k.rows[at] as usize];
-        }
-    }
-    scale
 }
 
 /// The order: AMD of the rows that are not touched, then the touched ones; entry i is the row at position i.

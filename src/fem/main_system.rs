@@ -1,7 +1,7 @@
 //! The main system: every joint on. R, RF and the kernel of R; displacements for given loads and dislocations.
 //!
 //! ```text
-//!     K_m v + C z = Tᵀ F,   λ = Cᵀ v + D z − Gᵀ F       (u = T v + G z, see `dof`)
+//!     K_m v + C z = Tᵀ F,   λ = Cᵀ v + D z − Gᵀ F       (u = T v + G z, see `elimination`)
 //!     R  = D − Cᵀ K_m⁻¹ C
 //!     RF = Cᵀ K_m⁻¹ Tᵀ F − Gᵀ F
 //! ```
@@ -12,7 +12,8 @@ use std::time::Instant;
 use nalgebra::{DMatrix, DVector};
 
 use super::assembly::{assemble, load_vectors, main_matrices, on_joints, on_masters};
-use super::dof::{Dofs, Elimination};
+use super::dof::Dofs;
+use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::{Factor, FactorError};
 use super::kernel::{self, RigidKernel};

@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::builder::{Model, coulomb, two_plates};
 use crate::fem::assembly::{assemble, main_matrices};
-use crate::fem::dof::{Dofs, Elimination};
+use crate::fem::dof::Dofs;
+use crate::fem::elimination::Elimination;
 use crate::fem::factor::plain_seconds;
 
 /// R = D − Cᵀ K_m⁻¹ C by dense Cholesky.
