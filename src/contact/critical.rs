@@ -361,7 +361,8 @@ pub(crate) mod tests {
     pub(crate) fn unit_square() -> ContactSystem {
         // ∫ N_i,x N_j,x = ±1/3; ∫ N_1,y N_1,y = 1/3, ∫ N_1,y N_2,y = 1/6.
         let same = 1.0 / 3.0 + 0.5 / 3.0;
-        let (tt, nn) = (-1.0 / 3.0 + 0.5 / 6.0, 1.0 / 6.0 - 0.5 / 3.0);
+        // nn = 1/6 − ½ · 1/3.
+        let (tt, nn) = (-1.0 / 3.0 + 0.5 / 6.0, 0.0);
         // N_1 = (1−x)(1−y), N_2 = x(1−y):  ∫ N_1,y N_1,x = 1/4, ∫ N_1,y N_2,x = −1/4, ∫ N_2,y N_1,x = 1/4,
         // ∫ N_2,y N_2,x = −1/4. Row: u_i (τ_i), column: v_j (n_j).
         let (t1n1, t1n2, t2n1, t2n2) = (0.125, -0.125, 0.125, -0.125);

@@ -379,21 +379,19 @@ impl<'a> Search<'a> {
         // Largest value of Σ (factor · row) + fixed is below −(LOOSE · size)?
         let fails = |terms: &[(usize, f64)], fixed: f64, size: f64| {
             let mut largest = fixed;
-            for column in 0..width {
-                let a: f64 = terms.iter().map(|(i, f)| f * row(*i)[column]).sum();
-                largest += if column + 1 == width {
-                    a
-                } else if a > 0.0 {
-                    a * bounds[column].1
-                } else if a < 0.0 {
-                    a * bounds[column].0
-                } else {
-                    0.0
-                };
+            let entry =
+                |column: usize| -> f64 { terms.iter().map(|(i, f)| f * row(*i)[column]).sum() };
+            for (column, (low, high)) in bounds.iter().enumerate() {
+                let a = entry(column);
+                // Not 0 · ∞.
+                if a != 0.0 {
+                    largest += a * if a > 0.0 { high } else { low };
+                }
                 if largest == f64::INFINITY {
                     return false;
                 }
             }
+            largest += entry(width - 1);
             largest < -LOOSE * size
         };
         let force = self.sizes.force;

@@ -218,8 +218,8 @@ pub fn exact_check(
         told: 0,
         notable: Vec::new(),
     };
-    for pair in 0..m {
-        signs.pair(pair, opens(pair), slip(pair), scheme[pair].tangential);
+    for (pair, state) in scheme.iter().enumerate() {
+        signs.pair(pair, opens(pair), slip(pair), state.tangential);
         if progress(0.9 + 0.1 * (pair + 1) as f64 / m as f64).is_break() {
             return ended(Finding::Interrupted);
         }

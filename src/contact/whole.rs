@@ -430,6 +430,96 @@ pub(crate) mod tests {
         assert!((lcp.matrix[5][4] - (r(4, 3) - 0.5 * r(2, 3))).abs() < 1e-15);
     }
 
+    /// Validation 1 at its limit load: p = (F2 − n f F) / (n d_τ), with R as a factorization leaves it: noise where true
+    /// zeros are, kernel made exact by projection.
+    #[test]
+    fn p_at_the_limit_of_the_bar() {
+        use rand::{Rng, SeedableRng};
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(33);
+        for spacing in [1.0, 3.0, 6.0, 12.0] {
+            for n in [3usize, 6, 9] {
+                let k = 2 * n;
+                let mut r = DMatrix::from_fn(k, k, |_, _| 1e-17 * random.random_range(-1.0..1.0));
+                r = (&r + r.transpose()) * 0.5;
+                let stiffness = 2.1e6 / spacing;
+                for i in 0..n {
+                    r[(i, i)] += 0.7 * stiffness;
+                }
+                for e in n..k - 1 {
+                    for (i, j, sign) in [
+                        (e, e, 1.0),
+                        (e + 1, e + 1, 1.0),
+                        (e, e + 1, -1.0),
+                        (e + 1, e, -1.0),
+                    ] {
+                        r[(i, j)] += sign * stiffness;
+                    }
+                }
+                let z =
+                    DVector::from_fn(k, |i, _| if i < n { 0.0 } else { 1.0 / (n as f64).sqrt() });
+                let keep = DMatrix::identity(k, k) - &z * z.transpose();
+                let r = &keep * r * &keep;
+                let system = coulomb((&r + r.transpose()) * 0.5);
+                let limit = 30.0 * n as f64;
+                for (excess, tolerance) in [(1e-9, 1e-5), (1e-6, 1e-8)] {
+                    let pull = limit * (1.0 + excess);
+                    let mut load = vec![0.0; k];
+                    load[..n].fill(100.0);
+                    load[n] = -pull;
+                    let numbers = plain(0.3, &load);
+                    for (covering, d_t) in Covering::ALL.into_iter().zip([1.3, 1.0, 0.3]) {
+                        let lcp = whole_lcp::<f64>(&WholeInput {
+                            system: &system,
+                            numbers: &numbers,
+                            covering,
+                        });
+                        let got = run(
+                            &mut Tableau::new(&lcp, tangential_first(&system)),
+                            200,
+                            &mut |_| ControlFlow::Continue(()),
+                        );
+                        let expected = (pull - limit) / (n as f64 * d_t);
+                        assert!(
+                            matches!(got.outcome, Outcome::Ray(_)),
+                            "{spacing} {n} {covering}: {:?}",
+                            got.outcome
+                        );
+                        assert!(
+                            (got.point.p / expected - 1.0).abs() < tolerance,
+                            "{spacing} {n} {covering} {excess}: {} {expected}",
+                            got.point.p
+                        );
+                    }
+                    let below = ContactNumbers {
+                        load: DVector::from_fn(k, |i, _| {
+                            if i == n {
+                                -limit * (1.0 - excess)
+                            } else {
+                                numbers.load[i]
+                            }
+                        }),
+                        ..numbers
+                    };
+                    let lcp = whole_lcp::<f64>(&WholeInput {
+                        system: &system,
+                        numbers: &below,
+                        covering: Covering::Cohesive,
+                    });
+                    let got = run(
+                        &mut Tableau::new(&lcp, tangential_first(&system)),
+                        200,
+                        &mut |_| ControlFlow::Continue(()),
+                    );
+                    assert!(
+                        matches!(got.outcome, Outcome::Normal { marginal: false }),
+                        "{:?}",
+                        got.outcome
+                    );
+                }
+            }
+        }
+    }
+
     /// Random positive definite R with stiffness contrasts up to `contrast`, reals.
     fn random_contact(
         random: &mut rand_chacha::ChaCha8Rng,

@@ -47,7 +47,7 @@ pub struct Exact {
 impl Exact {
     /// An engine before the entry of p. All vectors and rows of `lcp` must have the length of q.
     pub fn new(lcp: Lcp<BigRational>, rule: TieRule) -> Self {
-        let precision = 256 + 4 * lcp.size() as u32;
+        let precision = 160 + 2 * lcp.size() as u32;
         let rows = lcp
             .matrix
             .iter()

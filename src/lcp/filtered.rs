@@ -41,15 +41,16 @@ impl Bound {
         if m == 0.0 || m.is_infinite() {
             return Bound { m, e: 0 };
         }
-        while m >= 2.0 {
-            m *= 0.5;
-            e += 1;
+        if m < f64::MIN_POSITIVE {
+            // Subnormal: normalize first.
+            m *= 2f64.powi(64);
+            e -= 64;
         }
-        while m < 1.0 {
-            m *= 2.0;
-            e -= 1;
-        }
-        Bound { m, e }
+        // The exponent bits of a positive normal number.
+        let bits = m.to_bits();
+        let exponent = (bits >> 52) as i64 - 1023;
+        m = f64::from_bits((bits & ((1 << 52) - 1)) | (1023 << 52));
+        Bound { m, e: e + exponent }
     }
 
     fn power_of_two(e: i64) -> Self {
@@ -145,12 +146,13 @@ fn residue(a: &BigInt) -> u64 {
 
 /// Upper (side 1) or lower (side −1) bound of |mantissa| · 2^exponent.
 fn magnitude(mantissa: &BigInt, exponent: i64, side: f64) -> Bound {
-    let bits = mantissa.bits() as i64;
-    if bits == 0 {
+    // The two highest words, without copying the others.
+    let mut words = mantissa.iter_u64_digits().rev();
+    let (Some(high), below) = (words.next(), words.next()) else {
         return Bound::ZERO;
-    }
-    let shift = (bits - 60).max(0);
-    let top = (mantissa >> shift as u64).to_f64().unwrap_or(0.0).abs();
+    };
+    let shift = 64 * (words.len() as i64 + i64::from(below.is_some()));
+    let top = high as f64 + below.unwrap_or(0) as f64 * 2f64.powi(-64);
     Bound::new(top * (1.0 + side * 8.0 * f64::EPSILON), exponent + shift)
 }
 
@@ -214,25 +216,20 @@ impl Filtered {
 
     fn plus(&self, other: &Self, negative: bool) -> Self {
         let (a, b) = (self, other);
-        let exponent = if a.mantissa.is_zero() {
-            b.exponent
-        } else if b.mantissa.is_zero() {
-            a.exponent
-        } else {
-            a.exponent.min(b.exponent)
-        };
-        let lift = |x: &Self| {
-            if x.mantissa.is_zero() {
-                BigInt::zero()
-            } else {
-                &x.mantissa << (x.exponent - exponent) as u64
-            }
-        };
-        let mantissa = if negative {
-            lift(a) - lift(b)
-        } else {
-            lift(a) + lift(b)
-        };
+        // The finer exponent holds both exactly; only the coarser mantissa moves.
+        let coarser = a.exponent - b.exponent;
+        let (first, second);
+        let (mut x, mut y, mut exponent) = (&a.mantissa, &b.mantissa, a.exponent);
+        if x.is_zero() {
+            exponent = b.exponent;
+        } else if !y.is_zero() && coarser > 0 {
+            first = x << coarser as u64;
+            (x, exponent) = (&first, b.exponent);
+        } else if !y.is_zero() && coarser < 0 {
+            second = y << coarser.unsigned_abs();
+            y = &second;
+        }
+        let mantissa = if negative { x - y } else { x + y };
         let residue = match (a.residue, b.residue) {
             (Some(a), Some(b)) => {
                 let b = if negative { PRIME - b } else { b };
