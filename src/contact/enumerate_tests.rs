@@ -1,5 +1,6 @@
 //! Known answers, and agreement with the tableau on random problems.
 
+use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
