@@ -1,7 +1,18 @@
 //! What the user describes: scenario file → checked scenario. No linear algebra.
+//!
+//! `load` (text) → `locate` (tree with places) → `decode` (typed, all problems in one pass; `mesh`, `edge` make
+//! plates) → `scenario` (what everything later works on).
 
+mod decode;
+pub mod edge;
+pub mod embedded;
+pub mod load;
+pub mod locate;
+mod memory;
+pub mod mesh;
 pub mod pair;
 pub mod parameter;
+pub mod problem;
 pub mod rules;
 pub mod scenario;
 pub mod structure;

@@ -35,6 +35,23 @@ impl Law {
             Law::Bound { .. } => "bound",
         }
     }
+
+    /// Its numbers, each ≥ 0, with their keys in files.
+    pub fn numbers(&self) -> Vec<(&'static str, &Number)> {
+        match self {
+            Law::Coulomb {
+                friction,
+                cohesion,
+                gap,
+            } => vec![
+                ("friction", friction),
+                ("cohesion", cohesion),
+                ("gap", gap),
+            ],
+            Law::Frictionless { gap } => vec![("gap", gap)],
+            Law::Bound { bound } => vec![("bound", bound)],
+        }
+    }
 }
 
 /// A contact pair of a structure.

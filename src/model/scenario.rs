@@ -1,11 +1,14 @@
 //! A checked scenario: what `load` returns and everything later works on.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use indexmap::IndexMap;
 
+use super::locate::Document;
 use super::pair::Law;
 use super::parameter::{Number, Parameter, ParameterValues};
+use super::problem::{Problem, Problems};
 use super::rules::Rules;
 use super::structure::Structure;
 
@@ -77,6 +80,22 @@ pub struct Stage {
     pub multipliers: Vec<(String, Number)>,
 }
 
+/// Where in the file each part of a structure stands, as JSON paths. Parts that one entry generates (the nodes of
+/// a plate, the pairs of an edge) share its path. Empty for the other sources, except `pairs`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Places {
+    /// Of each node.
+    pub nodes: Vec<Arc<str>>,
+    /// Of each element: its bar, plate or quad.
+    pub elements: Vec<Arc<str>>,
+    /// Of each held component in `Structure::supports`.
+    pub supports: Vec<Arc<str>>,
+    /// Of each tie.
+    pub ties: Vec<Arc<str>>,
+    /// Of each contact pair.
+    pub pairs: Vec<Arc<str>>,
+}
+
 /// A scenario that passed every check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
@@ -100,9 +119,70 @@ pub struct Scenario {
     pub stages: Vec<Stage>,
     /// Covering, tie-break and engine the file asks for.
     pub rules: Rules,
+    /// Where its parts stand in `text`.
+    pub places: Places,
 }
 
 impl Scenario {
+    /// A problem of this scenario that only a later stage could find, placed at a JSON path such as those in
+    /// [`Places`] (at the nearest place around it if the path leads nowhere).
+    pub fn problem_at(
+        &self,
+        path: &str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Problems {
+        let mut problems = Problems::of_file(self.name.as_str(), message, help);
+        // The text was parsed when it was loaded.
+        if let Ok(document) = Document::parse(&self.text) {
+            let offset = document.offset_of(path);
+            let (line, column) = document.position(offset);
+            for problem in &mut problems.problems {
+                *problem = Problem {
+                    line,
+                    column,
+                    path: document.path_at(offset),
+                    message: std::mem::take(&mut problem.message),
+                    help: std::mem::take(&mut problem.help),
+                };
+            }
+        }
+        problems
+    }
+
+    /// Why the parameter cannot take this value: friction, cohesion, gap and bound must stay ≥ 0. `None` if it can.
+    pub fn refusal(&self, parameter: &str, value: f64) -> Option<String> {
+        if !value.is_finite() {
+            return Some(format!("{parameter} must be a finite number"));
+        }
+        if value >= 0.0 {
+            return None;
+        }
+        let laws: Vec<(&str, &Law)> = match &self.source {
+            Source::Structure(structure) => structure
+                .pairs
+                .iter()
+                .map(|pair| (pair.id.as_str(), &pair.law))
+                .collect(),
+            Source::ContactSystem(system) => system
+                .pairs
+                .iter()
+                .map(String::as_str)
+                .zip(&system.laws)
+                .collect(),
+            Source::Lcp(_) => Vec::new(),
+        };
+        laws.into_iter().find_map(|(id, law)| {
+            let (what, _) = law
+                .numbers()
+                .into_iter()
+                .find(|(_, number)| number.parameter() == Some(parameter))?;
+            Some(format!(
+                "{parameter} is the {what} of {id} and must not be negative, found {value}"
+            ))
+        })
+    }
+
     /// Every parameter at the value of the file.
     pub fn parameter_values(&self) -> ParameterValues {
         self.parameters

@@ -1,7 +1,7 @@
 //! The checked, resolved structure: names have become indices, lists are complete, every number is finite.
 //!
 //! Node indices point into [`Structure::nodes`]; that list holds the author's nodes first (file order), then
-//! the generated ones (bar divisions `AB/1`, plate nodes `lower[i,j]`), so that results keep the author's order.
+//! the generated ones (plate nodes `lower[i,j]`, then bar divisions `AB/1`), so that results keep the author's order.
 
 use super::pair::Pair;
 use super::parameter::Number;

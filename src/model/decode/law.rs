@@ -1,0 +1,81 @@
+//! Laws of contact and the numbers that belong to each.
+
+use super::reader::{Cursor, Parameters};
+use crate::model::pair::Law;
+use crate::model::parameter::Number;
+
+/// A law without its numbers.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum LawKind {
+    Coulomb,
+    Frictionless,
+    Bound,
+}
+
+/// The keys of numbers, with the laws they belong to.
+pub const NUMBERS: [(&str, &[LawKind]); 4] = [
+    ("friction", &[LawKind::Coulomb]),
+    ("cohesion", &[LawKind::Coulomb]),
+    ("gap", &[LawKind::Coulomb, LawKind::Frictionless]),
+    ("bound", &[LawKind::Bound]),
+];
+
+impl LawKind {
+    /// The words in files.
+    pub const WORDS: [(&'static str, LawKind); 3] = [
+        ("coulomb", LawKind::Coulomb),
+        ("frictionless", LawKind::Frictionless),
+        ("bound", LawKind::Bound),
+    ];
+
+    /// The word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            LawKind::Coulomb => "coulomb",
+            LawKind::Frictionless => "frictionless",
+            LawKind::Bound => "bound",
+        }
+    }
+
+    /// Whether a number belongs to this law.
+    pub fn takes(self, key: &str) -> bool {
+        NUMBERS
+            .iter()
+            .any(|(name, laws)| *name == key && laws.contains(&self))
+    }
+
+    /// The law with its numbers, given by key; 0 where none is given.
+    pub fn with(self, number: impl Fn(&str) -> Option<Number>) -> Law {
+        let number = |key| number(key).unwrap_or(Number::Value(0.0));
+        match self {
+            LawKind::Coulomb => Law::Coulomb {
+                friction: number("friction"),
+                cohesion: number("cohesion"),
+                gap: number("gap"),
+            },
+            LawKind::Frictionless => Law::Frictionless { gap: number("gap") },
+            LawKind::Bound => Law::Bound {
+                bound: number("bound"),
+            },
+        }
+    }
+}
+
+/// One number ≥ 0 per pair: from a list with one entry each, or, where `may_be_single`, from a single one.
+pub fn per_pair(
+    cursor: Cursor<'_>,
+    key: &str,
+    count: usize,
+    may_be_single: bool,
+    parameters: &Parameters,
+) -> Option<Vec<Number>> {
+    if may_be_single && !cursor.is_list() {
+        let number = cursor.non_negative(key, parameters)?;
+        return Some(vec![number; count]);
+    }
+    let entries = cursor.list_of(count, "one per pair")?;
+    let numbers: Vec<Option<Number>> = entries
+        .map(|entry| entry.non_negative(key, parameters))
+        .collect();
+    numbers.into_iter().collect()
+}

@@ -1,0 +1,262 @@
+//! Matrix Market files: real or integer, array or coordinate, general or symmetric
+//! (<https://math.nist.gov/MatrixMarket/formats.html>).
+
+/// What is wrong with a file, and on which line.
+#[derive(Debug, PartialEq)]
+pub struct MatrixError {
+    /// From 1.
+    pub line: usize,
+    /// What was found and expected.
+    pub message: String,
+    /// What to do.
+    pub help: String,
+}
+
+/// Reads a square matrix of the given size, row by row.
+pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
+    let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
+    let (number, banner) = lines.next().unwrap_or((1, ""));
+    let header = Header::parse(banner).map_err(|message| {
+        error(
+            number,
+            message,
+            "the first line is `%%MatrixMarket matrix array|coordinate real|integer general|symmetric`",
+        )
+    })?;
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('%'));
+    let last = text.lines().count().max(1);
+    let (number, sizes) = lines
+        .next()
+        .ok_or_else(|| error(last, "the line with the sizes is missing", ""))?;
+    let sizes = words::<usize>(number, sizes, if header.coordinate { 3 } else { 2 })?;
+    if sizes[0] != size || sizes[1] != size {
+        return Err(error(
+            number,
+            format!(
+                "the matrix is {} × {}, expected 2m × 2m = {size} × {size}",
+                sizes[0], sizes[1]
+            ),
+            "rows and columns: all normals, then all tangentials",
+        ));
+    }
+    let mut matrix = vec![vec![0.0; size]; size];
+    let places: Vec<(usize, usize)> = if header.coordinate {
+        Vec::new()
+    } else {
+        // Column by column; of a symmetric matrix the lower triangle.
+        (0..size)
+            .flat_map(|j| {
+                let first = if header.symmetric { j } else { 0 };
+                (first..size).map(move |i| (i, j))
+            })
+            .collect()
+    };
+    let expected = if header.coordinate { sizes[2] } else { places.len() };
+    let mut count = 0;
+    let mut seen = vec![false; if header.coordinate { size * size } else { 0 }];
+    for (number, line) in lines {
+        if count == expected {
+            return Err(error(
+                number,
+                format!("found more than the {expected} entries announced"),
+                "",
+            ));
+        }
+        let (i, j, value) = if header.coordinate {
+            let (i, j, value) = header.coordinate_entry(number, line, size)?;
+            if std::mem::replace(&mut seen[i * size + j], true) {
+                return Err(error(
+                    number,
+                    format!("row {}, column {} is given twice", i + 1, j + 1),
+                    "give every entry once",
+                ));
+            }
+            (i, j, value)
+        } else {
+            let (i, j) = places[count];
+            (i, j, real(number, words::<&str>(number, line, 1)?[0])?)
+        };
+        matrix[i][j] = value;
+        if header.symmetric {
+            matrix[j][i] = value;
+        }
+        count += 1;
+    }
+    if count < expected {
+        return Err(error(
+            last,
+            format!("the file ends after {count} of {expected} entries"),
+            "",
+        ));
+    }
+    Ok(matrix)
+}
+
+struct Header {
+    coordinate: bool,
+    symmetric: bool,
+}
+
+impl Header {
+    fn parse(banner: &str) -> Result<Self, String> {
+        let lower = banner.to_ascii_lowercase();
+        let words: Vec<&str> = lower.split_whitespace().collect();
+        let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
+            return Err("this is not a Matrix Market file".into());
+        };
+        let coordinate = match layout {
+            "coordinate" => true,
+            "array" => false,
+            other => return Err(format!("unknown layout `{other}`, expected array or coordinate")),
+        };
+        if !matches!(field, "real" | "integer" | "double") {
+            return Err(format!("entries are `{field}`, expected real or integer"));
+        }
+        let symmetric = match symmetry {
+            "symmetric" => true,
+            "general" => false,
+            other => {
+                return Err(format!("the matrix is `{other}`, expected general or symmetric"));
+            }
+        };
+        Ok(Header {
+            coordinate,
+            symmetric,
+        })
+    }
+
+    fn coordinate_entry(
+        &self,
+        number: usize,
+        line: &str,
+        size: usize,
+    ) -> Result<(usize, usize, f64), MatrixError> {
+        let parts = words::<&str>(number, line, 3)?;
+        let index = |word: &str| {
+            word.parse::<usize>()
+                .ok()
+                .filter(|index| (1..=size).contains(index))
+                .map(|index| index - 1)
+                .ok_or_else(|| {
+                    error(
+                        number,
+                        format!("`{word}` is no row or column, expected 1 to {size}"),
+                        "",
+                    )
+                })
+        };
+        let (i, j) = (index(parts[0])?, index(parts[1])?);
+        if self.symmetric && j > i {
+            return Err(error(
+                number,
+                format!("row {}, column {} lies above the diagonal", i + 1, j + 1),
+                "a symmetric file holds the lower triangle only",
+            ));
+        }
+        Ok((i, j, real(number, parts[2])?))
+    }
+}
+
+fn real(number: usize, word: &str) -> Result<f64, MatrixError> {
+    // The same bound as for numbers of a scenario: squares must stay finite.
+    word.parse::<f64>()
+        .ok()
+        .filter(|value| value.abs() <= 1e150)
+        .ok_or_else(|| error(number, format!("expected a finite number, found `{}`", shortened(word)), ""))
+}
+
+fn words<'l, T: TryFromWord<'l>>(
+    number: usize,
+    line: &'l str,
+    count: usize,
+) -> Result<Vec<T>, MatrixError> {
+    let found: Vec<&str> = line.split_whitespace().collect();
+    if found.len() != count {
+        let message = format!("expected {count} numbers on this line, found {}", found.len());
+        return Err(error(number, message, ""));
+    }
+    found
+        .into_iter()
+        .map(|word| {
+            T::try_from_word(word).ok_or_else(|| {
+                let message = format!("expected a whole number, found `{}`", shortened(word));
+                error(number, message, "")
+            })
+        })
+        .collect()
+}
+
+trait TryFromWord<'l>: Sized {
+    fn try_from_word(word: &'l str) -> Option<Self>;
+}
+
+impl TryFromWord<'_> for usize {
+    fn try_from_word(word: &str) -> Option<Self> {
+        word.parse().ok()
+    }
+}
+
+impl<'l> TryFromWord<'l> for &'l str {
+    fn try_from_word(word: &'l str) -> Option<Self> {
+        Some(word)
+    }
+}
+
+fn shortened(word: &str) -> String {
+    word.chars().take(30).collect()
+}
+
+fn error(line: usize, message: impl Into<String>, help: &str) -> MatrixError {
+    MatrixError {
+        line,
+        message: message.into(),
+        help: help.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn expected() -> Vec<Vec<f64>> {
+        vec![vec![2.0, -1.0], vec![-1.0, 3.0]]
+    }
+
+    #[test]
+    fn the_four_layouts_give_the_same_matrix() {
+        for text in [
+            "%%MatrixMarket matrix array real general\n2 2\n2\n-1\n-1\n3\n",
+            "%%MatrixMarket matrix array real symmetric\n% remark\n2 2\n2\n-1\n3\n",
+            "%%MatrixMarket matrix coordinate real general\n2 2 4\n1 1 2\n2 1 -1\n1 2 -1\n2 2 3e0\n",
+            "%%MatrixMarket matrix coordinate integer symmetric\n2 2 3\n\n1 1 2\n2 1 -1\n2 2 3",
+        ] {
+            assert_eq!(read(text, 2).unwrap(), expected(), "{text}");
+        }
+        let general = "%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n4\n";
+        assert_eq!(read(general, 2).unwrap(), [[1.0, 3.0], [2.0, 4.0]]);
+        let sparse = "%%MatrixMarket matrix coordinate real general\n2 2 1\n2 1 5\n";
+        assert_eq!(read(sparse, 2).unwrap(), [[0.0, 0.0], [5.0, 0.0]]);
+    }
+
+    #[test]
+    fn errors_name_their_line() {
+        let banner = "%%MatrixMarket matrix coordinate real symmetric\n";
+        for (text, line, part) in [
+            ("".to_string(), 1, "not a Matrix Market file"),
+            ("%%MatrixMarket matrix array complex general\n".into(), 1, "complex"),
+            (banner.to_string(), 1, "sizes"),
+            (format!("{banner}2 2\n"), 2, "expected 3 numbers"),
+            (format!("{banner}999999999 999999999 1\n"), 2, "999999999 × 999999999"),
+            (format!("{banner}2 2 1\n3 1 1.0\n"), 3, "`3`"),
+            (format!("{banner}2 2 1\n1 2 1.0\n"), 3, "above the diagonal"),
+            (format!("{banner}2 2 1\n1 1 nan\n"), 3, "finite"),
+            (format!("{banner}2 2 2\n1 1 1\n1 1 1\n"), 4, "twice"),
+            (format!("{banner}2 2 2\n1 1 1\n"), 3, "1 of 2"),
+            (format!("{banner}2 2 1\n1 1 1\n2 2 1\n"), 4, "more than"),
+        ] {
+            let error = read(&text, 2).unwrap_err();
+            assert_eq!(error.line, line, "{text}: {error:?}");
+            assert!(error.message.contains(part), "{text}: {error:?}");
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! The source *structure*: reads its parts in the order in which they refer to each other, resolves names.
+
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+use super::reader::{Cursor, Fields, Parameters, Place};
+use super::words::{ID_RULE, is_id, nearest, quoted};
+use super::{contacts, elements, loads, supports};
+use crate::model::edge::Side;
+use crate::model::scenario::Places;
+use crate::model::structure::{ElementKind, Node, Structure};
+
+/// Cross-section of bars.
+pub struct Section {
+    pub area: f64,
+    /// Only frames need one.
+    pub inertia: Option<f64>,
+}
+
+/// What a `at` names.
+#[derive(Clone, Copy)]
+pub enum Spot {
+    Node(usize),
+    Edge { plate: usize, side: Side },
+}
+
+/// The structure as read so far, and the names by which later parts refer to it.
+pub struct Builder<'d> {
+    pub parameters: &'d Parameters,
+    pub structure: Structure,
+    pub places: Places,
+    pub materials: HashMap<&'d str, usize>,
+    pub sections: HashMap<&'d str, Section>,
+    pub bars: HashMap<&'d str, usize>,
+    pub plates: HashMap<&'d str, usize>,
+    /// Nodes of the author and of bar divisions; plate nodes are found by their indices.
+    pub nodes: HashMap<String, usize>,
+    /// Every id and what it names.
+    ids: HashMap<&'d str, &'static str>,
+    /// Names whose definition is wrong: reported there, not again where they are used.
+    pub broken: HashSet<&'d str>,
+    /// Whether each node has a rotation; empty until the elements are complete.
+    pub has_rotation: Vec<bool>,
+    /// Whether every element was read, so that what they do not touch can be judged.
+    pub elements_complete: bool,
+}
+
+/// Reads a structure. `None`, or an incomplete structure, only after a problem was reported.
+pub fn read<'d>(fields: &Fields<'d>, parameters: &'d Parameters) -> Option<(Structure, Places)> {
+    let before = fields.cursor().problems_so_far();
+    let mut builder = Builder {
+        parameters,
+        structure: Structure::default(),
+        places: Places::default(),
+        materials: HashMap::new(),
+        sections: HashMap::new(),
+        bars: HashMap::new(),
+        plates: HashMap::new(),
+        nodes: HashMap::new(),
+        ids: HashMap::new(),
+        broken: HashSet::new(),
+        has_rotation: Vec::new(),
+        elements_complete: false,
+    };
+    let names = author_nodes(&mut builder, fields);
+    elements::read(&mut builder, fields)?;
+    builder.elements_complete = fields.cursor().problems_so_far() == before;
+    builder.find_rotations();
+    supports::read(&mut builder, fields);
+    contacts::read(&mut builder, fields)?;
+    loads::read(&mut builder, fields);
+    if builder.elements_complete {
+        builder.report_loose_nodes(fields, &names);
+    }
+    Some((builder.structure, builder.places))
+}
+
+/// The nodes of the file, with the places of their names.
+fn author_nodes<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Vec<Place<'d>> {
+    let mut names = Vec::new();
+    let entries = fields.optional("nodes").and_then(Cursor::entries);
+    for entry in entries.unwrap_or_default() {
+        builder.register(entry.key_place(), entry.name(), "node");
+        // A node without a usable place stays known, with a place that no geometric check complains about.
+        let position = entry.value().vector().unwrap_or([f64::NAN; 2]);
+        names.push(entry.key_place());
+        builder.add_node(
+            Node {
+                id: entry.name().to_string(),
+                position,
+            },
+            format!("nodes.{}", entry.name()).into(),
+        );
+    }
+    names
+}
+
+impl<'d> Builder<'d> {
+    /// Makes an id known; reports an ill-formed or repeated one.
+    pub fn register(&mut self, place: Place<'d>, id: &'d str, kind: &'static str) {
+        if !is_id(id) {
+            place.problem(format!("{} cannot be an id", quoted(id)), ID_RULE);
+        } else if let Some(first) = self.ids.insert(id, kind) {
+            place.problem(
+                format!("duplicate id {}: a {first} has it already", quoted(id)),
+                "nodes, bars, plates, quads and contacts share one set of ids: rename one of the two",
+            );
+        }
+    }
+
+    /// Appends a node that can be named.
+    pub fn add_node(&mut self, node: Node, place: Arc<str>) -> usize {
+        let index = self.structure.nodes.len();
+        self.nodes.insert(node.id.clone(), index);
+        self.structure.nodes.push(node);
+        self.places.nodes.push(place);
+        index
+    }
+
+    /// The id of a node.
+    pub fn node_id(&self, node: usize) -> &str {
+        &self.structure.nodes[node].id
+    }
+
+    /// Nodes of an edge, by increasing i or j.
+    pub fn edge_nodes(&self, plate: usize, side: Side) -> Vec<usize> {
+        side.nodes(&self.structure.plates[plate])
+    }
+
+    /// The node or edge that a string names.
+    pub fn spot(&self, cursor: Cursor<'d>) -> Option<Spot> {
+        let name = cursor.string()?;
+        if let Some(&node) = self.nodes.get(name) {
+            return Some(Spot::Node(node));
+        }
+        if let Some((id, side)) = name.split_once('.') {
+            let plate = self.plate(cursor, id, name)?;
+            let Some((_, side)) = Side::WORDS.iter().find(|(word, _)| *word == side) else {
+                cursor.problem(
+                    format!("the plate \"{id}\" has no edge {}", quoted(side)),
+                    format!("expected {id}.bottom, {id}.top, {id}.left or {id}.right"),
+                );
+                return None;
+            };
+            return Some(Spot::Edge { plate, side: *side });
+        }
+        if let Some((id, indices)) = name.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
+            let plate = self.plate(cursor, id, name)?;
+            let node = self.plate_node(plate, indices);
+            if node.is_none() {
+                let grid = &self.structure.plates[plate].nodes;
+                cursor.problem(
+                    format!("the plate \"{id}\" has no node {}", quoted(name)),
+                    format!(
+                        "its nodes are {id}[i,j] with i = 0…{} and j = 0…{}, without spaces",
+                        grid[0].len() - 1,
+                        grid.len() - 1
+                    ),
+                );
+            }
+            return node.map(Spot::Node);
+        }
+        self.unknown_spot(cursor, name);
+        None
+    }
+
+    fn plate(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<usize> {
+        let plate = self.plates.get(id).copied();
+        if plate.is_none() && !self.broken.contains(id) {
+            let known: Vec<&str> = self.plates.keys().copied().collect();
+            let hint = match nearest(id, known) {
+                Some(near) => format!(": did you mean {}?", quoted(&name.replacen(id, near, 1))),
+                None => String::new(),
+            };
+            cursor.problem(
+                format!("unknown plate {} in {}{hint}", quoted(id), quoted(name)),
+                self.known_plates(),
+            );
+        }
+        plate
+    }
+
+    fn plate_node(&self, plate: usize, indices: &str) -> Option<usize> {
+        let (i, j) = indices.split_once(',')?;
+        let index = |digits: &str| {
+            let plain = digits.bytes().all(|byte| byte.is_ascii_digit());
+            digits.parse::<usize>().ok().filter(|_| plain)
+        };
+        let row = self.structure.plates[plate].nodes.get(index(j)?)?;
+        row.get(index(i)?).copied()
+    }
+
+    fn unknown_spot(&self, cursor: Cursor<'d>, name: &str) {
+        let bar = name.split_once('/').map(|(bar, _)| bar);
+        if self.broken.contains(name) || bar.is_some_and(|bar| self.broken.contains(bar)) {
+            return;
+        }
+        if self.plates.contains_key(name) {
+            cursor.problem(
+                format!("\"{name}\" is a plate, expected a node or an edge"),
+                format!("name one of its nodes, \"{name}[i,j]\", or edges, \"{name}.top\""),
+            );
+            return;
+        }
+        if let Some((id, bar)) = bar.and_then(|id| Some((id, *self.bars.get(id)?))) {
+            let divisions = self.structure.bars[bar].elements.len();
+            let help = match divisions {
+                1 => format!("the bar \"{id}\" is not divided: give it `divisions`"),
+                2 => format!("its one inner node is \"{id}/1\""),
+                _ => format!("its inner nodes are \"{id}/1\" to \"{id}/{}\"", divisions - 1),
+            };
+            cursor.problem(
+                format!("the bar \"{id}\" has no node {}", quoted(name)),
+                help,
+            );
+            return;
+        }
+        let hint = super::did_you_mean(name, self.nodes.keys().map(String::as_str));
+        let help = if hint.is_empty() {
+            "expected the id of a node, a plate node like \"lower[0,8]\" or an edge like \"lower.top\""
+        } else {
+            "nodes are named by their id"
+        };
+        cursor.problem(format!("unknown node {}{hint}", quoted(name)), help);
+    }
+
+    fn known_plates(&self) -> String {
+        let mut known: Vec<&str> = self.plates.keys().copied().collect();
+        known.sort_unstable();
+        if known.is_empty() {
+            "the structure has no plates".into()
+        } else {
+            format!("expected {}", super::words::listed(&known))
+        }
+    }
+
+    /// The node that a string names; an edge is reported.
+    pub fn node(&self, cursor: Cursor<'d>) -> Option<usize> {
+        match self.spot(cursor)? {
+            Spot::Node(node) => Some(node),
+            Spot::Edge { .. } => {
+                cursor.problem(
+                    format!("expected a node, found the edge {}", cursor.found()),
+                    "name one node, e.g. a plate node \"lower[0,8]\"",
+                );
+                None
+            }
+        }
+    }
+
+    /// The edge that a string names; a node is reported.
+    pub fn edge(&self, cursor: Cursor<'d>) -> Option<(usize, Side)> {
+        match self.spot(cursor)? {
+            Spot::Edge { plate, side } => Some((plate, side)),
+            Spot::Node(_) => {
+                cursor.problem(
+                    format!("expected an edge, found the node {}", cursor.found()),
+                    "edges belong to plates: \"lower.top\"",
+                );
+                None
+            }
+        }
+    }
+
+    /// All nodes that `at` names: one, or those of an edge.
+    pub fn spot_nodes(&self, spot: Spot) -> Vec<usize> {
+        match spot {
+            Spot::Node(node) => vec![node],
+            Spot::Edge { plate, side } => self.edge_nodes(plate, side),
+        }
+    }
+
+    fn find_rotations(&mut self) {
+        self.has_rotation = vec![false; self.structure.nodes.len()];
+        for element in &self.structure.elements {
+            if let ElementKind::Frame { .. } = element.kind {
+                for &node in &element.nodes {
+                    self.has_rotation[node] = true;
+                }
+            }
+        }
+    }
+
+    /// Reports a rotation asked of a node that has none. Silent while elements are missing for other reasons.
+    pub fn demand_rotation(&self, cursor: Cursor<'d>, node: usize, what: &str) -> bool {
+        if self.has_rotation[node] || !self.elements_complete {
+            return true;
+        }
+        cursor.problem(
+            format!(
+                "the node \"{}\" has no rotation: {what}",
+                self.node_id(node)
+            ),
+            "only nodes of frame bars have one: remove it here",
+        );
+        false
+    }
+
+    /// A node that nothing holds or connects would move freely: reported at its name.
+    fn report_loose_nodes(&self, fields: &Fields<'d>, names: &[Place<'d>]) {
+        let structure = &self.structure;
+        if structure.elements.is_empty() && structure.springs.is_empty() {
+            let message = "the structure has no elements: expected bars, plates, quads or springs";
+            fields.cursor().problem(message, "add what carries the load");
+            return;
+        }
+        let mut touched = vec![false; structure.nodes.len()];
+        let elements = structure.elements.iter().flat_map(|element| &element.nodes);
+        let ties = structure.ties.iter().flat_map(|tie| &tie.nodes);
+        let supports = structure.supports.iter().map(|support| &support.node);
+        let springs = structure.springs.iter().map(|spring| &spring.node);
+        for &node in elements.chain(ties).chain(supports).chain(springs) {
+            touched[node] = true;
+        }
+        // The author's nodes come first, so names and touched run side by side; generated nodes have elements.
+        for (node, place) in names.iter().enumerate() {
+            if !touched[node] {
+                place.problem(
+                    format!(
+                        "nothing is connected to the node \"{}\": no bar, quad, tie, spring or support",
+                        self.node_id(node)
+                    ),
+                    "connect it or remove it",
+                );
+            }
+        }
+    }
+}

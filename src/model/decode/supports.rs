@@ -1,0 +1,169 @@
+//! Ties, supports and springs.
+
+use std::collections::HashSet;
+
+use super::elements::entries;
+use super::reader::{Cursor, Fields};
+use super::structure::Builder;
+use crate::model::structure::{Component, Spring, Support, Tie};
+
+/// Reads all three lists.
+pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
+    for (index, cursor) in entries(fields, "ties").into_iter().enumerate() {
+        if let Some(tie) = tie(builder, cursor) {
+            builder.structure.ties.push(tie);
+            builder.places.ties.push(format!("ties[{index}]").into());
+        }
+    }
+    let mut held = HashSet::new();
+    for (index, cursor) in entries(fields, "supports").into_iter().enumerate() {
+        let place: std::sync::Arc<str> = format!("supports[{index}]").into();
+        for support in support(builder, cursor).unwrap_or_default() {
+            // Two edges share their corner: held twice is held.
+            if held.insert((support.node, support.component)) {
+                builder.structure.supports.push(support);
+                builder.places.supports.push(place.clone());
+            }
+        }
+    }
+    for cursor in entries(fields, "springs") {
+        let springs = springs(builder, cursor).unwrap_or_default();
+        builder.structure.springs.extend(springs);
+    }
+}
+
+const COMPONENTS: [(&str, Component); 3] = [
+    ("x", Component::X),
+    ("y", Component::Y),
+    ("r", Component::R),
+];
+
+/// The components in `fixed`; a rotation must exist at every one of the nodes.
+fn components<'d>(
+    builder: &Builder<'d>,
+    cursor: Cursor<'d>,
+    nodes: &[usize],
+    verb: &str,
+) -> Option<Vec<Component>> {
+    let mut components = Vec::new();
+    let mut is_right = true;
+    for entry in cursor.list()? {
+        let Some(component) = entry.choice(&COMPONENTS) else {
+            is_right = false;
+            continue;
+        };
+        if component == Component::R {
+            let what = format!("\"r\" cannot be {verb} there");
+            is_right &= nodes
+                .iter()
+                .all(|&node| builder.demand_rotation(entry, node, &what));
+        }
+        if !components.contains(&component) {
+            components.push(component);
+        }
+    }
+    if components.is_empty() && is_right {
+        cursor.problem(
+            "`fixed` is empty",
+            "name any of \"x\", \"y\", \"r\", or remove the entry",
+        );
+        return None;
+    }
+    is_right.then_some(components)
+}
+
+fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
+    let fields = cursor.fields(&["nodes", "at", "fixed"])?;
+    let nodes = match (fields.optional("nodes"), fields.entry("at")) {
+        (Some(_), Some(at)) => {
+            at.key_problem(
+                "`at` cannot stand beside `nodes`",
+                "give the nodes, or an edge whose nodes are all tied",
+            );
+            None
+        }
+        (None, Some(at)) => {
+            let edge = builder.edge(at.value());
+            edge.map(|(plate, side)| builder.edge_nodes(plate, side))
+        }
+        (nodes, None) => {
+            let nodes = nodes.or_else(|| fields.required("nodes"));
+            nodes.and_then(|at| tied_nodes(builder, at))
+        }
+    };
+    let components = match (fields.optional("fixed"), &nodes) {
+        (Some(fixed), nodes) => {
+            components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "tied")
+        }
+        (None, _) => Some(vec![Component::X, Component::Y]),
+    };
+    Some(Tie {
+        nodes: nodes?,
+        components: components?,
+    })
+}
+
+fn tied_nodes<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<usize>> {
+    let mut nodes = Vec::new();
+    let mut is_right = true;
+    for entry in cursor.list()? {
+        match builder.node(entry) {
+            Some(node) if nodes.contains(&node) => {
+                entry.problem(
+                    format!("the node \"{}\" is in this tie twice", builder.node_id(node)),
+                    "name each node once",
+                );
+                is_right = false;
+            }
+            Some(node) => nodes.push(node),
+            None => is_right = false,
+        }
+    }
+    if is_right && nodes.len() < 2 {
+        cursor.problem(
+            format!("a tie needs two or more nodes, found {}", nodes.len()),
+            "name the nodes that move together",
+        );
+        return None;
+    }
+    is_right.then_some(nodes)
+}
+
+fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Support>> {
+    let fields = cursor.fields(&["at", "fixed", "settlement", "case"])?;
+    fields.refuse(
+        &["settlement", "case"],
+        |key| format!("settlements of supports (`{key}`) are not supported yet"),
+        "remove `settlement` and `case`",
+    );
+    let nodes = fields
+        .required("at")
+        .and_then(|at| builder.spot(at))
+        .map(|spot| builder.spot_nodes(spot));
+    let components = fields.required("fixed").and_then(|fixed| {
+        components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed")
+    })?;
+    let supports = nodes?.into_iter().flat_map(|node| {
+        let hold = move |&component: &Component| Support { node, component };
+        components.iter().map(hold).collect::<Vec<_>>()
+    });
+    Some(supports.collect())
+}
+
+fn springs<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Spring>> {
+    let fields = cursor.fields(&["at", "direction", "stiffness"])?;
+    let spot = fields.required("at").and_then(|at| builder.spot(at));
+    let direction = fields
+        .required("direction")
+        .and_then(|cursor| cursor.direction("direction"));
+    let stiffness = fields
+        .required("stiffness")
+        .and_then(|cursor| cursor.number_that("stiffness", "0 or more", |value| value >= 0.0));
+    let (direction, stiffness) = (direction?, stiffness?);
+    let springs = builder.spot_nodes(spot?).into_iter().map(|node| Spring {
+        node,
+        direction,
+        stiffness,
+    });
+    Some(springs.collect())
+}

@@ -1,0 +1,80 @@
+//! From a file, a text or an embedded name to a checked [`Scenario`].
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::decode;
+use super::embedded;
+use super::problem::{Problem, Problems};
+use super::locate::position;
+use super::scenario::Scenario;
+
+/// Reads and checks a scenario file; the scenario's name is the path as given.
+pub fn load_file(path: &Path) -> Result<Scenario, Problems> {
+    let name = path.display().to_string();
+    let bytes = fs::read(path).map_err(|error| {
+        Problems::of_file(
+            name.as_str(),
+            format!("cannot read the file: {error}"),
+            "give the path of a scenario file, or the name of an embedded scenario",
+        )
+    })?;
+    match String::from_utf8(bytes) {
+        Ok(text) => load_text(&name, &text, Some(path)),
+        Err(error) => {
+            let valid = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(&error.as_bytes()[..valid]);
+            let (line, column) = position(&text, text.len());
+            Err(Problems {
+                file: name,
+                problems: vec![Problem {
+                    line,
+                    column,
+                    path: String::new(),
+                    message: "the file is not UTF-8".into(),
+                    help: "save it as UTF-8".into(),
+                }],
+                more: 0,
+            })
+        }
+    }
+}
+
+/// Checks the text of a scenario. `path` is the file it came from: other files it names are relative to it.
+pub fn load_text(name: &str, text: &str, path: Option<&Path>) -> Result<Scenario, Problems> {
+    decode::scenario(name, text, path.map(PathBuf::from))
+}
+
+/// Loads what a user names: an embedded scenario, or a file if the word holds a slash, ends in `.json` or is the
+/// name of an existing file that is no embedded scenario.
+pub fn load_named_or_file(word: &str) -> Result<Scenario, Problems> {
+    let path = Path::new(word);
+    let looks_like_a_path = word.contains(['/', std::path::MAIN_SEPARATOR])
+        || path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+    if !looks_like_a_path {
+        if embedded::text(word).is_some() {
+            return embedded::load(word);
+        }
+        if !path.is_file() {
+            return Err(unknown(word));
+        }
+    }
+    load_file(path)
+}
+
+fn unknown(word: &str) -> Problems {
+    let names: Vec<&str> = embedded::names().collect();
+    Problems::of_file(
+        word,
+        format!(
+            "no embedded scenario and no file has this name{}",
+            decode::did_you_mean(word, names.iter().copied())
+        ),
+        format!(
+            "expected the path of a scenario file or one of {}",
+            names.join(", ")
+        ),
+    )
+}

@@ -1,0 +1,234 @@
+//! A JSON text as a tree with places: offset ↔ line and column, offset ↔ JSON path.
+
+use jsonc_parser::ast::{ObjectProp, Value};
+use jsonc_parser::common::Ranged;
+use jsonc_parser::errors::ParseErrorKind;
+use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+
+/// A parsed JSON text.
+pub struct Document<'t> {
+    text: &'t str,
+    root: Value<'t>,
+}
+
+/// A text that is not JSON: where and why.
+pub struct SyntaxError {
+    /// Byte offset.
+    pub offset: usize,
+    /// What was found.
+    pub message: String,
+    /// What to do.
+    pub help: &'static str,
+}
+
+const STRICT: ParseOptions = ParseOptions {
+    allow_comments: false,
+    allow_loose_object_property_names: false,
+    allow_trailing_commas: false,
+    allow_missing_commas: false,
+    allow_single_quoted_strings: false,
+    allow_hexadecimal_numbers: false,
+    allow_unary_plus_numbers: false,
+    allow_bare_decimal_point_numbers: false,
+    allow_non_finite_numbers: false,
+    allow_extended_string_escapes: false,
+};
+
+impl<'t> Document<'t> {
+    /// Parses strict JSON: no comments, no trailing commas, no `NaN`.
+    pub fn parse(text: &'t str) -> Result<Self, SyntaxError> {
+        if text.starts_with('\u{feff}') {
+            return Err(SyntaxError {
+                offset: 0,
+                message: "not JSON: the file starts with a byte order mark".into(),
+                help: "save the file as UTF-8 without BOM",
+            });
+        }
+        // serde_json is the judge of what is JSON; the tree with ranges, whose messages are kinder, comes first.
+        let tree = parse_to_ast(text, &CollectOptions::default(), &STRICT);
+        match tree {
+            Err(error) => Err(SyntaxError {
+                offset: error.range().start.min(text.len()),
+                message: format!("not JSON: {}", lower_first(&error.kind().to_string())),
+                help: advice(error.kind()),
+            }),
+            Ok(result) => {
+                if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(text) {
+                    let place = (error.line(), error.column());
+                    let message = error.to_string();
+                    let message = message
+                        .strip_suffix(&format!(" at line {} column {}", place.0, place.1))
+                        .unwrap_or(&message);
+                    // An overflowing number is JSON; its place is found by the typed reading.
+                    if message != "number out of range" {
+                        return Err(SyntaxError {
+                            offset: offset_of_line(text, place.0, place.1),
+                            message: format!("not JSON: {message}"),
+                            help: SYNTAX,
+                        });
+                    }
+                }
+                match result.value {
+                    Some(root) => Ok(Document { text, root }),
+                    None => Err(SyntaxError {
+                        offset: 0,
+                        message: "not JSON: the file is empty".into(),
+                        help: "a scenario is a JSON object: { \"format\": \"stickslip/1\", … }",
+                    }),
+                }
+            }
+        }
+    }
+
+    /// The outermost value.
+    pub fn root(&self) -> &Value<'t> {
+        &self.root
+    }
+
+    /// JSON path of the value, or of the key, that starts at this byte offset.
+    pub fn path_at(&self, offset: usize) -> String {
+        let mut path = String::new();
+        let mut value = &self.root;
+        while value.start() != offset {
+            match value {
+                Value::Object(object) => {
+                    let Some(property) = object
+                        .properties
+                        .iter()
+                        .find(|property| (property.range.start..property.range.end).contains(&offset))
+                    else {
+                        break;
+                    };
+                    push_key(&mut path, property.name.as_str());
+                    if key_start(property) == offset {
+                        break;
+                    }
+                    value = &property.value;
+                }
+                Value::Array(array) => {
+                    let index = array
+                        .elements
+                        .partition_point(|element| element.end() <= offset);
+                    let Some(element) = array.elements.get(index) else {
+                        break;
+                    };
+                    path.push_str(&format!("[{index}]"));
+                    value = element;
+                }
+                _ => break,
+            }
+        }
+        path
+    }
+
+    /// Byte offset of the value at a JSON path as [`Document::path_at`] writes it; of the nearest value around it
+    /// where the path leads nowhere.
+    pub fn offset_of(&self, path: &str) -> usize {
+        let mut here = String::new();
+        let mut value = &self.root;
+        while here != path {
+            let next = match value {
+                Value::Object(object) => object.properties.iter().find_map(|property| {
+                    let mut child = here.clone();
+                    push_key(&mut child, property.name.as_str());
+                    leads_to(&child, path).then_some((child, &property.value))
+                }),
+                Value::Array(array) => path
+                    .strip_prefix(here.as_str())
+                    .and_then(|rest| rest.strip_prefix('['))
+                    .and_then(|rest| rest.split_once(']'))
+                    .and_then(|(digits, _)| digits.parse::<usize>().ok())
+                    .and_then(|index| {
+                        let element = array.elements.get(index)?;
+                        Some((format!("{here}[{index}]"), element))
+                    }),
+                _ => None,
+            };
+            let Some((child, inner)) = next else { break };
+            here = child;
+            value = inner;
+        }
+        value.start()
+    }
+
+    /// Line and column of a byte offset.
+    pub fn position(&self, offset: usize) -> (usize, usize) {
+        position(self.text, offset)
+    }
+}
+
+/// Line and column, in characters and from 1, of a byte offset.
+pub fn position(text: &str, offset: usize) -> (usize, usize) {
+    let mut offset = offset.min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    let before = &text[..offset];
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
+    (line, before[line_start..].chars().count() + 1)
+}
+
+/// Byte offset at which a key starts (its quotation mark).
+pub fn key_start(property: &ObjectProp<'_>) -> usize {
+    property.range.start
+}
+
+/// Appends a key to a JSON path: `.key`, or `["key"]` where the key is not a plain word.
+fn push_key(path: &mut String, key: &str) {
+    let plain = !key.is_empty()
+        && key
+            .chars()
+            .all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    if !plain {
+        path.push_str(&format!("[{key:?}]"));
+    } else {
+        if !path.is_empty() {
+            path.push('.');
+        }
+        path.push_str(key);
+    }
+}
+
+fn leads_to(child: &str, path: &str) -> bool {
+    path.strip_prefix(child)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+fn offset_of_line(text: &str, line: usize, column: usize) -> usize {
+    let start: usize = text
+        .split_inclusive('\n')
+        .take(line.saturating_sub(1))
+        .map(str::len)
+        .sum();
+    (start + column.saturating_sub(1)).min(text.len())
+}
+
+fn lower_first(message: &str) -> String {
+    let mut characters = message.chars();
+    match characters.next() {
+        Some(first) if message != "Infinity and NaN are not allowed" => {
+            first.to_lowercase().chain(characters).collect()
+        }
+        _ => message.to_string(),
+    }
+}
+
+const SYNTAX: &str = "correct the JSON here, or just before this place";
+
+fn advice(kind: &ParseErrorKind) -> &'static str {
+    match kind {
+        ParseErrorKind::CommentsNotAllowed => {
+            "remove the comment; `description` and a parameter's `about` hold remarks"
+        }
+        ParseErrorKind::TrailingCommasNotAllowed => "remove the comma after the last entry",
+        ParseErrorKind::ExpectedComma => "put a comma between the entries",
+        ParseErrorKind::NonFiniteNumbersNotAllowed => "every number of a scenario is finite",
+        ParseErrorKind::SingleQuotedStringsNotAllowed
+        | ParseErrorKind::ExpectedStringObjectProperty => "write keys and words in \"…\"",
+        ParseErrorKind::MultipleRootJsonValues => "a scenario is one JSON object and nothing after it",
+        ParseErrorKind::UnterminatedArray => "close the list with `]`",
+        ParseErrorKind::UnterminatedObject => "close the object with `}`",
+        _ => SYNTAX,
+    }
+}
