@@ -2,5 +2,7 @@
 
 pub mod answer;
 pub mod contact;
+pub mod export;
 pub mod lcp;
 pub mod model;
+pub mod view;

@@ -1,0 +1,1 @@
+//! Hand-made answers for the tests of the reports.
