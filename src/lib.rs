@@ -2,7 +2,11 @@
 
 pub mod answer;
 pub mod contact;
+pub mod explain;
 pub mod export;
 pub mod lcp;
 pub mod model;
+pub mod repl;
+pub mod session;
 pub mod view;
+pub mod watch;

@@ -1,3 +1,5 @@
-//! From a scenario and its parameter values to one checked answer.
+//! One solved state in the words of the structure, and its independent check.
 
+pub mod check;
+pub mod pairs;
 pub mod record;

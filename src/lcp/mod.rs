@@ -1,8 +1,13 @@
 //! Linear complementarity problems and Lemke's algorithm: pure algebra, knows no structures.
 
+mod dense;
+mod dictionary;
 pub mod driver;
+pub mod lemke;
+pub mod mirrored;
 pub mod outcome;
 pub mod problem;
 pub mod ratio_test;
 pub mod trace;
 pub mod variable;
+pub mod vertex;

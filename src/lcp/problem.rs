@@ -13,6 +13,22 @@ pub struct Scale {
     pub column: Vec<f64>,
 }
 
+impl Scale {
+    /// The scale of a plain LCP.
+    pub fn plain(matrix: &[Vec<f64>]) -> Scale {
+        Scale {
+            row: matrix
+                .iter()
+                .map(|row| {
+                    row.iter()
+                        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
+                })
+                .collect(),
+            column: vec![1.0; matrix.len()],
+        }
+    }
+}
+
 /// An LCP with its covering vector, every row written out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lcp<T> {

@@ -1,13 +1,87 @@
 //! What decides among rows that block the entering variable at the same value.
 
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+
+use super::variable::Variable;
+
 /// Rule for tied rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TieRule {
     /// p first; then the smallest row of B⁻¹ divided by the pivot, compared column by column in the order of
     /// the given rows of the LCP (the perturbation q + (ε, ε², …) in that order).
     Lexicographic(Vec<usize>),
-    /// The first tied row of the LCP (p counts as the last): may cycle.
+    /// The first tied row of the tableau, whatever stands in it: may cycle.
     FirstRow,
     /// A tied row drawn with this seed.
     Random(u64),
+}
+
+/// Entries of two rows of B⁻¹ that differ by less than this multiple of their natural size are equal.
+const SAME: f64 = 1e-10;
+
+/// A tied row as the lexicographic rule sees it.
+pub(crate) trait TiedRow {
+    /// Entry of its row of B⁻¹ in the column of w_`row`, divided by the pivot, and the natural size of that.
+    fn entry(&self, row: usize) -> (f64, f64);
+    /// Its row in the whole tableau, where an entering variable takes the row of the leaving one.
+    fn table_row(&self) -> usize;
+}
+
+/// The tied row that leaves: index into `names`.
+///
+/// `at_start`: p is being let in from infinity, every row has only its own ε, and the row whose ε is smallest
+/// (latest in the order) needs the largest p.
+pub(crate) fn choose(
+    rule: &TieRule,
+    random: &mut ChaCha8Rng,
+    names: &[Variable],
+    rows: &[impl TiedRow],
+    at_start: bool,
+) -> usize {
+    if names.len() == 1 {
+        return 0;
+    }
+    match rule {
+        TieRule::FirstRow => (0..names.len())
+            .min_by_key(|&k| rows[k].table_row())
+            .unwrap_or(0),
+        TieRule::Random(_) => {
+            let mut sorted: Vec<usize> = (0..names.len()).collect();
+            sorted.sort_unstable_by_key(|&k| names[k]);
+            sorted[random.random_range(0..sorted.len())]
+        }
+        TieRule::Lexicographic(order) => {
+            if let Some(k) = names.iter().position(|name| *name == Variable::P) {
+                return k;
+            }
+            if at_start {
+                let rank = |k: usize| {
+                    order
+                        .iter()
+                        .position(|&row| Variable::W(row) == names[k])
+                        .unwrap_or(0)
+                };
+                return (0..names.len()).max_by_key(|&k| rank(k)).unwrap_or(0);
+            }
+            let mut left: Vec<usize> = (0..names.len()).collect();
+            for &row in order {
+                let entries: Vec<(f64, f64)> = left.iter().map(|&k| rows[k].entry(row)).collect();
+                let smallest = entries
+                    .iter()
+                    .map(|entry| entry.0)
+                    .fold(f64::INFINITY, f64::min);
+                let size = entries.iter().map(|entry| entry.1).fold(0.0, f64::max);
+                let mut kept = entries.iter();
+                left.retain(|_| {
+                    kept.next()
+                        .is_some_and(|entry| entry.0 <= smallest + SAME * size)
+                });
+                if left.len() == 1 {
+                    break;
+                }
+            }
+            left[0]
+        }
+    }
 }

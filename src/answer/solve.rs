@@ -1,1 +1,0 @@
-//! The pipeline: scenario → prepared geometry (once) → solved state (for every change of a parameter).

@@ -1,0 +1,314 @@
+//! Contact system + numbers → LCP, eqs. (1), (2), (8) of theory §3, laws mixed, dimensionless inside.
+//!
+//! Rows of the whole LCP: all x_n (coulomb, frictionless), then all x⁺, then all x⁻ (coulomb, bound), each in the
+//! order of the pairs. Only x_n and x⁺ are stored; x⁻ is the mirror of x⁺ (see `lcp::mirrored`), so neither M
+//! nor its 3m rows are ever formed.
+//!
+//! Forces are divided by `force_unit`, displacements by `length_unit`, both exact powers of two (up to the ratio
+//! given by R), so that results scale back without rounding.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::numbers::ContactNumbers;
+use super::system::ContactSystem;
+use crate::lcp::mirrored::{Mirror, MirroredLcp};
+use crate::lcp::outcome::Point;
+use crate::lcp::problem::Scale;
+use crate::lcp::ratio_test::TieRule;
+use crate::lcp::variable::Variable;
+use crate::model::pair::Law;
+use crate::model::rules::{Covering, TieBreak};
+
+/// What a row of the whole LCP stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Couple {
+    /// (x_n, z_n).
+    Normal,
+    /// (x⁺, z⁺).
+    Plus,
+    /// (x⁻, z⁻).
+    Minus,
+}
+
+/// A row of the whole LCP: which pair, which couple.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RowMeaning {
+    /// Index of the pair.
+    pub pair: usize,
+    /// Which couple of it.
+    pub couple: Couple,
+}
+
+/// A covering that cannot be used with these numbers.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CoveringError {
+    /// `weight` has d_τ = f, which is zero where a force must be covered.
+    #[error(
+        "covering `weight` needs friction above 0 in pair {pair}: its tangential force in the main system exceeds \
+         its cohesion, and with f = 0 no tightening weight can hold it; use covering cohesive or ones"
+    )]
+    WeightWithoutFriction {
+        /// Id of the pair.
+        pair: String,
+    },
+}
+
+/// The LCP of a contact problem with the way back to pairs and units.
+#[derive(Clone, Debug)]
+pub struct ContactLcp {
+    /// The dimensionless LCP.
+    pub lcp: Arc<MirroredLcp>,
+    /// What each row of the whole LCP stands for.
+    pub rows: Vec<RowMeaning>,
+    /// User's force = dimensionless × this.
+    pub force_unit: f64,
+    /// User's length = dimensionless × this.
+    pub length_unit: f64,
+    /// Row of the whole LCP of each pair's couples.
+    pub normal_row: Vec<Option<usize>>,
+    /// Likewise for x⁺.
+    pub plus_row: Vec<Option<usize>>,
+    /// Likewise for x⁻.
+    pub minus_row: Vec<Option<usize>>,
+}
+
+/// Largest power of two not above `value`; 1 for zero.
+fn power_of_two(value: f64) -> f64 {
+    if value > 0.0 && value.is_finite() {
+        2f64.powi(value.log2().floor() as i32)
+    } else {
+        1.0
+    }
+}
+
+/// RF − R·(g, 0): the forces in the joints of the main system, gaps closed by force.
+pub fn load_with_gaps(system: &ContactSystem, numbers: &ContactNumbers) -> DVector<f64> {
+    let mut gap = DVector::zeros(system.joint_count());
+    for (pair, value) in numbers.gap.iter().enumerate() {
+        gap[pair] = *value;
+    }
+    &numbers.load - &system.stiffness * gap
+}
+
+/// Writes the LCP of the system under the given numbers.
+///
+/// # Errors
+/// Where the covering cannot cover q.
+pub fn contact_lcp(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    covering: Covering,
+) -> Result<ContactLcp, CoveringError> {
+    let load = load_with_gaps(system, numbers);
+    let pairs = &system.pairs;
+    let normals: Vec<usize> = (0..pairs.len())
+        .filter(|&i| !matches!(pairs[i].law, Law::Bound { .. }))
+        .collect();
+    let tangentials: Vec<(usize, usize)> = pairs
+        .iter()
+        .enumerate()
+        .filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint)))
+        .collect();
+
+    let largest_stiffness = system.stiffness.diagonal().amax();
+    let stiffness_unit = power_of_two(largest_stiffness);
+    let friction_of = |pair: usize| numbers.friction[pair];
+    let extra = |pair: usize| match pairs[pair].law {
+        Law::Bound { .. } => numbers.bound[pair],
+        _ => numbers.cohesion[pair],
+    };
+    // Largest |q| of all rows.
+    let mut largest = 0f64;
+    for &i in &normals {
+        largest = largest.max(load[i].abs());
+    }
+    for &(i, joint) in &tangentials {
+        let bound = friction_of(i) * load[i] + extra(i);
+        largest = largest
+            .max((bound + load[joint]).abs())
+            .max((bound - load[joint]).abs());
+    }
+    let force_unit = power_of_two(largest);
+    let length_unit = force_unit / stiffness_unit;
+
+    let count = normals.len() + tangentials.len();
+    let joint_of = |row: usize| {
+        if row < normals.len() {
+            normals[row]
+        } else {
+            tangentials[row - normals.len()].1
+        }
+    };
+    let r = |a: usize, b: usize| system.stiffness[(a, b)] / stiffness_unit;
+    let joint_scale: Vec<f64> = (0..system.joint_count())
+        .map(|i| r(i, i).max(0.0).sqrt())
+        .collect();
+    // A joint without stiffness responds to nothing: any size will do, but not zero.
+    let floor = joint_scale
+        .iter()
+        .fold(0.0f64, |a, b| a.max(*b))
+        .max(f64::MIN_POSITIVE)
+        * 1e-9;
+    let column_scale: Vec<f64> = joint_scale.iter().map(|s| s.max(floor)).collect();
+
+    let mut matrix = DMatrix::zeros(count, count);
+    for column in 0..count {
+        let b = joint_of(column);
+        for (row, &i) in normals.iter().enumerate() {
+            matrix[(row, column)] = r(i, b);
+        }
+        for (k, &(i, joint)) in tangentials.iter().enumerate() {
+            matrix[(normals.len() + k, column)] = r(joint, b) + friction_of(i) * r(i, b);
+        }
+    }
+    let mut q = DVector::zeros(count);
+    let mut d = DVector::zeros(count);
+    let mut row_scale = vec![0.0; count];
+    let mut mirrors = vec![None; count];
+    let mut rows = Vec::with_capacity(count + tangentials.len());
+    let (mut normal_row, mut plus_row, mut minus_row) = (
+        vec![None; pairs.len()],
+        vec![None; pairs.len()],
+        vec![None; pairs.len()],
+    );
+    for (row, &i) in normals.iter().enumerate() {
+        q[row] = load[i] / force_unit;
+        d[row] = 1.0;
+        row_scale[row] = column_scale[i];
+        normal_row[i] = Some(row);
+        rows.push(RowMeaning {
+            pair: i,
+            couple: Couple::Normal,
+        });
+    }
+    for (k, &(i, joint)) in tangentials.iter().enumerate() {
+        let row = normals.len() + k;
+        let f = friction_of(i);
+        let bound_law = matches!(pairs[i].law, Law::Bound { .. });
+        let constant = extra(i) / force_unit;
+        q[row] = load[joint] / force_unit + f * (load[i] / force_unit) + constant;
+        d[row] = match (bound_law, covering) {
+            (true, _) | (_, Covering::Ones) => 1.0,
+            (_, Covering::Cohesive) => 1.0 + f,
+            (_, Covering::Weight) => f,
+        };
+        let minus = f * load[i] + extra(i) - load[joint].abs();
+        if d[row] == 0.0 && minus < 0.0 {
+            return Err(CoveringError::WeightWithoutFriction {
+                pair: pairs[i].id.clone(),
+            });
+        }
+        // 2(d_τ − f d_n) of each covering, without the rounding of the difference.
+        let mirror_covering = match (bound_law, covering) {
+            (true, _) | (_, Covering::Cohesive) => 2.0,
+            (_, Covering::Ones) => 2.0 * (1.0 - f),
+            (_, Covering::Weight) => 0.0,
+        };
+        row_scale[row] = column_scale[joint] + f * column_scale[i];
+        mirrors[row] = Some(Mirror {
+            whole: count + k,
+            normal: if bound_law { None } else { normal_row[i] },
+            friction: f,
+            constant: 2.0 * constant,
+            covering: mirror_covering,
+        });
+        plus_row[i] = Some(row);
+        minus_row[i] = Some(count + k);
+        rows.push(RowMeaning {
+            pair: i,
+            couple: Couple::Plus,
+        });
+    }
+    rows.extend(tangentials.iter().map(|&(pair, _)| RowMeaning {
+        pair,
+        couple: Couple::Minus,
+    }));
+    let lcp = MirroredLcp {
+        matrix,
+        q,
+        covering: d,
+        whole: (0..count).collect(),
+        mirrors,
+        scale: Scale {
+            row: row_scale,
+            column: (0..count).map(|row| column_scale[joint_of(row)]).collect(),
+        },
+        whole_size: rows.len(),
+    };
+    Ok(ContactLcp {
+        lcp: Arc::new(lcp),
+        rows,
+        force_unit,
+        length_unit,
+        normal_row,
+        plus_row,
+        minus_row,
+    })
+}
+
+impl ContactLcp {
+    /// The tie rule over the rows of this LCP.
+    pub fn tie_rule(&self, tie_break: TieBreak) -> TieRule {
+        let normals = self
+            .rows
+            .iter()
+            .filter(|row| row.couple == Couple::Normal)
+            .count();
+        let n = self.rows.len();
+        match tie_break {
+            TieBreak::Lexicographic => {
+                TieRule::Lexicographic((normals..n).chain(0..normals).collect())
+            }
+            TieBreak::Natural => TieRule::Lexicographic((0..n).collect()),
+            TieBreak::FirstRow => TieRule::FirstRow,
+            TieBreak::Random(seed) => TieRule::Random(seed),
+        }
+    }
+
+    /// Name of a variable: `p`, `x_n[c1]`, `x+[c1]`, `z-[c1]`.
+    pub fn name(&self, variable: Variable, system: &ContactSystem) -> String {
+        let (letter, row) = match variable {
+            Variable::P => return "p".to_owned(),
+            Variable::W(row) => ('x', row),
+            Variable::Z(row) => ('z', row),
+        };
+        let meaning = self.rows[row];
+        let index = match meaning.couple {
+            Couple::Normal => "_n",
+            Couple::Plus => "+",
+            Couple::Minus => "-",
+        };
+        format!("{letter}{index}[{}]", system.pairs[meaning.pair].id)
+    }
+
+    /// z over the joints (z_n, z_τ = z⁺ − z⁻) of a point or direction, dimensionless.
+    pub fn joint_displacements(&self, system: &ContactSystem, z: &[f64]) -> DVector<f64> {
+        let mut joints = DVector::zeros(system.joint_count());
+        for (row, meaning) in self.rows.iter().enumerate() {
+            match (meaning.couple, system.pairs[meaning.pair].tangential) {
+                (Couple::Normal, _) => joints[meaning.pair] += z[row],
+                (Couple::Plus, Some(joint)) => joints[joint] += z[row],
+                (Couple::Minus, Some(joint)) => joints[joint] -= z[row],
+                (_, None) => {}
+            }
+        }
+        joints
+    }
+
+    /// (d_n, d_τ) of a pair; 0 where it has no such row.
+    pub fn covering_of(&self, pair: usize) -> (f64, f64) {
+        let read = |row: Option<usize>| row.map_or(0.0, |row| self.lcp.covering[row]);
+        (read(self.normal_row[pair]), read(self.plus_row[pair]))
+    }
+
+    /// A point in the user's units.
+    pub fn in_units(&self, point: &Point) -> Point {
+        Point {
+            z: point.z.iter().map(|z| z * self.length_unit).collect(),
+            w: point.w.iter().map(|w| w * self.force_unit).collect(),
+            p: point.p * self.force_unit,
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Pivots as changes of the working scheme, told in sentences.
+
+use super::words::{list, short};
+use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
+use crate::contact::complementarity::{ContactLcp, Couple};
+use crate::contact::system::ContactSystem;
+use crate::lcp::trace::Pivot;
+use crate::lcp::variable::Variable;
+use crate::model::pair::Law;
+
+/// Tangential joint of a pair in the working scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tangential {
+    Stick,
+    Plus,
+    Minus,
+}
+
+impl Tangential {
+    fn word(self) -> &'static str {
+        match self {
+            Tangential::Stick => "stick",
+            Tangential::Plus => "slip+",
+            Tangential::Minus => "slip-",
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Scheme {
+    open: bool,
+    tangential: Tangential,
+}
+
+/// The records of a contact run; p in the user's units.
+pub fn pivot_records(
+    pivots: &[Pivot],
+    contact: &ContactLcp,
+    system: &ContactSystem,
+) -> Vec<PivotRecord> {
+    let mut schemes = vec![
+        Scheme {
+            open: false,
+            tangential: Tangential::Stick
+        };
+        system.pairs.len()
+    ];
+    pivots
+        .iter()
+        .map(|pivot| {
+            let turned = turn(&mut schemes, pivot.entering, contact, system);
+            let unit = contact.force_unit;
+            let sentence = Sentence {
+                contact,
+                system,
+                before: pivot.p_before * unit,
+                after: pivot.p_after * unit,
+                ended: pivot.leaving == Variable::P,
+            }
+            .tell(pivot, turned.as_ref(), &schemes);
+            PivotRecord {
+                step: pivot.step,
+                entering: contact.name(pivot.entering, system),
+                leaving: contact.name(pivot.leaving, system),
+                p: pivot.p_after * unit,
+                ties: pivot
+                    .ties
+                    .iter()
+                    .map(|&tie| contact.name(tie, system))
+                    .collect(),
+                turned,
+                sentence,
+            }
+        })
+        .collect()
+}
+
+/// Applies the entering variable to the working scheme.
+fn turn(
+    schemes: &mut [Scheme],
+    entering: Variable,
+    contact: &ContactLcp,
+    system: &ContactSystem,
+) -> Option<Turned> {
+    let (row, released) = match entering {
+        Variable::P => return None,
+        Variable::Z(row) => (row, true),
+        Variable::W(row) => (row, false),
+    };
+    let meaning = contact.rows[row];
+    let scheme = &mut schemes[meaning.pair];
+    let frictionless = matches!(system.pairs[meaning.pair].law, Law::Frictionless { .. });
+    let closed_word = if frictionless {
+        "closed"
+    } else {
+        scheme.tangential.word()
+    };
+    let (joint, from, to) = match (meaning.couple, released) {
+        (Couple::Normal, true) => {
+            scheme.open = true;
+            (TurnedJoint::Normal, closed_word, "open")
+        }
+        (Couple::Normal, false) => {
+            scheme.open = false;
+            (TurnedJoint::Normal, "open", closed_word)
+        }
+        (couple, released) => {
+            let from = scheme.tangential.word();
+            scheme.tangential = match (couple, released) {
+                (Couple::Plus, true) => Tangential::Plus,
+                (Couple::Minus, true) => Tangential::Minus,
+                _ => Tangential::Stick,
+            };
+            (TurnedJoint::Tangential, from, scheme.tangential.word())
+        }
+    };
+    Some(Turned {
+        pair: system.pairs[meaning.pair].id.clone(),
+        joint,
+        from: from.to_owned(),
+        to: to.to_owned(),
+    })
+}
+
+struct Sentence<'a> {
+    contact: &'a ContactLcp,
+    system: &'a ContactSystem,
+    before: f64,
+    after: f64,
+    ended: bool,
+}
+
+impl Sentence<'_> {
+    fn tell(&self, pivot: &Pivot, turned: Option<&Turned>, schemes: &[Scheme]) -> String {
+        let Some(turned) = turned else {
+            let others: Vec<String> = pivot
+                .ties
+                .iter()
+                .filter(|&&tie| tie != pivot.leaving)
+                .map(|&tie| self.contact.name(tie, self.system))
+                .collect();
+            let tied = if others.is_empty() {
+                String::new()
+            } else {
+                format!(" (tied with {})", list(&others))
+            };
+            return format!(
+                "p enters at {}, the least that keeps every pair closed and sticking; {}{tied}",
+                short(self.after),
+                self.limit(pivot.leaving, schemes)
+            );
+        };
+        let open = match pivot.entering {
+            Variable::W(row) | Variable::Z(row) => schemes[self.contact.rows[row].pair].open,
+            Variable::P => false,
+        };
+        let pair = &turned.pair;
+        let change = match (turned.joint, turned.to.as_str(), open) {
+            (TurnedJoint::Normal, "open", _) => format!("pair {pair} opens"),
+            (TurnedJoint::Normal, _, _) => format!("pair {pair} closes"),
+            (TurnedJoint::Tangential, "stick", false) => format!("pair {pair} sticks"),
+            (TurnedJoint::Tangential, "stick", true) => format!("open pair {pair} stops sliding"),
+            (TurnedJoint::Tangential, "slip+", false) => format!("pair {pair} slips +"),
+            (TurnedJoint::Tangential, "slip+", true) => format!("open pair {pair} slides +"),
+            (TurnedJoint::Tangential, _, false) => format!("pair {pair} slips -"),
+            (TurnedJoint::Tangential, _, true) => format!("open pair {pair} slides -"),
+        };
+        if self.ended {
+            return format!(
+                "{change}; p falls from {} to 0: the answer is reached",
+                short(self.before)
+            );
+        }
+        let unchanged = (self.after - self.before).abs() <= 1e-12 * self.before.abs();
+        let course = if unchanged {
+            format!("p stays at {}", short(self.after))
+        } else if self.after < self.before {
+            format!(
+                "p falls from {} to {}",
+                short(self.before),
+                short(self.after)
+            )
+        } else {
+            format!(
+                "p rises from {} to {}",
+                short(self.before),
+                short(self.after)
+            )
+        };
+        format!(
+            "{change}; {course}, where {}",
+            self.limit(pivot.leaving, schemes)
+        )
+    }
+
+    /// What happens to the leaving variable.
+    fn limit(&self, leaving: Variable, schemes: &[Scheme]) -> String {
+        let (row, force) = match leaving {
+            Variable::P => return "nothing more is needed".to_owned(),
+            Variable::W(row) => (row, true),
+            Variable::Z(row) => (row, false),
+        };
+        let meaning = self.contact.rows[row];
+        let pair = &self.system.pairs[meaning.pair].id;
+        let open = schemes[meaning.pair].open;
+        match (meaning.couple, force) {
+            (Couple::Normal, true) => format!("pair {pair} loses its contact force"),
+            (Couple::Normal, false) => format!("pair {pair} comes back into contact"),
+            (Couple::Plus, true) => format!("pair {pair} uses up its reserve x+"),
+            (Couple::Minus, true) => format!("pair {pair} uses up its reserve x-"),
+            (_, false) if open => format!("the slip of open pair {pair} comes back to zero"),
+            (_, false) => format!("pair {pair} has slipped back to zero"),
+        }
+    }
+}
+
+/// The records of a bare LCP; `names` are the names of its rows.
+pub fn plain_records(pivots: &[Pivot], names: &[String]) -> Vec<PivotRecord> {
+    let name = |variable: Variable| plain_name(variable, names);
+    pivots
+        .iter()
+        .map(|pivot| {
+            let (entering, leaving) = (name(pivot.entering), name(pivot.leaving));
+            let sentence = if pivot.step == 0 {
+                format!(
+                    "p enters at {}; {leaving} is the row that needs it",
+                    short(pivot.p_after)
+                )
+            } else if pivot.leaving == Variable::P {
+                format!(
+                    "{entering} enters; p falls from {} to 0",
+                    short(pivot.p_before)
+                )
+            } else {
+                format!(
+                    "{entering} enters; p goes from {} to {}, where {leaving} reaches zero",
+                    short(pivot.p_before),
+                    short(pivot.p_after)
+                )
+            };
+            PivotRecord {
+                step: pivot.step,
+                entering,
+                leaving,
+                p: pivot.p_after,
+                ties: pivot.ties.iter().map(|&tie| name(tie)).collect(),
+                turned: None,
+                sentence,
+            }
+        })
+        .collect()
+}
+
+/// Name of a variable of a bare LCP: `w[1]`, `z[rod]`, `p`.
+pub fn plain_name(variable: Variable, names: &[String]) -> String {
+    match variable {
+        Variable::P => "p".to_owned(),
+        Variable::W(row) => format!("w[{}]", names[row]),
+        Variable::Z(row) => format!("z[{}]", names[row]),
+    }
+}

@@ -1,0 +1,100 @@
+//! The dense products and factorizations of the engine: the one file of `lcp` that names faer.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
+use nalgebra::{DMatrix, DVector};
+
+/// target += left · rightᵀ; all column-major: rows × columns, rows × k, columns × k.
+pub(crate) fn add_product(
+    target: &mut [f64],
+    left: &[f64],
+    right: &[f64],
+    rows: usize,
+    columns: usize,
+    k: usize,
+) {
+    if rows == 0 || columns == 0 || k == 0 {
+        return;
+    }
+    matmul(
+        MatMut::from_column_major_slice_mut(target, rows, columns),
+        Accum::Add,
+        MatRef::from_column_major_slice(&left[..rows * k], rows, k),
+        MatRef::from_column_major_slice(&right[..columns * k], columns, k).transpose(),
+        1.0,
+        Par::Seq,
+    );
+}
+
+/// LU factorization with partial pivoting of a square matrix, with the matrix kept for refinement.
+pub(crate) struct Factor {
+    lu: PartialPivLu<f64>,
+    matrix: DMatrix<f64>,
+}
+
+impl Factor {
+    /// Factorizes; a singular matrix shows as non-finite or failing solutions (`solve` returns `None`).
+    pub(crate) fn new(matrix: DMatrix<f64>) -> Factor {
+        let n = matrix.nrows();
+        let view = MatRef::from_column_major_slice(matrix.as_slice(), n, n);
+        Factor {
+            lu: view.partial_piv_lu(),
+            matrix,
+        }
+    }
+
+    /// Solves A X = B for all columns; `None` if not finite.
+    pub(crate) fn solve_many(&self, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let mut x = Mat::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)]);
+        if right.nrows() > 0 {
+            self.lu.solve_in_place(x.as_mut());
+        }
+        let solution = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| x[(i, j)]);
+        solution
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(solution)
+    }
+
+    /// Solves A x = b with two steps of refinement, residuals in twice the precision; `None` if not finite.
+    pub(crate) fn solve(&self, right: &DVector<f64>) -> Option<DVector<f64>> {
+        let n = right.len();
+        let mut solution = DVector::zeros(n);
+        let mut residual = right.clone();
+        for _ in 0..3 {
+            let mut correction = Mat::from_fn(n, 1, |i, _| residual[i]);
+            if n > 0 {
+                self.lu.solve_in_place(correction.as_mut());
+            }
+            for i in 0..n {
+                solution[i] += correction[(i, 0)];
+            }
+            if !solution.iter().all(|value: &f64| value.is_finite()) {
+                return None;
+            }
+            for i in 0..n {
+                residual[i] = twofold_dot(
+                    right[i],
+                    (0..n).map(|j| (-self.matrix[(i, j)], solution[j])),
+                );
+            }
+        }
+        Some(solution)
+    }
+}
+
+/// start + Σ a·b with the rounding errors of every product and sum carried along (Ogita, Rump, Oishi 2005).
+pub(crate) fn twofold_dot(start: f64, terms: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let mut sum = start;
+    let mut error = 0.0;
+    for (a, b) in terms {
+        let product = a * b;
+        let product_error = a.mul_add(b, -product);
+        let next = sum + product;
+        let back = next - sum;
+        error += (sum - (next - back)) + (product - back) + product_error;
+        sum = next;
+    }
+    sum + error
+}

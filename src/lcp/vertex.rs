@@ -1,0 +1,184 @@
+//! A vertex of a run rebuilt from its pivots: which variables are basic, and their values from the data.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::dense::Factor;
+use super::mirrored::MirroredLcp;
+use super::outcome::{Point, RayDirection};
+use super::trace::Pivot;
+use super::variable::Variable;
+
+/// The basis after some pivots.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Basis {
+    /// Rows whose z is basic, ascending.
+    pub z: Vec<usize>,
+    /// Rows whose w is nonbasic, ascending. Differs from `z` while p is basic.
+    pub active: Vec<usize>,
+    /// Whether p is basic.
+    pub p: bool,
+}
+
+impl Basis {
+    /// The basis after the given pivots of a run that started from z = 0.
+    pub fn after(pivots: &[Pivot]) -> Basis {
+        use std::collections::BTreeSet;
+        let (mut z, mut active, mut p) = (BTreeSet::new(), BTreeSet::new(), false);
+        for pivot in pivots {
+            match pivot.leaving {
+                Variable::W(i) => {
+                    active.insert(i);
+                }
+                Variable::Z(i) => {
+                    z.remove(&i);
+                }
+                Variable::P => p = false,
+            }
+            match pivot.entering {
+                Variable::W(i) => {
+                    active.remove(&i);
+                }
+                Variable::Z(i) => {
+                    z.insert(i);
+                }
+                Variable::P => p = true,
+            }
+        }
+        Basis {
+            z: z.into_iter().collect(),
+            active: active.into_iter().collect(),
+            p,
+        }
+    }
+}
+
+/// Rows and columns of the whole LCP read from the mirrored one.
+struct Whole<'a> {
+    lcp: &'a MirroredLcp,
+    /// Primary row and whether it is the mirror, of each whole row.
+    rows: Vec<(usize, bool)>,
+}
+
+impl<'a> Whole<'a> {
+    fn new(lcp: &'a MirroredLcp) -> Whole<'a> {
+        let mut rows = vec![(0, false); lcp.whole_size];
+        for i in 0..lcp.size() {
+            rows[lcp.whole[i]] = (i, false);
+            if let Some(mirror) = &lcp.mirrors[i] {
+                rows[mirror.whole] = (i, true);
+            }
+        }
+        Whole { lcp, rows }
+    }
+
+    /// Applies w_i' = 2 f w_n + extra − w_i where row k is a mirror.
+    fn combine(
+        &self,
+        k: usize,
+        read: impl Fn(usize) -> f64,
+        extra: impl Fn(f64, f64) -> f64,
+    ) -> f64 {
+        let (i, mirrored) = self.rows[k];
+        match (&self.lcp.mirrors[i], mirrored) {
+            (Some(mirror), true) => {
+                let normal = mirror.normal.map_or(0.0, &read);
+                2.0 * mirror.friction * normal + extra(mirror.constant, mirror.covering) - read(i)
+            }
+            _ => read(i),
+        }
+    }
+
+    fn entry(&self, k: usize, column: usize) -> f64 {
+        let (j, negative) = self.rows[column];
+        let value = self.combine(k, |i| self.lcp.matrix[(i, j)], |_, _| 0.0);
+        if negative { -value } else { value }
+    }
+
+    fn q(&self, k: usize) -> f64 {
+        self.combine(k, |i| self.lcp.q[i], |constant, _| constant)
+    }
+
+    fn d(&self, k: usize) -> f64 {
+        self.combine(k, |i| self.lcp.covering[i], |_, covering| covering)
+    }
+
+    fn system(&self, basis: &Basis) -> Factor {
+        let n = basis.active.len();
+        Factor::new(DMatrix::from_fn(n, n, |a, b| match basis.z.get(b) {
+            Some(&column) => self.entry(basis.active[a], column),
+            None => self.d(basis.active[a]),
+        }))
+    }
+
+    /// w = M z + shift q + d p of all whole rows, exact zero in the active ones.
+    fn response(&self, basis: &Basis, z: &[f64], p: f64, shift: f64) -> Vec<f64> {
+        let mut primary = DVector::zeros(self.lcp.size());
+        for (k, &value) in z.iter().enumerate() {
+            let (j, negative) = self.rows[k];
+            primary[j] += if negative { -value } else { value };
+        }
+        let mut w = &self.lcp.matrix * primary;
+        w += shift * &self.lcp.q + p * &self.lcp.covering;
+        let mut whole: Vec<f64> = (0..self.lcp.whole_size)
+            .map(|k| {
+                self.combine(
+                    k,
+                    |i| w[i],
+                    |constant, covering| shift * constant + p * covering,
+                )
+            })
+            .collect();
+        for &k in &basis.active {
+            whole[k] = 0.0;
+        }
+        whole
+    }
+}
+
+/// Values of all variables at a basis; `None` where its equations are singular.
+pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
+    let whole = Whole::new(lcp);
+    let n = basis.active.len();
+    if basis.z.len() + usize::from(basis.p) != n {
+        return None;
+    }
+    let right = DVector::from_fn(n, |a, _| -whole.q(basis.active[a]));
+    let solution = whole.system(basis).solve(&right)?;
+    let mut z = vec![0.0; lcp.whole_size];
+    for (b, &k) in basis.z.iter().enumerate() {
+        z[k] = solution[b];
+    }
+    let p = if basis.p { solution[n - 1] } else { 0.0 };
+    let w = whole.response(basis, &z, p, 1.0);
+    Some(Point { z, w, p })
+}
+
+/// Direction at a basis in which `entering` grows by 1; `None` where the equations are singular.
+pub fn direction(lcp: &MirroredLcp, basis: &Basis, entering: Variable) -> Option<RayDirection> {
+    let whole = Whole::new(lcp);
+    let n = basis.active.len();
+    if basis.z.len() + usize::from(basis.p) != n {
+        return None;
+    }
+    let right = DVector::from_fn(n, |a, _| match entering {
+        Variable::Z(k) => -whole.entry(basis.active[a], k),
+        Variable::W(k) => f64::from(basis.active[a] == k),
+        Variable::P => -whole.d(basis.active[a]),
+    });
+    let solution = whole.system(basis).solve(&right)?;
+    let mut z = vec![0.0; lcp.whole_size];
+    for (b, &k) in basis.z.iter().enumerate() {
+        z[k] = solution[b];
+    }
+    let mut p = if basis.p { solution[n - 1] } else { 0.0 };
+    match entering {
+        Variable::Z(k) => z[k] = 1.0,
+        Variable::P => p = 1.0,
+        Variable::W(_) => {}
+    }
+    let mut w = whole.response(basis, &z, p, 0.0);
+    if let Variable::W(k) = entering {
+        w[k] = 1.0;
+    }
+    Some(RayDirection { entering, z, w, p })
+}
