@@ -159,7 +159,12 @@ impl Session {
         self.change_noting(Setup::of(scenario), text, &[title], io)
     }
 
-    fn set(&mut self, words: &[String], text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn set(
+        &mut self,
+        words: &[String],
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let scenario = Arc::clone(&self.now.scenario);
         let mut next = self.now.clone();
         let mut notes = Vec::new();
@@ -188,7 +193,12 @@ impl Session {
         self.change_noting(next, text, &notes, io)
     }
 
-    fn set_auto(&mut self, auto: bool, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn set_auto(
+        &mut self,
+        auto: bool,
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         if auto && self.solved.is_none() && !self.deferred {
             let solved = self.now.solve(io.watch)?;
             self.take_answer(Some(solved));
@@ -205,7 +215,12 @@ impl Session {
         }
     }
 
-    fn reset(&mut self, name: Option<&str>, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn reset(
+        &mut self,
+        name: Option<&str>,
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let mut next = self.now.clone();
         let file = next.scenario.parameter_values();
         let rules = next.scenario.rules;
@@ -267,7 +282,11 @@ impl Session {
         self.say_what_changed(&[], io)
     }
 
-    fn save(&mut self, file: Option<&std::path::Path>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn save(
+        &mut self,
+        file: Option<&std::path::Path>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let path = match file {
             Some(path) => path.to_owned(),
             None => self.now.scenario.path.clone().ok_or_else(|| {
@@ -341,12 +360,10 @@ impl Session {
             displacements: displacements.as_deref(),
             error: self.last_error.as_deref(),
         };
-        expectation
-            .test(&facts)
-            .map_err(|failed| match failed {
-                Ok(unmet) => CommandError::Unmet(unmet),
-                Err(unknown) => CommandError::Refused(unknown),
-            })?;
+        expectation.test(&facts).map_err(|failed| match failed {
+            Ok(unmet) => CommandError::Unmet(unmet),
+            Err(unknown) => CommandError::Refused(unknown),
+        })?;
         match expectation {
             expect::Expectation::Outcome(_) => self.trouble = None,
             expect::Expectation::Error(_) => self.last_error = None,
@@ -403,7 +420,11 @@ impl Session {
         self.say_what_changed(&[format!("{changes} change{s} restored")], io)
     }
 
-    fn replay_journal(&mut self, commands: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn replay_journal(
+        &mut self,
+        commands: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         self.deferred = true;
         let mut nowhere = std::io::sink();
         let mut quiet = Output::text(&mut nowhere, io.style, io.watch);
@@ -453,7 +474,10 @@ fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_scenarios(out: &mut dyn Write, style: &crate::view::style::Style) -> std::io::Result<()> {
+pub fn write_scenarios(
+    out: &mut dyn Write,
+    style: &crate::view::style::Style,
+) -> std::io::Result<()> {
     for (name, title) in embedded::list() {
         let line = format!("{name:<14} {title}");
         writeln!(out, "{}", style.fit(&style.text(&line), style.width))?;

@@ -45,7 +45,9 @@ pub enum Command {
     /// Rules: `set covering cohesive|ones|weight`, `set tie-break lexicographic|natural|first-row|random:SEED`,
     /// `set engine scheme|tableau|exact`; `set auto off` stops solving after each change until `solve` or
     /// `set auto on`.
-    #[command(after_help = "Example:\n  set F2 120\n  set F2 += 10\n  set f 110%\n  set covering weight")]
+    #[command(
+        after_help = "Example:\n  set F2 120\n  set F2 += 10\n  set f 110%\n  set covering weight"
+    )]
     Set {
         /// Parameter, or auto, covering, tie-break, engine; then the value
         #[arg(
@@ -117,7 +119,9 @@ pub enum Command {
         range: Option<String>,
     },
     /// Move along the pivots: `pairs` and `plot` then show the structure at that pivot
-    #[command(after_help = "Example:\n  step first; step; step 2; step back 1; step to 4; step last")]
+    #[command(
+        after_help = "Example:\n  step first; step; step 2; step back 1; step to 4; step last"
+    )]
     Step {
         /// N, back N, to K, first or last; one pivot on if left out
         #[arg(value_name = "STEP")]
@@ -294,7 +298,15 @@ pub const GROUPS: &[(&str, &[&str])] = &[
     (
         "scenario",
         &[
-            "load", "scenarios", "save", "params", "set", "reset", "undo", "redo", "diff",
+            "load",
+            "scenarios",
+            "save",
+            "params",
+            "set",
+            "reset",
+            "undo",
+            "redo",
+            "diff",
         ],
     ),
     (
@@ -314,9 +326,7 @@ pub const GROUPS: &[(&str, &[&str])] = &[
     ("pictures", &["plot"]),
     (
         "scripts",
-        &[
-            "source", "record", "expect", "export", "echo", "restore",
-        ],
+        &["source", "record", "expect", "export", "echo", "restore"],
     ),
     ("help", &["help", "history", "quit"]),
 ];
@@ -468,7 +478,10 @@ fn one_paragraph(error: &clap::Error, name: &str) -> String {
         if line.starts_with("Usage:") {
             break;
         }
-        parts.push(line.trim_start_matches("error: ").trim_start_matches("tip: "));
+        parts.push(
+            line.trim_start_matches("error: ")
+                .trim_start_matches("tip: "),
+        );
     }
     format!("{name}: {}; see `help {name}`", parts.join(" "))
 }
@@ -476,7 +489,9 @@ fn one_paragraph(error: &clap::Error, name: &str) -> String {
 /// The overview of all commands, by group.
 pub fn overview() -> String {
     let grammar = grammar();
-    let mut text = String::from("One command a line; `;` separates, `#` begins a comment, unique prefixes work.\n");
+    let mut text = String::from(
+        "One command a line; `;` separates, `#` begins a comment, unique prefixes work.\n",
+    );
     for (group, names) in GROUPS {
         text.push_str(&format!("\n{group}\n"));
         for name in *names {
@@ -507,7 +522,11 @@ pub fn help(word: &str, width: usize) -> Result<String, GrammarError> {
             near: Vec::new(),
         });
     };
-    let text = command.clone().term_width(width).render_long_help().to_string();
+    let text = command
+        .clone()
+        .term_width(width)
+        .render_long_help()
+        .to_string();
     Ok(text
         .lines()
         .filter(|line| !line.trim_start().starts_with("-h, --help"))
@@ -531,13 +550,19 @@ mod tests {
     #[test]
     fn every_command_stands_in_one_group_and_has_an_example() {
         let grammar = grammar();
-        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
+        let mut grouped: Vec<&str> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| names.iter().copied())
+            .collect();
         let mut known: Vec<&str> = grammar.get_subcommands().map(|c| c.get_name()).collect();
         grouped.sort_unstable();
         known.sort_unstable();
         assert_eq!(grouped, known);
         for command in grammar.get_subcommands() {
-            let example = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let example = command
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
             assert!(example.starts_with("Example:\n"), "{}", command.get_name());
             for line in example.lines().skip(1) {
                 for one in words::commands(line) {
@@ -552,7 +577,10 @@ mod tests {
         assert_eq!(parse("piv").unwrap(), Some(Command::Pivots { range: None }));
         assert_eq!(parse("exit").unwrap(), Some(Command::Quit));
         let ambiguous = parse("p").unwrap_err().to_string();
-        assert!(ambiguous.contains("pairs, pivots, plot") || ambiguous.contains("params"), "{ambiguous}");
+        assert!(
+            ambiguous.contains("pairs, pivots, plot") || ambiguous.contains("params"),
+            "{ambiguous}"
+        );
         let typo = parse("piars").unwrap_err().to_string();
         assert!(typo.contains("did you mean `pairs`"), "{typo}");
     }
@@ -565,13 +593,18 @@ mod tests {
         };
         assert_eq!(words("set F2 -10%"), ["F2", "-10%"]);
         assert_eq!(words("set F2 -= 10"), ["F2", "-=", "10"]);
-        assert!(matches!(parse("echo --at -x"), Ok(Some(Command::Echo { words })) if words.len() == 2));
+        assert!(
+            matches!(parse("echo --at -x"), Ok(Some(Command::Echo { words })) if words.len() == 2)
+        );
     }
 
     #[test]
     fn wrong_arguments_say_where_help_is() {
         let error = parse("plot sli").unwrap_err().to_string();
-        assert!(error.contains("slip") && error.contains("help plot"), "{error}");
+        assert!(
+            error.contains("slip") && error.contains("help plot"),
+            "{error}"
+        );
         assert!(parse("load").unwrap_err().to_string().contains("help load"));
     }
 }

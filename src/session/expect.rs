@@ -355,12 +355,16 @@ impl Expectation {
             })),
         };
         let pair_named = |id: &str| {
-            facts.pairs.iter().find(|pair| pair.id == id).ok_or_else(|| {
-                Err(format!(
-                    "expect: no pair `{id}`{}",
-                    did_you_mean(id, facts.pairs.iter().map(|pair| pair.id.as_str()))
-                ))
-            })
+            facts
+                .pairs
+                .iter()
+                .find(|pair| pair.id == id)
+                .ok_or_else(|| {
+                    Err(format!(
+                        "expect: no pair `{id}`{}",
+                        did_you_mean(id, facts.pairs.iter().map(|pair| pair.id.as_str()))
+                    ))
+                })
         };
         let ray = facts.answer.and_then(|answer| answer.ray.as_ref());
         let outcome = || match facts.answer {
@@ -407,12 +411,15 @@ impl Expectation {
                 let Some(displacements) = facts.displacements else {
                     return compare(format!("{component} {node}"), bound, None);
                 };
-                let found = displacements.iter().find(|d| d.node == *node).ok_or_else(|| {
-                    Err(format!(
-                        "expect: no node `{node}`{}",
-                        did_you_mean(node, displacements.iter().map(|d| d.node.as_str()))
-                    ))
-                })?;
+                let found = displacements
+                    .iter()
+                    .find(|d| d.node == *node)
+                    .ok_or_else(|| {
+                        Err(format!(
+                            "expect: no node `{node}`{}",
+                            did_you_mean(node, displacements.iter().map(|d| d.node.as_str()))
+                        ))
+                    })?;
                 let value = match component.as_str() {
                     "ux" => found.ux,
                     "uy" => found.uy,
@@ -482,7 +489,15 @@ mod tests {
             };
             assert_eq!(bound.holds(found), holds, "{text}");
         }
-        for text in ["p", "p 3", "p = ", "p = x", "p < 1 ± 2", "p = 1 ± -2", "p = inf"] {
+        for text in [
+            "p",
+            "p 3",
+            "p = ",
+            "p = x",
+            "p < 1 ± 2",
+            "p = 1 ± -2",
+            "p = inf",
+        ] {
             assert!(read(&words(text)).is_err(), "{text}");
         }
     }

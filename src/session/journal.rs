@@ -189,7 +189,11 @@ mod tests {
         journal.append("set f 0.3").unwrap();
         assert!(Journal::new(folder.path(), place).left_over().is_none());
         drop(journal);
-        assert!(Journal::new(folder.path(), Path::new("/else")).left_over().is_none());
+        assert!(
+            Journal::new(folder.path(), Path::new("/else"))
+                .left_over()
+                .is_none()
+        );
         let left = Journal::new(folder.path(), place).left_over().unwrap();
         assert_eq!(left.commands, ["load beam", "set F2 120", "set f 0.3"]);
         assert_eq!(left.changes(), 2);
@@ -219,6 +223,11 @@ mod tests {
         let mut journal = Journal::new(folder.path(), Path::new("/a"));
         journal.append("set F2 120").unwrap();
         journal.close().unwrap();
-        assert_eq!(fs::read_dir(folder.path().join("journals")).unwrap().count(), 0);
+        assert_eq!(
+            fs::read_dir(folder.path().join("journals"))
+                .unwrap()
+                .count(),
+            0
+        );
     }
 }

@@ -249,7 +249,9 @@ impl Session {
                 Ok(Next::Continue) => {}
                 Ok(next) => return Ok(next),
                 Err(error) => {
-                    let asked_for = commands.get(index + 1).is_some_and(|next| script::expects_error(next));
+                    let asked_for = commands
+                        .get(index + 1)
+                        .is_some_and(|next| script::expects_error(next));
                     if !asked_for || error.is_output() || error.is_interrupted() {
                         return Err(error);
                     }

@@ -26,7 +26,12 @@ impl Recorder {
     }
 
     /// A command, what it showed and how it ended.
-    fn take(&mut self, text: &str, shown: &[u8], result: &Result<Next, CommandError>) -> Result<(), CommandError> {
+    fn take(
+        &mut self,
+        text: &str,
+        shown: &[u8],
+        result: &Result<Next, CommandError>,
+    ) -> Result<(), CommandError> {
         let mut entry = String::new();
         match result {
             // an expectation that does not hold would stop every replay
@@ -116,7 +121,10 @@ impl Session {
         };
         recorder.write(&self.opening())?;
         self.recorder = Some(recorder);
-        Ok(io.say(&format!("recording to {} until `record off`", path.display()))?)
+        Ok(io.say(&format!(
+            "recording to {} until `record off`",
+            path.display()
+        ))?)
     }
 
     /// The commands that lead to the present state, one a line.
@@ -130,7 +138,11 @@ impl Session {
     }
 
     /// Runs a command and writes it down.
-    pub(super) fn run_recorded(&mut self, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+    pub(super) fn run_recorded(
+        &mut self,
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<Next, CommandError> {
         let parsed = command::parse(text).ok().flatten();
         let mut tee = Tee {
             out: &mut *io.out,
@@ -142,11 +154,14 @@ impl Session {
         let report = inner.report.take();
         let shown = std::mem::take(&mut tee.copy);
         io.report = report;
-        let again = matches!(parsed, Some(command::Command::Restore { .. })).then(|| self.opening());
+        let again =
+            matches!(parsed, Some(command::Command::Restore { .. })).then(|| self.opening());
         let Some(recorder) = &mut self.recorder else {
             return result; // that was `record off`
         };
-        let interrupted = result.as_ref().is_err_and(|error| error.is_interrupted() || error.is_output());
+        let interrupted = result
+            .as_ref()
+            .is_err_and(|error| error.is_interrupted() || error.is_output());
         let noted = match (&parsed, &again) {
             (Some(command::Command::Record { .. } | command::Command::Quit), _) => Ok(()),
             // what was restored is nowhere but here: write the state it led to

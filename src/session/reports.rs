@@ -1,7 +1,6 @@
 //! Commands that show something and change nothing.
 
 use std::collections::HashMap;
-use std::io::Write;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -134,8 +133,16 @@ impl Session {
         }
         let (now, file) = (self.now.rules, scenario.rules);
         for (name, file, now) in [
-            ("covering", file.covering.to_string(), now.covering.to_string()),
-            ("tie-break", file.tie_break.to_string(), now.tie_break.to_string()),
+            (
+                "covering",
+                file.covering.to_string(),
+                now.covering.to_string(),
+            ),
+            (
+                "tie-break",
+                file.tie_break.to_string(),
+                now.tie_break.to_string(),
+            ),
             ("engine", file.engine.to_string(), now.engine.to_string()),
         ] {
             if file != now {
@@ -163,7 +170,11 @@ impl Session {
     }
 
     /// `pairs [IDS] [sort KEY]`.
-    pub(super) fn report_pairs(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn report_pairs(
+        &self,
+        words: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         if let Some(solution) = &answer.solution {
             return self.report_solution(&solution.z, &solution.w, io);
@@ -197,8 +208,14 @@ impl Session {
             || json!(chosen),
             |out, style| {
                 if let Some(step) = self.position {
-                    let p = self.p().map_or(String::new(), |p| format!(", p = {}", short(p)));
-                    writeln!(out, "{}", style.paint(Role::Muted, &format!("at pivot {step}{p}")))?;
+                    let p = self
+                        .p()
+                        .map_or(String::new(), |p| format!(", p = {}", short(p)));
+                    writeln!(
+                        out,
+                        "{}",
+                        style.paint(Role::Muted, &format!("at pivot {step}{p}"))
+                    )?;
                 }
                 view::pairs::write(out, &chosen, &self.now.scenario.units, style)
             },
@@ -207,7 +224,12 @@ impl Session {
     }
 
     /// z and w of a bare LCP, in the place of pairs.
-    fn report_solution(&self, z: &[f64], w: &[f64], io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn report_solution(
+        &self,
+        z: &[f64],
+        w: &[f64],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let names: Vec<String> = match &self.now.scenario.source {
             Source::Lcp(lcp) => lcp.names.clone(),
             _ => (1..=z.len()).map(|i| i.to_string()).collect(),
@@ -215,11 +237,22 @@ impl Session {
         io.report(
             || json!({"z": z, "w": w}),
             |out, style| {
-                let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
+                let wide = names
+                    .iter()
+                    .map(|name| name.chars().count())
+                    .max()
+                    .unwrap_or(0)
+                    .max(4);
                 let head = format!("{:<wide$} {:>14} {:>14}", "row", "z", "w");
                 writeln!(out, "{}", style.paint(Role::Header, &head))?;
                 for (name, (z, w)) in names.iter().zip(z.iter().zip(w)) {
-                    writeln!(out, "{:<wide$} {:>14} {:>14}", style.text(name), short(*z), short(*w))?;
+                    writeln!(
+                        out,
+                        "{:<wide$} {:>14} {:>14}",
+                        style.text(name),
+                        short(*z),
+                        short(*w)
+                    )?;
                 }
                 Ok(())
             },
@@ -227,14 +260,23 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn report_displacements(&self, nodes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn report_displacements(
+        &self,
+        nodes: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let all = self.displacements().ok_or_else(|| self.none("displacements", answer))?;
+        let all = self
+            .displacements()
+            .ok_or_else(|| self.none("displacements", answer))?;
         let chosen = if nodes.is_empty() {
             all
         } else {
-            let by_name: HashMap<&str, usize> =
-                all.iter().enumerate().map(|(i, d)| (d.node.as_str(), i)).collect();
+            let by_name: HashMap<&str, usize> = all
+                .iter()
+                .enumerate()
+                .map(|(i, d)| (d.node.as_str(), i))
+                .collect();
             let mut chosen = Vec::new();
             for node in nodes {
                 let index = by_name.get(node.as_str()).ok_or_else(|| {
@@ -262,14 +304,23 @@ impl Session {
                 view::status::outcome_word(answer.outcome)
             ),
             Source::Structure(_) => format!("no {what} at this pivot: `step last`"),
-            Source::ContactSystem(_) => format!("no {what}: the scenario is a contact system, not a structure"),
+            Source::ContactSystem(_) => {
+                format!("no {what}: the scenario is a contact system, not a structure")
+            }
             Source::Lcp(_) => format!("no {what}: the scenario is a bare LCP"),
         })
     }
 
-    pub(super) fn report_members(&self, bar: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn report_members(
+        &self,
+        bar: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let members = answer.members.as_ref().ok_or_else(|| self.none("member forces", answer))?;
+        let members = answer
+            .members
+            .as_ref()
+            .ok_or_else(|| self.none("member forces", answer))?;
         if let Some(bar) = bar
             && !members.iter().any(|member| member.bar == bar)
         {
@@ -293,7 +344,10 @@ impl Session {
 
     pub(super) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let reactions = answer.reactions.as_ref().ok_or_else(|| self.none("reactions", answer))?;
+        let reactions = answer
+            .reactions
+            .as_ref()
+            .ok_or_else(|| self.none("reactions", answer))?;
         io.report(
             || json!(reactions),
             |out, style| view::reactions::write(out, reactions, &self.now.scenario.units, style),
@@ -303,12 +357,19 @@ impl Session {
 
     pub(super) fn report_check(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        io.report(|| json!(answer.check), |out, style| view::check::write(out, answer, style))?;
+        io.report(
+            || json!(answer.check),
+            |out, style| view::check::write(out, answer, style),
+        )?;
         Ok(())
     }
 
     /// `pivots [FROM..TO]`.
-    pub(super) fn report_pivots(&self, range: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn report_pivots(
+        &self,
+        range: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let last = answer.pivots.last().map_or(0, |pivot| pivot.step);
         let range = match range {
@@ -341,7 +402,11 @@ impl Session {
                 answer
                     .pivots
                     .iter()
-                    .filter(|pivot| range.as_ref().is_none_or(|range| range.contains(&pivot.step)))
+                    .filter(|pivot| {
+                        range
+                            .as_ref()
+                            .is_none_or(|range| range.contains(&pivot.step))
+                    })
                     .map(|pivot| json!(pivot))
                     .collect()
             },
@@ -360,7 +425,13 @@ impl Session {
     }
 
     /// The sentence of the pivot that `step` came to.
-    pub(super) fn report_step(&self, to: usize, last: usize, stayed: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn report_step(
+        &self,
+        to: usize,
+        last: usize,
+        stayed: bool,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let pivot = answer.pivots.iter().find(|pivot| pivot.step == to);
         io.report(
@@ -386,7 +457,10 @@ impl Session {
     pub(super) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let pairs = self.pairs();
-        let pair = pairs.iter().find(|pair| pair.id == id).ok_or_else(|| no_pair(id, &pairs))?;
+        let pair = pairs
+            .iter()
+            .find(|pair| pair.id == id)
+            .ok_or_else(|| no_pair(id, &pairs))?;
         let units = &self.now.scenario.units;
         let force = |value: f64| with_unit(&short(value), units.force.as_deref());
         let length = |value: f64| with_unit(&short(value), units.length.as_deref());
@@ -426,7 +500,12 @@ impl Session {
             .pivots
             .iter()
             .filter(|pivot| shown.is_none_or(|shown| pivot.step <= shown))
-            .filter(|pivot| pivot.turned.as_ref().is_some_and(|turned| turned.pair == id))
+            .filter(|pivot| {
+                pivot
+                    .turned
+                    .as_ref()
+                    .is_some_and(|turned| turned.pair == id)
+            })
             .collect();
         io.report(
             || json!({"pair": pair, "cause": cause, "pivots": turned}),
@@ -479,7 +558,12 @@ impl Session {
     }
 
     /// `export WHAT FILE`.
-    pub(super) fn export(&self, what: Export, path: &Path, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn export(
+        &self,
+        what: Export,
+        path: &Path,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         // pairs and displacements are those at the pivot shown
         let mut shown = answer.clone();
@@ -501,7 +585,10 @@ impl Session {
             };
             return Err(self.none(word, answer));
         }
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let ending = path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .unwrap_or_default();
         let as_json = |value: Value| {
             atomic::write(path, |out| {
                 let text = serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
@@ -511,7 +598,9 @@ impl Session {
         let written = match (what, ending) {
             (Export::Pairs, "csv") => atomic::write(path, |out| csv::pairs(out, &shown)),
             (Export::Pivots, "csv") => atomic::write(path, |out| csv::pivots(out, &shown)),
-            (Export::Displacements, "csv") => atomic::write(path, |out| csv::displacements(out, &shown)),
+            (Export::Displacements, "csv") => {
+                atomic::write(path, |out| csv::displacements(out, &shown))
+            }
             (Export::Members, "csv") => atomic::write(path, |out| csv::members(out, &shown)),
             (Export::Reactions, "csv") => atomic::write(path, |out| csv::reactions(out, &shown)),
             (Export::Pairs, "json") => as_json(json_export::pairs(&shown)),
@@ -545,7 +634,9 @@ impl Session {
 
 fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
     if pairs.is_empty() {
-        return CommandError::Refused(format!("no pair `{id}`: this scenario has no contact pairs"));
+        return CommandError::Refused(format!(
+            "no pair `{id}`: this scenario has no contact pairs"
+        ));
     }
     CommandError::Refused(format!(
         "no pair `{id}`{}",
@@ -555,10 +646,18 @@ fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
 
 /// Pairs named by ids, ranges `A..B`, or the name of an edge contact (`joint` for all `joint[…]`).
 fn indices(words: &[String], pairs: &[PairState]) -> Result<Vec<usize>, CommandError> {
-    let at: HashMap<&str, usize> = pairs.iter().enumerate().map(|(i, pair)| (pair.id.as_str(), i)).collect();
+    let at: HashMap<&str, usize> = pairs
+        .iter()
+        .enumerate()
+        .map(|(i, pair)| (pair.id.as_str(), i))
+        .collect();
     let find = |id: &str| at.get(id).copied().ok_or_else(|| no_pair(id, pairs));
     let mut chosen = Vec::new();
-    for word in words.iter().flat_map(|word| word.split(',')).filter(|word| !word.is_empty()) {
+    for word in words
+        .iter()
+        .flat_map(|word| word.split(','))
+        .filter(|word| !word.is_empty())
+    {
         if let Some(index) = at.get(word) {
             chosen.push(*index);
         } else if let Some((from, to)) = word.split_once("..") {

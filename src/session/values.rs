@@ -21,7 +21,9 @@ pub enum SetError {
         name: String,
     },
     /// No such parameter.
-    #[error("unknown parameter `{name}`{near}: the scenario has {known}; rules are covering, tie-break, engine and auto")]
+    #[error(
+        "unknown parameter `{name}`{near}: the scenario has {known}; rules are covering, tie-break, engine and auto"
+    )]
     UnknownParameter {
         /// The name.
         name: String,
@@ -31,7 +33,9 @@ pub enum SetError {
         known: String,
     },
     /// No number.
-    #[error("`{text}` is no value for {name}: expected a number, `110%`, `+10%`, `-10%`, or one of += -= *= /= and a number")]
+    #[error(
+        "`{text}` is no value for {name}: expected a number, `110%`, `+10%`, `-10%`, or one of += -= *= /= and a number"
+    )]
     NoNumber {
         /// The parameter.
         name: String,
@@ -65,7 +69,9 @@ pub enum SetError {
     #[error("`set auto` takes on or off, not `{0}`")]
     Auto(String),
     /// A covering for a bare LCP.
-    #[error("the covering of a bare LCP is given in its file (`lcp.covering`, ones by default): `set covering` is for contact problems")]
+    #[error(
+        "the covering of a bare LCP is given in its file (`lcp.covering`, ones by default): `set covering` is for contact problems"
+    )]
     CoveringOfLcp,
 }
 
@@ -88,7 +94,11 @@ pub enum Setting {
 ///
 /// # Errors
 /// [`SetError`].
-pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> Result<Setting, SetError> {
+pub fn read(
+    words: &[String],
+    scenario: &Scenario,
+    values: &ParameterValues,
+) -> Result<Setting, SetError> {
     let text = words.join(" ");
     let (name, rest) = name_and_rest(&text);
     let no_value = || SetError::NoValue {
@@ -96,7 +106,11 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
     };
     let choice = || {
         let word = rest.strip_prefix('=').unwrap_or(rest).trim();
-        if word.is_empty() { Err(no_value()) } else { Ok(word) }
+        if word.is_empty() {
+            Err(no_value())
+        } else {
+            Ok(word)
+        }
     };
     match name {
         "covering" if matches!(scenario.source, Source::Lcp(_)) => Err(SetError::CoveringOfLcp),
@@ -167,7 +181,9 @@ fn changed(rest: &str, present: f64) -> Option<f64> {
             let operand = operand.trim();
             let number = match operand.strip_suffix('%') {
                 // a share of the present value where it is added, a plain factor where it multiplies
-                Some(percent) if operator.starts_with(['+', '-']) => present * number(percent)? / 100.0,
+                Some(percent) if operator.starts_with(['+', '-']) => {
+                    present * number(percent)? / 100.0
+                }
                 Some(percent) => number(percent)? / 100.0,
                 None => number(operand)?,
             };
@@ -189,7 +205,9 @@ fn changed(rest: &str, present: f64) -> Option<f64> {
 /// A decimal number; the words `inf` and `nan` are none.
 pub fn number(text: &str) -> Option<f64> {
     let text = text.trim();
-    let plain = text.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
+    let plain = text
+        .chars()
+        .all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
     text.parse().ok().filter(|_| plain)
 }
 
@@ -220,7 +238,12 @@ pub fn check(scenario: &Scenario, name: &str, value: f64) -> Result<(), SetError
             .iter()
             .map(|pair| (pair.id.as_str(), &pair.law))
             .collect(),
-        Source::ContactSystem(system) => system.pairs.iter().map(String::as_str).zip(&system.laws).collect(),
+        Source::ContactSystem(system) => system
+            .pairs
+            .iter()
+            .map(String::as_str)
+            .zip(&system.laws)
+            .collect(),
         Source::Lcp(_) => Vec::new(),
     };
     let is = |number: &Number| number.parameter() == Some(name);
@@ -230,7 +253,11 @@ pub fn check(scenario: &Scenario, name: &str, value: f64) -> Result<(), SetError
                 friction,
                 cohesion,
                 gap,
-            } => [(friction, "the friction coefficient"), (cohesion, "the cohesion"), (gap, "the gap")],
+            } => [
+                (friction, "the friction coefficient"),
+                (cohesion, "the cohesion"),
+                (gap, "the gap"),
+            ],
             Law::Frictionless { gap } => [(gap, "the gap"); 3],
             Law::Bound { bound } => [(bound, "the friction bound"); 3],
         };
@@ -264,7 +291,18 @@ mod tests {
         ] {
             assert_eq!(changed(rest, 100.0), Some(value), "{rest}");
         }
-        for rest in ["", "x", "inf", "nan", "1 2", "%", "+=", "1,5", "0x10", "infinity%"] {
+        for rest in [
+            "",
+            "x",
+            "inf",
+            "nan",
+            "1 2",
+            "%",
+            "+=",
+            "1,5",
+            "0x10",
+            "infinity%",
+        ] {
             assert_eq!(changed(rest, 100.0), None, "{rest}");
         }
     }

@@ -4,7 +4,9 @@ use thiserror::Error;
 
 /// A line that cannot be split into words.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("a quotation mark or a backslash at the end of `{0}` is left open: close it, or quote the mark itself")]
+#[error(
+    "a quotation mark or a backslash at the end of `{0}` is left open: close it, or quote the mark itself"
+)]
 pub struct OpenQuote(pub String);
 
 /// Where a character stands while a line is read from the left.

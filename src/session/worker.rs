@@ -19,7 +19,9 @@ pub enum WorkerError {
     #[error("interrupted: the session is as it was")]
     Interrupted,
     /// It panicked: an error of this program.
-    #[error("internal error in the computation ({0}): the session is as it was; please report the scenario")]
+    #[error(
+        "internal error in the computation ({0}): the session is as it was; please report the scenario"
+    )]
     Panicked(String),
 }
 
@@ -68,7 +70,9 @@ pub fn run<T: Send + 'static>(
             let _ = sender.send(result);
         });
     if let Err(error) = spawned {
-        return Err(WorkerError::Panicked(format!("no thread could be started: {error}")));
+        return Err(WorkerError::Panicked(format!(
+            "no thread could be started: {error}"
+        )));
     }
     loop {
         match receiver.recv_timeout(LOOK) {
@@ -119,7 +123,9 @@ mod tests {
     #[test]
     fn a_job_that_does_not_listen_is_left_alone_in_time() {
         let start = Instant::now();
-        let result = run(&Impatient(start), |_| std::thread::sleep(Duration::from_secs(2)));
+        let result = run(&Impatient(start), |_| {
+            std::thread::sleep(Duration::from_secs(2))
+        });
         assert_eq!(result, Err(WorkerError::Interrupted));
         assert!(start.elapsed() < Duration::from_millis(200));
     }
