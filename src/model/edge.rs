@@ -39,7 +39,10 @@ impl Side {
     /// Unit normal of this edge, pointing out of the plate.
     pub fn outward_normal(self, plate: &Plate, nodes: &[Node]) -> [f64; 2] {
         let edge = self.nodes(plate);
-        let (from, to) = (nodes[edge[0]].position, nodes[edge[edge.len() - 1]].position);
+        let (from, to) = (
+            nodes[edge[0]].position,
+            nodes[edge[edge.len() - 1]].position,
+        );
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = along[0].hypot(along[1]);
         let along = [along[0] / length, along[1] / length];

@@ -46,7 +46,8 @@ pub fn list() -> Vec<(&'static str, String)> {
         .iter()
         .map(|(name, text)| {
             // A test loads every one of them, so the title is always there.
-            let title = load_text(name, text, None).map_or(String::new(), |scenario| scenario.title);
+            let title =
+                load_text(name, text, None).map_or(String::new(), |scenario| scenario.title);
             (*name, title)
         })
         .collect()

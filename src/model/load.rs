@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::decode;
 use super::embedded;
-use super::problem::{Problem, Problems};
 use super::locate::position;
+use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
 
 /// Reads and checks a scenario file; the scenario's name is the path as given.

@@ -92,11 +92,9 @@ impl<'t> Document<'t> {
         while value.start() != offset {
             match value {
                 Value::Object(object) => {
-                    let Some(property) = object
-                        .properties
-                        .iter()
-                        .find(|property| (property.range.start..property.range.end).contains(&offset))
-                    else {
+                    let Some(property) = object.properties.iter().find(|property| {
+                        (property.range.start..property.range.end).contains(&offset)
+                    }) else {
                         break;
                     };
                     push_key(&mut path, property.name.as_str());
@@ -226,7 +224,9 @@ fn advice(kind: &ParseErrorKind) -> &'static str {
         ParseErrorKind::NonFiniteNumbersNotAllowed => "every number of a scenario is finite",
         ParseErrorKind::SingleQuotedStringsNotAllowed
         | ParseErrorKind::ExpectedStringObjectProperty => "write keys and words in \"…\"",
-        ParseErrorKind::MultipleRootJsonValues => "a scenario is one JSON object and nothing after it",
+        ParseErrorKind::MultipleRootJsonValues => {
+            "a scenario is one JSON object and nothing after it"
+        }
         ParseErrorKind::UnterminatedArray => "close the list with `]`",
         ParseErrorKind::UnterminatedObject => "close the object with `}`",
         _ => SYNTAX,

@@ -29,14 +29,19 @@ pub fn refusal(bytes: f64) -> Option<String> {
     let needs = format!("needs about {} of memory", readable(bytes));
     Some(match memory {
         Some(memory) => format!("{needs}, this machine has {}", readable(memory)),
-        None => format!("{needs}, more than the {} allowed", readable(ASSUMED_MEMORY)),
+        None => format!(
+            "{needs}, more than the {} allowed",
+            readable(ASSUMED_MEMORY)
+        ),
     })
 }
 
 /// Bytes of physical memory, where the system tells.
 fn physical_memory() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemTotal:"))?;
     let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024.0)
 }
@@ -73,6 +78,10 @@ mod tests {
     #[test]
     fn only_what_does_not_fit_is_refused() {
         assert_eq!(refusal(for_nodes(1000.0)), None);
-        assert!(refusal(for_nodes(1e12)).unwrap().starts_with("needs about 2.7 PiB"));
+        assert!(
+            refusal(for_nodes(1e12))
+                .unwrap()
+                .starts_with("needs about 2.7 PiB")
+        );
     }
 }

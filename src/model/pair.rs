@@ -43,11 +43,7 @@ impl Law {
                 friction,
                 cohesion,
                 gap,
-            } => vec![
-                ("friction", friction),
-                ("cohesion", cohesion),
-                ("gap", gap),
-            ],
+            } => vec![("friction", friction), ("cohesion", cohesion), ("gap", gap)],
             Law::Frictionless { gap } => vec![("gap", gap)],
             Law::Bound { bound } => vec![("bound", bound)],
         }

@@ -234,7 +234,12 @@ fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Ve
         }
         let force = stiffness
             .iter()
-            .map(|row| row.iter().zip(&motion).map(|(r, z)| r * (z / size)).sum::<f64>())
+            .map(|row| {
+                row.iter()
+                    .zip(&motion)
+                    .map(|(r, z)| r * (z / size))
+                    .sum::<f64>()
+            })
             .fold(0.0_f64, |force, row| force.max(row.abs()));
         if force > KERNEL * scale {
             entry.problem(

@@ -168,7 +168,10 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
         Spot::Edge { plate, side } => (plate, side),
         Spot::Node(_) => {
             against.problem(
-                format!("expected an edge or \"ground\", found the node {}", against.found()),
+                format!(
+                    "expected an edge or \"ground\", found the node {}",
+                    against.found()
+                ),
                 "an edge meets an edge with as many nodes, or the ground",
             );
             return None;
@@ -250,7 +253,10 @@ fn partners<'d>(
 }
 
 fn name(cursor: Cursor<'_>) -> String {
-    cursor.string().map(|name| format!("\"{name}\"")).unwrap_or_default()
+    cursor
+        .string()
+        .map(|name| format!("\"{name}\""))
+        .unwrap_or_default()
 }
 
 fn refuse_foreign_numbers(fields: &Fields<'_>, law: LawKind) {
@@ -375,9 +381,9 @@ fn report_repeated_joints(builder: &Builder<'_>, sources: &[(Cursor<'_>, usize)]
             JointDirection::Tangential => pair.tangent(),
         };
         let earlier = taken.entry(key).or_default();
-        let parallel = earlier.iter().find(|(other, _)| {
-            (direction[0] * other[1] - direction[1] * other[0]).abs() < 1e-9
-        });
+        let parallel = earlier
+            .iter()
+            .find(|(other, _)| (direction[0] * other[1] - direction[1] * other[0]).abs() < 1e-9);
         let repeated = match (parallel, &earlier[..]) {
             (Some((_, first)), _) => Some(*first),
             (None, [_, (_, second), ..]) => Some(*second),

@@ -158,7 +158,11 @@ fn material_of<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<usize> 
 }
 
 /// Registers the `id` of an entry; marks it as broken if the rest of the entry is.
-fn id_of<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>, kind: &'static str) -> Option<&'d str> {
+fn id_of<'d>(
+    builder: &mut Builder<'d>,
+    fields: &Fields<'d>,
+    kind: &'static str,
+) -> Option<&'d str> {
     let cursor = fields.required("id")?;
     let id = cursor.string()?;
     builder.register(cursor.place(), id, kind);
@@ -404,8 +408,8 @@ fn membrane<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<(f64, usiz
         .and_then(|cursor| cursor.positive("thickness"));
     let material = material_of(builder, fields);
     let at = fields.required("plane");
-    let plane =
-        at.and_then(|cursor| cursor.choice(&[("strain", Plane::Strain), ("stress", Plane::Stress)]));
+    let plane = at
+        .and_then(|cursor| cursor.choice(&[("strain", Plane::Strain), ("stress", Plane::Stress)]));
     if let (Some(material), Some(Plane::Strain), Some(at)) = (material, plane, at)
         && builder.structure.materials[material].poisson_ratio == 0.5
     {
@@ -450,9 +454,7 @@ fn grid_lines(fields: &Fields<'_>) -> Option<[GridLines; 2]> {
     });
     let divisions = fields.required("divisions").and_then(|cursor| {
         let entries = cursor.list_of(2, "along the length and up")?;
-        let counts: Vec<Option<usize>> = entries
-            .map(|entry| entry.whole("divisions", 1))
-            .collect();
+        let counts: Vec<Option<usize>> = entries.map(|entry| entry.whole("divisions", 1)).collect();
         Some([counts[0]?, counts[1]?])
     });
     let (size, divisions) = (size?, divisions?);
@@ -569,7 +571,10 @@ fn refuse_too_large(
         return Some(());
     };
     largest.problem(
-        format!("the model is too large: with {} nodes it {refusal}", count(nodes)),
+        format!(
+            "the model is too large: with {} nodes it {refusal}",
+            count(nodes)
+        ),
         "lower the `divisions`, here first",
     );
     None

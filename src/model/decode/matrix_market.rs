@@ -14,7 +14,10 @@ pub struct MatrixError {
 
 /// Reads a square matrix of the given size, row by row.
 pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
-    let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .map(|(k, line)| (k + 1, line.trim()));
     let (number, banner) = lines.next().unwrap_or((1, ""));
     let header = Header::parse(banner).map_err(|message| {
         error(
@@ -51,7 +54,11 @@ pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
             })
             .collect()
     };
-    let expected = if header.coordinate { sizes[2] } else { places.len() };
+    let expected = if header.coordinate {
+        sizes[2]
+    } else {
+        places.len()
+    };
     let mut count = 0;
     let mut seen = vec![false; if header.coordinate { size * size } else { 0 }];
     for (number, line) in lines {
@@ -107,7 +114,11 @@ impl Header {
         let coordinate = match layout {
             "coordinate" => true,
             "array" => false,
-            other => return Err(format!("unknown layout `{other}`, expected array or coordinate")),
+            other => {
+                return Err(format!(
+                    "unknown layout `{other}`, expected array or coordinate"
+                ));
+            }
         };
         if !matches!(field, "real" | "integer" | "double") {
             return Err(format!("entries are `{field}`, expected real or integer"));
@@ -116,7 +127,9 @@ impl Header {
             "symmetric" => true,
             "general" => false,
             other => {
-                return Err(format!("the matrix is `{other}`, expected general or symmetric"));
+                return Err(format!(
+                    "the matrix is `{other}`, expected general or symmetric"
+                ));
             }
         };
         Ok(Header {
@@ -162,7 +175,13 @@ fn real(number: usize, word: &str) -> Result<f64, MatrixError> {
     word.parse::<f64>()
         .ok()
         .filter(|value| value.abs() <= 1e150)
-        .ok_or_else(|| error(number, format!("expected a finite number, found `{}`", shortened(word)), ""))
+        .ok_or_else(|| {
+            error(
+                number,
+                format!("expected a finite number, found `{}`", shortened(word)),
+                "",
+            )
+        })
 }
 
 fn words<'l, T: TryFromWord<'l>>(
@@ -172,7 +191,10 @@ fn words<'l, T: TryFromWord<'l>>(
 ) -> Result<Vec<T>, MatrixError> {
     let found: Vec<&str> = line.split_whitespace().collect();
     if found.len() != count {
-        let message = format!("expected {count} numbers on this line, found {}", found.len());
+        let message = format!(
+            "expected {count} numbers on this line, found {}",
+            found.len()
+        );
         return Err(error(number, message, ""));
     }
     found
@@ -243,10 +265,18 @@ mod tests {
         let banner = "%%MatrixMarket matrix coordinate real symmetric\n";
         for (text, line, part) in [
             ("".to_string(), 1, "not a Matrix Market file"),
-            ("%%MatrixMarket matrix array complex general\n".into(), 1, "complex"),
+            (
+                "%%MatrixMarket matrix array complex general\n".into(),
+                1,
+                "complex",
+            ),
             (banner.to_string(), 1, "sizes"),
             (format!("{banner}2 2\n"), 2, "expected 3 numbers"),
-            (format!("{banner}999999999 999999999 1\n"), 2, "999999999 × 999999999"),
+            (
+                format!("{banner}999999999 999999999 1\n"),
+                2,
+                "999999999 × 999999999",
+            ),
             (format!("{banner}2 2 1\n3 1 1.0\n"), 3, "`3`"),
             (format!("{banner}2 2 1\n1 2 1.0\n"), 3, "above the diagonal"),
             (format!("{banner}2 2 1\n1 1 nan\n"), 3, "finite"),

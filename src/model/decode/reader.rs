@@ -95,8 +95,7 @@ pub struct Place<'d> {
 impl Place<'_> {
     /// Reports a problem at this place.
     pub fn problem(self, message: impl Into<String>, help: impl Into<String>) {
-        self.findings
-            .add(self.offset, message.into(), help.into());
+        self.findings.add(self.offset, message.into(), help.into());
     }
 }
 
@@ -238,7 +237,10 @@ impl<'d> Cursor<'d> {
         }
         if value.abs() > LARGEST {
             self.problem(
-                format!("the number {} is too large to compute with", shortened(literal)),
+                format!(
+                    "the number {} is too large to compute with",
+                    shortened(literal)
+                ),
                 "numbers go up to 1e150: choose other units",
             );
             return None;
@@ -247,7 +249,12 @@ impl<'d> Cursor<'d> {
     }
 
     /// A finite number that passes `is_right`; `expected` completes "… must be".
-    pub fn number_that(self, what: &str, expected: &str, is_right: impl Fn(f64) -> bool) -> Option<f64> {
+    pub fn number_that(
+        self,
+        what: &str,
+        expected: &str,
+        is_right: impl Fn(f64) -> bool,
+    ) -> Option<f64> {
         let value = self.number()?;
         if is_right(value) {
             return Some(value);
@@ -272,7 +279,10 @@ impl<'d> Cursor<'d> {
             return Some(value as usize);
         }
         self.problem(
-            format!("{what} must be a whole number from {least}, found {}", self.found()),
+            format!(
+                "{what} must be a whole number from {least}, found {}",
+                self.found()
+            ),
             "",
         );
         None
@@ -346,7 +356,11 @@ impl<'d> Cursor<'d> {
     }
 
     /// The entries of a list that must have `count` of them; `what` says why.
-    pub fn list_of(self, count: usize, what: &str) -> Option<impl ExactSizeIterator<Item = Cursor<'d>>> {
+    pub fn list_of(
+        self,
+        count: usize,
+        what: &str,
+    ) -> Option<impl ExactSizeIterator<Item = Cursor<'d>>> {
         let entries = self.list()?;
         if entries.len() != count {
             self.problem(
@@ -416,7 +430,10 @@ impl<'d> Cursor<'d> {
             };
             if seen.insert(entry.name(), ()).is_some() {
                 entry.key_problem(
-                    format!("the key {} appears twice in this object", quoted(entry.name())),
+                    format!(
+                        "the key {} appears twice in this object",
+                        quoted(entry.name())
+                    ),
                     "remove or rename one of the two",
                 );
             } else {
@@ -502,7 +519,10 @@ impl<'d> Fields<'d> {
 
     /// The entry of a key, if the key is there.
     pub fn entry(&self, key: &str) -> Option<Entry<'d>> {
-        self.entries.iter().find(|entry| entry.name() == key).copied()
+        self.entries
+            .iter()
+            .find(|entry| entry.name() == key)
+            .copied()
     }
 
     /// The value of a key, if the key is there.

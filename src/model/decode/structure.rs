@@ -207,7 +207,10 @@ impl<'d> Builder<'d> {
             let help = match divisions {
                 1 => format!("the bar \"{id}\" is not divided: give it `divisions`"),
                 2 => format!("its one inner node is \"{id}/1\""),
-                _ => format!("its inner nodes are \"{id}/1\" to \"{id}/{}\"", divisions - 1),
+                _ => format!(
+                    "its inner nodes are \"{id}/1\" to \"{id}/{}\"",
+                    divisions - 1
+                ),
             };
             cursor.problem(
                 format!("the bar \"{id}\" has no node {}", quoted(name)),
@@ -301,7 +304,9 @@ impl<'d> Builder<'d> {
         let structure = &self.structure;
         if structure.elements.is_empty() && structure.springs.is_empty() {
             let message = "the structure has no elements: expected bars, plates, quads or springs";
-            fields.cursor().problem(message, "add what carries the load");
+            fields
+                .cursor()
+                .problem(message, "add what carries the load");
             return;
         }
         let mut touched = vec![false; structure.nodes.len()];

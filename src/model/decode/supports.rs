@@ -92,9 +92,7 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
         }
     };
     let components = match (fields.optional("fixed"), &nodes) {
-        (Some(fixed), nodes) => {
-            components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "tied")
-        }
+        (Some(fixed), nodes) => components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "tied"),
         (None, _) => Some(vec![Component::X, Component::Y]),
     };
     Some(Tie {
@@ -110,7 +108,10 @@ fn tied_nodes<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<usize
         match builder.node(entry) {
             Some(node) if nodes.contains(&node) => {
                 entry.problem(
-                    format!("the node \"{}\" is in this tie twice", builder.node_id(node)),
+                    format!(
+                        "the node \"{}\" is in this tie twice",
+                        builder.node_id(node)
+                    ),
                     "name each node once",
                 );
                 is_right = false;
@@ -140,9 +141,9 @@ fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Support>
         .required("at")
         .and_then(|at| builder.spot(at))
         .map(|spot| builder.spot_nodes(spot));
-    let components = fields.required("fixed").and_then(|fixed| {
-        components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed")
-    })?;
+    let components = fields
+        .required("fixed")
+        .and_then(|fixed| components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed"))?;
     let supports = nodes?.into_iter().flat_map(|node| {
         let hold = move |&component: &Component| Support { node, component };
         components.iter().map(hold).collect::<Vec<_>>()

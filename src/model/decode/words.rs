@@ -5,7 +5,14 @@ pub fn quoted(text: &str) -> String {
     const LONGEST: usize = 40;
     let short: String = text.chars().take(LONGEST).collect();
     let dots = if short.len() < text.len() { "…" } else { "" };
-    format!("\"{}{dots}\"", short.escape_debug().to_string().replace("\\'", "'").replace("\\\"", "\""))
+    format!(
+        "\"{}{dots}\"",
+        short
+            .escape_debug()
+            .to_string()
+            .replace("\\'", "'")
+            .replace("\\\"", "\"")
+    )
 }
 
 /// `a, b or c`; at most ten, then how many more.
@@ -61,5 +68,4 @@ pub fn is_id(text: &str) -> bool {
 }
 
 /// What [`is_id`] asks for.
-pub const ID_RULE: &str =
-    "ids and names are letters, digits, `_` and `-`, starting with a letter";
+pub const ID_RULE: &str = "ids and names are letters, digits, `_` and `-`, starting with a letter";
