@@ -24,7 +24,7 @@ use std::sync::Arc;
 use serde_json::json;
 
 use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState};
-use crate::answer::solve::{self, Prepared, Solved};
+use crate::solve::{self, PrepareError, Prepared, Solved};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
@@ -46,7 +46,7 @@ pub enum Next {
 }
 
 /// What the user has chosen: all that `undo` brings back.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Setup {
     scenario: Arc<Scenario>,
     /// The factorization and R of the scenario; kept for every change of values and rules.
@@ -56,7 +56,7 @@ struct Setup {
 }
 
 /// A change that can be taken back.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Change {
     /// The command, as typed.
     command: String,
@@ -65,7 +65,6 @@ struct Change {
 }
 
 /// A scenario that is being worked on.
-#[derive(Debug)]
 pub struct Session {
     now: Setup,
     solved: Option<Arc<Solved>>,
@@ -383,12 +382,9 @@ impl Setup {
         let (prepared, solved) = worker::run(watch, move |watch| {
             let prepared = match prepared {
                 Some(prepared) => prepared,
-                None => Arc::new(solve::prepare(&scenario, watch).map_err(|error| {
-                    if error.is_interrupted() {
-                        CommandError::Interrupted
-                    } else {
-                        CommandError::Solve(error.to_string())
-                    }
+                None => Arc::new(solve::prepare(&scenario, watch).map_err(|error| match error {
+                    PrepareError::Problems(problems) => CommandError::Scenario(problems),
+                    PrepareError::Interrupted => CommandError::Interrupted,
                 })?),
             };
             let solved = prepared

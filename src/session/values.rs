@@ -4,8 +4,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::model::pair::Law;
-use crate::model::parameter::{Number, ParameterValues};
+use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, TieBreak, UnknownChoice};
 use crate::model::scenario::{Scenario, Source};
 
@@ -42,26 +41,9 @@ pub enum SetError {
         /// What was written.
         text: String,
     },
-    /// Infinity or not a number.
-    #[error("{name} would become {value}, which is no finite number")]
-    NotFinite {
-        /// The parameter.
-        name: String,
-        /// The result.
-        value: String,
-    },
-    /// A quantity that has to be ≥ 0.
-    #[error("{name} is {what} of pair {pair} and must not be negative: {value} was refused")]
-    Negative {
-        /// The parameter.
-        name: String,
-        /// friction coefficient, cohesion …
-        what: &'static str,
-        /// A pair that uses it.
-        pair: String,
-        /// The value.
-        value: String,
-    },
+    /// A value that the scenario cannot have.
+    #[error("{0}")]
+    Value(String),
     /// An unknown rule word.
     #[error(transparent)]
     Choice(#[from] UnknownChoice),
@@ -133,7 +115,9 @@ pub fn read(
                 name: name.to_owned(),
                 text: rest.to_owned(),
             })?;
-            check(scenario, name, value)?;
+            if let Some(refusal) = scenario.refusal(name, value) {
+                return Err(SetError::Value(refusal));
+            }
             Ok(Setting::Parameter(name.to_owned(), value))
         }
     }
@@ -209,63 +193,6 @@ pub fn number(text: &str) -> Option<f64> {
         .chars()
         .all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
     text.parse().ok().filter(|_| plain)
-}
-
-/// What the scenario asks of the value of a parameter: finite, and ≥ 0 where it is a friction coefficient,
-/// cohesion, gap or bound.
-///
-/// # Errors
-/// [`SetError::NotFinite`], [`SetError::Negative`].
-pub fn check(scenario: &Scenario, name: &str, value: f64) -> Result<(), SetError> {
-    if !value.is_finite() {
-        return Err(SetError::NotFinite {
-            name: name.to_owned(),
-            value: value.to_string(),
-        });
-    }
-    if value >= 0.0 {
-        return Ok(());
-    }
-    let refuse = |what, pair: &str| SetError::Negative {
-        name: name.to_owned(),
-        what,
-        pair: pair.to_owned(),
-        value: value.to_string(),
-    };
-    let laws: Vec<(&str, &Law)> = match &scenario.source {
-        Source::Structure(structure) => structure
-            .pairs
-            .iter()
-            .map(|pair| (pair.id.as_str(), &pair.law))
-            .collect(),
-        Source::ContactSystem(system) => system
-            .pairs
-            .iter()
-            .map(String::as_str)
-            .zip(&system.laws)
-            .collect(),
-        Source::Lcp(_) => Vec::new(),
-    };
-    let is = |number: &Number| number.parameter() == Some(name);
-    for (pair, law) in laws {
-        let places: [(&Number, &'static str); 3] = match law {
-            Law::Coulomb {
-                friction,
-                cohesion,
-                gap,
-            } => [
-                (friction, "the friction coefficient"),
-                (cohesion, "the cohesion"),
-                (gap, "the gap"),
-            ],
-            Law::Frictionless { gap } => [(gap, "the gap"); 3],
-            Law::Bound { bound } => [(bound, "the friction bound"); 3],
-        };
-        if let Some((_, what)) = places.into_iter().find(|(number, _)| is(number)) {
-            return Err(refuse(what, pair));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

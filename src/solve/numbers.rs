@@ -1,0 +1,45 @@
+//! Parameter values → the numbers of the contact laws and the load.
+
+use nalgebra::DVector;
+
+use super::prepared::Prepared;
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::model::pair::Law;
+use crate::model::parameter::ParameterValues;
+
+/// The factor of every load case.
+pub fn factors(prepared: &Prepared, values: &ParameterValues) -> Vec<f64> {
+    prepared.cases.iter().map(|(_, factor)| factor.value(values)).collect()
+}
+
+/// The numbers of the laws and Σ factor·RF.
+pub fn contact_numbers(
+    system: &ContactSystem,
+    factors: &[f64],
+    values: &ParameterValues,
+) -> ContactNumbers {
+    let m = system.pairs.len();
+    let mut numbers = ContactNumbers {
+        friction: vec![0.0; m],
+        cohesion: vec![0.0; m],
+        gap: vec![0.0; m],
+        bound: vec![0.0; m],
+        load: DVector::zeros(system.joint_count()),
+    };
+    for (i, pair) in system.pairs.iter().enumerate() {
+        match &pair.law {
+            Law::Coulomb { friction, cohesion, gap } => {
+                numbers.friction[i] = friction.value(values);
+                numbers.cohesion[i] = cohesion.value(values);
+                numbers.gap[i] = gap.value(values);
+            }
+            Law::Frictionless { gap } => numbers.gap[i] = gap.value(values),
+            Law::Bound { bound } => numbers.bound[i] = bound.value(values),
+        }
+    }
+    for (load, factor) in system.loads.iter().zip(factors) {
+        numbers.load += *factor * &load.vector;
+    }
+    numbers
+}

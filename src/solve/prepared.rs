@@ -1,0 +1,243 @@
+//! What depends on the geometry alone: factorization, R, RF per load case. Computed once per scenario and reused
+//! for every change of f, c, gap and load factors.
+
+use std::time::Instant;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::contact::given::{GivenError, ReleasedTangentials, given_system};
+use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
+use crate::fem::error::MainSystemError;
+use crate::fem::main_system::MainSystem;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::problem::Scale;
+use crate::model::pair::{JointDirection, joints};
+use crate::model::parameter::Number;
+use crate::model::problem::{LISTED, Problems};
+use crate::model::scenario::{GivenLcp, Scenario, Source};
+use crate::model::structure::Structure;
+use crate::watch::Watch;
+
+/// What kind of thing is solved.
+pub enum Geometry {
+    /// A structure with its main system.
+    Structure {
+        /// Condensed to its joints.
+        system: ContactSystem,
+        /// For displacements, members, reactions and the check of equilibrium.
+        main: Box<MainSystem>,
+        /// The structure itself.
+        structure: Structure,
+    },
+    /// A contact system read from a file.
+    Contact {
+        /// Condensed to its joints.
+        system: ContactSystem,
+        /// Gives z_τ of the frictionless pairs.
+        released: ReleasedTangentials,
+    },
+    /// A bare LCP; q is filled in at solve time.
+    Plain {
+        /// M, d and scale.
+        lcp: MirroredLcp,
+        /// q, each entry may be a parameter.
+        q: Vec<Number>,
+        /// Names of the rows.
+        names: Vec<String>,
+        /// Whether the covering vector was given.
+        covering_given: bool,
+    },
+}
+
+/// A scenario made ready to be solved for any values of its parameters.
+pub struct Prepared {
+    /// What is solved.
+    pub geometry: Geometry,
+    /// Name and factor of each load case.
+    pub cases: Vec<(String, Number)>,
+    /// Seconds for the factorization of the main system.
+    pub factor_seconds: f64,
+    /// Seconds for R and RF.
+    pub condense_seconds: f64,
+    /// Seconds for everything here.
+    pub seconds: f64,
+}
+
+/// Why a scenario cannot be prepared.
+#[derive(Debug, thiserror::Error)]
+pub enum PrepareError {
+    /// The scenario is at fault; says where.
+    #[error("{0}")]
+    Problems(Problems),
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl PrepareError {
+    /// Whether the work was stopped from outside.
+    pub fn is_interrupted(&self) -> bool {
+        matches!(self, PrepareError::Interrupted)
+    }
+}
+
+/// Prepares a scenario.
+///
+/// # Errors
+/// Dependent joints, a mechanism in the main system, a model too large for memory, an unusable given matrix: each
+/// with its place in the file.
+pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
+    let start = Instant::now();
+    let mut prepared = match &scenario.source {
+        Source::Structure(structure) => prepare_structure(scenario, structure, watch)?,
+        Source::ContactSystem(given) => {
+            let (system, released) = given_system(given).map_err(|error| {
+                let path = match &error {
+                    GivenError::Indefinite { .. } => "contact_system.stiffness".to_owned(),
+                    GivenError::NoKernel { index, .. } => format!("contact_system.kernel[{index}]"),
+                    GivenError::Unheld { case, .. } => format!("contact_system.loads.{case}"),
+                };
+                PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
+            })?;
+            Prepared {
+                geometry: Geometry::Contact { system, released },
+                cases: given.loads.iter().map(|load| (load.name.clone(), load.factor.clone())).collect(),
+                factor_seconds: 0.0,
+                condense_seconds: 0.0,
+                seconds: 0.0,
+            }
+        }
+        Source::Lcp(given) => prepare_plain(given),
+    };
+    prepared.seconds = start.elapsed().as_secs_f64();
+    Ok(prepared)
+}
+
+fn prepare_plain(given: &GivenLcp) -> Prepared {
+    let n = given.q.len();
+    let lcp = MirroredLcp {
+        matrix: DMatrix::from_fn(n, n, |i, j| given.matrix[i][j]),
+        q: DVector::zeros(n),
+        covering: given
+            .covering
+            .as_ref()
+            .map_or_else(|| DVector::repeat(n, 1.0), |d| DVector::from_column_slice(d)),
+        whole: (0..n).collect(),
+        mirrors: vec![None; n],
+        scale: Scale::plain(&given.matrix),
+        whole_size: n,
+    };
+    Prepared {
+        geometry: Geometry::Plain {
+            lcp,
+            q: given.q.clone(),
+            names: given.names.clone(),
+            covering_given: given.covering.is_some(),
+        },
+        cases: Vec::new(),
+        factor_seconds: 0.0,
+        condense_seconds: 0.0,
+        seconds: 0.0,
+    }
+}
+
+/// Gives an error of the main system its place in the file.
+fn main_system_problem(
+    scenario: &Scenario,
+    structure: &Structure,
+    error: MainSystemError,
+) -> PrepareError {
+    let places = &scenario.places;
+    let node = |node: usize| places.nodes.get(node).map_or(String::new(), ToString::to_string);
+    let path = match &error {
+        MainSystemError::Interrupted => return PrepareError::Interrupted,
+        MainSystemError::DependentJoints(joints) => {
+            let mut all: Option<Problems> = None;
+            for joint in joints {
+                let path = places.pairs.get(joint.pair).map_or("contacts", |path| path);
+                let one = scenario.problem_at(path, joint.to_string(), "");
+                match &mut all {
+                    None => all = Some(one),
+                    Some(all) if all.problems.len() < LISTED => all.problems.extend(one.problems),
+                    Some(all) => all.more += 1,
+                }
+            }
+            return PrepareError::Problems(
+                all.unwrap_or_else(|| scenario.problem_at("contacts", error.to_string(), "")),
+            );
+        }
+        MainSystemError::Mechanism { node: free, .. } => node(*free),
+        MainSystemError::MomentWithoutRotation { case, .. } => format!("loads.{case}"),
+        MainSystemError::Element { nodes, .. } => structure
+            .nodes
+            .iter()
+            .position(|candidate| Some(&candidate.id) == nodes.first())
+            .map_or(String::new(), node),
+        _ => String::new(),
+    };
+    PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
+}
+
+fn prepare_structure(
+    scenario: &Scenario,
+    structure: &Structure,
+    watch: &dyn Watch,
+) -> Result<Prepared, PrepareError> {
+    let joints = joints(&structure.pairs);
+    let main = MainSystem::new(structure, &joints, watch)
+        .map_err(|error| main_system_problem(scenario, structure, error))?;
+    let tangential = |pair: usize| {
+        joints
+            .iter()
+            .position(|joint| joint.pair == pair && joint.direction == JointDirection::Tangential)
+    };
+    let pairs = structure
+        .pairs
+        .iter()
+        .enumerate()
+        .map(|(i, pair)| ContactPair {
+            id: pair.id.clone(),
+            law: pair.law.clone(),
+            position: Some(structure.nodes[pair.node].position),
+            tangential: tangential(i),
+        })
+        .collect();
+    let loads = structure
+        .load_cases
+        .iter()
+        .zip(main.loads())
+        .map(|(case, vector)| JointLoad { name: case.name.clone(), vector: vector.clone() })
+        .collect();
+    let system = ContactSystem {
+        pairs,
+        stiffness: main.stiffness().clone(),
+        loads,
+        kernel: main.kernel().clone(),
+    };
+    let seconds = main.timings();
+    Ok(Prepared {
+        geometry: Geometry::Structure {
+            system,
+            main: Box::new(main),
+            structure: structure.clone(),
+        },
+        cases: structure
+            .load_cases
+            .iter()
+            .map(|case| (case.name.clone(), case.factor.clone()))
+            .collect(),
+        factor_seconds: seconds.factor,
+        condense_seconds: seconds.condense,
+        seconds: 0.0,
+    })
+}
+
+impl Prepared {
+    /// The contact system, unless this is a bare LCP.
+    pub fn system(&self) -> Option<&ContactSystem> {
+        match &self.geometry {
+            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => Some(system),
+            Geometry::Plain { .. } => None,
+        }
+    }
+}

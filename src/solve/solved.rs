@@ -1,0 +1,453 @@
+//! One solved state, and every working scheme on the way to it.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use nalgebra::DVector;
+
+use super::attempt::{kind, run_scheme};
+use super::numbers::{contact_numbers, factors};
+use super::prepared::{Geometry, Prepared};
+use crate::answer::check::{check_contact, check_plain};
+use crate::answer::pairs::{JointState, joint_state, pair_states};
+use crate::answer::record::{
+    Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState,
+    PlainSolution, Reaction, Size, Timings,
+};
+use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::explain::{ray, sentence};
+use crate::fem::main_system::Displacements;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::{Outcome, Point, Run};
+use crate::lcp::ratio_test::TieRule;
+use crate::lcp::trace::Pivot;
+use crate::lcp::vertex::{Basis, vertex};
+use crate::model::pair::Law;
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::{Covering, Engine, Rules, TieBreak};
+use crate::model::scenario::Scenario;
+use crate::watch::Watch;
+
+/// Why nothing was solved; the session stays as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// The covering does not fit the numbers.
+    #[error(transparent)]
+    Covering(#[from] CoveringError),
+    /// A covering chosen for a bare LCP.
+    #[error("a bare LCP has its own covering vector (`covering` in the file, ones otherwise): `covering {0}` is for contact")]
+    CoveringOfPlain(Covering),
+    /// A law got a value it cannot have.
+    #[error("{0}")]
+    Value(String),
+    /// An engine that is not built.
+    #[error("engine {0} is not built yet: use engine scheme")]
+    Engine(Engine),
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl SolveError {
+    /// Whether the work was stopped from outside.
+    pub fn is_interrupted(&self) -> bool {
+        matches!(self, SolveError::Interrupted)
+    }
+}
+
+/// The numbers behind an answer: what is needed to look at any pivot of its run.
+#[derive(Clone, Debug)]
+pub enum Trace {
+    /// Of a contact problem.
+    Contact {
+        /// The LCP.
+        contact: ContactLcp,
+        /// Its numbers.
+        numbers: ContactNumbers,
+        /// Factor of each load case.
+        factors: Vec<f64>,
+        /// The pivots.
+        pivots: Vec<Pivot>,
+        /// The last vertex, dimensionless.
+        last: Point,
+    },
+    /// Of a bare LCP.
+    Plain {
+        /// The LCP.
+        lcp: Arc<MirroredLcp>,
+        /// The pivots.
+        pivots: Vec<Pivot>,
+    },
+}
+
+/// An answer with its trace.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// The answer as reported.
+    pub answer: Answer,
+    /// How it came about.
+    pub trace: Trace,
+}
+
+impl Prepared {
+    /// Solves for the given parameter values under the given rules.
+    ///
+    /// # Errors
+    /// See [`SolveError`]. A run that ends in a ray or breaks down is no error: the answer says so.
+    pub fn solve(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        for (name, value) in values {
+            if let Some(refusal) = scenario.refusal(name, *value) {
+                return Err(SolveError::Value(refusal));
+            }
+        }
+        if rules.engine != Engine::Scheme {
+            return Err(SolveError::Engine(rules.engine));
+        }
+        let start = Instant::now();
+        let mut solved = match &self.geometry {
+            Geometry::Plain { lcp, q, names, covering_given } => {
+                if rules.covering != Covering::default() {
+                    return Err(SolveError::CoveringOfPlain(rules.covering));
+                }
+                let mut lcp = lcp.clone();
+                for (entry, number) in lcp.q.iter_mut().zip(q) {
+                    *entry = number.value(values);
+                }
+                solve_plain(Arc::new(lcp), names, *covering_given, rules, watch)?
+            }
+            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
+                self.solve_contact(system, values, rules, watch)?
+            }
+        };
+        let timings = &mut solved.answer.timings;
+        timings.factor = self.factor_seconds;
+        timings.condense = self.condense_seconds;
+        timings.total = self.seconds + start.elapsed().as_secs_f64();
+        Ok(solved)
+    }
+
+    fn solve_contact(
+        &self,
+        system: &ContactSystem,
+        values: &ParameterValues,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        let factors = factors(self, values);
+        let numbers = contact_numbers(system, &factors, values);
+        let start = Instant::now();
+        let contact = contact_lcp(system, &numbers, rules.covering)?;
+        let run = run_scheme(&contact.lcp, contact.tie_rule(rules.tie_break), watch);
+        if run.outcome == Outcome::Interrupted {
+            return Err(SolveError::Interrupted);
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        let words = [rules.covering.to_string(), rules.tie_break.to_string(), rules.engine.to_string()];
+        let mut answer = empty_answer(&run, words, self.size(system, &contact));
+        answer.timings.lemke = seconds;
+        answer.p = run.point.p * contact.force_unit;
+        answer.pivots = sentence::pivot_records(&run.pivots, &contact, system);
+
+        let state = joint_state(system, &numbers, &contact, &run.point);
+        answer.pairs = pair_states(system, &numbers, &contact, &state);
+        self.add_released_slips(&mut answer.pairs, &numbers, &factors, &state);
+        if let Outcome::Ray(direction) = &run.outcome {
+            answer.ray = Some(ray::report(system, &numbers, &contact, direction, answer.p));
+        }
+        if answer.is_answer() {
+            self.complete(&mut answer, system, &numbers, &factors, &state);
+        }
+        let trace = Trace::Contact {
+            contact,
+            numbers,
+            factors,
+            pivots: run.pivots,
+            last: run.point,
+        };
+        Ok(Solved { answer, trace })
+    }
+
+    fn size(&self, system: &ContactSystem, contact: &ContactLcp) -> Size {
+        let unknowns = match &self.geometry {
+            Geometry::Structure { main, .. } => Some(main.size()),
+            _ => None,
+        };
+        Size {
+            unknowns: unknowns.map(|size| size.all),
+            free: unknowns.map(|size| size.free),
+            pairs: system.pairs.len(),
+            lcp: contact.rows.len(),
+        }
+    }
+
+    /// Displacements, members, reactions and the fresh check of an answer.
+    fn complete(
+        &self,
+        answer: &mut Answer,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        state: &JointState,
+    ) {
+        let mut equilibrium = None;
+        if let Geometry::Structure { main, structure, .. } = &self.geometry {
+            let u = main.displacements(factors, &dislocation(numbers, state));
+            equilibrium = Some(main.equilibrium_residual(structure, &u, &state.force, factors));
+            answer.members = Some(
+                main.member_forces(structure, &u, factors)
+                    .into_iter()
+                    .map(|member| MemberForces {
+                        bar: structure.bars[member.bar].id.clone(),
+                        element: member.element,
+                        start: end_forces(member.start),
+                        end: end_forces(member.end),
+                    })
+                    .collect(),
+            );
+            answer.reactions = Some(
+                main.reactions(structure, &u, &state.force, factors)
+                    .into_iter()
+                    .map(|reaction| Reaction {
+                        node: structure.nodes[reaction.node].id.clone(),
+                        fx: reaction.force[0],
+                        fy: reaction.force[1],
+                        m: reaction.moment,
+                    })
+                    .collect(),
+            );
+            answer.displacements = Some(named(structure, &u));
+        }
+        answer.check = check_contact(system, numbers, state, equilibrium);
+        if !answer.check.passed {
+            fail_check(answer);
+        }
+        for pair in &answer.pairs {
+            if pair.held.is_some() {
+                answer.notes.push(format!(
+                    "pair {} is open and still held by its cohesion: cohesion acts across the gap in this law",
+                    pair.id
+                ));
+            }
+        }
+    }
+
+    /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
+    /// given contact system.
+    fn add_released_slips(
+        &self,
+        pairs: &mut [PairState],
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        state: &JointState,
+    ) {
+        match &self.geometry {
+            Geometry::Structure { main, structure, .. } => {
+                if !structure.pairs.iter().any(|pair| matches!(pair.law, Law::Frictionless { .. })) {
+                    return;
+                }
+                let u = main.displacements(factors, &dislocation(numbers, state));
+                for (pair, shown) in structure.pairs.iter().zip(pairs) {
+                    if matches!(pair.law, Law::Frictionless { .. }) {
+                        let t = pair.tangent();
+                        let along = |node: usize| t[0] * u.0[node][0] + t[1] * u.0[node][1];
+                        shown.z_t = along(pair.node) - pair.against.map_or(0.0, along);
+                    }
+                }
+            }
+            Geometry::Contact { released, .. } => {
+                let slips = released.displacements(&dislocation(numbers, state), factors);
+                for (&pair, slip) in released.pairs.iter().zip(slips.iter()) {
+                    pairs[pair].z_t = *slip;
+                }
+            }
+            Geometry::Plain { .. } => {}
+        }
+    }
+}
+
+/// The whole mutual displacement of the joints: z with the gaps taken off.
+fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
+    let mut z = state.z.clone();
+    for (i, gap) in numbers.gap.iter().enumerate() {
+        z[i] -= gap;
+    }
+    z
+}
+
+fn end_forces(ends: crate::fem::recovery::EndForces) -> EndForces {
+    EndForces { n: ends.normal, q: ends.shear, m: ends.moment }
+}
+
+fn named(
+    structure: &crate::model::structure::Structure,
+    u: &Displacements,
+) -> Vec<NodeDisplacement> {
+    structure
+        .nodes
+        .iter()
+        .zip(&u.0)
+        .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
+        .collect()
+}
+
+fn fail_check(answer: &mut Answer) {
+    answer.outcome = OutcomeKind::CheckFailed;
+    answer.failure = Some(format!(
+        "the state found does not pass its check from R, RF and f (min w {:.1e}, min z {:.1e}, complementarity {:.1e}{})",
+        answer.check.min_w,
+        answer.check.min_z,
+        answer.check.complementarity,
+        answer.check.equilibrium.map_or(String::new(), |e| format!(", equilibrium {e:.1e}"))
+    ));
+    if let Some(last) = answer.attempts.last_mut() {
+        last.outcome = OutcomeKind::CheckFailed;
+    }
+}
+
+/// The parts of an answer that follow from the run alone.
+fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer {
+    let outcome = kind(&run.outcome);
+    let [covering, tie_break, engine] = words;
+    let failure = match &run.outcome {
+        Outcome::PivotLimit => {
+            Some(format!("the limit of {} pivots was reached", super::attempt::PIVOT_LIMIT))
+        }
+        Outcome::Cycle => Some(format!(
+            "the tie-break {tie_break} cycles: after {} pivots a working scheme came back",
+            run.pivots.len()
+        )),
+        Outcome::Breakdown(why) => Some(why.clone()),
+        _ => None,
+    };
+    Answer {
+        outcome,
+        marginal: run.outcome == Outcome::Normal { marginal: true },
+        ray: None,
+        p: run.point.p,
+        attempts: vec![Attempt {
+            covering: covering.clone(),
+            tie_break: tie_break.clone(),
+            engine: engine.clone(),
+            outcome,
+        }],
+        covering,
+        tie_break,
+        engine,
+        pivots: Vec::new(),
+        pairs: Vec::new(),
+        check: Check::default(),
+        displacements: None,
+        members: None,
+        reactions: None,
+        solution: None,
+        size,
+        timings: Timings::default(),
+        notes: Vec::new(),
+        failure,
+    }
+}
+
+fn solve_plain(
+    lcp: Arc<MirroredLcp>,
+    names: &[String],
+    covering_given: bool,
+    rules: Rules,
+    watch: &dyn Watch,
+) -> Result<Solved, SolveError> {
+    let rule = match rules.tie_break {
+        TieBreak::Lexicographic | TieBreak::Natural => TieRule::Lexicographic((0..lcp.size()).collect()),
+        TieBreak::FirstRow => TieRule::FirstRow,
+        TieBreak::Random(seed) => TieRule::Random(seed),
+    };
+    let start = Instant::now();
+    let run = run_scheme(&lcp, rule, watch);
+    if run.outcome == Outcome::Interrupted {
+        return Err(SolveError::Interrupted);
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    let covering = if covering_given { "given" } else { "ones" };
+    let words = [covering.to_owned(), rules.tie_break.to_string(), rules.engine.to_string()];
+    let size = Size { unknowns: None, free: None, pairs: 0, lcp: lcp.size() };
+    let mut answer = empty_answer(&run, words, size);
+    answer.timings.lemke = seconds;
+    answer.pivots = sentence::plain_records(&run.pivots, names);
+    if matches!(run.outcome, Outcome::Ray(_)) {
+        answer.ray = Some(ray::plain_report(run.point.p));
+    }
+    answer.solution =
+        Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
+    if answer.is_answer() {
+        answer.check = check_plain(&lcp, &run.point);
+        if !answer.check.passed {
+            fail_check(&mut answer);
+        }
+    }
+    Ok(Solved { answer, trace: Trace::Plain { lcp, pivots: run.pivots } })
+}
+
+impl Solved {
+    /// Number of pivots.
+    pub fn pivot_count(&self) -> usize {
+        match &self.trace {
+            Trace::Contact { pivots, .. } | Trace::Plain { pivots, .. } => pivots.len(),
+        }
+    }
+
+    /// p after pivot `step`, in the user's units; `None` beyond the last.
+    pub fn p_at(&self, step: usize) -> Option<f64> {
+        self.answer.pivots.get(step).map(|pivot| pivot.p)
+    }
+
+    /// The vertex after pivot `step` over the joints; `None` beyond the last and for a bare LCP.
+    fn state_at(&self, prepared: &Prepared, step: usize) -> Option<JointState> {
+        let Trace::Contact { contact, numbers, pivots, last, .. } = &self.trace else {
+            return None;
+        };
+        let system = prepared.system()?;
+        let point = if step + 1 == pivots.len() {
+            last.clone()
+        } else {
+            vertex(&contact.lcp, &Basis::after(pivots.get(..=step)?))?
+        };
+        Some(joint_state(system, numbers, contact, &point))
+    }
+
+    /// The pairs after pivot `step`: the working scheme on the way, under its p.
+    pub fn pairs_at(&self, prepared: &Prepared, step: usize) -> Option<Vec<PairState>> {
+        let Trace::Contact { contact, numbers, factors, .. } = &self.trace else { return None };
+        let state = self.state_at(prepared, step)?;
+        let mut pairs = pair_states(prepared.system()?, numbers, contact, &state);
+        prepared.add_released_slips(&mut pairs, numbers, factors, &state);
+        Some(pairs)
+    }
+
+    /// The displacements after pivot `step`; structures only.
+    pub fn displacements_at(
+        &self,
+        prepared: &Prepared,
+        step: usize,
+    ) -> Option<Vec<NodeDisplacement>> {
+        let (Trace::Contact { numbers, factors, .. }, Geometry::Structure { main, structure, .. }) =
+            (&self.trace, &prepared.geometry)
+        else {
+            return None;
+        };
+        let state = self.state_at(prepared, step)?;
+        Some(named(structure, &main.displacements(factors, &dislocation(numbers, &state))))
+    }
+
+    /// z and w of a bare LCP after pivot `step`.
+    pub fn plain_at(&self, step: usize) -> Option<PlainSolution> {
+        let Trace::Plain { lcp, pivots } = &self.trace else { return None };
+        let point = vertex(lcp, &Basis::after(pivots.get(..=step)?))?;
+        Some(PlainSolution { z: point.z, w: point.w })
+    }
+}
