@@ -1,6 +1,7 @@
 //! stickslip: what a structure with frictional contact really does.
 
 pub mod answer;
+pub mod cli;
 pub mod contact;
 pub mod explain;
 pub mod export;

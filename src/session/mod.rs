@@ -23,18 +23,20 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState};
-use crate::solve::{self, PrepareError, Prepared, Solved};
+use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState, PlainSolution};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
+use crate::solve::{self, PrepareError, Prepared, Solved};
 use crate::watch::Watch;
 
+pub use apply::write_scenarios;
 pub use error::CommandError;
 pub use output::{Format, Output};
 
 use journal::{Journal, LeftOver};
 use record::Recorder;
+use values::Setting;
 
 /// What comes after a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +97,34 @@ impl Session {
     /// # Errors
     /// A main system that cannot be factorized, rules that do not fit, an interruption.
     pub fn new(scenario: Scenario, watch: &dyn Watch) -> Result<Self, CommandError> {
+        Self::with_settings(scenario, &[], watch)
+    }
+
+    /// A session on a scenario, solved after `settings`, each the words after a `set`.
+    ///
+    /// # Errors
+    /// As [`Session::new`], and settings that `set` would refuse.
+    pub fn with_settings(
+        scenario: Scenario,
+        settings: &[Vec<String>],
+        watch: &dyn Watch,
+    ) -> Result<Self, CommandError> {
         let mut now = Setup::of(scenario);
+        for words in settings {
+            match values::read(words, &now.scenario, &now.values)? {
+                Setting::Parameter(name, value) => {
+                    now.values.insert(name, value);
+                }
+                Setting::Covering(covering) => now.rules.covering = covering,
+                Setting::TieBreak(tie_break) => now.rules.tie_break = tie_break,
+                Setting::Engine(engine) => now.rules.engine = engine,
+                Setting::Auto(_) => {
+                    return Err(CommandError::Refused(
+                        "`auto` is for a session: a single run is always solved".into(),
+                    ));
+                }
+            }
+        }
         let solved = now.solve(watch)?;
         let mut session = Session {
             now,
@@ -200,6 +229,15 @@ impl Session {
         match self.position.zip(self.now.prepared.as_ref()) {
             Some((step, prepared)) => solved.displacements_at(prepared, step),
             None => solved.answer.displacements.clone(),
+        }
+    }
+
+    /// z and w of a bare LCP at the pivot shown; `None` for contact problems.
+    pub fn solution(&self) -> Option<PlainSolution> {
+        let solved = self.solved.as_ref()?;
+        match self.position {
+            Some(step) => solved.plain_at(step),
+            None => solved.answer.solution.clone(),
         }
     }
 
@@ -382,10 +420,12 @@ impl Setup {
         let (prepared, solved) = worker::run(watch, move |watch| {
             let prepared = match prepared {
                 Some(prepared) => prepared,
-                None => Arc::new(solve::prepare(&scenario, watch).map_err(|error| match error {
-                    PrepareError::Problems(problems) => CommandError::Scenario(problems),
-                    PrepareError::Interrupted => CommandError::Interrupted,
-                })?),
+                None => Arc::new(solve::prepare(&scenario, watch).map_err(
+                    |error| match error {
+                        PrepareError::Problems(problems) => CommandError::Scenario(problems),
+                        PrepareError::Interrupted => CommandError::Interrupted,
+                    },
+                )?),
             };
             let solved = prepared
                 .solve(&scenario, &values, rules, watch)

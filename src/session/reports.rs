@@ -1,16 +1,17 @@
 //! Commands that show something and change nothing.
 
 use std::collections::HashMap;
+use std::io::{self, Write};
 use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::answer::record::{Answer, PairState, State};
+use crate::answer::record::{Answer, PairState, PlainSolution, State};
 use crate::export::{atomic, csv, json as json_export};
 use crate::model::scenario::Source;
 use crate::view;
 use crate::view::number::{short, with_unit};
-use crate::view::style::Role;
+use crate::view::style::{Role, Style};
 
 use super::command::{Export, did_you_mean};
 use super::{CommandError, Output, Session};
@@ -175,9 +176,9 @@ impl Session {
         words: &[String],
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        if let Some(solution) = &answer.solution {
-            return self.report_solution(&solution.z, &solution.w, io);
+        self.need_answer()?;
+        if let (Source::Lcp(_), Some(solution)) = (&self.now.scenario.source, self.solution()) {
+            return self.report_solution(&solution, io);
         }
         let (ids, key) = match words.iter().position(|word| word == "sort") {
             None => (words, None),
@@ -226,38 +227,55 @@ impl Session {
     /// z and w of a bare LCP, in the place of pairs.
     fn report_solution(
         &self,
-        z: &[f64],
-        w: &[f64],
+        solution: &PlainSolution,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let names: Vec<String> = match &self.now.scenario.source {
-            Source::Lcp(lcp) => lcp.names.clone(),
-            _ => (1..=z.len()).map(|i| i.to_string()).collect(),
-        };
         io.report(
-            || json!({"z": z, "w": w}),
-            |out, style| {
-                let wide = names
-                    .iter()
-                    .map(|name| name.chars().count())
-                    .max()
-                    .unwrap_or(0)
-                    .max(4);
-                let head = format!("{:<wide$} {:>14} {:>14}", "row", "z", "w");
-                writeln!(out, "{}", style.paint(Role::Header, &head))?;
-                for (name, (z, w)) in names.iter().zip(z.iter().zip(w)) {
-                    writeln!(
-                        out,
-                        "{:<wide$} {:>14} {:>14}",
-                        style.text(name),
-                        short(*z),
-                        short(*w)
-                    )?;
-                }
-                Ok(())
-            },
+            || json!(solution),
+            |out, style| self.write_solution(solution, out, style),
         )?;
         Ok(())
+    }
+
+    fn write_solution(
+        &self,
+        solution: &PlainSolution,
+        out: &mut dyn Write,
+        style: &Style,
+    ) -> io::Result<()> {
+        let names: Vec<String> = match &self.now.scenario.source {
+            Source::Lcp(lcp) => lcp.names.clone(),
+            _ => (1..=solution.z.len()).map(|i| i.to_string()).collect(),
+        };
+        let wide = names
+            .iter()
+            .map(|name| name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .max(4);
+        let head = format!("{:<wide$} {:>14} {:>14}", "row", "z", "w");
+        writeln!(out, "{}", style.paint(Role::Header, &head))?;
+        for (name, (z, w)) in names.iter().zip(solution.z.iter().zip(&solution.w)) {
+            writeln!(
+                out,
+                "{:<wide$} {:>14} {:>14}",
+                style.text(name),
+                short(*z),
+                short(*w)
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Writes the pairs at the pivot shown, or z and w of a bare LCP.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_pairs(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        match self.solution() {
+            Some(solution) => self.write_solution(&solution, out, style),
+            None => view::pairs::write(out, &self.pairs(), &self.now.scenario.units, style),
+        }
     }
 
     pub(super) fn report_displacements(
