@@ -103,11 +103,11 @@ pub fn pair_states(
                         f * normal + extra + drop_noise(d_t - f * d_n, d_t.max(f * d_n)) * state.p;
                     let raw = pair.tangential.map_or(0.0, |joint| state.force[joint]);
                     let x_t = if z_t > 0.0 {
-                        -bound
+                        0.0 - bound
                     } else if z_t < 0.0 || (raw - bound).abs() <= NOISE * largest {
                         bound
                     } else if (raw + bound).abs() <= NOISE * largest {
-                        -bound
+                        0.0 - bound
                     } else {
                         drop_noise(raw, largest)
                     };

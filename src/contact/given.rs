@@ -84,7 +84,7 @@ pub fn given_system(
     let read = |i: usize, j: usize| 0.5 * (given.stiffness[i][j] + given.stiffness[j][i]);
     let full = DMatrix::from_fn(2 * m, 2 * m, read);
     let largest_entry = full.amax();
-    let eigen = SymmetricEigen::new(full.clone());
+    let eigen = eigen(full.clone());
     let (smallest, largest) = eigen
         .eigenvalues
         .iter()
@@ -226,10 +226,21 @@ pub fn project(stiffness: &DMatrix<f64>, kernel: &DMatrix<f64>) -> DMatrix<f64> 
     0.5 * (&both + both.transpose())
 }
 
+/// Eigenvalues and eigenvectors; an empty matrix has none.
+fn eigen(matrix: DMatrix<f64>) -> SymmetricEigen<f64, nalgebra::Dyn> {
+    if matrix.is_empty() {
+        return SymmetricEigen {
+            eigenvalues: DVector::zeros(0),
+            eigenvectors: matrix,
+        };
+    }
+    SymmetricEigen::new(matrix)
+}
+
 /// Inverse on the range, and a basis of the null space.
 fn pseudo_inverse(matrix: &DMatrix<f64>, largest: f64) -> (DMatrix<f64>, DMatrix<f64>) {
     let n = matrix.nrows();
-    let eigen = SymmetricEigen::new(matrix.clone());
+    let eigen = eigen(matrix.clone());
     let mut inverse = DMatrix::zeros(n, n);
     let mut free = Vec::new();
     for k in 0..n {

@@ -25,8 +25,15 @@ pub fn run_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> R
             first_p = pivot.p_after;
         }
         if pivot.step.is_multiple_of(16) {
-            let left = if first_p > 0.0 { pivot.p_after / first_p } else { 0.0 };
-            watch.progress(&format!("Lemke, pivot {}", pivot.step), (1.0 - left).clamp(0.0, 1.0));
+            let left = if first_p > 0.0 {
+                pivot.p_after / first_p
+            } else {
+                0.0
+            };
+            watch.progress(
+                &format!("Lemke, pivot {}", pivot.step),
+                (1.0 - left).clamp(0.0, 1.0),
+            );
             if watch.stop() {
                 return ControlFlow::Break(());
             }

@@ -10,7 +10,11 @@ use crate::model::parameter::ParameterValues;
 
 /// The factor of every load case.
 pub fn factors(prepared: &Prepared, values: &ParameterValues) -> Vec<f64> {
-    prepared.cases.iter().map(|(_, factor)| factor.value(values)).collect()
+    prepared
+        .cases
+        .iter()
+        .map(|(_, factor)| factor.value(values))
+        .collect()
 }
 
 /// The numbers of the laws and Σ factor·RF.
@@ -29,7 +33,11 @@ pub fn contact_numbers(
     };
     for (i, pair) in system.pairs.iter().enumerate() {
         match &pair.law {
-            Law::Coulomb { friction, cohesion, gap } => {
+            Law::Coulomb {
+                friction,
+                cohesion,
+                gap,
+            } => {
                 numbers.friction[i] = friction.value(values);
                 numbers.cohesion[i] = cohesion.value(values);
                 numbers.gap[i] = gap.value(values);

@@ -7,8 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::contact::given::{GivenError, ReleasedTangentials, given_system};
 use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
-use crate::fem::error::MainSystemError;
-use crate::fem::main_system::MainSystem;
+use crate::fem::{MainSystem, MainSystemError};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
 use crate::model::pair::{JointDirection, joints};
@@ -101,7 +100,11 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
             })?;
             Prepared {
                 geometry: Geometry::Contact { system, released },
-                cases: given.loads.iter().map(|load| (load.name.clone(), load.factor.clone())).collect(),
+                cases: given
+                    .loads
+                    .iter()
+                    .map(|load| (load.name.clone(), load.factor.clone()))
+                    .collect(),
                 factor_seconds: 0.0,
                 condense_seconds: 0.0,
                 seconds: 0.0,
@@ -118,10 +121,10 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
     let lcp = MirroredLcp {
         matrix: DMatrix::from_fn(n, n, |i, j| given.matrix[i][j]),
         q: DVector::zeros(n),
-        covering: given
-            .covering
-            .as_ref()
-            .map_or_else(|| DVector::repeat(n, 1.0), |d| DVector::from_column_slice(d)),
+        covering: given.covering.as_ref().map_or_else(
+            || DVector::repeat(n, 1.0),
+            |d| DVector::from_column_slice(d),
+        ),
         whole: (0..n).collect(),
         mirrors: vec![None; n],
         scale: Scale::plain(&given.matrix),
@@ -148,7 +151,12 @@ fn main_system_problem(
     error: MainSystemError,
 ) -> PrepareError {
     let places = &scenario.places;
-    let node = |node: usize| places.nodes.get(node).map_or(String::new(), ToString::to_string);
+    let node = |node: usize| {
+        places
+            .nodes
+            .get(node)
+            .map_or(String::new(), ToString::to_string)
+    };
     let path = match &error {
         MainSystemError::Interrupted => return PrepareError::Interrupted,
         MainSystemError::DependentJoints(joints) => {
@@ -206,7 +214,10 @@ fn prepare_structure(
         .load_cases
         .iter()
         .zip(main.loads())
-        .map(|(case, vector)| JointLoad { name: case.name.clone(), vector: vector.clone() })
+        .map(|(case, vector)| JointLoad {
+            name: case.name.clone(),
+            vector: vector.clone(),
+        })
         .collect();
     let system = ContactSystem {
         pairs,

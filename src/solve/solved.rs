@@ -18,7 +18,7 @@ use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::{ray, sentence};
-use crate::fem::main_system::Displacements;
+use crate::fem::Displacements;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::ratio_test::TieRule;
@@ -37,7 +37,9 @@ pub enum SolveError {
     #[error(transparent)]
     Covering(#[from] CoveringError),
     /// A covering chosen for a bare LCP.
-    #[error("a bare LCP has its own covering vector (`covering` in the file, ones otherwise): `covering {0}` is for contact")]
+    #[error(
+        "a bare LCP has its own covering vector (`covering` in the file, ones otherwise): `covering {0}` is for contact"
+    )]
     CoveringOfPlain(Covering),
     /// A law got a value it cannot have.
     #[error("{0}")]
@@ -113,7 +115,12 @@ impl Prepared {
         }
         let start = Instant::now();
         let mut solved = match &self.geometry {
-            Geometry::Plain { lcp, q, names, covering_given } => {
+            Geometry::Plain {
+                lcp,
+                q,
+                names,
+                covering_given,
+            } => {
                 if rules.covering != Covering::default() {
                     return Err(SolveError::CoveringOfPlain(rules.covering));
                 }
@@ -150,7 +157,11 @@ impl Prepared {
             return Err(SolveError::Interrupted);
         }
         let seconds = start.elapsed().as_secs_f64();
-        let words = [rules.covering.to_string(), rules.tie_break.to_string(), rules.engine.to_string()];
+        let words = [
+            rules.covering.to_string(),
+            rules.tie_break.to_string(),
+            rules.engine.to_string(),
+        ];
         let mut answer = empty_answer(&run, words, self.size(system, &contact));
         answer.timings.lemke = seconds;
         answer.p = run.point.p * contact.force_unit;
@@ -198,7 +209,10 @@ impl Prepared {
         state: &JointState,
     ) {
         let mut equilibrium = None;
-        if let Geometry::Structure { main, structure, .. } = &self.geometry {
+        if let Geometry::Structure {
+            main, structure, ..
+        } = &self.geometry
+        {
             let u = main.displacements(factors, &dislocation(numbers, state));
             equilibrium = Some(main.equilibrium_residual(structure, &u, &state.force, factors));
             answer.members = Some(
@@ -249,8 +263,14 @@ impl Prepared {
         state: &JointState,
     ) {
         match &self.geometry {
-            Geometry::Structure { main, structure, .. } => {
-                if !structure.pairs.iter().any(|pair| matches!(pair.law, Law::Frictionless { .. })) {
+            Geometry::Structure {
+                main, structure, ..
+            } => {
+                if !structure
+                    .pairs
+                    .iter()
+                    .any(|pair| matches!(pair.law, Law::Frictionless { .. }))
+                {
                     return;
                 }
                 let u = main.displacements(factors, &dislocation(numbers, state));
@@ -282,8 +302,12 @@ fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
     z
 }
 
-fn end_forces(ends: crate::fem::recovery::EndForces) -> EndForces {
-    EndForces { n: ends.normal, q: ends.shear, m: ends.moment }
+fn end_forces(ends: crate::fem::EndForces) -> EndForces {
+    EndForces {
+        n: ends.normal,
+        q: ends.shear,
+        m: ends.moment,
+    }
 }
 
 fn named(
@@ -294,7 +318,12 @@ fn named(
         .nodes
         .iter()
         .zip(&u.0)
-        .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
+        .map(|(node, u)| NodeDisplacement {
+            node: node.id.clone(),
+            ux: u[0],
+            uy: u[1],
+            rz: u[2],
+        })
         .collect()
 }
 
@@ -305,7 +334,10 @@ fn fail_check(answer: &mut Answer) {
         answer.check.min_w,
         answer.check.min_z,
         answer.check.complementarity,
-        answer.check.equilibrium.map_or(String::new(), |e| format!(", equilibrium {e:.1e}"))
+        answer
+            .check
+            .equilibrium
+            .map_or(String::new(), |e| format!(", equilibrium {e:.1e}"))
     ));
     if let Some(last) = answer.attempts.last_mut() {
         last.outcome = OutcomeKind::CheckFailed;
@@ -317,9 +349,10 @@ fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer {
     let outcome = kind(&run.outcome);
     let [covering, tie_break, engine] = words;
     let failure = match &run.outcome {
-        Outcome::PivotLimit => {
-            Some(format!("the limit of {} pivots was reached", super::attempt::PIVOT_LIMIT))
-        }
+        Outcome::PivotLimit => Some(format!(
+            "the limit of {} pivots was reached",
+            super::attempt::PIVOT_LIMIT
+        )),
         Outcome::Cycle => Some(format!(
             "the tie-break {tie_break} cycles: after {} pivots a working scheme came back",
             run.pivots.len()
@@ -363,7 +396,9 @@ fn solve_plain(
     watch: &dyn Watch,
 ) -> Result<Solved, SolveError> {
     let rule = match rules.tie_break {
-        TieBreak::Lexicographic | TieBreak::Natural => TieRule::Lexicographic((0..lcp.size()).collect()),
+        TieBreak::Lexicographic | TieBreak::Natural => {
+            TieRule::Lexicographic((0..lcp.size()).collect())
+        }
         TieBreak::FirstRow => TieRule::FirstRow,
         TieBreak::Random(seed) => TieRule::Random(seed),
     };
@@ -374,23 +409,40 @@ fn solve_plain(
     }
     let seconds = start.elapsed().as_secs_f64();
     let covering = if covering_given { "given" } else { "ones" };
-    let words = [covering.to_owned(), rules.tie_break.to_string(), rules.engine.to_string()];
-    let size = Size { unknowns: None, free: None, pairs: 0, lcp: lcp.size() };
+    let words = [
+        covering.to_owned(),
+        rules.tie_break.to_string(),
+        rules.engine.to_string(),
+    ];
+    let size = Size {
+        unknowns: None,
+        free: None,
+        pairs: 0,
+        lcp: lcp.size(),
+    };
     let mut answer = empty_answer(&run, words, size);
     answer.timings.lemke = seconds;
     answer.pivots = sentence::plain_records(&run.pivots, names);
     if matches!(run.outcome, Outcome::Ray(_)) {
         answer.ray = Some(ray::plain_report(run.point.p));
     }
-    answer.solution =
-        Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
+    answer.solution = Some(PlainSolution {
+        z: run.point.z.clone(),
+        w: run.point.w.clone(),
+    });
     if answer.is_answer() {
         answer.check = check_plain(&lcp, &run.point);
         if !answer.check.passed {
             fail_check(&mut answer);
         }
     }
-    Ok(Solved { answer, trace: Trace::Plain { lcp, pivots: run.pivots } })
+    Ok(Solved {
+        answer,
+        trace: Trace::Plain {
+            lcp,
+            pivots: run.pivots,
+        },
+    })
 }
 
 impl Solved {
@@ -408,7 +460,14 @@ impl Solved {
 
     /// The vertex after pivot `step` over the joints; `None` beyond the last and for a bare LCP.
     fn state_at(&self, prepared: &Prepared, step: usize) -> Option<JointState> {
-        let Trace::Contact { contact, numbers, pivots, last, .. } = &self.trace else {
+        let Trace::Contact {
+            contact,
+            numbers,
+            pivots,
+            last,
+            ..
+        } = &self.trace
+        else {
             return None;
         };
         let system = prepared.system()?;
@@ -422,7 +481,15 @@ impl Solved {
 
     /// The pairs after pivot `step`: the working scheme on the way, under its p.
     pub fn pairs_at(&self, prepared: &Prepared, step: usize) -> Option<Vec<PairState>> {
-        let Trace::Contact { contact, numbers, factors, .. } = &self.trace else { return None };
+        let Trace::Contact {
+            contact,
+            numbers,
+            factors,
+            ..
+        } = &self.trace
+        else {
+            return None;
+        };
         let state = self.state_at(prepared, step)?;
         let mut pairs = pair_states(prepared.system()?, numbers, contact, &state);
         prepared.add_released_slips(&mut pairs, numbers, factors, &state);
@@ -435,19 +502,33 @@ impl Solved {
         prepared: &Prepared,
         step: usize,
     ) -> Option<Vec<NodeDisplacement>> {
-        let (Trace::Contact { numbers, factors, .. }, Geometry::Structure { main, structure, .. }) =
-            (&self.trace, &prepared.geometry)
+        let (
+            Trace::Contact {
+                numbers, factors, ..
+            },
+            Geometry::Structure {
+                main, structure, ..
+            },
+        ) = (&self.trace, &prepared.geometry)
         else {
             return None;
         };
         let state = self.state_at(prepared, step)?;
-        Some(named(structure, &main.displacements(factors, &dislocation(numbers, &state))))
+        Some(named(
+            structure,
+            &main.displacements(factors, &dislocation(numbers, &state)),
+        ))
     }
 
     /// z and w of a bare LCP after pivot `step`.
     pub fn plain_at(&self, step: usize) -> Option<PlainSolution> {
-        let Trace::Plain { lcp, pivots } = &self.trace else { return None };
+        let Trace::Plain { lcp, pivots } = &self.trace else {
+            return None;
+        };
         let point = vertex(lcp, &Basis::after(pivots.get(..=step)?))?;
-        Some(PlainSolution { z: point.z, w: point.w })
+        Some(PlainSolution {
+            z: point.z,
+            w: point.w,
+        })
     }
 }

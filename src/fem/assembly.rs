@@ -1,0 +1,222 @@
+//! K and F of the free structure, and their share in the main system.
+//!
+//! With u = T v + G z (see `dof`): K_m = Tᵀ K T, C = Tᵀ K G, D = Gᵀ K G.
+
+use nalgebra::DMatrix;
+
+use super::dof::{Dofs, Elimination};
+use super::element::{line_load, slots, spring, stiffness};
+use super::error::MainSystemError;
+use super::sparse::SymmetricSparse;
+use crate::model::structure::{Component, Load, Structure};
+
+/// Terms of one block of work between two looks at the watcher.
+const ELEMENTS_PER_LOOK: usize = 4096;
+
+/// K on the base dofs, with neither supports nor ties nor joints.
+///
+/// # Errors
+/// An element without stiffness because of its shape; interrupted.
+pub fn assemble(
+    structure: &Structure,
+    dofs: &Dofs,
+    stop: &dyn Fn() -> bool,
+) -> Result<SymmetricSparse, MainSystemError> {
+    let element_dofs = |index: usize| -> Vec<Option<usize>> {
+        slots(&structure.elements[index])
+            .into_iter()
+            .map(|slot| slot.and_then(|(node, component)| dofs.of(node, component)))
+            .collect()
+    };
+    let spring_dofs = |node: usize| [Component::X, Component::Y].map(|c| dofs.of(node, c));
+    let lower = |at: &[Option<usize>], visit: &mut dyn FnMut(usize, usize, usize, usize)| {
+        for (i, row) in at.iter().enumerate() {
+            for (j, column) in at.iter().enumerate() {
+                if let (Some(row), Some(column)) = (*row, *column)
+                    && row >= column
+                {
+                    visit(row, column, i, j);
+                }
+            }
+        }
+    };
+    SymmetricSparse::from_terms(
+        dofs.count(),
+        |count| {
+            // Every dof has its diagonal entry, also where nothing is attached.
+            (0..dofs.count()).for_each(&mut *count);
+            for index in 0..structure.elements.len() {
+                lower(&element_dofs(index), &mut |_, column, _, _| count(column));
+            }
+            for spring in &structure.springs {
+                lower(&spring_dofs(spring.node), &mut |_, column, _, _| {
+                    count(column);
+                });
+            }
+        },
+        |push| {
+            (0..dofs.count()).for_each(|dof| push(dof, dof, 0.0));
+            for index in 0..structure.elements.len() {
+                if index % ELEMENTS_PER_LOOK == 0 && stop() {
+                    return Err(MainSystemError::Interrupted);
+                }
+                let k = stiffness(structure, index)?;
+                lower(&element_dofs(index), &mut |row, column, i, j| {
+                    push(row, column, k[(i, j)]);
+                });
+            }
+            for element in &structure.springs {
+                let k = spring::stiffness(element);
+                lower(&spring_dofs(element.node), &mut |row, column, i, j| {
+                    push(row, column, k[(i, j)]);
+                });
+            }
+            Ok(())
+        },
+    )
+}
+
+/// F per load case and unit factor on the base dofs.
+///
+/// # Errors
+/// A moment where there is no rotation.
+pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>, MainSystemError> {
+    let mut vectors = Vec::with_capacity(structure.load_cases.len());
+    for (load_case, case) in structure.load_cases.iter().enumerate() {
+        let mut f = vec![0.0; dofs.count()];
+        let mut add = |node: usize, component: Component, value: f64| {
+            let dof = dofs.of(node, component);
+            if let Some(dof) = dof {
+                f[dof] += value;
+            }
+            dof.is_some() || value == 0.0
+        };
+        for load in &case.loads {
+            match *load {
+                Load::Nodal {
+                    node,
+                    force,
+                    moment,
+                } => {
+                    add(node, Component::X, force[0]);
+                    add(node, Component::Y, force[1]);
+                    if !add(node, Component::R, moment) {
+                        return Err(MainSystemError::MomentWithoutRotation {
+                            load_case,
+                            case: case.name.clone(),
+                            node,
+                            node_id: structure.nodes[node].id.clone(),
+                        });
+                    }
+                }
+                Load::Line { element, value } => {
+                    let forces = line_load(structure, element, value);
+                    let at = slots(&structure.elements[element]);
+                    for (slot, force) in at.into_iter().zip(&forces) {
+                        if let Some((node, component)) = slot {
+                            add(node, component, *force);
+                        }
+                    }
+                }
+            }
+        }
+        vectors.push(f);
+    }
+    Ok(vectors)
+}
+
+/// K_m, C and D of the main system.
+#[derive(Clone, Debug)]
+pub struct MainMatrices {
+    /// K_m = Tᵀ K T.
+    pub k_m: SymmetricSparse,
+    /// C = Tᵀ K G as terms (row, joint, value), perhaps repeated.
+    pub c: Vec<(u32, u32, f64)>,
+    /// D = Gᵀ K G.
+    pub d: DMatrix<f64>,
+}
+
+/// Splits K by u = T v + G z.
+pub fn main_matrices(k: &SymmetricSparse, elimination: &Elimination) -> MainMatrices {
+    let each_entry = |visit: &mut dyn FnMut(usize, usize, f64)| {
+        for column in 0..k.order() {
+            for (row, value) in k.column(column) {
+                visit(row, column, value);
+            }
+        }
+    };
+    // The terms of K_m that one entry of the lower triangle of K gives.
+    let terms = |i: usize, j: usize, value: f64, push: &mut dyn FnMut(usize, usize, f64)| {
+        if let (Some(a), Some(b)) = (elimination.single(i), elimination.single(j)) {
+            // i ≠ j with a = b: two entries of K fall on one diagonal entry.
+            let twice = if i != j && a == b { 2.0 } else { 1.0 };
+            push(a.max(b), a.min(b), twice * value);
+            return;
+        }
+        for (a, ca) in elimination.free_terms(i) {
+            for (b, cb) in elimination.free_terms(j) {
+                let term = value * ca * cb;
+                if i != j {
+                    push(a.max(b), a.min(b), if a == b { 2.0 * term } else { term });
+                } else if a >= b {
+                    push(a, b, term);
+                }
+            }
+        }
+    };
+    let k_m = SymmetricSparse::from_terms::<std::convert::Infallible>(
+        elimination.masters(),
+        |count| {
+            (0..elimination.masters()).for_each(&mut *count);
+            each_entry(&mut |i, j, value| terms(i, j, value, &mut |_, column, _| count(column)));
+        },
+        |push| {
+            (0..elimination.masters()).for_each(|v| push(v, v, 0.0));
+            each_entry(&mut |i, j, value| terms(i, j, value, &mut *push));
+            Ok(())
+        },
+    );
+    let Ok(k_m) = k_m;
+
+    let mut c = Vec::new();
+    let mut d = DMatrix::zeros(elimination.joints(), elimination.joints());
+    each_entry(&mut |i, j, value| {
+        let mut directed = |i: usize, j: usize| {
+            for (joint, g) in elimination.joint_terms(j) {
+                for (v, t) in elimination.free_terms(i) {
+                    c.push((v as u32, joint as u32, value * t * g));
+                }
+                for (other, h) in elimination.joint_terms(i) {
+                    d[(other, joint)] += value * h * g;
+                }
+            }
+        };
+        directed(i, j);
+        if i != j {
+            directed(j, i);
+        }
+    });
+    MainMatrices { k_m, c, d }
+}
+
+/// Tᵀ f.
+pub fn on_masters(elimination: &Elimination, f: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; elimination.masters()];
+    for (dof, &value) in f.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+        for (v, t) in elimination.free_terms(dof) {
+            out[v] += t * value;
+        }
+    }
+    out
+}
+
+/// Gᵀ f.
+pub fn on_joints(elimination: &Elimination, f: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; elimination.joints()];
+    for (dof, &value) in f.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+        for (joint, g) in elimination.joint_terms(dof) {
+            out[joint] += g * value;
+        }
+    }
+    out
+}

@@ -1,0 +1,84 @@
+//! Dense decompositions (faer) of the few full matrices: one place for them, nalgebra outside.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, MatRef, Side};
+use nalgebra::{DMatrix, DVector};
+
+/// A = U diag(σ) Vᵀ, V square; σ descending, padded with zeros to the number of columns.
+pub struct Svd {
+    /// Left singular vectors that belong to the nonzero-length part, rows × min(rows, columns).
+    pub u: DMatrix<f64>,
+    /// One per column of A.
+    pub sigma: Vec<f64>,
+    /// Right singular vectors, columns × columns.
+    pub v: DMatrix<f64>,
+}
+
+fn view(a: &DMatrix<f64>) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(a.as_slice(), a.nrows(), a.ncols())
+}
+
+fn owned(a: MatRef<'_, f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)])
+}
+
+/// Singular value decomposition; `None` if it did not converge.
+pub fn svd(a: &DMatrix<f64>) -> Option<Svd> {
+    let (rows, columns) = a.shape();
+    // Rows of zeros make it at least square, so that a thin decomposition has all of V.
+    let tall = rows.max(columns);
+    let padded = Mat::from_fn(tall, columns, |i, j| if i < rows { a[(i, j)] } else { 0.0 });
+    let svd = padded.thin_svd().ok()?;
+    Some(Svd {
+        u: owned(svd.U().subrows(0, rows)),
+        sigma: svd.S().column_vector().iter().copied().collect(),
+        v: owned(svd.V()),
+    })
+}
+
+/// Eigenvalues (ascending) and eigenvectors of a symmetric matrix; `None` if it did not converge.
+pub fn symmetric_eigen(a: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
+    let eigen = view(a).self_adjoint_eigen(Side::Lower).ok()?;
+    let values = eigen.S().column_vector().iter().copied().collect();
+    Some((values, owned(eigen.U())))
+}
+
+/// Largest eigenvalue of a symmetric positive semidefinite matrix, from below, by the power method. Ten steps give
+/// it within a factor that does not matter for thresholds.
+pub fn largest_eigenvalue(a: &DMatrix<f64>) -> f64 {
+    let start = DVector::from_fn(a.nrows(), |i, _| 1.0 + 0.5 * (i as f64).sin());
+    let mut x = start;
+    let mut value = 0.0_f64;
+    for _ in 0..10 {
+        let norm = x.norm();
+        if norm == 0.0 {
+            break;
+        }
+        x /= norm;
+        let y = a * &x;
+        value = value.max(x.dot(&y));
+        x = y;
+    }
+    value.max(a.diagonal().max())
+}
+
+/// Smallest eigenvalue of a symmetric matrix, from above, by inverse iteration; `None` if it is not positive
+/// definite to working precision.
+pub fn smallest_eigenvalue(a: &DMatrix<f64>) -> Option<f64> {
+    let llt = view(a).llt(Side::Lower).ok()?;
+    let n = a.nrows();
+    let mut x = Mat::from_fn(n, 1, |i, _| 1.0 + 0.5 * (1.7 * i as f64).sin());
+    let mut value = f64::INFINITY;
+    for _ in 0..6 {
+        let norm = x.norm_l2();
+        for i in 0..n {
+            x[(i, 0)] /= norm;
+        }
+        let y = llt.solve(&x);
+        // Rayleigh quotient of A⁻¹.
+        let quotient: f64 = (0..n).map(|i| x[(i, 0)] * y[(i, 0)]).sum();
+        value = value.min(1.0 / quotient);
+        x = y;
+    }
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,231 @@
+//! What can be wrong with a structure that only its equations show.
+
+use std::fmt;
+
+use crate::model::pair::JointDirection;
+use crate::model::structure::Component;
+
+/// Why there is no main system.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MainSystemError {
+    /// Joints that repeat what supports, ties or other joints already hold: the main system would be singular.
+    /// All of them, in the order of the joints.
+    #[error("{}", list(.0))]
+    DependentJoints(Vec<DependentJoint>),
+    /// The structure moves freely although every joint is on.
+    #[error(
+        "the structure is a mechanism whatever its contacts do: node {node_id} is free to move {}; \
+         add a support, a tie, a bar or a spring that holds it",
+        .direction
+    )]
+    Mechanism {
+        /// The node that moves most.
+        node: usize,
+        /// Its id.
+        node_id: String,
+        /// How it moves.
+        direction: FreeDirection,
+    },
+    /// A moment on a node that has no rotation: no frame bar is rigidly attached to it.
+    #[error(
+        "load case {case} has a moment at node {node_id}, where no frame bar is rigidly attached: \
+         remove the moment or a hinge"
+    )]
+    MomentWithoutRotation {
+        /// Index of the load case.
+        load_case: usize,
+        /// Its name.
+        case: String,
+        /// The node.
+        node: usize,
+        /// Its id.
+        node_id: String,
+    },
+    /// An element that has no stiffness because of its shape.
+    #[error("the element with the nodes {} cannot be used: {what}", .nodes.join(", "))]
+    Element {
+        /// Ids of its nodes.
+        nodes: Vec<String>,
+        /// What is wrong.
+        what: String,
+    },
+    /// The factor does not fit.
+    #[error(
+        "the model is too large: {unknowns} unknowns and {joints} joints need {} of memory, {} are available; \
+         use fewer divisions", bytes(*.needed), bytes(*.available)
+    )]
+    TooLarge {
+        /// Unknowns after supports, ties and joints.
+        unknowns: usize,
+        /// Joints.
+        joints: usize,
+        /// Bytes needed, at least.
+        needed: u64,
+        /// Bytes that are available.
+        available: u64,
+    },
+    /// Memory ran out although the estimate fitted.
+    #[error("out of memory while {doing}: use fewer divisions or free some memory")]
+    OutOfMemory {
+        /// The step of the work.
+        doing: &'static str,
+    },
+    /// An eigenvalue problem did not converge.
+    #[error(
+        "the eigenvalues of the contact stiffness matrix did not converge: check units and stiffnesses"
+    )]
+    NoConvergence,
+    /// The watcher asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// A joint that others already hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DependentJoint {
+    /// Index of the pair, for the place in the file.
+    pub pair: usize,
+    /// Its id.
+    pub pair_id: String,
+    /// Which of its joints.
+    pub direction: JointDirection,
+    /// What holds it already.
+    pub holders: Vec<Holder>,
+}
+
+/// Something that holds a displacement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Holder {
+    /// A support.
+    Support {
+        /// Id of the node.
+        node: String,
+        /// Component held.
+        component: Component,
+    },
+    /// A tie.
+    Tie {
+        /// Ids of two of the tied nodes.
+        nodes: [String; 2],
+        /// Component shared.
+        component: Component,
+    },
+    /// A joint of another pair.
+    Joint {
+        /// Id of the pair.
+        pair: String,
+        /// Which of its joints.
+        direction: JointDirection,
+    },
+}
+
+/// How a node moves in a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FreeDirection {
+    /// Along one axis, or turning.
+    Component(Component),
+    /// Along a unit vector.
+    Along([f64; 2]),
+}
+
+impl FreeDirection {
+    /// From the displacement [u_x, u_y, θ] of the node that moves most.
+    pub(super) fn of(u: [f64; 3]) -> FreeDirection {
+        let length = u[0].hypot(u[1]);
+        if length == 0.0 {
+            return FreeDirection::Component(Component::R);
+        }
+        let d = [u[0] / length, u[1] / length];
+        if d[1].abs() < 1e-6 {
+            FreeDirection::Component(Component::X)
+        } else if d[0].abs() < 1e-6 {
+            FreeDirection::Component(Component::Y)
+        } else {
+            FreeDirection::Along(d)
+        }
+    }
+}
+
+impl fmt::Display for FreeDirection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            FreeDirection::Component(Component::X) => f.write_str("in x"),
+            FreeDirection::Component(Component::Y) => f.write_str("in y"),
+            FreeDirection::Component(Component::R) => f.write_str("by turning (r)"),
+            FreeDirection::Along([x, y]) => write!(f, "along ({x:.3}, {y:.3})"),
+        }
+    }
+}
+
+/// `x`, `y`, `r` as in the file.
+pub(super) fn component_word(component: Component) -> &'static str {
+    match component {
+        Component::X => "x",
+        Component::Y => "y",
+        Component::R => "r",
+    }
+}
+
+fn direction_word(direction: JointDirection) -> &'static str {
+    match direction {
+        JointDirection::Normal => "normal",
+        JointDirection::Tangential => "tangential",
+    }
+}
+
+impl fmt::Display for Holder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Holder::Support { node, component } => {
+                write!(f, "the support at {node} in {}", component_word(*component))
+            }
+            Holder::Tie { nodes, component } => write!(
+                f,
+                "the tie of {} and {} in {}",
+                nodes[0],
+                nodes[1],
+                component_word(*component)
+            ),
+            Holder::Joint { pair, direction } => {
+                write!(f, "the {} joint of {pair}", direction_word(*direction))
+            }
+        }
+    }
+}
+
+impl fmt::Display for DependentJoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the {} joint of {} is already held by ",
+            direction_word(self.direction),
+            self.pair_id
+        )?;
+        for (i, holder) in self.holders.iter().enumerate() {
+            let glue = match i {
+                0 => "",
+                _ if i + 1 == self.holders.len() => " and ",
+                _ => ", ",
+            };
+            write!(f, "{glue}{holder}")?;
+        }
+        f.write_str(match self.direction {
+            JointDirection::Normal => ": use `skip` or split the node",
+            JointDirection::Tangential => ": use `skip`, a `frictionless` pair, or split the node",
+        })
+    }
+}
+
+fn list(joints: &[DependentJoint]) -> String {
+    let lines: Vec<String> = joints.iter().map(DependentJoint::to_string).collect();
+    lines.join("\n")
+}
+
+/// Bytes in words, 1 GB = 10⁹ bytes.
+fn bytes(count: u64) -> String {
+    if count >= 1_000_000_000 {
+        format!("{:.1} GB", count as f64 / 1e9)
+    } else {
+        format!("{:.0} MB", (count as f64 / 1e6).max(1.0))
+    }
+}

@@ -1,0 +1,174 @@
+//! The kernel of R, made exact (theory, "Numerics that matter").
+//!
+//! R z = 0 exactly for z = B u, u in ker K. The rigid motions of loose parts give Z to rounding; R is then replaced
+//! by (1 − Z Zᵀ) R (1 − Z Zᵀ), so that mechanisms are free to the last digit.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::dense::{largest_eigenvalue, smallest_eigenvalue, svd, symmetric_eigen};
+use super::error::{FreeDirection, MainSystemError};
+use super::loose::Motion;
+use crate::model::pair::Joint;
+use crate::model::structure::Structure;
+
+/// Eigenvalues of R below this share of the largest are suspected of being zero.
+pub const ZERO_EIGENVALUE: f64 = 1e-10;
+
+/// Above this share the smallest eigenvalue is surely not one of those, and no decomposition is needed.
+const SURELY_POSITIVE: f64 = 1e-8;
+
+/// Singular values below this share of the largest: motions that no joint feels.
+const UNFELT: f64 = 1e-10;
+
+/// Rigid motions and their trace on the joints.
+pub struct RigidKernel {
+    /// Orthonormal basis of their mutual displacements, k × r.
+    pub z: DMatrix<f64>,
+    /// Column j of `z` is B applied to Σ_i coefficients[(i, j)] · motion i; r × r.
+    pub coefficients: DMatrix<f64>,
+}
+
+/// z = B u.
+pub fn mutual_displacements(joints: &[Joint], u: &[[f64; 3]]) -> DVector<f64> {
+    DVector::from_iterator(
+        joints.len(),
+        joints.iter().map(|joint| {
+            joint
+                .terms
+                .iter()
+                .map(|(node, a)| a[0] * u[*node][0] + a[1] * u[*node][1])
+                .sum()
+        }),
+    )
+}
+
+/// The kernel from rigid motions of loose parts.
+///
+/// # Errors
+/// Mechanism: a motion that no joint feels.
+pub fn rigid_kernel(
+    structure: &Structure,
+    joints: &[Joint],
+    motions: &[Motion],
+) -> Result<RigidKernel, MainSystemError> {
+    let (k, r) = (joints.len(), motions.len());
+    if r == 0 {
+        return Ok(RigidKernel {
+            z: DMatrix::zeros(k, 0),
+            coefficients: DMatrix::zeros(0, 0),
+        });
+    }
+    let mut traces = DMatrix::zeros(k, r);
+    for (i, motion) in motions.iter().enumerate() {
+        traces.set_column(i, &mutual_displacements(joints, &motion.u));
+    }
+    let svd = svd(&traces).ok_or(MainSystemError::NoConvergence)?;
+    let largest = svd.sigma[0];
+    if svd.sigma[r - 1] <= UNFELT * largest || largest == 0.0 {
+        let mut u = vec![[0.0; 3]; structure.nodes.len()];
+        for (motion, c) in std::iter::zip(motions, svd.v.column(r - 1).iter()) {
+            add_scaled(&mut u, *c, &motion.u);
+        }
+        return Err(mechanism(structure, &u));
+    }
+    let mut coefficients = svd.v;
+    for (mut column, sigma) in std::iter::zip(coefficients.column_iter_mut(), &svd.sigma) {
+        column /= *sigma;
+    }
+    Ok(RigidKernel {
+        z: svd.u.columns(0, r).into_owned(),
+        coefficients,
+    })
+}
+
+fn add_scaled(sum: &mut [[f64; 3]], factor: f64, u: &[[f64; 3]]) {
+    for (sum, u) in std::iter::zip(sum, u) {
+        for (sum, u) in std::iter::zip(sum, u) {
+            *sum += factor * u;
+        }
+    }
+}
+
+/// The error that names the node that moves most.
+pub fn mechanism(structure: &Structure, u: &[[f64; 3]]) -> MainSystemError {
+    let shift = |u: &[f64; 3]| u[0].hypot(u[1]);
+    let most = |size: &dyn Fn(&[f64; 3]) -> f64| {
+        let largest = u.iter().map(size).fold(0.0, f64::max);
+        // The first of those that are equal to rounding.
+        let node = u.iter().position(|u| size(u) >= largest * (1.0 - 1e-6));
+        (largest, node.unwrap_or(0))
+    };
+    let (translation, mut node) = most(&shift);
+    if translation == 0.0 {
+        node = most(&|u| u[2].abs()).1;
+    }
+    MainSystemError::Mechanism {
+        node,
+        node_id: structure.nodes[node].id.clone(),
+        direction: FreeDirection::of(u[node]),
+    }
+}
+
+/// R ← (1 − Z Zᵀ) R (1 − Z Zᵀ), exactly symmetric.
+pub fn project(r: &mut DMatrix<f64>, z: &DMatrix<f64>) {
+    if z.ncols() == 0 {
+        return;
+    }
+    if z.ncols() == r.nrows() {
+        r.fill(0.0);
+        return;
+    }
+    // R − Z Yᵀ − Y Zᵀ with Y = R Z − ½ Z (Zᵀ R Z).
+    let rz = &*r * z;
+    let y = &rz - z * (z.transpose() * &rz) * 0.5;
+    r.gemm(-1.0, z, &y.transpose(), 1.0);
+    r.gemm(-1.0, &y, &z.transpose(), 1.0);
+    for i in 0..r.nrows() {
+        for j in 0..i {
+            let mean = 0.5 * (r[(i, j)] + r[(j, i)]);
+            r[(i, j)] = mean;
+            r[(j, i)] = mean;
+        }
+    }
+}
+
+/// Eigenvectors of R outside Z that look like zero-energy motions: to be checked against K.
+///
+/// # Errors
+/// The decomposition did not converge.
+pub fn suspects(r: &DMatrix<f64>, z: &DMatrix<f64>) -> Result<Vec<DVector<f64>>, MainSystemError> {
+    if r.nrows() == z.ncols() {
+        return Ok(Vec::new());
+    }
+    let largest = largest_eigenvalue(r);
+    let mut lifted = r.clone();
+    // Z gets the largest eigenvalue: what is small now is new.
+    lifted.gemm(largest, z, &z.transpose(), 1.0);
+    if smallest_eigenvalue(&lifted).is_some_and(|smallest| smallest > SURELY_POSITIVE * largest) {
+        return Ok(Vec::new());
+    }
+    let (values, vectors) = symmetric_eigen(&lifted).ok_or(MainSystemError::NoConvergence)?;
+    let largest = values.last().copied().unwrap_or(0.0);
+    Ok(std::iter::zip(&values, vectors.column_iter())
+        .filter(|(value, _)| **value < ZERO_EIGENVALUE * largest)
+        .map(|(_, vector)| vector.into_owned())
+        .collect())
+}
+
+/// Z with one more direction, orthonormal; `None` if it is in the span already.
+pub fn extend(z: &DMatrix<f64>, direction: &DVector<f64>) -> Option<DMatrix<f64>> {
+    let mut new = direction.clone();
+    // Twice is enough (Kahan, Parlett).
+    for _ in 0..2 {
+        let inside = z * (z.transpose() * &new);
+        new -= inside;
+    }
+    let norm = new.norm();
+    if norm < 1e-6 * direction.norm() {
+        return None;
+    }
+    let at = z.ncols();
+    let mut z = z.clone().insert_column(at, 0.0);
+    z.set_column(at, &(new / norm));
+    Some(z)
+}

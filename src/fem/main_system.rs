@@ -1,0 +1,370 @@
+//! The main system: every joint on. R, RF and the kernel of R; displacements for given loads and dislocations.
+//!
+//! ```text
+//!     K_m v + C z = Tᵀ F,   λ = Cᵀ v + D z − Gᵀ F       (u = T v + G z, see `dof`)
+//!     R  = D − Cᵀ K_m⁻¹ C
+//!     RF = Cᵀ K_m⁻¹ Tᵀ F − Gᵀ F
+//! ```
+
+use std::time::Instant;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::assembly::{assemble, load_vectors, main_matrices, on_joints, on_masters};
+use super::dof::{Dofs, Elimination};
+use super::error::MainSystemError;
+use super::factor::{Factor, FactorError};
+use super::kernel::{self, RigidKernel};
+use super::loose::{Motion, loose_motions};
+use super::sparse::SymmetricSparse;
+use crate::model::pair::Joint;
+use crate::model::structure::{Component, Structure};
+use crate::watch::Watch;
+
+/// An eigenvector of R is a mechanism if its u has ‖K u‖ below this share of the terms it sums, both in equations
+/// scaled to a unit diagonal (so that a soft part is no mechanism beside a stiff one).
+const NO_FORCE: f64 = 1e-12;
+
+/// The residual of equilibrium is measured against at least this share of the terms that K u sums: forces that are
+/// still smaller are lost in the rounding of u itself.
+const LOST_IN_ROUNDING: f64 = 1e-4;
+
+/// Displacements per node: [u_x, u_y, θ], θ counter-clockwise and 0 at nodes without one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Displacements(pub Vec<[f64; 3]>);
+
+/// Size of the problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unknowns {
+    /// Nodal components before supports and ties.
+    pub all: usize,
+    /// After supports and ties, before the joints.
+    pub free: usize,
+}
+
+/// Seconds spent on the main system.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seconds {
+    /// Numbering, loose parts, element stiffnesses and their sum.
+    pub assemble: f64,
+    /// Ordering and factorization.
+    pub factor: f64,
+    /// R, RF and the kernel.
+    pub condense: f64,
+}
+
+/// R, RF, the kernel, and what is needed to return from the joints to the structure.
+#[derive(Debug)]
+pub struct MainSystem {
+    pub(super) dofs: Dofs,
+    pub(super) elimination: Elimination,
+    pub(super) joints: Vec<Joint>,
+    /// K on the base dofs.
+    pub(super) k: SymmetricSparse,
+    /// F per load case on the base dofs.
+    pub(super) f: Vec<Vec<f64>>,
+    factor: Factor,
+    c: Vec<(u32, u32, f64)>,
+    /// v per load case with z = 0.
+    v: DMatrix<f64>,
+    r: DMatrix<f64>,
+    rf: Vec<DVector<f64>>,
+    z: DMatrix<f64>,
+    motions: Vec<Motion>,
+    seconds: Seconds,
+}
+
+impl MainSystem {
+    /// Assembles, factorizes and condenses the structure to its joints.
+    ///
+    /// # Errors
+    /// Dependent joints, a mechanism, an element without shape, a moment where nothing turns, too large,
+    /// interrupted: see [`MainSystemError`].
+    pub fn new(
+        structure: &Structure,
+        joints: &[Joint],
+        watch: &dyn Watch,
+    ) -> Result<MainSystem, MainSystemError> {
+        let clock = Instant::now();
+        watch.progress("assembling the stiffness", 0.0);
+        let dofs = Dofs::new(structure);
+        let elimination =
+            Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
+        let f = load_vectors(structure, &dofs)?;
+        let motions = loose_motions(structure, &dofs);
+        let rigid = kernel::rigid_kernel(structure, joints, &motions)?;
+        let k = assemble(structure, &dofs, &|| watch.stop())?;
+        let mut main = main_matrices(&k, &elimination);
+        let mut seconds = Seconds {
+            assemble: clock.elapsed().as_secs_f64(),
+            ..Seconds::default()
+        };
+
+        let clock = Instant::now();
+        let mut touched = vec![false; elimination.masters()];
+        for &(row, _, _) in &main.c {
+            touched[row as usize] = true;
+        }
+        let factor =
+            Factor::new(&mut main.k_m, &touched, joints.len(), watch).map_err(|e| match e {
+                FactorError::Other(error) => error,
+                FactorError::Singular(v) => {
+                    let u = elimination.expand(&v, &vec![0.0; joints.len()]);
+                    kernel::mechanism(structure, &dofs.to_nodes(&u))
+                }
+            })?;
+        drop(main.k_m);
+        seconds.factor = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        let trailing = factor.trailing(&main.c, joints.len(), watch)?;
+        let mut r = trailing.schur(&main.d);
+        let mut v = DMatrix::zeros(elimination.masters(), f.len());
+        for (case, f) in f.iter().enumerate() {
+            v.column_mut(case)
+                .copy_from_slice(&on_masters(&elimination, f));
+        }
+        let forward = factor.solve(&mut v);
+        let condensed = trailing.project(&forward);
+        drop((trailing, forward));
+        let rf = f.iter().zip(condensed.column_iter()).map(|(f, column)| {
+            let mut rf = column - DVector::from_vec(on_joints(&elimination, f));
+            balance(&mut rf, &rigid, &motions, f, &dofs);
+            rf
+        });
+        let rf = rf.collect();
+        kernel::project(&mut r, &rigid.z);
+        let mut system = MainSystem {
+            dofs,
+            elimination,
+            joints: joints.to_vec(),
+            k,
+            f,
+            factor,
+            c: main.c,
+            v,
+            r,
+            rf,
+            z: rigid.z,
+            motions,
+            seconds,
+        };
+        system.add_internal_mechanisms()?;
+        system.seconds.condense = clock.elapsed().as_secs_f64();
+        watch.progress("condensing to the contact joints", 1.0);
+        Ok(system)
+    }
+
+    /// Adds eigenvectors of R that cost no energy in K to the kernel.
+    fn add_internal_mechanisms(&mut self) -> Result<(), MainSystemError> {
+        let suspects = kernel::suspects(&self.r, &self.z)?;
+        if suspects.is_empty() {
+            return Ok(());
+        }
+        let scale: Vec<f64> = self
+            .k
+            .diagonal()
+            .into_iter()
+            .map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 })
+            .collect();
+        let norm = |v: Vec<f64>| {
+            let scaled = std::iter::zip(v, &scale).map(|(v, s)| (v * s).powi(2));
+            scaled.sum::<f64>().sqrt()
+        };
+        for z in suspects {
+            let u = self.base_displacements(&vec![0.0; self.f.len()], &z);
+            let force = norm(self.unheld_forces(self.k.times(&u)));
+            let terms = norm(self.k.times_absolute(&u));
+            if force > NO_FORCE * terms {
+                continue;
+            }
+            if let Some(extended) = kernel::extend(&self.z, &z) {
+                self.z = extended;
+                let mut u = self.dofs.to_nodes(&u);
+                let largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+                if largest > 0.0 {
+                    u.iter_mut().flatten().for_each(|u| *u /= largest);
+                }
+                self.motions.push(Motion { u, internal: true });
+            }
+        }
+        kernel::project(&mut self.r, &self.z);
+        Ok(())
+    }
+
+    /// R, k × k: rows and columns in the order of the joints; exactly symmetric, R Z = 0 to rounding.
+    pub fn stiffness(&self) -> &DMatrix<f64> {
+        &self.r
+    }
+
+    /// Z, k × r: orthonormal basis of the kernel of R; r = 0 when the structure stands without its contacts.
+    pub fn kernel(&self) -> &DMatrix<f64> {
+        &self.z
+    }
+
+    /// Motions behind the kernel, for words and pictures: as many as Z has columns and with the same span on the
+    /// joints, but in a convenient basis (translations, then rotations, part by part), not column by column.
+    pub fn kernel_motions(&self) -> &[Motion] {
+        &self.motions
+    }
+
+    /// RF per load case and unit factor, in the order of the joints.
+    pub fn loads(&self) -> &[DVector<f64>] {
+        &self.rf
+    }
+
+    /// u under Σ factor·F and the mutual displacements `z` of the joints (the whole mutual displacement B u: with
+    /// an initial gap g it is z_n − g).
+    ///
+    /// # Panics
+    /// If there are not as many factors as load cases and as many z as joints.
+    pub fn displacements(&self, factors: &[f64], z: &DVector<f64>) -> Displacements {
+        Displacements(self.dofs.to_nodes(&self.base_displacements(factors, z)))
+    }
+
+    fn base_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
+        assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
+        assert_eq!(z.len(), self.joints.len(), "a z for every joint");
+        let mut v = DMatrix::zeros(self.elimination.masters(), 1);
+        for &(row, joint, value) in &self.c {
+            v[row as usize] -= value * z[joint as usize];
+        }
+        if z.iter().any(|z| *z != 0.0) {
+            self.factor.solve(&mut v);
+        }
+        for (case, factor) in factors.iter().enumerate() {
+            v.column_mut(0).axpy(*factor, &self.v.column(case), 1.0);
+        }
+        self.elimination.expand(v.as_slice(), z.as_slice())
+    }
+
+    /// Nodal forces K u − F − Bᵀ λ on the base dofs: what supports and ties have to give.
+    pub(super) fn unbalanced(
+        &self,
+        u: &Displacements,
+        lambda: &DVector<f64>,
+        factors: &[f64],
+    ) -> Vec<f64> {
+        let mut forces = self.k.times(&self.dofs.from_nodes(&u.0));
+        for (f, factor) in std::iter::zip(&self.f, factors) {
+            for (force, f) in std::iter::zip(&mut forces, f) {
+                *force -= factor * f;
+            }
+        }
+        for (force, joint) in std::iter::zip(&mut forces, self.joint_forces(lambda)) {
+            *force -= joint;
+        }
+        forces
+    }
+
+    /// Bᵀ λ on the base dofs.
+    fn joint_forces(&self, lambda: &DVector<f64>) -> Vec<f64> {
+        let mut forces = vec![0.0; self.dofs.count()];
+        for (joint, lambda) in std::iter::zip(&self.joints, lambda.iter()) {
+            for (node, a) in &joint.terms {
+                for (component, a) in std::iter::zip([Component::X, Component::Y], a) {
+                    if let Some(dof) = self.dofs.of(*node, component) {
+                        forces[dof] += a * lambda;
+                    }
+                }
+            }
+        }
+        forces
+    }
+
+    /// Sums over ties, then zero where a support holds.
+    fn unheld_forces(&self, mut forces: Vec<f64>) -> Vec<f64> {
+        for dof in 0..forces.len() {
+            let class = self.elimination.class(dof);
+            if class != dof {
+                forces[class] += std::mem::take(&mut forces[dof]);
+            }
+        }
+        for (dof, force) in forces.iter_mut().enumerate() {
+            if self.elimination.is_held(dof) {
+                *force = 0.0;
+            }
+        }
+        forces
+    }
+
+    /// Largest |K u − F − Bᵀ λ| on the components that no support holds (ties summed), relative to the largest
+    /// force: load, joint force or support reaction; moments relative to the largest moment, or to the largest
+    /// force times the mean length of a frame element. From K itself, not from anything condensed.
+    pub fn equilibrium_residual(
+        &self,
+        structure: &Structure,
+        u: &Displacements,
+        lambda: &DVector<f64>,
+        factors: &[f64],
+    ) -> f64 {
+        let unbalanced = self.unbalanced(u, lambda, factors);
+        let joint_forces = self.joint_forces(lambda);
+        let terms = self.k.times_absolute(&self.dofs.from_nodes(&u.0));
+        let rotation = self.dofs.is_rotation();
+        // Index 0: forces, 1: moments.
+        let mut scale = [0.0_f64; 2];
+        for dof in 0..self.dofs.count() {
+            let load: f64 = std::iter::zip(&self.f, factors)
+                .map(|(f, factor)| f[dof] * factor)
+                .sum();
+            let reaction = if self.elimination.is_held(dof) {
+                unbalanced[dof]
+            } else {
+                0.0
+            };
+            let largest = [
+                load,
+                joint_forces[dof],
+                reaction,
+                LOST_IN_ROUNDING * terms[dof],
+            ]
+            .into_iter()
+            .fold(0.0, |m: f64, x| m.max(x.abs()));
+            let kind = usize::from(rotation[dof]);
+            scale[kind] = scale[kind].max(largest);
+        }
+        scale[1] = scale[1].max(scale[0] * super::recovery::mean_frame_length(structure));
+        let residual = self.unheld_forces(unbalanced);
+        residual
+            .iter()
+            .zip(&rotation)
+            .filter(|(r, _)| **r != 0.0)
+            .map(|(r, &rotation)| r.abs() / scale[usize::from(rotation)])
+            .fold(0.0, f64::max)
+    }
+
+    /// Numbers of unknowns.
+    pub fn size(&self) -> Unknowns {
+        Unknowns {
+            all: self.dofs.unknowns(),
+            free: self.elimination.free(),
+        }
+    }
+
+    /// Time spent.
+    pub fn timings(&self) -> Seconds {
+        self.seconds
+    }
+
+    /// Entries stored for the factor of the main system.
+    pub fn factor_entries(&self) -> usize {
+        self.factor.stored()
+    }
+}
+
+/// On the motions of loose parts RF is known exactly: uᵀ (Bᵀ RF + F) = 0. Puts that right to the last digit.
+fn balance(rf: &mut DVector<f64>, rigid: &RigidKernel, motions: &[Motion], f: &[f64], dofs: &Dofs) {
+    if motions.is_empty() {
+        return;
+    }
+    let work = DVector::from_iterator(
+        motions.len(),
+        motions.iter().map(|motion| {
+            let u = dofs.from_nodes(&motion.u);
+            -std::iter::zip(u, f).map(|(u, f)| u * f).sum::<f64>()
+        }),
+    );
+    let error = rigid.coefficients.transpose() * work - rigid.z.transpose() * &*rf;
+    *rf += &rigid.z * error;
+}

@@ -1,0 +1,37 @@
+//! Structure → linear algebra.
+//!
+//! The assembled structure K u = F, its contact joints on (B u = z given), condensed to the joints:
+//!
+//! ```text
+//!     K u − Bᵀ λ = F,  B u = z     ⇒     λ = R z + RF
+//!     R   k × k   contact stiffness matrix (CSM), symmetric, positive semidefinite
+//!     RF  k       contact load vector (CLV) of each load case
+//!     Z   k × r   kernel of R: motions that cost no energy once the joints are off
+//! ```
+//!
+//! The joints reach this module as rows of B ([`crate::model::pair::Joint`]); it knows no contact law.
+//!
+//! Order of reading: `dof` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor` (sparse
+//! Cholesky), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, reactions).
+
+mod main_system;
+mod recovery;
+
+mod assembly;
+mod dense;
+mod dof;
+mod element;
+mod error;
+mod factor;
+mod kernel;
+mod loose;
+mod memory;
+mod sparse;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
+pub use loose::Motion;
+pub use main_system::{Displacements, MainSystem, Seconds, Unknowns};
+pub use recovery::{EndForces, MemberForces, QuadStress, Reaction};

@@ -1,0 +1,174 @@
+//! A symmetric sparse matrix, lower triangle by columns, and the counting sort that makes it from its terms.
+
+use nalgebra::DMatrix;
+
+/// Lower triangle (with diagonal) by columns; rows ascending, none twice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SymmetricSparse {
+    /// Start of each column, length n + 1.
+    pub column_start: Vec<u32>,
+    /// Row of each entry, ≥ its column.
+    pub rows: Vec<u32>,
+    /// Value of each entry.
+    pub values: Vec<f64>,
+}
+
+impl SymmetricSparse {
+    /// Sums terms (row, column, value), row ≥ column. `columns` tells the column of every term beforehand, in any
+    /// order; `terms` then gives the terms themselves, as many for each column.
+    pub fn from_terms<E>(
+        n: usize,
+        mut columns: impl FnMut(&mut dyn FnMut(usize)),
+        mut terms: impl FnMut(&mut dyn FnMut(usize, usize, f64)) -> Result<(), E>,
+    ) -> Result<SymmetricSparse, E> {
+        let mut start = vec![0_usize; n + 1];
+        columns(&mut |column| start[column + 1] += 1);
+        for column in 0..n {
+            start[column + 1] += start[column];
+        }
+        let mut next = start.clone();
+        let mut entries: Vec<(u32, f64)> = vec![(0, 0.0); start[n]];
+        terms(&mut |row, column, value| {
+            debug_assert!(row >= column);
+            entries[next[column]] = (row as u32, value);
+            next[column] += 1;
+        })?;
+        drop(next);
+        let mut matrix = SymmetricSparse {
+            column_start: vec![0; n + 1],
+            rows: Vec::new(),
+            values: Vec::new(),
+        };
+        // First pass: sort each column and sum in place; then copy to exact size.
+        let mut kept = vec![0_u32; n];
+        for column in 0..n {
+            let entries = &mut entries[start[column]..start[column + 1]];
+            // Stable, so that the sum does not depend on anything but the order of the terms.
+            entries.sort_by_key(|entry| entry.0);
+            let mut last = 0;
+            for i in 1..entries.len() {
+                if entries[i].0 == entries[last].0 {
+                    entries[last].1 += entries[i].1;
+                } else {
+                    last += 1;
+                    entries[last] = entries[i];
+                }
+            }
+            kept[column] = if entries.is_empty() {
+                0
+            } else {
+                last as u32 + 1
+            };
+            matrix.column_start[column + 1] = matrix.column_start[column] + kept[column];
+        }
+        let count = matrix.column_start[n] as usize;
+        matrix.rows.reserve_exact(count);
+        matrix.values.reserve_exact(count);
+        for column in 0..n {
+            let from = start[column];
+            for &(row, value) in &entries[from..from + kept[column] as usize] {
+                matrix.rows.push(row);
+                matrix.values.push(value);
+            }
+        }
+        Ok(matrix)
+    }
+
+    /// Order n.
+    pub fn order(&self) -> usize {
+        self.column_start.len() - 1
+    }
+
+    /// Entries (row, value) of a column, row ≥ column.
+    pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.column_start[column] as usize..self.column_start[column + 1] as usize;
+        std::iter::zip(&self.rows[range.clone()], &self.values[range])
+            .map(|(&row, &value)| (row as usize, value))
+    }
+
+    /// The diagonal; zero where there is no entry.
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.order())
+            .map(|i| match self.column(i).next() {
+                Some((row, value)) if row == i => value,
+                _ => 0.0,
+            })
+            .collect()
+    }
+
+    /// A x.
+    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+        self.products(x, |a, b| a * b)
+    }
+
+    /// |A| |x|: the size of the terms that are summed in A x.
+    pub fn times_absolute(&self, x: &[f64]) -> Vec<f64> {
+        self.products(x, |a, b| (a * b).abs())
+    }
+
+    fn products(&self, x: &[f64], product: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let mut y = vec![0.0; self.order()];
+        for column in 0..self.order() {
+            let mut sum = 0.0;
+            for (row, value) in self.column(column) {
+                sum += product(value, x[row]);
+                if row != column {
+                    y[row] += product(value, x[column]);
+                }
+            }
+            y[column] += sum;
+        }
+        y
+    }
+
+    /// The full matrix, for small problems and tests.
+    pub fn to_dense(&self) -> DMatrix<f64> {
+        let mut dense = DMatrix::zeros(self.order(), self.order());
+        for column in 0..self.order() {
+            for (row, value) in self.column(column) {
+                dense[(row, column)] = value;
+                dense[(column, row)] = value;
+            }
+        }
+        dense
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeated_terms_are_summed() {
+        let terms = [
+            (0, 0, 1.0),
+            (2, 0, -1.0),
+            (1, 1, 4.0),
+            (2, 0, 0.5),
+            (2, 2, 3.0),
+        ];
+        let matrix = SymmetricSparse::from_terms::<()>(
+            3,
+            |count| terms.iter().for_each(|&(_, j, _)| count(j)),
+            |push| {
+                terms.iter().for_each(|&(i, j, v)| push(i, j, v));
+                Ok(())
+            },
+        )
+        .unwrap();
+        #[rustfmt::skip]
+        let dense = DMatrix::from_row_slice(3, 3, &[
+             1.0, 0.0, -0.5,
+             0.0, 4.0,  0.0,
+            -0.5, 0.0,  3.0,
+        ]);
+        assert_eq!(matrix.to_dense(), dense);
+        assert_eq!(matrix.rows.len(), 4);
+        assert_eq!(matrix.times(&[1.0, 2.0, 3.0]), vec![-0.5, 8.0, 8.5]);
+        assert_eq!(
+            matrix.times_absolute(&[1.0, -2.0, 3.0]),
+            vec![2.5, 8.0, 9.5]
+        );
+        assert_eq!(matrix.diagonal(), vec![1.0, 4.0, 3.0]);
+    }
+}
