@@ -9,10 +9,9 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{DMatrix, DVector};
-
 use crate::model::pair::Law;
 
+use super::answer_box::ellipsoid;
 use super::exact_check::{Finding, exact_check};
 use super::numbers::ContactNumbers;
 use super::scheme_solve::{JointState, SchemeSolution, Sizes, law_violation, solve_scheme};
@@ -379,21 +378,19 @@ impl<'a> Search<'a> {
         // Largest value of Σ (factor · row) + fixed is below −(LOOSE · size)?
         let fails = |terms: &[(usize, f64)], fixed: f64, size: f64| {
             let mut largest = fixed;
-            for column in 0..width {
-                let a: f64 = terms.iter().map(|(i, f)| f * row(*i)[column]).sum();
-                largest += if column + 1 == width {
-                    a
-                } else if a > 0.0 {
-                    a * bounds[column].1
-                } else if a < 0.0 {
-                    a * bounds[column].0
-                } else {
-                    0.0
-                };
+            let entry =
+                |column: usize| -> f64 { terms.iter().map(|(i, f)| f * row(*i)[column]).sum() };
+            for (column, (low, high)) in bounds.iter().enumerate() {
+                let a = entry(column);
+                // Not 0 · ∞.
+                if a != 0.0 {
+                    largest += a * if a > 0.0 { high } else { low };
+                }
                 if largest == f64::INFINITY {
                     return false;
                 }
             }
+            largest += entry(width - 1);
             largest < -LOOSE * size
         };
         let force = self.sizes.force;
@@ -525,54 +522,6 @@ impl<'a> Search<'a> {
         let force = (&a.force - &b.force).amax();
         (still || moved <= SAME * size) && force <= SAME * self.sizes.force
     }
-}
-
-struct Boxes {
-    sides: Vec<(f64, f64)>,
-    extent: f64,
-}
-
-/// Every answer has zᵀλ ≤ 0, so zᵀR z ≤ −zᵀq: an ellipsoid about z₀/2 with z₀ = −R⁻¹q. Its box, widened a little; `None`
-/// where R is not safely positive definite.
-fn ellipsoid(
-    system: &ContactSystem,
-    sizes: &Sizes,
-    joints: &[usize],
-    constants: &[f64],
-) -> Option<Boxes> {
-    let k = joints.len();
-    let r = DMatrix::from_fn(k, k, |i, j| {
-        system.stiffness[(joints[i], joints[j])] / sizes.root[joints[i]] / sizes.root[joints[j]]
-    });
-    let q = DVector::from_iterator(k, joints.iter().map(|j| constants[*j] / sizes.root[*j]));
-    let eigen = r.clone().symmetric_eigenvalues();
-    if k == 0 || eigen.min() <= 1e-9 * eigen.max() {
-        return None;
-    }
-    let inverse = r.cholesky()?.inverse();
-    let z0 = -(&inverse * &q);
-    let norm = (-z0.dot(&q)).max(0.0).sqrt();
-    let mut extent = 0.0f64;
-    let sides: Vec<(f64, f64)> = (0..k)
-        .map(|j| {
-            let half = 0.5 * inverse[(j, j)].max(0.0).sqrt() * norm;
-            let side = (0.5 * z0[j] - half, 0.5 * z0[j] + half);
-            extent = extent.max(side.0.abs()).max(side.1.abs());
-            side
-        })
-        .collect();
-    let wider = LOOSE * extent;
-    Some(Boxes {
-        sides: sides
-            .iter()
-            .zip(joints)
-            .map(|((low, high), j)| {
-                let root = sizes.root[*j];
-                ((low - wider) / root, (high + wider) / root)
-            })
-            .collect(),
-        extent,
-    })
 }
 
 #[cfg(test)]

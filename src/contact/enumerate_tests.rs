@@ -1,5 +1,6 @@
 //! Known answers, and agreement with the tableau on random problems.
 
+use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -207,6 +208,63 @@ fn loose_parts_never_contradict_the_tableau() {
         none += usize::from(got.no_answer());
     }
     assert!(none > 0);
+}
+
+/// Pairs of all laws; R without the tangential joints of frictionless pairs.
+fn random_mixture(
+    random: &mut ChaCha8Rng,
+    m: usize,
+    ties: bool,
+) -> (ContactSystem, ContactNumbers) {
+    let (mut system, mut numbers) = random_problem(random, m, ties, 0);
+    let zero = crate::model::parameter::Number::Value(0.0);
+    let mut keep: Vec<usize> = (0..m).collect();
+    for pair in 0..m {
+        system.pairs[pair].tangential = Some(keep.len());
+        match random.random_range(0..3) {
+            0 => {
+                system.pairs[pair].law = Law::Frictionless { gap: zero.clone() };
+                system.pairs[pair].tangential = None;
+                (numbers.friction[pair], numbers.cohesion[pair]) = (0.0, 0.0);
+                continue;
+            }
+            1 => {
+                system.pairs[pair].law = Law::Bound {
+                    bound: zero.clone(),
+                };
+                numbers.bound[pair] = f64::from(random.random_range(0..3));
+                (
+                    numbers.friction[pair],
+                    numbers.cohesion[pair],
+                    numbers.gap[pair],
+                ) = (0.0, 0.0, 0.0);
+            }
+            _ => numbers.cohesion[pair] = f64::from(random.random_range(0..2)),
+        }
+        keep.push(m + pair);
+    }
+    system.stiffness = system.stiffness.select_rows(&keep).select_columns(&keep);
+    numbers.load = numbers.load.select_rows(&keep);
+    (system, numbers)
+}
+
+#[test]
+fn finds_the_answer_of_the_tableau_for_mixed_laws() {
+    let mut random = ChaCha8Rng::seed_from_u64(14);
+    for case in 0..300 {
+        let m = 1 + case % 4;
+        let (system, numbers) = random_mixture(&mut random, m, case % 2 == 0);
+        let z = lemke(&system, &numbers).expect("positive definite: an answer exists");
+        let got = all(&system, &numbers);
+        assert!(got.complete && got.undecided == 0, "case {case}");
+        let size = Sizes::new(&system, &numbers).displacement(&z);
+        assert!(
+            got.answers
+                .iter()
+                .any(|a| (&a.state.z - &z).amax() < 1e-6 * size),
+            "case {case}: {z} {got:?}"
+        );
+    }
 }
 
 /// `cargo test --release --lib enumerate -- --ignored --nocapture`

@@ -1,5 +1,6 @@
 //! Unilateral joints: from the condensed structure to the complementarity problem and back.
 
+pub(crate) mod answer_box;
 pub mod complementarity;
 pub mod critical;
 pub mod enumerate;

@@ -41,15 +41,16 @@ impl Bound {
         if m == 0.0 || m.is_infinite() {
             return Bound { m, e: 0 };
         }
-        while m >= 2.0 {
-            m *= 0.5;
-            e += 1;
+        if m < f64::MIN_POSITIVE {
+            // Subnormal: normalize first.
+            m *= 2f64.powi(64);
+            e -= 64;
         }
-        while m < 1.0 {
-            m *= 2.0;
-            e -= 1;
-        }
-        Bound { m, e }
+        // The exponent bits of a positive normal number.
+        let bits = m.to_bits();
+        let exponent = (bits >> 52) as i64 - 1023;
+        m = f64::from_bits((bits & ((1 << 52) - 1)) | (1023 << 52));
+        Bound { m, e: e + exponent }
     }
 
     fn power_of_two(e: i64) -> Self {
@@ -145,12 +146,13 @@ fn residue(a: &BigInt) -> u64 {
 
 /// Upper (side 1) or lower (side −1) bound of |mantissa| · 2^exponent.
 fn magnitude(mantissa: &BigInt, exponent: i64, side: f64) -> Bound {
-    let bits = mantissa.bits() as i64;
-    if bits == 0 {
+    // The two highest words, without copying the others.
+    let mut words = mantissa.iter_u64_digits().rev();
+    let (Some(high), below) = (words.next(), words.next()) else {
         return Bound::ZERO;
-    }
-    let shift = (bits - 60).max(0);
-    let top = (mantissa >> shift as u64).to_f64().unwrap_or(0.0).abs();
+    };
+    let shift = 64 * (words.len() as i64 + i64::from(below.is_some()));
+    let top = high as f64 + below.unwrap_or(0) as f64 * 2f64.powi(-64);
     Bound::new(top * (1.0 + side * 8.0 * f64::EPSILON), exponent + shift)
 }
 
@@ -214,25 +216,20 @@ impl Filtered {
 
     fn plus(&self, other: &Self, negative: bool) -> Self {
         let (a, b) = (self, other);
-        let exponent = if a.mantissa.is_zero() {
-            b.exponent
-        } else if b.mantissa.is_zero() {
-            a.exponent
-        } else {
-            a.exponent.min(b.exponent)
-        };
-        let lift = |x: &Self| {
-            if x.mantissa.is_zero() {
-                BigInt::zero()
-            } else {
-                &x.mantissa << (x.exponent - exponent) as u64
-            }
-        };
-        let mantissa = if negative {
-            lift(a) - lift(b)
-        } else {
-            lift(a) + lift(b)
-        };
+        // The finer exponent holds both exactly; only the coarser mantissa moves.
+        let coarser = a.exponent - b.exponent;
+        let (first, second);
+        let (mut x, mut y, mut exponent) = (&a.mantissa, &b.mantissa, a.exponent);
+        if x.is_zero() {
+            exponent = b.exponent;
+        } else if !y.is_zero() && coarser > 0 {
+            first = x << coarser as u64;
+            (x, exponent) = (&first, b.exponent);
+        } else if !y.is_zero() && coarser < 0 {
+            second = y << coarser.unsigned_abs();
+            y = &second;
+        }
+        let mantissa = if negative { x - y } else { x + y };
         let residue = match (a.residue, b.residue) {
             (Some(a), Some(b)) => {
                 let b = if negative { PRIME - b } else { b };
@@ -420,95 +417,5 @@ impl Scalar for Filtered {
 }
 
 #[cfg(test)]
-mod tests {
-    use rand::{Rng, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
-
-    use super::*;
-
-    fn rational(n: i64, d: i64) -> BigRational {
-        BigRational::new(BigInt::from(n), BigInt::from(d))
-    }
-
-    fn holds(number: &Filtered, value: &BigRational) {
-        // |value − midpoint| ≤ radius, in rationals.
-        let power = |e: i64| {
-            let two = BigInt::one() << e.unsigned_abs();
-            if e >= 0 {
-                BigRational::from_integer(two)
-            } else {
-                BigRational::new(BigInt::one(), two)
-            }
-        };
-        let middle = BigRational::from_integer(number.mantissa.clone()) * power(number.exponent);
-        if number.radius.m.is_infinite() {
-            return;
-        }
-        let radius = <BigRational as Scalar>::from_f64(number.radius.m) * power(number.radius.e);
-        assert!((value - middle).abs() <= radius, "{number:?} {value}");
-        let expected = times(residue(value.numer()), inverted(residue(value.denom())));
-        assert_eq!(number.residue, Some(expected));
-    }
-
-    #[test]
-    fn balls_hold_the_true_values() {
-        let mut random = ChaCha8Rng::seed_from_u64(5);
-        for precision in [8, 20, 64, 200] {
-            for _ in 0..200 {
-                let mut exact = vec![];
-                let mut balls = vec![];
-                for _ in 0..4 {
-                    let x = rational(
-                        random.random_range(-1000..1000),
-                        random.random_range(1..500),
-                    );
-                    balls.push(Filtered::new(&x, precision));
-                    exact.push(x);
-                }
-                for _ in 0..12 {
-                    let (i, j) = (
-                        random.random_range(0..exact.len()),
-                        random.random_range(0..exact.len()),
-                    );
-                    let (x, b) = match random.random_range(0..4) {
-                        0 => (&exact[i] + &exact[j], balls[i].add(&balls[j])),
-                        1 => (&exact[i] - &exact[j], balls[i].sub(&balls[j])),
-                        2 => (&exact[i] * &exact[j], balls[i].mul(&balls[j])),
-                        _ if !Zero::is_zero(&exact[j]) => {
-                            (&exact[i] / &exact[j], balls[i].div(&balls[j]))
-                        }
-                        _ => continue,
-                    };
-                    holds(&b, &x);
-                    if let Some(sign) = b.sign() {
-                        assert_eq!(Some(sign), Scalar::sign(&x));
-                    }
-                    exact.push(x);
-                    balls.push(b);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn zero_is_found_by_residue() {
-        let third = Filtered::new(&rational(1, 3), 100);
-        let sum = third.add(&third).add(&third).sub(&Filtered::one());
-        assert_eq!(sum.sign(), Some(Ordering::Equal));
-        let almost = third
-            .add(&third)
-            .add(&third)
-            .sub(&Filtered::one())
-            .add(&Filtered::new(&rational(1, 7), 100))
-            .sub(&Filtered::new(&rational(1, 7), 100));
-        assert!(Scalar::is_zero(&almost));
-    }
-
-    #[test]
-    fn too_little_precision_is_admitted() {
-        let tiny = BigRational::new(BigInt::one(), BigInt::one() << 300u32);
-        let third = Filtered::new(&rational(1, 3), 100);
-        let nearly = third.add(&Filtered::new(&tiny, 100)).sub(&third);
-        assert_eq!(nearly.sign(), None);
-    }
-}
+#[path = "filtered_tests.rs"]
+mod tests;

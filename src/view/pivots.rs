@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use unicode_width::UnicodeWidthStr;
 
 use super::force_unit;
-use super::number::{denoised, engineering, largest};
+use super::number::{in_column, largest};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::PivotRecord;
@@ -79,7 +79,7 @@ pub fn write(
             Cell::from(pivot.step.to_string()),
             Cell::from(pivot.entering.as_str()),
             Cell::from(pivot.leaving.as_str()),
-            Cell::from(engineering(denoised(pivot.p, scale))),
+            Cell::from(in_column(pivot.p, scale)),
         ]);
         if ties {
             let count = pivot.ties.len();

@@ -129,8 +129,19 @@ impl Canvas {
             }
         }
         let mut over = self.cells.clone();
-        for label in &self.labels {
-            self.place(label, &mut over, &dots);
+        // All labels or, where they do not all find room, the first and the last: some of them at random places
+        // would only puzzle.
+        let mut labelled = over.clone();
+        if self
+            .labels
+            .iter()
+            .all(|label| self.place(label, &mut labelled, &dots))
+        {
+            over = labelled;
+        } else {
+            for label in self.labels.first().into_iter().chain(self.labels.last()) {
+                self.place(label, &mut over, &dots);
+            }
         }
         let character = |index: usize| -> (char, Role) {
             match (over[index], dots[index]) {
@@ -153,11 +164,11 @@ impl Canvas {
             .collect()
     }
 
-    /// Puts a label into `over` where it and a blank on either side find free cells.
-    fn place(&self, label: &Label, over: &mut [Option<(char, Role)>], dots: &[(u8, Role)]) {
+    /// Puts a label into `over` where it and a blank on either side find free cells; says whether it did.
+    fn place(&self, label: &Label, over: &mut [Option<(char, Role)>], dots: &[(u8, Role)]) -> bool {
         let length = label.text.chars().count();
         if length == 0 || length != label.text.width() || length > self.columns {
-            return;
+            return false;
         }
         let start = label
             .column
@@ -175,9 +186,10 @@ impl Canvas {
                 for (cell, c) in over[from..].iter_mut().zip(label.text.chars()) {
                     *cell = Some((c, label.role));
                 }
-                return;
+                return true;
             }
         }
+        false
     }
 
     /// Braille dots of `strokes`, one byte per character, as textplots draws them.

@@ -81,7 +81,9 @@ impl Chart {
         if points().next().is_none() {
             return writeln!(out, "{}", style.fit("nothing to draw", style.width));
         }
-        let rows = self.height.clamp(3, 200);
+        // Nothing but zeros needs no height.
+        let flat = points().all(|&(_, y)| y == 0.0);
+        let rows = if flat { 3 } else { self.height.clamp(3, 200) };
         let ticks = Ticks::new(points().map(|&(_, y)| y), (rows / 3).clamp(2, 8));
         let labels: Vec<String> = ticks.values.iter().map(|&value| short(value)).collect();
         let gutter = labels.iter().map(|label| label.width()).max().unwrap_or(0);
