@@ -1,6 +1,8 @@
 //! The pipeline: scenario → prepared geometry (once) → solved state (for every change of a parameter).
 
 pub mod attempt;
+pub mod compare;
+pub mod explain;
 pub mod judge;
 pub mod numbers;
 pub mod plain_answers;

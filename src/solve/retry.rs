@@ -331,6 +331,7 @@ impl Job<'_> {
                         last: run.point,
                     },
                     ray: None,
+                    cycled: false,
                     told: String::new(),
                 }));
             }
@@ -459,6 +460,7 @@ pub(super) fn solve_plain_judged(
                     pivots: Vec::new(),
                 },
                 ray: None,
+                cycled: false,
                 told: String::new(),
             });
         }

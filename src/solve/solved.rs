@@ -107,6 +107,8 @@ pub struct Solved {
     pub ray: Option<Box<RayReport>>,
     /// What retries or a comparison with the default rules add to the explanation.
     pub(super) told: String,
+    /// Whether the run came back to a basis it had met.
+    pub cycled: bool,
 }
 
 impl Prepared {
@@ -208,6 +210,7 @@ impl Prepared {
         if answer.is_answer() {
             self.complete(&mut answer, system, numbers, factors, &state);
         }
+        let cycled = run.outcome == Outcome::Cycle;
         let trace = Trace::Contact {
             contact,
             numbers: numbers.clone(),
@@ -219,6 +222,7 @@ impl Prepared {
             answer,
             trace,
             ray,
+            cycled,
             told: String::new(),
         })
     }
@@ -485,6 +489,7 @@ pub(super) fn attempt_plain(
             fail_check(&mut answer);
         }
     }
+    let cycled = run.outcome == Outcome::Cycle;
     Ok(Solved {
         answer,
         trace: Trace::Plain {
@@ -492,6 +497,7 @@ pub(super) fn attempt_plain(
             pivots: run.pivots,
         },
         ray: None,
+        cycled,
         told: String::new(),
     })
 }
