@@ -64,8 +64,6 @@ pub struct FinalScheme<'a> {
     pub basis: &'a Basis,
     /// The vertex, dimensionless.
     pub point: &'a Point,
-    /// Covering (M does not depend on it; needed to write the LCP).
-    pub covering: Covering,
 }
 
 /// Basic variables that may not become negative: not the reserves and slips of open pairs without cohesion.
@@ -162,9 +160,9 @@ pub fn load_margin(
         let at = present - value / rate;
         let own = what(scheme, variable).0 == pair;
         let sooner = |slot: &mut Option<Turn>, up: bool| {
-            let earlier =
-                slot.as_ref()
-                    .is_none_or(|found| if up { at < found.at } else { at > found.at });
+            let earlier = slot
+                .as_ref()
+                .is_none_or(|found| if up { at < found.at } else { at > found.at });
             if earlier {
                 *slot = Some(turn(scheme, at, variable));
             }

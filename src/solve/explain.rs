@@ -10,7 +10,7 @@ use crate::explain::ties::{TieReport, ties};
 use crate::explain::vertex::Naming;
 use crate::lcp::vertex::{Basis, vertex};
 use crate::model::parameter::ParameterValues;
-use crate::model::rules::{Covering, TieBreak};
+use crate::model::rules::TieBreak;
 use crate::model::scenario::Scenario;
 
 impl Solved {
@@ -83,10 +83,9 @@ impl Solved {
         if !self.answer.is_answer() || basis.p || self.answer.marginal {
             return Vec::new();
         }
-        if self.answer.engine == super::retry::ENUMERATION {
+        if self.answer.engine == super::all_answers::ENUMERATION {
             return Vec::new();
         }
-        let covering: Covering = self.answer.covering.parse().unwrap_or_default();
         let Some(fresh) = vertex(&contact.lcp, &basis) else {
             return Vec::new();
         };
@@ -98,7 +97,6 @@ impl Solved {
             numbers,
             basis: &basis,
             point,
-            covering,
         };
         let mut margins: Vec<Margin> = prepared
             .cases

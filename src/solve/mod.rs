@@ -1,5 +1,6 @@
 //! The pipeline: scenario → prepared geometry (once) → solved state (for every change of a parameter).
 
+pub mod all_answers;
 pub mod attempt;
 pub mod compare;
 pub mod explain;

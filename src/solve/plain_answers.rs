@@ -16,6 +16,61 @@ pub struct PlainAnswers {
     pub answers: Vec<Vec<f64>>,
     /// No basis was singular with solutions: nothing can have been missed.
     pub complete: bool,
+    /// Number of bases.
+    pub visited: u64,
+    /// Bases that are singular and have solutions: they were not searched.
+    pub singular: u64,
+}
+
+/// The final basis of a bare LCP in exact arithmetic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlainCheck {
+    /// Whether its equations have one solution.
+    pub unique: bool,
+    /// Negative variables: `z` or `w`, row, value rounded.
+    pub violations: Vec<(char, usize, f64)>,
+    /// Basic variables that are exactly zero.
+    pub zeros: Vec<(char, usize)>,
+}
+
+/// Solves a basis exactly and tells every sign; `None` for more than 100 rows.
+pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCheck> {
+    let n = lcp.size();
+    if n > 100 || lcp.whole_size != n {
+        return None;
+    }
+    let m: Vec<Vec<BigRational>> = (0..n)
+        .map(|i| (0..n).map(|j| exact(lcp.matrix[(i, j)])).collect())
+        .collect();
+    let q: Vec<BigRational> = lcp.q.iter().map(|v| exact(*v)).collect();
+    let mut check = PlainCheck {
+        unique: false,
+        violations: Vec::new(),
+        zeros: Vec::new(),
+    };
+    let Basis::One(z) = solve(&m, &q, basis) else {
+        return Some(check);
+    };
+    check.unique = true;
+    let mut tell = |letter: char, row: usize, value: &BigRational| {
+        if value.is_negative() {
+            check.violations.push((letter, row, nearest(value)));
+        } else if value.is_zero() {
+            check.zeros.push((letter, row));
+        }
+    };
+    for (&i, value) in basis.iter().zip(&z) {
+        tell('z', i, value);
+    }
+    for i in (0..n).filter(|i| !basis.contains(i)) {
+        let sum: BigRational = basis.iter().zip(&z).map(|(&j, z)| &m[i][j] * z).sum();
+        tell('w', i, &(sum + &q[i]));
+    }
+    Some(check)
+}
+
+fn exact(value: f64) -> BigRational {
+    <BigRational as crate::lcp::scalar::Scalar>::from_f64(value)
 }
 
 /// Goes through all bases; `None` for more than [`MOST_ROWS`] rows or when stopped.
@@ -24,7 +79,6 @@ pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAn
     if n > MOST_ROWS || lcp.whole_size != n {
         return None;
     }
-    let exact = <BigRational as crate::lcp::scalar::Scalar>::from_f64;
     let m: Vec<Vec<BigRational>> = (0..n)
         .map(|i| (0..n).map(|j| exact(lcp.matrix[(i, j)])).collect())
         .collect();
@@ -32,6 +86,8 @@ pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAn
     let mut found = PlainAnswers {
         answers: Vec::new(),
         complete: true,
+        visited: 1 << n,
+        singular: 0,
     };
     let mut exact_answers: Vec<Vec<BigRational>> = Vec::new();
     for basis in 0..1usize << n {
@@ -44,6 +100,7 @@ pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAn
             Basis::None => continue,
             Basis::Many => {
                 found.complete = false;
+                found.singular += 1;
                 continue;
             }
         };

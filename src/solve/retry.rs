@@ -7,27 +7,21 @@
 
 use std::sync::Arc;
 
+use super::all_answers::plain_answer;
 use super::judge::{EXACT_PAIRS, EXACT_ROWS};
 use super::numbers::{contact_numbers, factors};
 use super::plain_answers::all_plain_answers;
 use super::prepared::{Geometry, Prepared};
-use super::solved::{SolveError, Solved, Trace, attempt_plain, empty_answer};
-use crate::answer::check::check_plain;
-use crate::answer::pairs::{JointState, pair_states};
-use crate::answer::record::{Attempt, OutcomeKind, PlainSolution, RayClass, Verdict};
-use crate::contact::complementarity::{Couple, contact_lcp};
+use super::solved::{SolveError, Solved, attempt_plain};
+use crate::answer::record::{Attempt, OutcomeKind, RayClass, Verdict};
 use crate::contact::enumerate::Enumeration;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::ray::{self, Subject, add_remedies, all_answers, certify_ray};
 use crate::lcp::mirrored::MirroredLcp;
-use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 use crate::watch::Watch;
-
-/// The word for an answer found by going through all working schemes.
-pub const ENUMERATION: &str = "enumeration";
 
 /// Contact pairs up to which an uncertified collapse is looked at under other rules, too.
 const FEW_PAIRS: usize = 300;
@@ -275,65 +269,21 @@ impl Job<'_> {
 
     /// The first enumerated answer that passes the fresh check.
     fn enumerated(&self, found: &Enumeration) -> Result<Option<Solved>, SolveError> {
-        let contact = contact_lcp(self.system, self.numbers, Covering::default())?;
         for candidate in &found.answers {
-            let state = JointState {
-                z: candidate.state.z.clone(),
-                force: candidate.state.force.clone(),
-                p: 0.0,
-            };
-            let mut z = vec![0.0; contact.rows.len()];
-            for (value, row) in z.iter_mut().zip(&contact.rows) {
-                let tangential = self.system.pairs[row.pair].tangential;
-                let slip = tangential.map_or(0.0, |joint| state.z[joint]);
-                *value = match row.couple {
-                    Couple::Normal => state.z[row.pair],
-                    Couple::Plus => slip.max(0.0),
-                    Couple::Minus => (-slip).max(0.0),
-                } / contact.length_unit;
-            }
-            let point = Point {
-                w: vec![0.0; z.len()],
-                z,
-                p: 0.0,
-            };
-            let run = Run {
-                outcome: Outcome::Normal { marginal: false },
-                pivots: Vec::new(),
-                point,
-            };
-            let default = Rules::default();
-            let words = [
-                default.covering.to_string(),
-                default.tie_break.to_string(),
-                ENUMERATION.to_owned(),
-            ];
-            let mut answer = empty_answer(&run, words, self.prepared.size(self.system, &contact));
-            answer.pairs = pair_states(self.system, self.numbers, &contact, &state);
-            self.prepared
-                .add_released_slips(&mut answer.pairs, self.numbers, self.factors, &state);
-            self.prepared
-                .complete(&mut answer, self.system, self.numbers, self.factors, &state);
-            if answer.is_answer() {
+            let mut solved = self.prepared.enumerated_answer(
+                self.system,
+                self.numbers,
+                self.factors,
+                candidate,
+            )?;
+            if solved.answer.is_answer() {
                 if found.answers.len() > 1 {
-                    answer.notes.push(format!(
+                    solved.answer.notes.push(format!(
                         "there are {} answers; this is one of them",
                         found.answers.len()
                     ));
                 }
-                return Ok(Some(Solved {
-                    answer,
-                    trace: Trace::Contact {
-                        contact,
-                        numbers: self.numbers.clone(),
-                        factors: self.factors.to_vec(),
-                        pivots: run.pivots,
-                        last: run.point,
-                    },
-                    ray: None,
-                    cycled: false,
-                    told: String::new(),
-                }));
+                return Ok(Some(solved));
             }
         }
         Ok(None)
@@ -416,53 +366,20 @@ pub(super) fn solve_plain_judged(
     }
     if let Some(found) = all_plain_answers(lcp, watch) {
         for z in &found.answers {
-            let point = Point {
-                w: (&lcp.matrix * nalgebra::DVector::from_column_slice(z) + &lcp.q)
-                    .iter()
-                    .copied()
-                    .collect(),
-                z: z.clone(),
-                p: 0.0,
-            };
-            let check = check_plain(lcp, &point);
-            if !check.passed {
+            let mut solved = plain_answer(lcp, z, &first.answer);
+            if !solved.answer.is_answer() {
                 continue;
             }
-            let run = Run {
-                outcome: Outcome::Normal { marginal: false },
-                pivots: Vec::new(),
-                point,
-            };
-            let words = [
-                first.answer.covering.clone(),
-                first.answer.tie_break.clone(),
-                ENUMERATION.to_owned(),
-            ];
-            let mut answer = empty_answer(&run, words, first.answer.size);
-            attempts.append(&mut answer.attempts);
-            answer.check = check;
-            answer.solution = Some(PlainSolution {
-                z: run.point.z,
-                w: run.point.w,
-            });
-            answer.notes.push(told(&first, &attempts));
+            attempts.append(&mut solved.answer.attempts);
+            solved.answer.notes.push(told(&first, &attempts));
             if found.answers.len() > 1 {
-                answer.notes.push(format!(
+                solved.answer.notes.push(format!(
                     "there are {} answers; this is one of them",
                     found.answers.len()
                 ));
             }
-            answer.attempts = attempts;
-            return Ok(Solved {
-                answer,
-                trace: Trace::Plain {
-                    lcp: Arc::clone(lcp),
-                    pivots: Vec::new(),
-                },
-                ray: None,
-                cycled: false,
-                told: String::new(),
-            });
+            solved.answer.attempts = attempts;
+            return Ok(solved);
         }
         if found.complete && found.answers.is_empty() && first.answer.ray.is_some() {
             first.answer.ray = Some(ray::plain_report(first.answer.p, Verdict::Proved));
