@@ -107,9 +107,15 @@ pub enum Command {
     /// Show the forces of the supports on the structure
     #[command(after_help = "Example:\n  reactions")]
     Reactions,
-    /// Show the numbers of the fresh check of the answer
-    #[command(after_help = "Example:\n  check")]
-    Check,
+    /// Show the numbers of the fresh check of the answer; `check exact` proves or refutes it
+    ///
+    /// `check exact` solves the final working scheme in exact arithmetic from the f64 data and tells every sign.
+    #[command(after_help = "Example:\n  check\n  check exact")]
+    Check {
+        /// In exact arithmetic
+        #[arg(value_name = "EXACT")]
+        how: Option<CheckHow>,
+    },
 
     /// List the pivots, each with its sentence
     #[command(after_help = "Example:\n  pivots\n  pivots 2..4")]
@@ -135,6 +141,35 @@ pub enum Command {
         pair: String,
     },
 
+    /// List the pivots with tied rows, what chose among them, and the vertices with basics at zero
+    #[command(after_help = "Example:\n  load cycling; ties")]
+    Ties,
+    /// Print the dictionary of a small problem at the pivot chosen by `step`
+    #[command(after_help = "Example:\n  load klarbring; set f 0.5; step first; tableau")]
+    Tableau,
+
+    /// Run every covering, tie-break and engine on the present values, and say which find the same answer
+    #[command(after_help = "Example:\n  load greco; set f 2; compare")]
+    Compare,
+    /// List every answer of a small problem; with a number, show that one
+    ///
+    /// Goes through all working schemes (at most 10 pairs; 9 rows of a bare LCP). `enumerate 2` makes the second answer
+    /// the one that `pairs`, `plot` and the others show; `solve` goes back to Lemke's.
+    #[command(after_help = "Example:\n  load klarbring; enumerate; enumerate 2; pairs")]
+    Enumerate {
+        /// Number of the answer to show
+        #[arg(value_name = "ANSWER")]
+        answer: Option<usize>,
+    },
+    /// Find the friction above which more than one answer is possible
+    ///
+    /// Exact up to 8 pairs; beyond, a search among drawn working schemes, reported as such.
+    #[command(after_help = "Example:\n  load klarbring; critical f")]
+    Critical {
+        /// The friction parameter
+        #[arg(value_name = "PARAMETER")]
+        friction: String,
+    },
     /// Show the ray: its class, its motion and what it means
     #[command(after_help = "Example:\n  load beam-ray; ray")]
     Ray,
@@ -261,12 +296,21 @@ pub enum Picture {
     P,
     /// The structure with the states of its pairs, and its deformed shape
     Structure,
+    /// The collapse mode of a ray
+    Mode,
     /// Bending moment along a bar
     Moment,
     /// Shear force along a bar
     Shear,
     /// Normal force along a bar
     Axial,
+}
+
+/// The word of `check exact`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CheckHow {
+    /// In exact arithmetic
+    Exact,
 }
 
 /// What `export` writes.
@@ -321,8 +365,8 @@ pub const GROUPS: &[(&str, &[&str])] = &[
             "check",
         ],
     ),
-    ("pivots", &["pivots", "step", "why"]),
-    ("trouble", &["ray"]),
+    ("pivots", &["pivots", "step", "why", "ties", "tableau"]),
+    ("trouble", &["ray", "compare", "enumerate", "critical"]),
     ("pictures", &["plot"]),
     (
         "scripts",

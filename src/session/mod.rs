@@ -11,6 +11,7 @@ pub mod expect;
 pub mod journal;
 mod output;
 mod plots;
+mod questions;
 mod record;
 mod reports;
 pub mod save;

@@ -72,6 +72,7 @@ impl Session {
             || self.status_json(),
             |out, style| {
                 view::status::write(out, answer, &self.now.scenario, &self.now.values, style)?;
+                view::loose::write(out, &self.loose(), style)?;
                 if !self.auto {
                     writeln!(out, "auto is off: changes wait for `solve`")?;
                 }
@@ -514,6 +515,7 @@ impl Session {
             ),
         };
         let shown = self.shown_step();
+        let margins = self.margins(id);
         let turned: Vec<_> = answer
             .pivots
             .iter()
@@ -526,7 +528,7 @@ impl Session {
             })
             .collect();
         io.report(
-            || json!({"pair": pair, "cause": cause, "pivots": turned}),
+            || json!({"pair": pair, "cause": cause, "pivots": turned, "margins": margins}),
             |out, style| {
                 let label = format!("{id} {state}: ");
                 for line in style.hanging(&style.text(&label), &style.text(&cause)) {
@@ -541,7 +543,10 @@ impl Session {
                         writeln!(out, "{line}")?;
                     }
                 }
-                Ok(())
+                if !margins.is_empty() {
+                    writeln!(out, "How far the working scheme holds:")?;
+                }
+                view::why::write(out, id, &margins, style)
             },
         )?;
         Ok(())
@@ -557,7 +562,10 @@ impl Session {
         })?;
         io.report(
             || json!(ray),
-            |out, style| view::ray::write(out, ray, &self.now.scenario.units, style),
+            |out, style| {
+                view::ray::write(out, ray, &self.now.scenario.units, style)?;
+                self.write_ray_details(out, style)
+            },
         )?;
         Ok(())
     }
