@@ -164,8 +164,8 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
             .iter()
             .zip(cases)
             .map(|(load, (case, factor))| {
-                let (power, terms) = power(&load.vector, &direction);
-                let noise = power.abs() <= 1e-12 * terms;
+                let (power, _) = power(&load.vector, &direction);
+                let noise = power.abs() <= 1e-12 * load.vector.amax();
                 CasePower {
                     case: case.clone(),
                     factor: *factor,
@@ -313,11 +313,21 @@ impl RayReport {
                 let pair = self
                     .artefact
                     .map_or(String::new(), |pair| format!(" {}", system.pairs[pair].id));
+                let cause = if covering == Covering::Ones {
+                    "With friction above 1, covering `ones` takes more friction from every pair than it gives \
+                     ((1 − f)p)"
+                } else {
+                    "An open pair has no friction under covering `weight`, so at the moment of opening both reserves are \
+                     zero together with the contact force"
+                };
+                let choice = if covering == Covering::Ones {
+                    "its two friction reserves are used up before its contact force is"
+                } else {
+                    "the tie-break let its second reserve leave before its contact force"
+                };
                 format!(
-                    "This says nothing about the structure. Where pair{pair} loses its contact force its two friction \
-                     reserves vanish at the same moment, because covering `{covering}` gives an open pair no friction of \
-                     its own; the tie-break let the second reserve leave before the contact force, and slip in both \
-                     directions at once, which moves nothing, never ends."
+                    "This says nothing about the structure. {cause}: where pair{pair} should open, {choice}, and slip in \
+                     both directions at once, which moves nothing, can grow without end."
                 )
             }
             RayClass::Fault => {
@@ -359,10 +369,14 @@ impl RayReport {
             Some(Verdict::Certified) => {
                 text += " Proved: no contact forces within the laws' bounds balance the loads";
                 if let Some(certificate) = &self.certificate {
+                    let taken = if certificate.dissipation > 0.0 {
+                        format!("at most {} of it", short(certificate.dissipation))
+                    } else {
+                        "none of it".to_owned()
+                    };
                     text += &format!(
-                        " (on the motion of the certificate they do the work {}, friction without pressure at most {})",
-                        short(certificate.power),
-                        short(certificate.dissipation)
+                        " (there is a motion on which they do the work {} and contact can take {taken})",
+                        short(certificate.power)
                     );
                 }
                 text += ".";

@@ -53,8 +53,8 @@ pub enum Remedy {
     },
 }
 
-/// Solves under other numbers; whether an answer was found.
-pub type Try<'a> = &'a dyn Fn(&ContactNumbers) -> bool;
+/// Solves under other numbers (and, if given, with another factor of one load case); whether an answer was found.
+pub type Try<'a> = &'a dyn Fn(&ContactNumbers, Option<(usize, f64)>) -> bool;
 
 /// Looks for what would stop the motion of these parts.
 pub fn remedies(
@@ -159,7 +159,7 @@ fn friction(
     Some(Remedy::Friction {
         needed: Some(high),
         multiplier,
-        tried: solves(&with(high * (1.0 + INSIDE))),
+        tried: solves(&with(high * (1.0 + INSIDE)), None),
     })
 }
 
@@ -194,7 +194,7 @@ fn load(
         case: name.to_owned(),
         present: factor,
         between,
-        tried: solves(&changed).then_some(inside),
+        tried: solves(&changed, Some((case, inside))).then_some(inside),
     })
 }
 

@@ -8,7 +8,7 @@ use super::plain_answers::{MOST_ROWS, PlainCheck, all_plain_answers, check_plain
 use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved, Trace, empty_answer};
 use crate::answer::check::check_plain;
-use crate::answer::pairs::{JointState, pair_states};
+use crate::answer::pairs::{joint_state, pair_states};
 use crate::answer::record::{Answer, OutcomeKind, PlainSolution, State};
 use crate::contact::complementarity::{Couple, contact_lcp};
 use crate::contact::critical::{CriticalFriction, critical_friction};
@@ -150,19 +150,27 @@ impl Prepared {
         candidate: &EnumeratedAnswer,
     ) -> Result<Solved, SolveError> {
         let contact = contact_lcp(system, numbers, Covering::default())?;
-        let state = JointState {
-            z: candidate.state.z.clone(),
-            force: candidate.state.force.clone(),
-            p: 0.0,
-        };
         let mut z = vec![0.0; contact.rows.len()];
         for (value, row) in z.iter_mut().zip(&contact.rows) {
             let tangential = system.pairs[row.pair].tangential;
-            let slip = tangential.map_or(0.0, |joint| state.z[joint]);
+            let slip = tangential.map_or(0.0, |joint| candidate.state.z[joint]);
+            // What the scheme holds is zero, not the rounding of a linear program.
+            let scheme = candidate.schemes.first().map(|scheme| scheme[row.pair]);
+            let free = |plus: bool| {
+                scheme.is_none_or(|scheme| match scheme.tangential {
+                    // Without cohesion an open pair slips either way.
+                    _ if scheme == PairScheme::OPEN => true,
+                    Tangential::Stick => false,
+                    Tangential::SlipPlus => plus,
+                    Tangential::SlipMinus => !plus,
+                })
+            };
             *value = match row.couple {
-                Couple::Normal => state.z[row.pair],
-                Couple::Plus => slip.max(0.0),
-                Couple::Minus => (-slip).max(0.0),
+                Couple::Normal if scheme.is_some_and(|scheme| !scheme.open) => 0.0,
+                Couple::Normal => candidate.state.z[row.pair].max(0.0),
+                Couple::Plus if free(true) => slip.max(0.0),
+                Couple::Minus if free(false) => (-slip).max(0.0),
+                Couple::Plus | Couple::Minus => 0.0,
             } / contact.length_unit;
         }
         let point = Point {
@@ -170,6 +178,7 @@ impl Prepared {
             z,
             p: 0.0,
         };
+        let state = joint_state(system, numbers, &contact, &point);
         let run = Run {
             outcome: Outcome::Normal { marginal: false },
             pivots: Vec::new(),

@@ -121,11 +121,15 @@ impl Prepared {
             job.compare_with_default(&mut solved, &subject)?;
         }
         if let Some(report) = &mut solved.ray {
-            let solves = |numbers: &ContactNumbers| {
+            let solves = |numbers: &ContactNumbers, changed: Option<(usize, f64)>| {
                 let default = Rules {
                     engine: Engine::Scheme,
                     ..Rules::default()
                 };
+                let mut factors = factors.clone();
+                if let Some((case, factor)) = changed {
+                    factors[case] = factor;
+                }
                 self.attempt_contact(system, numbers, &factors, default, watch)
                     .is_ok_and(|solved| solved.answer.is_answer())
             };
@@ -169,6 +173,17 @@ impl Job<'_> {
         let m = self.system.pairs.len();
         let class = first.ray.as_ref().map(|report| report.class);
         let limit = first.answer.outcome == OutcomeKind::PivotLimit;
+        let mut shown = first;
+        // A proof that there is none saves all further attempts.
+        let found = all_answers(subject, self.watch);
+        if found.as_ref().is_some_and(Enumeration::no_answer)
+            && let Some(report) = &mut shown.ray
+            && report.verdict.is_some()
+        {
+            report.verdict = Some(Verdict::Proved);
+            return Ok(shown);
+        }
+        let first = shown;
         let try_rules = !limit && (class != Some(RayClass::Mechanism) || m <= FEW_PAIRS);
         let mut attempts = first.answer.attempts.clone();
         if try_rules {
@@ -189,23 +204,13 @@ impl Job<'_> {
             }
         }
         let mut shown = first;
-        match all_answers(subject, self.watch) {
-            Some(found) if !found.answers.is_empty() => {
-                if let Some(mut again) = self.enumerated(&found)? {
-                    attempts.append(&mut again.answer.attempts);
-                    again.answer.notes.push(told(&shown, &attempts));
-                    again.answer.attempts = attempts;
-                    return Ok(again);
-                }
-            }
-            Some(found) if found.no_answer() => {
-                if let Some(report) = &mut shown.ray
-                    && report.verdict.is_some()
-                {
-                    report.verdict = Some(Verdict::Proved);
-                }
-            }
-            _ => {}
+        if let Some(found) = found
+            && let Some(mut again) = self.enumerated(&found)?
+        {
+            attempts.append(&mut again.answer.attempts);
+            again.answer.notes.push(told(&shown, &attempts));
+            again.answer.attempts = attempts;
+            return Ok(again);
         }
         if attempts.len() > 1 {
             shown.told = format!(
@@ -342,6 +347,14 @@ pub(super) fn solve_plain_judged(
     if first.answer.outcome == OutcomeKind::PivotLimit {
         return Ok(first);
     }
+    let found = all_plain_answers(lcp, watch);
+    let none = found
+        .as_ref()
+        .is_some_and(|found| found.complete && found.answers.is_empty());
+    if none && first.answer.ray.is_some() {
+        first.answer.ray = Some(ray::plain_report(first.answer.p, Verdict::Proved));
+        return Ok(first);
+    }
     let mut attempts = first.answer.attempts.clone();
     let mut others = Vec::new();
     if lcp.size() <= EXACT_ROWS && rules.engine != Engine::Exact {
@@ -364,7 +377,7 @@ pub(super) fn solve_plain_judged(
             return Ok(again);
         }
     }
-    if let Some(found) = all_plain_answers(lcp, watch) {
+    if let Some(found) = found {
         for z in &found.answers {
             let mut solved = plain_answer(lcp, z, &first.answer);
             if !solved.answer.is_answer() {
@@ -380,9 +393,6 @@ pub(super) fn solve_plain_judged(
             }
             solved.answer.attempts = attempts;
             return Ok(solved);
-        }
-        if found.complete && found.answers.is_empty() && first.answer.ray.is_some() {
-            first.answer.ray = Some(ray::plain_report(first.answer.p, Verdict::Proved));
         }
     }
     let tried: Vec<String> = attempts[1..]

@@ -2,10 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::number::{engineering, short};
+use super::number::short;
 use super::pairs::state_words;
 use super::style::{Role, Style};
-use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::Answer;
 use crate::solve::all_answers::AllAnswers;
 
@@ -25,37 +24,30 @@ fn states(answer: &Answer) -> String {
 
 /// Writes the answers, one a line, and how the search went.
 pub fn write(out: &mut dyn Write, all: &AllAnswers, style: &Style) -> io::Result<()> {
-    if !all.answers.is_empty() {
-        let mut table = Table::new(vec![
-            Column::count("answer"),
-            Column::words("states"),
-            Column::numbers("max z", None).droppable(2),
-            Column::words("proof").droppable(1),
-        ]);
-        for (k, solved) in all.answers.iter().enumerate() {
-            let answer = &solved.answer;
-            let largest = answer
-                .pairs
-                .iter()
-                .flat_map(|pair| [pair.z_n, pair.z_t])
-                .chain(answer.solution.iter().flat_map(|s| s.z.iter().copied()))
-                .fold(0.0, |a: f64, z| a.max(z.abs()));
-            let exact = all.exact.get(k).copied().unwrap_or_default();
-            let near = all.continuum.get(k).copied().unwrap_or_default();
-            let proof = match (exact, near) {
-                (true, false) => "exact",
-                (true, true) => "exact; others next to it",
-                (false, false) => "up to rounding",
-                (false, true) => "up to rounding; others next to it",
-            };
-            table.rows.push(Row::new(vec![
-                Cell::from((k + 1).to_string()),
-                Cell::from(states(answer)),
-                Cell::from(engineering(largest)),
-                Cell::from(proof),
-            ]));
+    for (k, solved) in all.answers.iter().enumerate() {
+        let answer = &solved.answer;
+        let largest = answer
+            .pairs
+            .iter()
+            .flat_map(|pair| [pair.z_n, pair.z_t])
+            .fold(0.0, |a: f64, z| a.max(z.abs()));
+        let exact = all.exact.get(k).copied().unwrap_or_default();
+        let near = all.continuum.get(k).copied().unwrap_or_default();
+        let proof = match (exact, near) {
+            (true, false) => "proved in exact arithmetic",
+            (true, true) => "proved in exact arithmetic; others lie next to it",
+            (false, false) => "holds up to rounding",
+            (false, true) => "holds up to rounding; others lie next to it",
+        };
+        let size = if answer.solution.is_none() {
+            format!("; largest motion {}", short(largest))
+        } else {
+            String::new()
+        };
+        let text = format!("{} ({proof}{size})", states(answer));
+        for line in style.hanging(&format!("{:>3}  ", k + 1), &style.text(&text)) {
+            writeln!(out, "{line}")?;
         }
-        table.write(out, style)?;
     }
     let count = match all.answers.len() {
         0 if all.undecided == 0 => "no answer: proved by going through all of them".to_owned(),

@@ -152,8 +152,9 @@ pub fn write_details(
             _ => crate::explain::mode::pair_words(system, &certificate.direction).join("; "),
         };
         let text = format!(
-            "on the motion \u{201c}{words}\u{201d} (per unit of its largest entry) the loads do the work {}, cohesion and \
-             known bounds take at most {}, and pressed contact gives nothing back: verified in exact arithmetic",
+            "motion: {words}. Per unit of its largest entry the loads do the work {} on it; cohesion and known bounds take \
+             at most {}, pressed contact nothing (every pair parts by at least f times its slip). Verified in exact \
+             arithmetic",
             short(certificate.power),
             short(certificate.dissipation)
         );
