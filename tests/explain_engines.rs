@@ -85,7 +85,7 @@ fn solve(prepared: &Prepared, scenario: &Scenario, engine: Engine) -> Solved {
 /// Positive definite R; `whole`: small integers, so that ties are everywhere. Mixed laws, gaps, cohesion.
 fn mixed(rng: &mut ChaCha8Rng, m: usize, whole: bool) -> Problem {
     let n = 2 * m;
-    let mut number = |low: f64, high: f64, rng: &mut ChaCha8Rng| {
+    let number = |low: f64, high: f64, rng: &mut ChaCha8Rng| {
         if whole {
             f64::from(rng.random_range(low as i32..=high as i32))
         } else {
@@ -258,7 +258,9 @@ fn no_claim_is_stronger_than_proved_on_two_thousand() {
 fn contrast(rng: &mut ChaCha8Rng, m: usize) -> Problem {
     let n = 2 * m;
     let decades = rng.random_range(7.0..9.0);
-    let q = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0)).qr().q();
+    let q = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0))
+        .qr()
+        .q();
     let values = DVector::from_fn(n, |i, _| match i {
         0 => 1.0,
         1 => 10f64.powf(-decades),

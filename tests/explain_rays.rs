@@ -17,10 +17,17 @@ fn load(name: &str) -> (Scenario, Prepared) {
     (scenario, prepared)
 }
 
-fn solve((scenario, prepared): &(Scenario, Prepared), sets: &[(&str, f64)], rules: Rules) -> Solved {
+fn solve(
+    (scenario, prepared): &(Scenario, Prepared),
+    sets: &[(&str, f64)],
+    rules: Rules,
+) -> Solved {
     let mut values = scenario.parameter_values();
     for (name, value) in sets {
-        assert!(values.insert((*name).to_owned(), *value).is_some(), "{name}");
+        assert!(
+            values.insert((*name).to_owned(), *value).is_some(),
+            "{name}"
+        );
     }
     prepared
         .solve(scenario, &values, rules, &Quiet)
@@ -57,10 +64,12 @@ fn block_on_a_rough_plane() {
     }
     let report = over.ray.as_ref().expect("a report");
     // No friction stops a block from overturning; a push below 0.25 does.
-    assert!(report.remedies.iter().any(|remedy| matches!(
-        remedy,
-        Remedy::Friction { needed: None, .. }
-    )));
+    assert!(
+        report
+            .remedies
+            .iter()
+            .any(|remedy| matches!(remedy, Remedy::Friction { needed: None, .. }))
+    );
     assert!(report.remedies.iter().any(|remedy| matches!(
         remedy,
         Remedy::Load { case, between, tried: Some(_), .. } if case == "push" && (between[1] - 0.25).abs() < 1e-7
@@ -81,9 +90,17 @@ fn block_on_a_rough_plane() {
     )));
 
     for (f, limit) in [(0.4, 0.25), (0.2, 0.2)] {
-        let below = solve(&block, &[("f", f), ("H", limit * (1.0 - 1e-9))], Rules::default());
+        let below = solve(
+            &block,
+            &[("f", f), ("H", limit * (1.0 - 1e-9))],
+            Rules::default(),
+        );
         assert_eq!(below.answer.outcome, OutcomeKind::Normal);
-        let above = solve(&block, &[("f", f), ("H", limit * (1.0 + 1e-9))], Rules::default());
+        let above = solve(
+            &block,
+            &[("f", f), ("H", limit * (1.0 + 1e-9))],
+            Rules::default(),
+        );
         mechanism(&above);
     }
 }
@@ -153,7 +170,10 @@ fn chosen_rules_fail_as_they_must_and_the_rule_that_succeeds_is_named() {
         assert_eq!(solved.answer.outcome, OutcomeKind::Ray, "{name}");
         assert_eq!(solved.answer.attempts.len(), 1, "{name}: run as chosen");
         let ray = solved.answer.ray.as_ref().expect("a ray");
-        assert!(matches!(ray.class, RayClass::Artefact | RayClass::Fault), "{name}");
+        assert!(
+            matches!(ray.class, RayClass::Artefact | RayClass::Fault),
+            "{name}"
+        );
         assert_eq!(ray.verdict, None);
         assert!(
             ray.explanation.contains("says nothing about the structure")
@@ -162,7 +182,9 @@ fn chosen_rules_fail_as_they_must_and_the_rule_that_succeeds_is_named() {
             ray.explanation
         );
         assert!(
-            ray.explanation.contains("The default rules (covering cohesive, tie-break lexicographic) find an answer"),
+            ray.explanation.contains(
+                "The default rules (covering cohesive, tie-break lexicographic) find an answer"
+            ),
             "{}",
             ray.explanation
         );
@@ -175,7 +197,9 @@ fn loose_parts_are_named_before_solving() {
     let sentences = |name: &str| load(name).1.loose_sentences();
     assert_eq!(
         sentences("plates-slide"),
-        ["`upper` can slide along x, lift off along y and turn about (4.0, 6.0); only contact holds it"]
+        [
+            "`upper` can slide along x, lift off along y and turn about (4.0, 6.0); only contact holds it"
+        ]
     );
     assert_eq!(
         sentences("plates-hinged"),
@@ -200,7 +224,10 @@ fn margins_of_the_bar_are_its_breakpoints() {
         .iter()
         .find(|margin| margin.parameter.contains("pull"))
         .expect("a margin in the pull");
-    let (up, down) = (pull.up.as_ref().expect("up"), pull.down.as_ref().expect("down"));
+    let (up, down) = (
+        pull.up.as_ref().expect("up"),
+        pull.down.as_ref().expect("down"),
+    );
     close(up.at, 150.0, 1e-9);
     close(down.at, 100.0, 1e-9);
     let friction = margins

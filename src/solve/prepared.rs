@@ -90,7 +90,7 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
     let mut prepared = match &scenario.source {
         Source::Structure(structure) => prepare_structure(scenario, structure, watch)?,
         Source::ContactSystem(given) => {
-            let (system, released) = given_system(given).map_err(|error| {
+            let (mut system, released) = given_system(given).map_err(|error| {
                 let path = match &error {
                     GivenError::Indefinite { .. } => "contact_system.stiffness".to_owned(),
                     GivenError::NoKernel { index, .. } => format!("contact_system.kernel[{index}]"),
@@ -98,6 +98,7 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
                 };
                 PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
             })?;
+            system.settle();
             Prepared {
                 geometry: Geometry::Contact { system, released },
                 cases: given
@@ -219,12 +220,13 @@ fn prepare_structure(
             vector: vector.clone(),
         })
         .collect();
-    let system = ContactSystem {
+    let mut system = ContactSystem {
         pairs,
         stiffness: main.stiffness().clone(),
         loads,
         kernel: main.kernel().clone(),
     };
+    system.settle();
     let seconds = main.timings();
     Ok(Prepared {
         geometry: Geometry::Structure {

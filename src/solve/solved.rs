@@ -210,6 +210,7 @@ impl Prepared {
         if answer.is_answer() {
             self.complete(&mut answer, system, numbers, factors, &state);
         }
+        let refused = answer.outcome == OutcomeKind::CheckFailed;
         let cycled = run.outcome == Outcome::Cycle;
         let trace = Trace::Contact {
             contact,
@@ -218,13 +219,17 @@ impl Prepared {
             pivots: run.pivots,
             last: run.point,
         };
-        Ok(Solved {
+        let mut solved = Solved {
             answer,
             trace,
             ray,
             cycled,
             told: String::new(),
-        })
+        };
+        if refused {
+            self.prove_after_all(&mut solved, watch);
+        }
+        Ok(solved)
     }
 
     pub(super) fn size(&self, system: &ContactSystem, contact: &ContactLcp) -> Size {
