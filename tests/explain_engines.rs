@@ -254,19 +254,26 @@ fn no_claim_is_stronger_than_proved_on_two_thousand() {
     no_claim_too_strong(2000, 22);
 }
 
-/// Positive definite R with eigenvalues over 7 … 9 powers of ten.
-fn contrast(rng: &mut ChaCha8Rng, m: usize) -> Problem {
+/// Positive definite R with contrasts of 7 … 9 powers of ten: in its eigenvalues, or between its joints.
+fn contrast(rng: &mut ChaCha8Rng, m: usize, joints: bool) -> Problem {
     let n = 2 * m;
     let decades = rng.random_range(7.0..9.0);
-    let q = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0))
-        .qr()
-        .q();
-    let values = DVector::from_fn(n, |i, _| match i {
-        0 => 1.0,
-        1 => 10f64.powf(-decades),
-        _ => 10f64.powf(-rng.random_range(0.0..decades)),
-    });
-    let stiffness = &q * DMatrix::from_diagonal(&values) * q.transpose();
+    let stiffness = if joints {
+        let a = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0));
+        let soft = DVector::from_fn(n, |_, _| 10f64.powf(-0.5 * rng.random_range(0.0..decades)));
+        let d = DMatrix::from_diagonal(&soft);
+        &d * (&a * a.transpose() / n as f64 + DMatrix::identity(n, n) * 0.01) * &d
+    } else {
+        let q = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0))
+            .qr()
+            .q();
+        let values = DVector::from_fn(n, |i, _| match i {
+            0 => 1.0,
+            1 => 10f64.powf(-decades),
+            _ => 10f64.powf(-rng.random_range(0.0..decades)),
+        });
+        &q * DMatrix::from_diagonal(&values) * q.transpose()
+    };
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
     let load = DVector::from_fn(n, |_, _| rng.random_range(-1.0..1.0));
     let mut problem = Problem::coulomb(stiffness, load, rng.random_range(0.0..5.0));
@@ -279,7 +286,7 @@ fn contrasts(count: usize, seed: u64, most: usize) {
     let mut told = std::collections::BTreeMap::<String, usize>::new();
     for k in 0..count {
         let m = 1 + k % most;
-        let scenario = contrast(&mut rng, m).scenario();
+        let scenario = contrast(&mut rng, m, k % 2 == 0).scenario();
         let prepared = prepare(&scenario, &Quiet).expect("prepared");
         let solved = solve(&prepared, &scenario, Engine::Scheme);
         let answer = &solved.answer;
@@ -290,6 +297,15 @@ fn contrasts(count: usize, seed: u64, most: usize) {
             answer.failure,
             answer.ray
         );
+        if answer
+            .notes
+            .iter()
+            .any(|note| note.contains("proved in exact"))
+        {
+            *told
+                .entry("check at the size of rounding, proved exactly".to_owned())
+                .or_default() += 1;
+        }
         if answer.attempts.len() > 1 {
             let first = answer.attempts[0].outcome;
             // The exact retry comes first and is the one that succeeds.
