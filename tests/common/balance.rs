@@ -1,0 +1,114 @@
+//! Balance of every part of a structure by hand: loads + contact forces + reactions + springs = 0, in x, in y and
+//! about a point, each part (what elements and ties join) by itself. Uses nothing of the finite elements but the
+//! answer they gave.
+
+use stickslip::answer::record::Answer;
+use stickslip::model::parameter::ParameterValues;
+use stickslip::model::scenario::{Scenario, Source};
+use stickslip::model::structure::{Component, Load, Structure};
+
+/// Parts of the structure as a label per node: nodes joined by elements or ties.
+fn parts(structure: &Structure) -> Vec<usize> {
+    let mut label: Vec<usize> = (0..structure.nodes.len()).collect();
+    let mut join = |nodes: &[usize]| {
+        let to = nodes.iter().map(|&node| label[node]).min().unwrap();
+        let from: Vec<usize> = nodes.iter().map(|&node| label[node]).collect();
+        for entry in &mut label {
+            if from.contains(entry) {
+                *entry = to;
+            }
+        }
+    };
+    for element in &structure.elements {
+        join(&element.nodes);
+    }
+    for tie in &structure.ties {
+        join(&tie.nodes);
+    }
+    label
+}
+
+/// Worst imbalance of any part, relative to the sum of the forces (and their lever arms) on it.
+pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer) -> f64 {
+    let Source::Structure(structure) = &scenario.source else {
+        return 0.0;
+    };
+    let label = parts(structure);
+    let n = structure.nodes.len();
+    let at = |node: usize| structure.nodes[node].position;
+    // [F_x, F_y, M about the origin of the axes shifted to the part's first node], and sums of magnitudes.
+    let mut sum = vec![[0.0; 3]; n];
+    let mut size = vec![[0.0f64; 2]; n];
+    let mut add = |node: usize, place: [f64; 2], force: [f64; 2], moment: f64| {
+        let part = label[node];
+        let origin = at(part);
+        let arm = [place[0] - origin[0], place[1] - origin[1]];
+        sum[part][0] += force[0];
+        sum[part][1] += force[1];
+        sum[part][2] += arm[0] * force[1] - arm[1] * force[0] + moment;
+        size[part][0] += force[0].hypot(force[1]);
+        size[part][1] += arm[0].hypot(arm[1]) * force[0].hypot(force[1]) + moment.abs();
+    };
+    for case in &structure.load_cases {
+        let factor = case.factor.value(values);
+        for load in &case.loads {
+            match load {
+                Load::Nodal {
+                    node,
+                    force,
+                    moment,
+                } => add(*node, at(*node), force.map(|f| factor * f), factor * moment),
+                Load::Line { element, value } => {
+                    let [a, b] = [0, 1].map(|end| structure.elements[*element].nodes[end]);
+                    let ([xa, ya], [xb, yb]) = (at(a), at(b));
+                    let length = (xb - xa).hypot(yb - ya);
+                    let middle = [(xa + xb) / 2.0, (ya + yb) / 2.0];
+                    add(a, middle, value.map(|q| factor * q * length), 0.0);
+                }
+                #[allow(unreachable_patterns)] // loads of later issues
+                _ => return f64::NAN,
+            }
+        }
+    }
+    for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
+        let (n, t) = (pair.normal, pair.tangent());
+        let force = [0, 1].map(|i| state.x_n * n[i] + state.x_t * t[i]);
+        add(pair.node, at(pair.node), force, 0.0);
+        if let Some(against) = pair.against {
+            add(against, at(against), force.map(|f| -f), 0.0);
+        }
+    }
+    let find = |id: &str| structure.nodes.iter().position(|node| node.id == id);
+    for reaction in answer.reactions.as_ref().expect("reactions") {
+        let node = find(&reaction.node).expect("a node");
+        add(node, at(node), [reaction.fx, reaction.fy], reaction.m);
+    }
+    let u = answer.displacements.as_ref().expect("displacements");
+    for spring in &structure.springs {
+        let d = spring.direction;
+        let u = &u[spring.node];
+        let force = -spring.stiffness * (d[0] * u.ux + d[1] * u.uy);
+        add(spring.node, at(spring.node), [force * d[0], force * d[1]], 0.0);
+    }
+    // A tie that joins nodes at different places hands over force without its moment: no balance of moments there.
+    let mut moments = vec![true; n];
+    for tie in &structure.ties {
+        let first = at(tie.nodes[0]);
+        let apart = tie.nodes.iter().any(|&node| at(node) != first);
+        let whole = [Component::X, Component::Y];
+        if apart && whole.iter().any(|c| tie.components.contains(c)) {
+            moments[label[tie.nodes[0]]] = false;
+        }
+    }
+    let mut worst = 0f64;
+    for part in 0..n {
+        let [force, moment] = size[part];
+        if force > 0.0 {
+            worst = worst.max(sum[part][0].abs() / force).max(sum[part][1].abs() / force);
+        }
+        if moment > 0.0 && moments[part] {
+            worst = worst.max(sum[part][2].abs() / moment);
+        }
+    }
+    worst
+}
