@@ -28,7 +28,8 @@ fn parts(structure: &Structure) -> Vec<usize> {
     label
 }
 
-/// Worst imbalance of any part, relative to the sum of the forces (and their lever arms) on it.
+/// Worst imbalance of any part, relative to the sum of the forces (times lever arms) on the part that carries
+/// most.
 pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer) -> f64 {
     let Source::Structure(structure) = &scenario.source else {
         return 0.0;
@@ -100,9 +101,11 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
             moments[label[tie.nodes[0]]] = false;
         }
     }
+    // Relative to the part that carries most: one that carries nothing has only rounding.
+    let largest = |k: usize| size.iter().fold(0f64, |a, size| a.max(size[k]));
+    let (force, moment) = (largest(0), largest(1));
     let mut worst = 0f64;
     for part in 0..n {
-        let [force, moment] = size[part];
         if force > 0.0 {
             worst = worst.max(sum[part][0].abs() / force).max(sum[part][1].abs() / force);
         }

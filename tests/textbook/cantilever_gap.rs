@@ -51,14 +51,15 @@ fn a_wider_gap_stays_open_by_the_difference() {
     }
 }
 
+// R comes from terms 256 times as large (the last element alone): a force of 1e-9 P keeps four digits.
 #[test]
 fn around_the_gap_that_just_closes() {
     let case = Case::embedded("gap");
     let free = 50.0 * L.powi(3) / (3.0 * EI);
     let closed = case.solve(&[("g", free * (1.0 - 1e-9))]);
     assert_eq!(closed.pairs[0].state, State::Closed);
-    near("x_n", closed.pairs[0].x_n, 50.0 * 1e-9, 1e-5, 50.0 * 1e-9);
+    near("x_n", closed.pairs[0].x_n, 50.0 * 1e-9, 1e-3, 50.0 * 1e-9);
     let open = case.solve(&[("g", free * (1.0 + 1e-9))]);
     assert_eq!(open.pairs[0].state, State::Open);
-    near("z_n", open.pairs[0].z_n, free * 1e-9, 1e-5, free * 1e-9);
+    near("z_n", open.pairs[0].z_n, free * 1e-9, 1e-3, free * 1e-9);
 }
