@@ -1,5 +1,5 @@
 //! The way of the data is the order of the folders: a module may import only what stands before it. And only faces
-//! print. Only a test keeps such a promise.
+//! print. Only a test keeps such a promise. (Test code inside `src` is left alone.)
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -238,7 +238,13 @@ fn imports(code: &str, depth: usize) -> Vec<(usize, String)> {
 /// Everything wrong with a file: `path` is relative to `src`.
 fn complaints(path: &Path, text: &str) -> Vec<String> {
     let (top, depth) = module(path);
-    let code = code(text);
+    // What tests import and print is their own affair.
+    if path.components().any(|part| part.as_os_str() == "tests" || part.as_os_str() == "tests.rs")
+        || path.to_string_lossy().ends_with("_tests.rs")
+    {
+        return Vec::new();
+    }
+    let code = without_tests(&code(text));
     let mut wrong = Vec::new();
     let shown = path.display();
     if top != "lib" && top != "main" {
@@ -254,8 +260,7 @@ fn complaints(path: &Path, text: &str) -> Vec<String> {
             }
         }
     }
-    if !FACES.contains(&top.as_str()) && !path.ends_with("tests.rs") {
-        let code = without_tests(&code);
+    if !FACES.contains(&top.as_str()) {
         for print in PRINTS {
             for (at, _) in code.match_indices(print) {
                 if !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
@@ -348,5 +353,6 @@ fn a_print_is_found_outside_the_faces() {
     assert_eq!(judge("repl/mod.rs", "fn f() { println!(); }"), 0);
     assert_eq!(judge("fem/dof.rs", "#[cfg(test)]\nmod tests { fn f() { println!(); } }"), 0);
     assert_eq!(judge("fem/dof.rs", "#[cfg(test)]\nmod tests { fn f() { } }\nfn g() { println!(); }"), 1);
+    assert_eq!(judge("fem/tests/large.rs", "fn f() { println!(); }"), 0);
     assert_eq!(judge("fem/dof.rs", "fn f() { writeln!(out, \"println!\"); }"), 0);
 }

@@ -192,7 +192,7 @@ fn blocks() {
 
 #[test]
 fn plates() {
-    let parameters = [("f", NONE), ("q", (1, -1)), ("T", (1, -1))];
+    let parameters = [("f", NONE), ("q", (1, -1)), ("T", (1, -1)), ("V", (1, -1))];
     compare("plates-free", &parameters, &[&[], &[("f", 0.3), ("T", 60.00006)], &[("f", 2.5), ("T", 404.0)]]);
     compare("plates-hinged", &parameters, &[&[], &[("f", 0.8)]]);
     compare("plates-slide", &parameters, &[&[]]);

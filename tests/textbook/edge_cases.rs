@@ -100,11 +100,12 @@ fn a_single_pair_under_a_cantilever() {
 
 #[test]
 fn a_node_held_by_its_pair_only() {
-    // No element, no spring of its own: a point on the ground. Friction holds it, or it flies. (A structure needs
-    // some element: a spring elsewhere.)
+    // A point without stiffness, tied to another that has none either (a lone node would be refused): friction holds
+    // it, or it flies. A structure needs some element: a spring elsewhere.
     let case = Case::json(json!({
         "parameters": { "Fx": 0.0, "Fy": -2.0 },
-        "nodes": { "P": [0, 0], "Q": [1, 0] },
+        "nodes": { "P": [0, 0], "P2": [0, 0], "Q": [1, 0] },
+        "ties": [{ "nodes": ["P", "P2"] }],
         "springs": [{ "at": "Q", "direction": [0, 1], "stiffness": 1 }],
         "supports": [{ "at": "Q", "fixed": ["x"] }],
         "contacts": [{ "id": "c", "node": "P", "against": "ground", "normal": [0, 1], "friction": 0.5 }],

@@ -125,19 +125,25 @@ fn contact_length_and_moment() {
         let (exact_c, exact_moment) = exact(half);
         printed("αc by the equation", exact_c, c, 1e-5);
         printed("M α/F by the equation", exact_moment, moment, 1e-5);
-        // The error of lumped springs falls as h²: refine until the figures stand.
-        let mut errors = Vec::new();
-        for n in [100, 200, 400] {
-            let answer = half_beam(half, 1.25, n).solve(&[]);
+        // The error of lumped springs falls as h²: refined once and extrapolated. c falls into the middle of an element
+        // in both meshes, so that their errors are alike. (Much finer elements gain nothing in f64: their 12 EI/h³
+        // drowns the springs.)
+        let found = [60, 120].map(|inside| {
+            let h = c / (inside as f64 + 0.5);
+            let n = inside + inside / 4;
+            let answer = half_beam(half, n as f64 * h, n).solve(&[]);
             is_answer(&answer);
-            let (c, moment) = measured(&answer, 1.25 / n as f64);
             // Nothing lies on what has no foundation.
             assert!(displacement(&answer, "middle")[1] > 0.0);
-            errors.push(((c - exact_c).abs(), (moment - exact_moment).abs()));
+            measured(&answer, h)
+        });
+        let extrapolated = |coarse: f64, fine: f64| (4.0 * fine - coarse) / 3.0;
+        printed("αc", extrapolated(found[0].0, found[1].0), c, 1e-5);
+        printed("M α/F", extrapolated(found[0].1, found[1].1), moment, 1e-5);
+        for (c, moment) in found {
+            near("αc", c, exact_c, 3e-4, 1.0);
+            near("M α/F", moment, exact_moment, 3e-4, 1.0);
         }
-        let (last_c, last_moment) = errors[2];
-        assert!(last_c < 1e-5 && last_moment < 1e-5, "αl = {length}: {errors:?}");
-        assert!(errors[2].1 < errors[0].1, "{errors:?}");
     }
 }
 
