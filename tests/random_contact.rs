@@ -156,21 +156,35 @@ fn random_scenario(rng: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> 
         let z = DMatrix::from_fn(n, loose, |_, _| number(rng, 1.0)).qr().q();
         let keep = DMatrix::identity(n, n) - &z * z.transpose();
         r = &keep * r * &keep;
-        kernel = z.column_iter().map(|z| z.iter().copied().collect()).collect();
+        kernel = z
+            .column_iter()
+            .map(|z| z.iter().copied().collect())
+            .collect();
     }
     let r = (&r + r.transpose()) * 0.5;
     let mut pair = |choices: &[f64]| choices[rng.random_range(0..choices.len())];
     let laws: Vec<&str> = (0..m)
-        .map(|_| ["coulomb", "coulomb", "coulomb", "frictionless", "bound"][pair(&[0.0, 1.0, 2.0, 3.0, 4.0]) as usize])
+        .map(|_| {
+            ["coulomb", "coulomb", "coulomb", "frictionless", "bound"]
+                [pair(&[0.0, 1.0, 2.0, 3.0, 4.0]) as usize]
+        })
         .collect();
     let one = |law: &[&str], pair: &mut dyn FnMut() -> f64| -> Vec<f64> {
-        laws.iter().map(|l| if law.contains(l) { pair() } else { 0.0 }).collect()
+        laws.iter()
+            .map(|l| if law.contains(l) { pair() } else { 0.0 })
+            .collect()
     };
     let friction = one(&["coulomb"], &mut || {
-        if ties { pair(&[0.0, 1.0, 2.0, 5.0]) } else { pair(&[0.0, 0.1, 0.4, 0.9, 1.3, 2.2, 3.7, 5.0]) }
+        if ties {
+            pair(&[0.0, 1.0, 2.0, 5.0])
+        } else {
+            pair(&[0.0, 0.1, 0.4, 0.9, 1.3, 2.2, 3.7, 5.0])
+        }
     });
     let cohesion = one(&["coulomb"], &mut || pair(&[0.0, 0.0, 0.5, 1.0]));
-    let gap = one(&["coulomb", "frictionless"], &mut || pair(&[0.0, 0.0, 1.0, 0.1]));
+    let gap = one(&["coulomb", "frictionless"], &mut || {
+        pair(&[0.0, 0.0, 1.0, 0.1])
+    });
     let bound = one(&["bound"], &mut || pair(&[0.0, 0.5, 1.0]));
     let mut load: Vec<f64> = (0..n).map(|_| number(rng, 2.0)).collect();
     if loose > 0 {
@@ -202,7 +216,10 @@ fn judge(case: &common::Case, answer: &stickslip::answer::record::Answer, what: 
         if i >= m {
             return pair.z_t;
         }
-        let gap = given.laws[i].numbers().into_iter().find(|(key, _)| *key == "gap");
+        let gap = given.laws[i]
+            .numbers()
+            .into_iter()
+            .find(|(key, _)| *key == "gap");
         pair.z_n - gap.map_or(0.0, |(_, gap)| gap.value(&values))
     });
     let r = DMatrix::from_fn(2 * m, 2 * m, |i, j| given.stiffness[i][j]);
@@ -212,7 +229,11 @@ fn judge(case: &common::Case, answer: &stickslip::answer::record::Answer, what: 
         if i < m { pair.x_n } else { pair.x_t }
     });
     // Against the terms that are summed.
-    let scale = (r.abs() * z.abs()).max().max(force.amax()).max(reported.amax()).max(1.0);
+    let scale = (r.abs() * z.abs())
+        .max()
+        .max(force.amax())
+        .max(reported.amax())
+        .max(1.0);
     let off = (&force - &reported).amax() / scale;
     assert!(off < 1e-9, "{what}: forces off by {off:e}");
     let wrong = common::laws::violation(&case.scenario, &values, answer);
@@ -248,7 +269,10 @@ fn every_rule_answers_right_or_says_so() {
         let case = common::Case::text(&text);
         for rules in common::all_rules() {
             let values = case.scenario.parameter_values();
-            let Ok(solved) = case.prepared.solve(&case.scenario, &values, rules, &stickslip::watch::Quiet) else {
+            let Ok(solved) =
+                case.prepared
+                    .solve(&case.scenario, &values, rules, &stickslip::watch::Quiet)
+            else {
                 continue; // `weight` without friction
             };
             let answer = solved.answer;
@@ -265,12 +289,23 @@ fn every_rule_answers_right_or_says_so() {
             } else {
                 // Only rules that may cycle may end otherwise.
                 use stickslip::answer::record::OutcomeKind;
-                assert_eq!(answer.outcome, OutcomeKind::PivotLimit, "problem {k} {rules:?}: {:?}", answer.failure);
-                assert!(!matches!(rules.tie_break, TieBreak::Lexicographic | TieBreak::Natural));
+                assert_eq!(
+                    answer.outcome,
+                    OutcomeKind::PivotLimit,
+                    "problem {k} {rules:?}: {:?}",
+                    answer.failure
+                );
+                assert!(!matches!(
+                    rules.tie_break,
+                    TieBreak::Lexicographic | TieBreak::Natural
+                ));
             }
         }
     }
-    assert!(answers > 1000 && rays > 50, "{answers} answers, {rays} rays");
+    assert!(
+        answers > 1000 && rays > 50,
+        "{answers} answers, {rays} rays"
+    );
 }
 
 #[test]
@@ -307,10 +342,16 @@ fn loose_parts_stand_or_their_ray_is_a_motion_the_loads_drive() {
             if joint < m {
                 return ray.direction[joint].z_n;
             }
-            let pair = system.pairs.iter().position(|pair| pair.tangential == Some(joint));
+            let pair = system
+                .pairs
+                .iter()
+                .position(|pair| pair.tangential == Some(joint));
             ray.direction[pair.unwrap()].z_t
         });
-        assert!((&system.stiffness * &z).amax() <= 1e-9 * system.stiffness.amax(), "{what}");
+        assert!(
+            (&system.stiffness * &z).amax() <= 1e-9 * system.stiffness.amax(),
+            "{what}"
+        );
         assert!(system.loads[0].vector.dot(&z) < 0.0, "{what}");
         assert!((z.amax() - 1.0).abs() < 1e-12, "{what}");
         for (i, pair) in system.pairs.iter().enumerate() {
@@ -321,5 +362,8 @@ fn loose_parts_stand_or_their_ray_is_a_motion_the_loads_drive() {
         }
     }
     println!("{answers} answers, {mechanisms} mechanisms, {others} without equilibrium");
-    assert!(answers > 100 && mechanisms > 20, "{answers} answers, {mechanisms} mechanisms");
+    assert!(
+        answers > 100 && mechanisms > 20,
+        "{answers} answers, {mechanisms} mechanisms"
+    );
 }

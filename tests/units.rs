@@ -60,7 +60,10 @@ fn converted(name: &str, parameters: &[(&str, (i32, i32))], units: (f64, f64)) -
     };
     part("materials", &[("E", (1, -2))]);
     part("sections", &[("area", (0, 2)), ("inertia", (0, 4))]);
-    part("plates", &[("origin", (0, 1)), ("size", (0, 1)), ("thickness", (0, 1))]);
+    part(
+        "plates",
+        &[("origin", (0, 1)), ("size", (0, 1)), ("thickness", (0, 1))],
+    );
     part("springs", &[("stiffness", (1, -1))]);
     part("contacts", &[("gap", (0, 1)), ("cohesion", (1, 0))]);
     if let Some(nodes) = object.get_mut("nodes") {
@@ -88,7 +91,13 @@ fn converted(name: &str, parameters: &[(&str, (i32, i32))], units: (f64, f64)) -
 fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]]) {
     let original = Case::embedded(name);
     // From (m, kN): N and mm, MN and km, and an odd one that is no power of ten.
-    for units in [(1e3, 1e3), (1e-3, 1e-3), (1.0 / 7.3, 39.37), (1e6, 1.0), (1.0, 1e-6)] {
+    for units in [
+        (1e3, 1e3),
+        (1e-3, 1e-3),
+        (1.0 / 7.3, 39.37),
+        (1e6, 1.0),
+        (1.0, 1e-6),
+    ] {
         let other = Case::text(&converted(name, parameters, units));
         for rules in all_rules() {
             for set in sets {
@@ -99,11 +108,18 @@ fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]
                 let scaled: Vec<(&str, f64)> = set
                     .iter()
                     .map(|(name, value)| {
-                        let dimension = parameters.iter().find(|(known, _)| known == name).unwrap().1;
+                        let dimension = parameters
+                            .iter()
+                            .find(|(known, _)| known == name)
+                            .unwrap()
+                            .1;
                         (*name, value * scale(dimension, units))
                     })
                     .collect();
-                let (a, b) = (original.solve_under(set, rules), other.solve_under(&scaled, rules));
+                let (a, b) = (
+                    original.solve_under(set, rules),
+                    other.solve_under(&scaled, rules),
+                );
                 let what = format!("{name} {set:?} {units:?} {rules:?}");
                 assert_eq!(a.outcome, b.outcome, "{what}");
                 assert_eq!(a.marginal, b.marginal, "{what}");
@@ -142,7 +158,12 @@ fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]
                 };
                 for (what, x, y, by) in [
                     (format!("{what}: forces"), forces(&a), forces(&b), force),
-                    (format!("{what}: displacements"), lengths(&a), lengths(&b), length),
+                    (
+                        format!("{what}: displacements"),
+                        lengths(&a),
+                        lengths(&b),
+                        length,
+                    ),
                 ] {
                     let size = largest(&x).max(1e-300);
                     for (x, y) in x.iter().zip(&y) {
@@ -163,7 +184,14 @@ fn beams() {
     compare(
         "beam",
         &parameters,
-        &[&[], &[("F2", 40.0)], &[("F2", 200.0)], &[("F2", 300.3)], &[("F2", 400.0)], &[("f", 0.0)]],
+        &[
+            &[],
+            &[("F2", 40.0)],
+            &[("F2", 200.0)],
+            &[("F2", 300.3)],
+            &[("F2", 400.0)],
+            &[("f", 0.0)],
+        ],
     );
     compare("beam-limit", &parameters, &[&[]]);
     compare("beam-ray", &parameters, &[&[]]);
@@ -173,7 +201,11 @@ fn beams() {
 fn frames() {
     let parameters = [("f", NONE), ("H", FORCE)];
     compare("frame", &parameters, &[&[], &[("f", 0.1)], &[("f", 0.6)]]);
-    compare("frame-rotated", &parameters, &[&[], &[("f", 0.9)], &[("H", -60.0)]]);
+    compare(
+        "frame-rotated",
+        &parameters,
+        &[&[], &[("f", 0.9)], &[("H", -60.0)]],
+    );
 }
 
 #[test]
@@ -185,7 +217,16 @@ fn cantilever_with_gap() {
 #[test]
 fn blocks() {
     let parameters = [("f", NONE), ("H", FORCE)];
-    compare("block", &parameters, &[&[], &[("H", 0.3)], &[("f", 0.2), ("H", 0.23)], &[("H", 0.0)]]);
+    compare(
+        "block",
+        &parameters,
+        &[
+            &[],
+            &[("H", 0.3)],
+            &[("f", 0.2), ("H", 0.23)],
+            &[("H", 0.0)],
+        ],
+    );
     let parameters = [("f", NONE), ("G", FORCE), ("F", FORCE)];
     compare("slope", &parameters, &[&[], &[("F", 0.45)], &[("F", -0.3)]]);
 }
@@ -193,12 +234,24 @@ fn blocks() {
 #[test]
 fn plates() {
     let parameters = [("f", NONE), ("q", (1, -1)), ("T", (1, -1)), ("V", (1, -1))];
-    compare("plates-free", &parameters, &[&[], &[("f", 0.3), ("T", 60.00006)], &[("f", 2.5), ("T", 404.0)]]);
+    compare(
+        "plates-free",
+        &parameters,
+        &[
+            &[],
+            &[("f", 0.3), ("T", 60.00006)],
+            &[("f", 2.5), ("T", 404.0)],
+        ],
+    );
     compare("plates-hinged", &parameters, &[&[], &[("f", 0.8)]]);
     compare("plates-slide", &parameters, &[&[]]);
 }
 
 #[test]
 fn greco() {
-    compare("greco", &[("f", NONE)], &[&[], &[("f", 0.2)], &[("f", 3.0)]]);
+    compare(
+        "greco",
+        &[("f", NONE)],
+        &[&[], &[("f", 0.2)], &[("f", 3.0)]],
+    );
 }

@@ -32,9 +32,7 @@ fn balanced_rows(
         .map(|row| {
             let i = row.pair;
             let (d_n, d_t) = contact.covering_of(i);
-            let tangential = system.pairs[i]
-                .tangential
-                .map_or(0.0, |joint| force[joint]);
+            let tangential = system.pairs[i].tangential.map_or(0.0, |joint| force[joint]);
             let extra = contact.normal_row[i].map_or(numbers.bound[i], |_| numbers.cohesion[i]);
             let bound = numbers.friction[i] * force[i] + extra;
             match row.couple {

@@ -92,7 +92,12 @@ fn agrees(case: &Case, n: usize, unit: f64, r: f64, pull: f64, set: &[(&str, f64
         is_answer(&answer);
         let what = format!("{rule}, n = {n}, F2 = {pull}");
         let (slips, friction) = closed_form(n, unit, r, pull);
-        near_all(&format!("z_τ, {what}"), &of_pairs(&answer, |p| p.z_t), &slips, 1e-9);
+        near_all(
+            &format!("z_τ, {what}"),
+            &of_pairs(&answer, |p| p.z_t),
+            &slips,
+            1e-9,
+        );
         let force = of_pairs(&answer, |p| -p.x_t);
         for (found, expected) in force.iter().zip(&friction) {
             near(&format!("x_τ, {what}"), *found, *expected, 1e-9, r);
@@ -184,7 +189,11 @@ fn exactly_at_the_limit_it_stands() {
             let limit = n as f64 * 30.0;
             for rule in Covering::ALL {
                 let answer = case.solve_under(&[("F2", limit)], covering(rule));
-                assert_eq!(answer.outcome, OutcomeKind::Normal, "n = {n}, L = {length}, {rule}");
+                assert_eq!(
+                    answer.outcome,
+                    OutcomeKind::Normal,
+                    "n = {n}, L = {length}, {rule}"
+                );
             }
             agrees(&case, n, length / (E * AREA), 30.0, limit, &[("F2", limit)]);
         }
@@ -240,7 +249,12 @@ fn the_embedded_beams_are_this_beam() {
         let values = case.scenario.parameter_values();
         let (r, pull) = (values["f"] * values["F"], values["F2"]);
         if outcome == OutcomeKind::Ray {
-            close("p", mechanism(&answer).p, (pull - 6.0 * r) / (6.0 * 1.5), 1e-9);
+            close(
+                "p",
+                mechanism(&answer).p,
+                (pull - 6.0 * r) / (6.0 * 1.5),
+                1e-9,
+            );
         } else {
             agrees(&case, 6, 1e-5, r, pull, &[]);
         }

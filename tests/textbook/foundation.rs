@@ -28,7 +28,11 @@ fn half_beam(half: f64, reach: f64, n: usize) -> Case {
     let mut springs = Vec::new();
     let mut contacts = Vec::new();
     let mut bars = Vec::new();
-    let middle = if reach < half { "middle".to_owned() } else { format!("a{n}") };
+    let middle = if reach < half {
+        "middle".to_owned()
+    } else {
+        format!("a{n}")
+    };
     let mut supports = vec![json!({ "at": middle, "fixed": ["x", "r"] })];
     for i in 0..=n {
         let (a, b) = (format!("a{i}"), format!("b{i}"));
@@ -84,7 +88,10 @@ fn exact(half: f64) -> (f64, f64) {
             end[3].transpose(),
         ]);
         let y = a.lu().solve(&Vector4::new(0.0, 1.0, 0.0, 0.0)).unwrap();
-        (end[1].dot(&y) + end[2].dot(&y) * (half - c), end[2].dot(&y).abs())
+        (
+            end[1].dot(&y) + end[2].dot(&y) * (half - c),
+            end[2].dot(&y).abs(),
+        )
     };
     let (mut low, mut high) = (0.3, 1.5);
     assert!(solve(low).0 * solve(high).0 < 0.0);
@@ -106,7 +113,11 @@ fn measured(answer: &Answer, h: f64) -> (f64, f64) {
         .iter()
         .rposition(|p| p.state == State::Closed)
         .unwrap();
-    assert!(answer.pairs[..=last].iter().all(|p| p.state == State::Closed));
+    assert!(
+        answer.pairs[..=last]
+            .iter()
+            .all(|p| p.state == State::Closed)
+    );
     let y = displacement(answer, &format!("a{last}"))[1];
     let next = displacement(answer, &format!("a{}", last + 1))[1];
     let c = h * (last as f64 + y / (y - next));

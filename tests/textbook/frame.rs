@@ -31,7 +31,12 @@ fn vertical_supports() {
         let mut slip = 0.0;
         for k in 0..3 {
             printed("x_n", x[k], NORMAL[k], 1e-5);
-            printed("slip in mm", answer.pairs[k].z_t * 1e3, slips[k], if k == 0 && f < 0.2 { 1e-5 } else { 1e-6 });
+            printed(
+                "slip in mm",
+                answer.pairs[k].z_t * 1e3,
+                slips[k],
+                if k == 0 && f < 0.2 { 1e-5 } else { 1e-6 },
+            );
             let rest = 30.0 - f * x[k..].iter().sum::<f64>();
             slip += rest.max(0.0) * 4.0 / 2.1e6;
             near("slip by the formula", answer.pairs[k].z_t, slip, 1e-9, 1e-4);

@@ -13,6 +13,7 @@ mod frame;
 mod greco;
 mod klarbring;
 mod plates;
+mod random_structures;
 mod slope;
 mod structures;
 mod unit_square;
