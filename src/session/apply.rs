@@ -487,7 +487,7 @@ pub fn write_scenarios(
 
 fn help(command: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
     let text = match command {
-        None => command::overview(),
+        None => command::overview(&io.style),
         Some(word) => command::help(word, io.style.width)?,
     };
     io.report(
