@@ -248,16 +248,14 @@ impl Session {
                 json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
             },
             |out, style| {
-                diagram::write(
-                    out,
+                let diagram = diagram::Diagram {
                     structure,
                     members,
                     bar,
                     force,
-                    &self.now.scenario.units,
-                    height.unwrap_or(HEIGHT),
-                    style,
-                )
+                    height: height.unwrap_or(HEIGHT),
+                };
+                diagram::write(out, &diagram, &self.now.scenario.units, style)
             },
         )?;
         Ok(())

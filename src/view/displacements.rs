@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::length_unit;
-use super::number::{denoised, engineering, largest};
+use super::number::{in_column, largest};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::NodeDisplacement;
@@ -36,11 +36,11 @@ pub fn write(
     for node in displacements {
         let mut cells = vec![
             Cell::from(node.node.as_str()),
-            Cell::from(engineering(denoised(node.ux, lengths))),
-            Cell::from(engineering(denoised(node.uy, lengths))),
+            Cell::from(in_column(node.ux, lengths)),
+            Cell::from(in_column(node.uy, lengths)),
         ];
         if rotations {
-            cells.push(Cell::from(engineering(denoised(node.rz, angles))));
+            cells.push(Cell::from(in_column(node.rz, angles)));
         }
         table.rows.push(Row::new(cells));
     }

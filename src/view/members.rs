@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::{denoised, engineering, largest};
+use super::number::{in_column, largest};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, moment_unit};
@@ -52,9 +52,9 @@ pub fn write(
                     String::new()
                 }),
                 Cell::new(word, Role::Muted),
-                Cell::from(engineering(denoised(end.n, forces))),
-                Cell::from(engineering(denoised(end.q, forces))),
-                Cell::from(engineering(denoised(end.m, moments))),
+                Cell::from(in_column(end.n, forces)),
+                Cell::from(in_column(end.q, forces)),
+                Cell::from(in_column(end.m, moments)),
             ]));
         }
     }

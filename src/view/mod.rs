@@ -17,6 +17,8 @@ pub mod style;
 pub mod table;
 
 #[cfg(test)]
+mod random;
+#[cfg(test)]
 pub(crate) mod sample;
 #[cfg(test)]
 mod snapshots;

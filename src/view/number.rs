@@ -66,25 +66,55 @@ pub fn denoised(value: f64, scale: f64) -> f64 {
     }
 }
 
+/// A number of a table whose quantity has the largest value `scale`: noise is `0`, and all numbers not much smaller
+/// than the largest one have its power of ten, so that a glance tells large from small.
+pub fn in_column(value: f64, scale: f64) -> String {
+    let value = denoised(value, scale);
+    let (Some((figures, exponent)), Some((_, largest))) = (figures(value), figures(scale)) else {
+        return engineering(value);
+    };
+    let shared = power(largest, -1..=4);
+    let least = if shared == 0 { -3 } else { -1 };
+    if (least..=4).contains(&(exponent - shared)) {
+        written(value, &figures, exponent, shared)
+    } else {
+        engineering(value)
+    }
+}
+
 fn simple(value: f64) -> String {
     if value == 0.0 { "0" } else { "n/a" }.to_owned()
 }
 
 /// Five digits, plain while the exponent of ten lies in `plain`; `None` for zero and what is not finite.
 fn digits(value: f64, plain: std::ops::RangeInclusive<i32>) -> Option<String> {
+    let (figures, exponent) = figures(value)?;
+    Some(written(value, &figures, exponent, power(exponent, plain)))
+}
+
+/// The power of ten that is written behind a number with this exponent: none, or a multiple of three.
+fn power(exponent: i32, plain: std::ops::RangeInclusive<i32>) -> i32 {
+    if plain.contains(&exponent) {
+        0
+    } else {
+        exponent.div_euclid(3) * 3
+    }
+}
+
+/// Five figures and the exponent of the first one.
+fn figures(value: f64) -> Option<(String, i32)> {
     if value == 0.0 || !value.is_finite() {
         return None;
     }
     // Rounding first: 99999.6 is 1.0000e5 and belongs to the next power.
     let scientific = format!("{:.4e}", value.abs());
     let (mantissa, exponent) = scientific.split_once('e')?;
-    let exponent: i32 = exponent.parse().ok()?;
-    let figures: String = mantissa.chars().filter(char::is_ascii_digit).collect();
-    let power = if plain.contains(&exponent) {
-        0
-    } else {
-        exponent.div_euclid(3) * 3
-    };
+    let figures = mantissa.chars().filter(char::is_ascii_digit).collect();
+    Some((figures, exponent.parse().ok()?))
+}
+
+/// The figures with their point, sign and power.
+fn written(value: f64, figures: &str, exponent: i32, power: i32) -> String {
     let before = exponent - power + 1;
     let mut text = String::new();
     if value < 0.0 {
@@ -93,7 +123,7 @@ fn digits(value: f64, plain: std::ops::RangeInclusive<i32>) -> Option<String> {
     if before <= 0 {
         text.push_str("0.");
         text.push_str(&"0".repeat(before.unsigned_abs() as usize));
-        text.push_str(&figures);
+        text.push_str(figures);
     } else {
         let before = before as usize;
         text.push_str(&figures[..before.min(figures.len())]);
@@ -107,7 +137,7 @@ fn digits(value: f64, plain: std::ops::RangeInclusive<i32>) -> Option<String> {
     if power != 0 {
         text.push_str(&format!("e{power}"));
     }
-    Some(text)
+    text
 }
 
 #[cfg(test)]
@@ -134,6 +164,25 @@ mod tests {
         ];
         for (value, text) in cases {
             assert_eq!(engineering(value), text, "{value:e}");
+        }
+    }
+
+    #[test]
+    fn a_column_shares_the_power_of_its_largest() {
+        let cases = [
+            (2.0599e-3, 2.0599e-3, "2.0599e-3"),
+            (550.09e-6, 2.0599e-3, "0.55009e-3"),
+            (55.009e-6, 2.0599e-3, "55.009e-6"),
+            (48.114e-3, 0.6, "0.048114"),
+            (4.8114e-3, 0.6, "0.0048114"),
+            (0.48114e-3, 0.6, "481.14e-6"),
+            (50.0, 1.5e5, "50.000"),
+            (512.0, 1.5e5, "0.51200e3"),
+            (1e-15, 1.5e5, "0"),
+            (5.0, f64::NAN, "5.0000"),
+        ];
+        for (value, scale, text) in cases {
+            assert_eq!(in_column(value, scale), text, "{value:e} of {scale:e}");
         }
     }
 

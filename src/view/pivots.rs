@@ -6,11 +6,21 @@ use std::ops::RangeInclusive;
 use unicode_width::UnicodeWidthStr;
 
 use super::force_unit;
-use super::number::{denoised, engineering, largest};
-use super::style::Style;
+use super::number::{in_column, largest};
+use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::PivotRecord;
 use crate::model::scenario::Units;
+
+/// Whether the pivots are those of a contact problem, where p is a force; in a bare LCP it has no unit. Told by
+/// the names: `w[1]` and `z[1]` occur in a bare LCP only.
+pub fn of_contact(pivots: &[PivotRecord]) -> bool {
+    pivots.iter().any(|pivot| {
+        [&pivot.entering, &pivot.leaving]
+            .into_iter()
+            .any(|name| name.as_str() != "p" && !name.starts_with("w[") && !name.starts_with("z["))
+    })
+}
 
 /// Writes the pivots whose step lies in `range` (all without one); the row of step `current` is marked. The
 /// sentence stands on the row where the width allows it, else beneath.
@@ -43,19 +53,18 @@ pub fn write(
         };
         return writeln!(out, "{}", style.fit(&text, style.width));
     }
-    let unit = chosen
-        .iter()
-        .any(|pivot| pivot.turned.is_some())
-        .then(|| force_unit(units))
-        .flatten();
+    let unit = force_unit(units).filter(|_| of_contact(pivots));
     let scale = largest(pivots.iter().map(|pivot| pivot.p));
     let mut table = Table::new(vec![
         Column::count("step"),
         Column::words("entering"),
         Column::words("leaving"),
         Column::numbers("p", unit),
-        Column::words("ties").droppable(1),
     ]);
+    let ties = chosen.iter().any(|pivot| pivot.ties.len() > 1);
+    if ties {
+        table.columns.push(Column::words("ties").droppable(1));
+    }
     let longest = chosen
         .iter()
         .map(|pivot| pivot.sentence.width())
@@ -66,18 +75,21 @@ pub fn write(
         table.columns.push(Column::words("what happens"));
     }
     for pivot in chosen {
-        let ties = if pivot.ties.len() > 1 {
-            format!("{} tied", pivot.ties.len())
-        } else {
-            String::new()
-        };
         let mut row = Row::new(vec![
             Cell::from(pivot.step.to_string()),
             Cell::from(pivot.entering.as_str()),
             Cell::from(pivot.leaving.as_str()),
-            Cell::from(engineering(denoised(pivot.p, scale))),
-            Cell::from(ties),
+            Cell::from(in_column(pivot.p, scale)),
         ]);
+        if ties {
+            let count = pivot.ties.len();
+            let text = if count > 1 {
+                format!("{count} tied")
+            } else {
+                String::new()
+            };
+            row.cells.push(Cell::new(text, Role::Warning));
+        }
         if on_the_row {
             row.cells.push(Cell::from(pivot.sentence.as_str()));
         } else if !pivot.sentence.is_empty() {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::force_unit;
-use super::number::{denoised, engineering, short, with_unit};
+use super::number::{denoised, in_column, short, with_unit};
 use super::status::{class_word, verdict_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
@@ -48,7 +48,11 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
             verdict_word(verdict),
             verdict_meaning(ray.verdict)
         ),
-        None => "none".into(),
+        None if matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium) => {
+            verdict_meaning(None).into()
+        }
+        // An artefact or a fault claims nothing about the structure.
+        None => String::new(),
     };
     let p = with_unit(&short(ray.p), force_unit(units).as_deref());
     let rows = [
@@ -91,8 +95,8 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         };
         table.rows.push(Row::new(vec![
             Cell::from(direction.pair.as_str()),
-            Cell::from(engineering(denoised(direction.z_n, 1.0))),
-            Cell::from(engineering(denoised(direction.z_t, 1.0))),
+            Cell::from(in_column(direction.z_n, 1.0)),
+            Cell::from(in_column(direction.z_t, 1.0)),
             Cell::from(motion),
         ]));
     }

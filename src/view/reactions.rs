@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::{denoised, engineering, largest};
+use super::number::{in_column, largest};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, moment_unit};
@@ -37,13 +37,13 @@ pub fn write(
     let mut push = |name: &str, fx: f64, fy: f64, m: Option<f64>| {
         let mut cells = vec![
             Cell::from(name),
-            Cell::from(engineering(denoised(fx, forces))),
-            Cell::from(engineering(denoised(fy, forces))),
+            Cell::from(in_column(fx, forces)),
+            Cell::from(in_column(fy, forces)),
         ];
         if moments {
-            cells.push(Cell::from(m.map_or_else(String::new, |m| {
-                engineering(denoised(m, largest_moment))
-            })));
+            cells.push(Cell::from(
+                m.map_or_else(String::new, |m| in_column(m, largest_moment)),
+            ));
         }
         table.rows.push(Row::new(cells));
     };

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use unicode_width::UnicodeWidthStr;
+
 use super::number::{residual, short, with_unit};
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
@@ -108,19 +110,41 @@ pub fn max_opening(pairs: &[PairState]) -> Option<(f64, &PairState)> {
 /// `normal · 5 pivots · 2 stick 4 slip+ 0 open · max slip 0.005 m at c6 (was 0.0005)`;
 /// `ray: mechanism · p 3.33 kN · 12 pivots · …`; `breakdown · …` with the reason.
 ///
-/// Parts that find no room in `style.width` are left out from the end; the line is never wrapped.
+/// Where `style.width` is too narrow, counts of 0 are left out, then the number of pivots, then what was before;
+/// the line is never wrapped.
 pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &Style) -> String {
     let (head, role) = headline(answer);
-    let mut parts = Vec::new();
     match answer.outcome {
+        OutcomeKind::Trivial | OutcomeKind::Normal if !answer.pairs.is_empty() => {
+            let count = pivot_count(answer);
+            let states = state_counts(&answer.pairs);
+            let (extreme, before) = extreme(answer, previous, units);
+            let with_before = match before {
+                Some(before) => format!("{extreme} (was {before})"),
+                None => extreme.clone(),
+            };
+            // What gives way in turn where the line is too narrow: counts of 0, the pivots, what was before.
+            let occurring = occurring(&states);
+            let ways = [
+                vec![count.clone(), states, with_before.clone()],
+                vec![count, occurring.clone(), with_before.clone()],
+                vec![occurring.clone(), with_before],
+                vec![occurring.clone(), extreme],
+                vec![occurring],
+            ];
+            let mut ways = ways.into_iter().map(|parts| joined(&head, &parts, style));
+            let fitting = ways.find(|(text, _)| text.width() <= style.width);
+            finished(
+                fitting.unwrap_or_else(|| joined(&head, &[], style)),
+                role,
+                style,
+            )
+        }
         OutcomeKind::Trivial | OutcomeKind::Normal => {
-            parts.push(pivot_count(answer));
-            if !answer.pairs.is_empty() {
-                parts.push(state_counts(&answer.pairs));
-                parts.push(extreme(answer, previous, units));
-            }
+            finished(joined(&head, &[pivot_count(answer)], style), role, style)
         }
         OutcomeKind::Ray => {
+            let mut parts = Vec::new();
             if let Some(ray) = &answer.ray {
                 let p = with_unit(&short(ray.p), p_unit(answer, units).as_deref());
                 parts.push(format!("p {p}"));
@@ -132,40 +156,46 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
                     parts.push(ray.mode.clone());
                 }
             }
+            finished(joined(&head, &parts, style), role, style)
         }
         OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => {
-            parts.push(pivot_count(answer));
-            if let Some(failure) = &answer.failure {
-                parts.push(failure.clone());
-            }
+            let mut parts = vec![pivot_count(answer)];
+            parts.extend(answer.failure.clone());
+            finished(joined(&head, &parts, style), role, style)
         }
     }
-    joined(&head, role, &parts, style)
 }
 
-fn joined(head: &str, role: Role, parts: &[String], style: &Style) -> String {
-    use unicode_width::UnicodeWidthStr;
-    let head = style.fit(&style.text(head), style.width);
+/// The states of a count that occur: `2 stick 4 slip+` of `2 stick 4 slip+ 0 open`.
+fn occurring(states: &str) -> String {
+    let words: Vec<&str> = states.split(' ').collect();
+    let some: Vec<String> = words
+        .chunks(2)
+        .filter(|count| count.first() != Some(&"0"))
+        .map(|count| count.join(" "))
+        .collect();
+    some.join(" ")
+}
+
+/// The parts of a line and the length of its first one in bytes.
+fn joined(head: &str, parts: &[String], style: &Style) -> (String, usize) {
     let dot = format!(" {} ", style.dot());
-    let mut used = head.width();
-    let mut text = style.paint(role, &head);
+    let mut text = style.text(head);
+    let length = text.len();
     for part in parts {
-        let part = style.text(part);
-        let room = style.width.saturating_sub(used + dot.width());
-        // `(was …)` is the first to go.
-        let part = match part.split_once(" (was ") {
-            Some((before, _)) if part.width() > room => before.to_owned(),
-            _ => part,
-        };
-        let cut = style.fit(&part, room);
-        if room < 6 {
-            break;
-        }
-        used += dot.width() + cut.width();
         text.push_str(&dot);
-        text.push_str(&cut);
+        text.push_str(&style.text(part));
     }
-    text
+    (text, length)
+}
+
+/// The line cut to the width, its first part in colour.
+fn finished((text, head): (String, usize), role: Role, style: &Style) -> String {
+    let text = style.fit(&text, style.width);
+    match text.split_at_checked(head) {
+        Some((head, rest)) => format!("{}{rest}", style.paint(role, head)),
+        None => style.paint(role, &text),
+    }
 }
 
 /// First words of the line and their colour.
@@ -181,32 +211,24 @@ fn headline(answer: &Answer) -> (String, Role) {
     }
 }
 
-/// The largest slip, else the largest opening, with what it was before.
-fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units) -> String {
+/// The largest slip, else the largest opening, and what it was before if that was something else.
+fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units) -> (String, Option<String>) {
     let unit = length_unit(units);
     let previous = previous.filter(|previous| previous.is_answer());
-    let slip = max_slip(&answer.pairs);
-    let (what, value, at, before) = if let Some((slip, pair)) = slip {
-        let before = previous.map(|p| max_slip(&p.pairs).map_or(0.0, |(slip, _)| slip));
-        ("max slip", slip, &pair.id, before)
+    let slip_before = previous.map(|p| max_slip(&p.pairs).map_or(0.0, |(slip, _)| slip));
+    let (what, value, at, before) = if let Some((slip, pair)) = max_slip(&answer.pairs) {
+        ("max slip", slip, &pair.id, slip_before)
     } else if let Some((opening, pair)) = max_opening(&answer.pairs) {
         let before = previous.map(|p| max_opening(&p.pairs).map_or(0.0, |(gap, _)| gap));
         ("max opening", opening, &pair.id, before)
     } else {
-        let before = previous.and_then(|p| max_slip(&p.pairs));
-        return match before {
-            Some((slip, _)) => format!("no slip (was {})", short(slip)),
-            None => "no slip".into(),
-        };
+        let before = slip_before.filter(|slip| *slip > 0.0).map(short);
+        return ("no slip".into(), before);
     };
     let now = short(value);
-    let mut text = format!("{what} {} at {at}", with_unit(&now, unit.as_deref()));
-    if let Some(before) = before
-        && short(before) != now
-    {
-        text.push_str(&format!(" (was {})", short(before)));
-    }
-    text
+    let before = before.map(short).filter(|before| *before != now);
+    let text = format!("{what} {} at {at}", with_unit(&now, unit.as_deref()));
+    (text, before)
 }
 
 /// p is a force in contact problems and has no unit in a bare LCP.

@@ -114,6 +114,7 @@ pub struct Table {
     pub rows: Vec<Row>,
 }
 
+/// Blanks between columns.
 const GAP: usize = 2;
 
 impl Table {
@@ -135,7 +136,13 @@ impl Table {
         } else {
             0
         };
-        let shown = self.shown(&columns, style.width.saturating_sub(gutter));
+        let room = style.width.saturating_sub(gutter);
+        let all: usize = columns.iter().map(|column| column.width).sum();
+        let gaps = columns.len().saturating_sub(1);
+        // One blank between columns if that saves one from being left out.
+        let tight = all + GAP * gaps > room && all + gaps <= room;
+        let gap = if tight { 1 } else { GAP };
+        let shown = self.shown(&columns, room, gap);
         let units = shown.iter().any(|&(i, _)| !columns[i].unit.is_empty());
 
         let head = |text: fn(&Printed) -> &str, role: Role, out: &mut dyn Write| {
@@ -146,7 +153,7 @@ impl Table {
                     (text(&columns[i]).to_owned(), width, align, role)
                 })
                 .collect();
-            write_line(out, gutter, None, &cells, style)
+            write_line(out, (gutter, gap), None, &cells, style)
         };
         head(|column| &column.head, Role::Header, out)?;
         if units {
@@ -162,7 +169,7 @@ impl Table {
                 })
                 .collect();
             let mark = row.marked.then(|| style.mark());
-            write_line(out, gutter, mark, &cells, style)?;
+            write_line(out, (gutter, gap), mark, &cells, style)?;
             if let Some(sentence) = &row.beneath {
                 let indent = (gutter + 4).min(style.width / 4);
                 for line in style.wrap(sentence, style.width - indent) {
@@ -222,10 +229,10 @@ impl Table {
     }
 
     /// Columns that are shown, with their widths: whole ones as long as that is possible; then words are cut.
-    fn shown(&self, columns: &[Printed], width: usize) -> Vec<(usize, usize)> {
+    fn shown(&self, columns: &[Printed], width: usize, gap: usize) -> Vec<(usize, usize)> {
         let total = |shown: &[(usize, usize)]| {
             shown.iter().map(|(_, width)| width).sum::<usize>()
-                + GAP * shown.len().saturating_sub(1)
+                + gap * shown.len().saturating_sub(1)
         };
         let mut shown: Vec<(usize, usize)> = columns
             .iter()
@@ -301,24 +308,20 @@ fn align_decimals(cells: &mut [String]) {
 
 fn write_line(
     out: &mut dyn Write,
-    gutter: usize,
+    (gutter, gap): (usize, usize),
     mark: Option<char>,
     cells: &[(String, usize, Align, Role)],
     style: &Style,
 ) -> io::Result<()> {
     let mut line = match mark {
-        Some(mark) => pad_right(&style.paint(Role::Accent, &mark.to_string()), 0) + " ",
+        Some(mark) => style.paint(Role::Accent, &mark.to_string()) + " ",
         None => " ".repeat(gutter),
     };
-    if gutter == 0 {
-        line.clear();
-    }
     for (place, (text, width, align, role)) in cells.iter().enumerate() {
         if place > 0 {
-            line.push_str(&" ".repeat(GAP));
+            line.push_str(&" ".repeat(gap));
         }
         let text = style.fit(text, *width);
-        // The last column needs no padding at its right.
         let padded = match align {
             Align::Left => pad_right(&text, *width),
             Align::Right | Align::Decimal => pad_left(&text, *width),

@@ -2,6 +2,7 @@
 //! Without Unicode each Braille cell becomes the ASCII character that looks most like it.
 
 use textplots::{Chart, Plot, Shape};
+use unicode_width::UnicodeWidthStr;
 
 use crate::view::style::{Role, Style};
 
@@ -23,7 +24,26 @@ pub struct Canvas {
     columns: usize,
     rows: usize,
     cells: Vec<Option<(char, Role)>>,
-    inks: Vec<(Role, Vec<Stroke>)>,
+    inks: Vec<Ink>,
+    labels: Vec<Label>,
+}
+
+/// Strokes of one colour.
+#[derive(Clone, Debug)]
+struct Ink {
+    role: Role,
+    strokes: Vec<Stroke>,
+    /// Only in characters that nothing else has used.
+    under: bool,
+}
+
+/// A word near a character, if there is room.
+#[derive(Clone, Debug)]
+struct Label {
+    column: usize,
+    row: usize,
+    text: String,
+    role: Role,
 }
 
 impl Canvas {
@@ -35,6 +55,7 @@ impl Canvas {
             rows,
             cells: vec![None; columns * rows],
             inks: Vec::new(),
+            labels: Vec::new(),
         }
     }
 
@@ -50,7 +71,33 @@ impl Canvas {
 
     /// Adds strokes of one colour; later ones give a shared character its colour.
     pub fn draw(&mut self, role: Role, strokes: Vec<Stroke>) {
-        self.inks.push((role, strokes));
+        self.inks.push(Ink {
+            role,
+            strokes,
+            under: false,
+        });
+    }
+
+    /// Adds strokes that stay out of every character already drawn in: faint lines that must not blur others.
+    /// They are drawn after all those of [`Canvas::draw`], in their own order.
+    pub fn draw_under(&mut self, role: Role, strokes: Vec<Stroke>) {
+        self.inks.push(Ink {
+            role,
+            strokes,
+            under: true,
+        });
+    }
+
+    /// Writes `text` below (else above) the character at the dot (x, y), where all of its place is free.
+    pub fn label(&mut self, x: f64, y: f64, text: &str, role: Role) {
+        if let Some((column, row)) = self.cell(x, y) {
+            self.labels.push(Label {
+                column,
+                row,
+                text: text.to_owned(),
+                role,
+            });
+        }
     }
 
     /// Puts a character over whatever is at the dot (x, y).
@@ -73,15 +120,31 @@ impl Canvas {
     /// The lines of the canvas, painted, without blanks at their ends.
     pub fn lines(&self, style: &Style) -> Vec<String> {
         let mut dots: Vec<(u8, Role)> = vec![(0, Role::Plain); self.columns * self.rows];
-        for (role, strokes) in &self.inks {
-            for (cell, ink) in dots.iter_mut().zip(self.raster(strokes)) {
-                if ink != 0 {
-                    *cell = (cell.0 | ink, *role);
+        let above = self.inks.iter().filter(|ink| !ink.under);
+        for ink in above.chain(self.inks.iter().filter(|ink| ink.under)) {
+            for (cell, bits) in dots.iter_mut().zip(self.raster(&ink.strokes)) {
+                if bits != 0 && !(ink.under && cell.0 != 0) {
+                    *cell = (cell.0 | bits, ink.role);
                 }
             }
         }
+        let mut over = self.cells.clone();
+        // All labels or, where they do not all find room, the first and the last: some of them at random places
+        // would only puzzle.
+        let mut labelled = over.clone();
+        if self
+            .labels
+            .iter()
+            .all(|label| self.place(label, &mut labelled, &dots))
+        {
+            over = labelled;
+        } else {
+            for label in self.labels.first().into_iter().chain(self.labels.last()) {
+                self.place(label, &mut over, &dots);
+            }
+        }
         let character = |index: usize| -> (char, Role) {
-            match (self.cells[index], dots[index]) {
+            match (over[index], dots[index]) {
                 (Some(over), _) => over,
                 (None, (0, _)) => (' ', Role::Plain),
                 (None, (ink, role)) if style.ascii => (ascii(ink), role),
@@ -99,6 +162,34 @@ impl Canvas {
                 paint_runs(&cells, style)
             })
             .collect()
+    }
+
+    /// Puts a label into `over` where it and a blank on either side find free cells; says whether it did.
+    fn place(&self, label: &Label, over: &mut [Option<(char, Role)>], dots: &[(u8, Role)]) -> bool {
+        let length = label.text.chars().count();
+        if length == 0 || length != label.text.width() || length > self.columns {
+            return false;
+        }
+        let start = label
+            .column
+            .saturating_sub(length / 2)
+            .min(self.columns - length);
+        let around = start.saturating_sub(1)..(start + length + 1).min(self.columns);
+        let rows = [label.row.checked_add(1), label.row.checked_sub(1)];
+        for row in rows.into_iter().flatten().filter(|row| *row < self.rows) {
+            let free = around.clone().all(|column| {
+                let index = row * self.columns + column;
+                over[index].is_none() && dots[index].0 == 0
+            });
+            if free {
+                let from = row * self.columns + start;
+                for (cell, c) in over[from..].iter_mut().zip(label.text.chars()) {
+                    *cell = Some((c, label.role));
+                }
+                return true;
+            }
+        }
+        false
     }
 
     /// Braille dots of `strokes`, one byte per character, as textplots draws them.
@@ -189,25 +280,22 @@ fn ascii(ink: u8) -> char {
         )
     };
     let ((left, left_at), (right, right_at)) = (mean(LEFT), mean(RIGHT));
-    let level = |at: f64| {
-        if at < 0.75 {
-            '\''
-        } else if at < 2.5 {
-            '-'
-        } else {
-            '_'
-        }
-    };
+    let rise = left_at - right_at;
+    let level = (left_at + right_at) / 2.0;
     match (left, right) {
         (l, r) if l + r >= 6 => '#',
         (0, r) if r >= 3 => '|',
         (l, 0) if l >= 3 => '|',
         (0, _) => dot(right_at),
         (_, 0) => dot(left_at),
-        (l, r) if l + r >= 4 && (left_at - right_at).abs() < 0.6 => '|',
-        _ if right_at - left_at >= 1.0 => '\\',
-        _ if left_at - right_at >= 1.0 => '/',
-        _ => level((left_at + right_at) / 2.0),
+        // Two lines one above the other.
+        (l, r) if l + r >= 4 && rise.abs() < 0.6 => '=',
+        (l, r) if l + r >= 3 && rise >= 1.4 => '/',
+        (l, r) if l + r >= 3 && rise <= -1.4 => '\\',
+        _ if level < 0.75 => '\'',
+        _ if level < 1.75 || (rise == 0.0 && level < 2.5) => '-',
+        _ if level < 2.75 => '.',
+        _ => '_',
     }
 }
 

@@ -14,6 +14,10 @@ use crate::view::style::{Role, Style, pad_left};
 pub enum Line {
     /// Joined points, each with the curve's marker.
     Marked,
+    /// Joined points without markers.
+    Plain,
+    /// Markers that nothing joins.
+    Points,
     /// A dotted line without markers, for bounds.
     Dotted,
 }
@@ -77,7 +81,9 @@ impl Chart {
         if points().next().is_none() {
             return writeln!(out, "{}", style.fit("nothing to draw", style.width));
         }
-        let rows = self.height.clamp(3, 200);
+        // Nothing but zeros needs no height.
+        let flat = points().all(|&(_, y)| y == 0.0);
+        let rows = if flat { 3 } else { self.height.clamp(3, 200) };
         let ticks = Ticks::new(points().map(|&(_, y)| y), (rows / 3).clamp(2, 8));
         let labels: Vec<String> = ticks.values.iter().map(|&value| short(value)).collect();
         let gutter = labels.iter().map(|label| label.width()).max().unwrap_or(0);
@@ -110,14 +116,6 @@ impl Chart {
                 share * height
             }
         };
-        // The zero line, faint.
-        let zero = to_y(0.0);
-        let faint: Vec<(f64, f64)> = (0..columns)
-            .step_by(2)
-            .map(|column| (2.0 * column as f64, zero))
-            .collect();
-        canvas.draw(Role::Muted, vec![Stroke::Dots(faint)]);
-
         for curve in &self.curves {
             let role = Role::Series(curve.number);
             let dots: Vec<(f64, f64)> = curve
@@ -128,17 +126,30 @@ impl Chart {
                 .map(|&(x, y)| (to_x(x), to_y(y)))
                 .collect();
             match curve.line {
-                Line::Dotted => canvas.draw(role, vec![Stroke::Dots(dotted(&dots, 4.0))]),
-                Line::Marked => {
-                    canvas.draw(role, vec![Stroke::Line(dots.clone())]);
+                Line::Dotted => {
+                    canvas.draw_under(role, vec![Stroke::Dots(dotted(&dots, 4.0))]);
+                }
+                Line::Plain => canvas.draw(role, vec![Stroke::Line(dots)]),
+                Line::Marked | Line::Points => {
                     let stride = dots.len().div_ceil((columns / 4).max(1)).max(1);
                     let mark = marker(curve.number, style);
                     for &(x, y) in dots.iter().step_by(stride) {
                         canvas.put(x, y, mark, role);
                     }
+                    if curve.line == Line::Marked {
+                        canvas.draw(role, vec![Stroke::Line(dots)]);
+                    }
                 }
             }
         }
+
+        // The zero line, faint.
+        let zero = to_y(0.0);
+        let faint: Vec<(f64, f64)> = (0..columns)
+            .step_by(2)
+            .map(|column| (2.0 * column as f64, zero))
+            .collect();
+        canvas.draw_under(Role::Muted, vec![Stroke::Dots(faint)]);
 
         let mut at_row: Vec<Option<&str>> = vec![None; rows];
         for (value, label) in ticks.values.iter().zip(&labels) {
@@ -155,12 +166,12 @@ impl Chart {
             };
             let label = pad_left(label, gutter);
             let axis = style.paint(Role::Muted, &axis.to_string());
-            writeln!(out, "{} ", format!("{label} {axis}{line}").trim_end()).map(|()| ())?;
+            writeln!(out, "{label} {axis}{line}")?;
         }
         self.write_abscissa(out, style, gutter + 2, columns, &|x| {
             canvas.cell(to_x(x), 0.0).map_or(0, |(column, _)| column)
         })?;
-        if self.values {
+        if self.values && last > first {
             let unit = self.unit.as_deref();
             let (left, right) = (short(first), with_unit(&short(last), unit));
             let mut line = Slots::new(columns);
@@ -190,8 +201,11 @@ impl Chart {
             ('└', '─', '┴')
         };
         let mut axis = vec![plain; columns];
-        for (x, _) in &self.names {
-            axis[column(*x).min(columns - 1)] = tick;
+        // Ticks closer than every third character say nothing.
+        if 3 * self.names.len() <= columns.max(9) {
+            for (x, _) in &self.names {
+                axis[column(*x).min(columns - 1)] = tick;
+            }
         }
         let axis: String = std::iter::once(corner).chain(axis).collect();
         let axis = style.paint(Role::Muted, &axis);
@@ -216,15 +230,19 @@ impl Chart {
     }
 
     fn write_legend(&self, out: &mut dyn Write, style: &Style, indent: usize) -> io::Result<()> {
-        let entries: Vec<(char, Role, String)> = self
+        let (marked, dotted): (Vec<&Curve>, Vec<&Curve>) = self
             .curves
             .iter()
             .filter(|curve| !curve.series.label.is_empty())
+            .partition(|curve| curve.line != Line::Dotted);
+        let entries: Vec<(char, Role, String)> = marked
+            .into_iter()
+            .chain(dotted)
             .map(|curve| {
                 let sign = match (curve.line, style.ascii) {
-                    (Line::Marked, _) => marker(curve.number, style),
                     (Line::Dotted, true) => ':',
                     (Line::Dotted, false) => '┈',
+                    _ => marker(curve.number, style),
                 };
                 (
                     sign,
@@ -277,6 +295,9 @@ pub fn dotted(points: &[(f64, f64)], pitch: f64) -> Vec<(f64, f64)> {
     for ends in points.windows(2) {
         let ((x0, y0), (x1, y1)) = (ends[0], ends[1]);
         let length = (x1 - x0).hypot(y1 - y0);
+        if !length.is_finite() {
+            continue;
+        }
         let mut at = left;
         while at <= length {
             let share = at / length;

@@ -86,17 +86,49 @@ pub fn series(
     })
 }
 
-/// Draws the force along `bar` and names its extremes; says so where there is no such bar.
+/// The points of `series` at the ends of the elements of `bar`.
+fn node_points(structure: &Structure, bar: &str, series: &Series) -> Vec<(f64, f64)> {
+    let mut at = 0.0;
+    let mut ends = vec![at];
+    for length in lengths(structure, bar).unwrap_or_default() {
+        at += length;
+        ends.push(at);
+    }
+    // The abscissas of `series` are the same sums.
+    let is_end = |x: f64| ends.contains(&x);
+    let points = series.points.iter().copied();
+    points.filter(|(x, _)| is_end(*x)).collect()
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Diagram<'a> {
+    /// The structure with the bar.
+    pub structure: &'a Structure,
+    /// End forces of its members.
+    pub members: &'a [MemberForces],
+    /// Id of the bar.
+    pub bar: &'a str,
+    /// Which force.
+    pub force: Force,
+    /// Rows of the drawing.
+    pub height: usize,
+}
+
+/// Draws the force along a bar and names its extremes; says so where there is no such bar.
 pub fn write(
     out: &mut dyn Write,
-    structure: &Structure,
-    members: &[MemberForces],
-    bar: &str,
-    force: Force,
+    diagram: &Diagram<'_>,
     units: &Units,
-    height: usize,
     style: &Style,
 ) -> io::Result<()> {
+    let Diagram {
+        structure,
+        members,
+        bar,
+        force,
+        height,
+    } = *diagram;
     let Some(series) = series(structure, members, bar, force) else {
         let text = format!("no member forces of a bar {bar}");
         return writeln!(out, "{}", style.fit(&style.text(&text), style.width));
@@ -143,13 +175,18 @@ pub fn write(
         .first()
         .zip(series.points.last())
         .map(|(first, last)| vec![(first.0, "start".to_owned()), (last.0, "end".to_owned())]);
+    let nodes = Series {
+        label: String::new(),
+        points: node_points(structure, bar, &series),
+    };
+    let curve = |series: Series, line: Line| Curve {
+        series,
+        number: 0,
+        line,
+    };
     Chart {
         title,
-        curves: vec![Curve {
-            series,
-            number: 0,
-            line: Line::Marked,
-        }],
+        curves: vec![curve(series, Line::Plain), curve(nodes, Line::Points)],
         names: joints.unwrap_or_default(),
         values: true,
         abscissa: format!("along {bar}"),

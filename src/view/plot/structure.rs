@@ -6,7 +6,8 @@ use std::io::{self, Write};
 use super::canvas::{Canvas, Stroke};
 use super::chart::{dotted, range, write_legend};
 use crate::answer::record::{NodeDisplacement, PairState, State};
-use crate::model::structure::{Component, Element, ElementKind, Structure};
+use crate::model::parameter::ParameterValues;
+use crate::model::structure::{Element, ElementKind, Load, Structure};
 use crate::view::number::short;
 use crate::view::style::{Role, Style};
 
@@ -237,6 +238,90 @@ fn support_sign(held: usize, ascii: bool) -> (char, &'static str) {
 
 /// Draws the picture with a legend of the signs it uses.
 pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::Result<()> {
+    draw(out, picture, &[], style)
+}
+
+/// The same with an arrow beside every node and bar that carries load under these parameter values.
+pub fn write_with_loads(
+    out: &mut dyn Write,
+    picture: &Picture<'_>,
+    parameters: &ParameterValues,
+    style: &Style,
+) -> io::Result<()> {
+    draw(out, picture, &arrows(picture.structure, parameters), style)
+}
+
+/// Where a load acts and in which direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrow {
+    /// The node, or the ends of the element.
+    pub nodes: Vec<usize>,
+    /// Sum of all cases, each by its factor.
+    pub force: [f64; 2],
+}
+
+/// Forces on nodes and elements, all cases added up; those that cancel out are left out.
+pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow> {
+    let mut arrows: Vec<Arrow> = Vec::new();
+    let mut places: HashMap<Vec<usize>, usize> = HashMap::new();
+    for case in &structure.load_cases {
+        let factor = case.factor.value(parameters);
+        for load in &case.loads {
+            let (nodes, force) = match load {
+                Load::Nodal { node, force, .. } => (vec![*node], force),
+                Load::Line { element, value } => match structure.elements.get(*element) {
+                    Some(element) => (element.nodes.clone(), value),
+                    None => continue,
+                },
+            };
+            let place = *places.entry(nodes.clone()).or_insert_with(|| {
+                arrows.push(Arrow {
+                    nodes,
+                    force: [0.0; 2],
+                });
+                arrows.len() - 1
+            });
+            arrows[place].force[0] += factor * force[0];
+            arrows[place].force[1] += factor * force[1];
+        }
+    }
+    let size = |arrow: &Arrow| arrow.force[0].hypot(arrow.force[1]);
+    let most = arrows.iter().map(size).fold(0.0, f64::max);
+    arrows.retain(|arrow| size(arrow) > 1e-9 * most);
+    arrows
+}
+
+/// A component below this share of a load gets no arrow of its own.
+const COMPONENT: f64 = 0.05;
+
+/// Signs of the components of a load and the steps from its node to their places, in dots: a force down or up stands
+/// before its node, one sideways behind it.
+fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
+    let signs = if ascii {
+        ['V', 'U', '{', '}']
+    } else {
+        ['↓', '↑', '←', '→']
+    };
+    let least = COMPONENT * force[0].hypot(force[1]);
+    let mut shown = Vec::new();
+    if force[1].abs() > least {
+        let up = force[1] > 0.0;
+        shown.push((signs[usize::from(up)], 0.0, if up { -4.0 } else { 4.0 }));
+    }
+    if force[0].abs() > least {
+        let right = force[0] > 0.0;
+        let step = if right { 2.0 } else { -2.0 };
+        shown.push((signs[2 + usize::from(right)], step, 0.0));
+    }
+    shown
+}
+
+fn draw(
+    out: &mut dyn Write,
+    picture: &Picture<'_>,
+    arrows: &[Arrow],
+    style: &Style,
+) -> io::Result<()> {
     let structure = picture.structure;
     let rest = vec![[0.0; 3]; structure.nodes.len()];
     let u = picture
@@ -290,10 +375,17 @@ pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::R
         (canvas.dots_y() - high * pitch) / 2.0,
     );
     let place = |(x, y): (f64, f64)| ((x - left) * pitch + shift_x, (y - bottom) * pitch + shift_y);
+    let ends = (canvas.dots_x(), canvas.dots_y());
     let placed = |lines: &[Vec<(f64, f64)>]| -> Vec<Vec<(f64, f64)>> {
         lines
             .iter()
-            .map(|line| line.iter().map(|&point| place(point)).collect())
+            .map(|line| {
+                let finite = line.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+                finite
+                    .map(|&point| place(point))
+                    .map(|(x, y)| (x.clamp(0.0, ends.0), y.clamp(0.0, ends.1)))
+                    .collect()
+            })
             .collect()
     };
     let is_deformed = moved.iter().any(|u| *u != [0.0; 3]) && factor != 0.0;
@@ -302,14 +394,14 @@ pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::R
             .iter()
             .map(|line| Stroke::Dots(dotted(line, 4.0)))
             .collect();
-        canvas.draw(Role::Muted, strokes);
+        canvas.draw_under(Role::Muted, strokes);
     }
     if grid_pitch(structure, pitch) >= GRID_PITCH {
         let strokes = placed(&now.grid)
             .iter()
             .map(|line| Stroke::Dots(dotted(line, 2.0)))
             .collect();
-        canvas.draw(Role::Muted, strokes);
+        canvas.draw_under(Role::Muted, strokes);
     }
     let strokes = placed(&now.outline).into_iter().map(Stroke::Line).collect();
     canvas.draw(Role::Plain, strokes);
@@ -348,7 +440,21 @@ pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::R
         };
         let (x, y) = at(pair.node);
         canvas.put(x, y, sign, role);
+        canvas.label(x, y, &style.text(&pair.id), Role::Muted);
         note(sign, role, word);
+    }
+    for arrow in arrows {
+        let count = arrow.nodes.len().max(1) as f64;
+        let (mut x, mut y) = (0.0, 0.0);
+        for &node in &arrow.nodes {
+            let (node_x, node_y) = at(node);
+            x += node_x / count;
+            y += node_y / count;
+        }
+        for (sign, step_x, step_y) in load_signs(arrow.force, style.ascii) {
+            canvas.put(x + step_x, y + step_y, sign, Role::Accent);
+            note(sign, Role::Accent, "load");
+        }
     }
     for line in canvas.lines(style) {
         writeln!(out, "{line}")?;
@@ -372,7 +478,7 @@ fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Nodes with supports and how many components each holds. A node without rotation counts as clamped never.
+/// Nodes with supports and how many components each holds.
 fn supported(structure: &Structure) -> Vec<(usize, usize)> {
     let mut held: Vec<(usize, usize)> = Vec::new();
     let mut place: HashMap<usize, usize> = HashMap::new();
@@ -381,11 +487,7 @@ fn supported(structure: &Structure) -> Vec<(usize, usize)> {
             held.push((support.node, 0));
             held.len() - 1
         });
-        held[index].1 += match support.component {
-            Component::X | Component::Y => 1,
-            // A held rotation alone is no pin.
-            Component::R => 1,
-        };
+        held[index].1 += 1;
     }
     held
 }

@@ -8,6 +8,7 @@ use crate::answer::record::PivotRecord;
 use crate::model::scenario::Units;
 use crate::view::force_unit;
 use crate::view::number::{denoised, largest};
+use crate::view::pivots::of_contact;
 use crate::view::style::Style;
 
 /// p after each pivot over the number of the pivot.
@@ -31,8 +32,7 @@ pub fn write(
     height: usize,
     style: &Style,
 ) -> io::Result<()> {
-    let is_contact = pivots.iter().any(|pivot| pivot.turned.is_some());
-    let unit = force_unit(units).filter(|_| is_contact);
+    let unit = force_unit(units).filter(|_| of_contact(pivots));
     let series = p_series("", pivots);
     let mut curves = vec![Curve {
         series: series.clone(),

@@ -153,10 +153,15 @@ pub fn write(
             }
         }
     }
-    // Names of the curves first, then those of the bounds.
-    curves.sort_by_key(|curve| curve.line == Line::Marked);
     let pairs = states.first().map_or(&[][..], |(_, pairs)| pairs);
-    chart(name, unit, curves, pairs, units, height).write(out, style)
+    let mut chart = chart(name, unit, curves, pairs, units, height);
+    // A single state is named in the title, several in the legend.
+    if let [(label, _)] = states
+        && !label.is_empty()
+    {
+        chart.title.push_str(&format!(" · {label}"));
+    }
+    chart.write(out, style)
 }
 
 /// Draws the direction of a ray, z̄_n and z̄_τ (largest 1), over the zone of `pairs`.
