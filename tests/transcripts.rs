@@ -345,7 +345,11 @@ fn a_failed_expectation_says_where_and_what() {
         failures[0]
     );
     let (_, failures, _) = replay("expect state c9 stick", Format::Text, false);
-    assert!(failures[0].contains("no pair `c9`: the pairs are c1, c2"), "{}", failures[0]);
+    assert!(
+        failures[0].contains("no pair `c9`: the pairs are c1, c2"),
+        "{}",
+        failures[0]
+    );
 }
 
 #[test]
@@ -784,7 +788,11 @@ fn a_pipe_gets_results_only() {
     let out = String::from_utf8(out).unwrap();
     assert!(!out.contains('\u{1b}') && !out.contains("> "), "{out}");
     assert!(out.starts_with("beam"));
-    assert!(out.lines().all(|line| line.trim_end().chars().count() <= 60), "{out}");
+    assert!(
+        out.lines()
+            .all(|line| line.trim_end().chars().count() <= 60),
+        "{out}"
+    );
     assert!(error.contains("unknown command"), "{error}");
     assert_eq!(status, 2);
     let (out, ..) = piped(

@@ -360,7 +360,11 @@ impl Expectation {
                 .iter()
                 .find(|pair| pair.id == id)
                 .ok_or_else(|| {
-                    Err(super::reports::no_such("pair", id, facts.pairs.iter().map(|pair| pair.id.as_str())))
+                    Err(super::reports::no_such(
+                        "pair",
+                        id,
+                        facts.pairs.iter().map(|pair| pair.id.as_str()),
+                    ))
                 })
         };
         let ray = facts.answer.and_then(|answer| answer.ray.as_ref());
@@ -412,7 +416,11 @@ impl Expectation {
                     .iter()
                     .find(|d| d.node == *node)
                     .ok_or_else(|| {
-                        Err(super::reports::no_such("node", node, displacements.iter().map(|d| d.node.as_str())))
+                        Err(super::reports::no_such(
+                            "node",
+                            node,
+                            displacements.iter().map(|d| d.node.as_str()),
+                        ))
                     })?;
                 let value = match component.as_str() {
                     "ux" => found.ux,

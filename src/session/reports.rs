@@ -298,7 +298,11 @@ impl Session {
             let mut chosen = Vec::new();
             for node in nodes {
                 let index = by_name.get(node.as_str()).ok_or_else(|| {
-                    CommandError::Refused(no_such("node", node, all.iter().map(|d| d.node.as_str())))
+                    CommandError::Refused(no_such(
+                        "node",
+                        node,
+                        all.iter().map(|d| d.node.as_str()),
+                    ))
                 })?;
                 chosen.push(all[*index].clone());
             }
@@ -339,7 +343,11 @@ impl Session {
         if let Some(bar) = bar
             && !members.iter().any(|member| member.bar == bar)
         {
-            return Err(CommandError::Refused(no_such("bar", bar, distinct(members.iter().map(|member| member.bar.as_str())).into_iter())));
+            return Err(CommandError::Refused(no_such(
+                "bar",
+                bar,
+                distinct(members.iter().map(|member| member.bar.as_str())).into_iter(),
+            )));
         }
         io.report(
             || {
@@ -487,11 +495,15 @@ impl Session {
                 "it is pressed together with x_n = {}, and without friction x_t = 0",
                 force(pair.x_n)
             ),
-            (State::Stick, _) if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() => format!(
-                "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
-                force(pair.x_t.abs()),
-                force(pair.bound)
-            ),
+            (State::Stick, _)
+                if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() =>
+            {
+                format!(
+                    "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
+                    force(pair.x_t.abs()),
+                    force(pair.bound)
+                )
+            }
             (State::Stick, _) => format!(
                 "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
                 force(pair.x_t.abs()),
@@ -664,7 +676,11 @@ fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
 }
 
 /// "no pair `c9` (did you mean …?): the pairs are c1 … c6".
-pub(super) fn no_such<'a>(what: &str, id: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+pub(super) fn no_such<'a>(
+    what: &str,
+    id: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> String {
     let near = did_you_mean(id, known.clone());
     let names: Vec<&str> = known.collect();
     match names.as_slice() {
@@ -673,7 +689,10 @@ pub(super) fn no_such<'a>(what: &str, id: &str, known: impl Iterator<Item = &'a 
         [first, .., last] if names.len() > 8 => {
             format!("no {what} `{id}`{near}: the {what}s are {first} … {last}")
         }
-        names => format!("no {what} `{id}`{near}: the {what}s are {}", names.join(", ")),
+        names => format!(
+            "no {what} `{id}`{near}: the {what}s are {}",
+            names.join(", ")
+        ),
     }
 }
 
