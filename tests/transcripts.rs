@@ -39,16 +39,17 @@ fn refused(session: &mut Session, text: &str) -> String {
     }
 }
 
-/// All of a session that a failed command must leave as it was.
-fn state(
-    session: &Session,
-) -> (
+/// All of a session that a failed command must leave as it was: commands that lead to it, its answer, the pivot
+/// shown, the depths of undo and redo, whether it solves at once.
+type State = (
     Vec<String>,
     Option<usize>,
     Option<usize>,
     (usize, usize),
     bool,
-) {
+);
+
+fn state(session: &Session) -> State {
     (
         session.as_commands(),
         session.solved().map(|solved| Arc::as_ptr(&solved) as usize),

@@ -498,10 +498,9 @@ mod tests {
 
     #[test]
     fn hints_say_what_follows() {
-        assert_eq!(
-            hint("piv", &vocabulary()).as_deref(),
-            Some("ots [FROM..TO]")
-        );
+        let hint = |line: &str| hint(line, &vocabulary()).map(|hint| (hint.insert, hint.note));
+        let both = |insert: &str, note: &str| Some((insert.to_owned(), note.to_owned()));
+        assert_eq!(hint("piv"), both("ots", " [FROM..TO]"));
         assert_eq!(hint("set F2 "), both("100", ""));
         assert_eq!(hint("why "), both("", "PAIR"));
         assert_eq!(hint("set covering w"), both("eight", ""));
