@@ -59,7 +59,7 @@ pub fn check_contact(
 /// Checks an answer of a bare LCP from M and q; w is computed afresh.
 pub fn check_plain(lcp: &MirroredLcp, point: &Point) -> Check {
     let z = nalgebra::DVector::from_column_slice(&point.z);
-    let response = &lcp.matrix * &z;
+    let response = &*lcp.matrix * &z;
     let length = z.amax();
     let mut check = Check::default();
     for i in 0..lcp.size() {

@@ -354,7 +354,11 @@ impl Dictionary {
 
     /// M, q, d of the present orientations.
     fn oriented(&self, lcp: &MirroredLcp) -> (DMatrix<f64>, DVector<f64>, DVector<f64>) {
-        let (mut matrix, mut q, mut d) = (lcp.matrix.clone(), lcp.q.clone(), lcp.covering.clone());
+        let (mut matrix, mut q, mut d) = (
+            DMatrix::clone(&lcp.matrix),
+            lcp.q.clone(),
+            lcp.covering.clone(),
+        );
         for i in (0..self.size).filter(|&i| self.turned[i]) {
             let Some(mirror) = &lcp.mirrors[i] else {
                 continue;

@@ -248,7 +248,7 @@ impl SchemeEngine {
         });
         let p = along(Local::P);
         let size = self.rate_total(c);
-        let response = &self.lcp.matrix * z;
+        let response = &*self.lcp.matrix * z;
         (0..self.lcp.size())
             .map(|i| {
                 let w = response[i] + self.lcp.covering[i] * p;
@@ -279,7 +279,7 @@ impl SchemeEngine {
         let point = self.primary_point();
         let size = self.size_of(&self.dictionary.value);
         let (z, p) = point;
-        let response = &self.lcp.matrix * &z;
+        let response = &*self.lcp.matrix * &z;
         (0..self.lcp.size())
             .map(|i| {
                 let w = response[i] + self.lcp.q[i] + self.lcp.covering[i] * p;
