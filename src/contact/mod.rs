@@ -9,5 +9,6 @@ pub mod given;
 pub mod numbers;
 pub mod scheme_solve;
 pub mod scheme_word;
+pub mod sharpen;
 pub mod system;
 pub mod whole;
