@@ -228,7 +228,7 @@ impl Session {
         let bars: Vec<&str> = match bar {
             Some(bar) if names().any(|name| name == bar) => vec![bar],
             Some(bar) => {
-                return Err(CommandError::Refused(super::reports::no_such(
+                return Err(CommandError::Refused(super::selection::no_such(
                     "bar",
                     bar,
                     names(),
