@@ -6,6 +6,7 @@ pub mod driver;
 pub mod lemke;
 pub mod mirrored;
 pub mod outcome;
+pub mod parametric;
 pub mod problem;
 pub mod ratio_test;
 pub mod trace;
