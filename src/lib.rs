@@ -6,5 +6,6 @@ pub mod explain;
 pub mod fem;
 pub mod lcp;
 pub mod model;
+pub mod path;
 pub mod solve;
 pub mod watch;

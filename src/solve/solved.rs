@@ -255,7 +255,7 @@ impl Prepared {
 
     /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
     /// given contact system.
-    fn add_released_slips(
+    pub(crate) fn add_released_slips(
         &self,
         pairs: &mut [PairState],
         numbers: &ContactNumbers,
@@ -294,7 +294,7 @@ impl Prepared {
 }
 
 /// The whole mutual displacement of the joints: z with the gaps taken off.
-fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
+pub(crate) fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
     let mut z = state.z.clone();
     for (i, gap) in numbers.gap.iter().enumerate() {
         z[i] -= gap;

@@ -1,0 +1,132 @@
+//! Load paths and limits against closed forms (Example 1 of the paper, the two plates, the slope).
+
+use stickslip::model::embedded;
+use stickslip::model::scenario::Scenario;
+use stickslip::path::limit::limit;
+use stickslip::path::load::{LoadEnd, LoadPath, LoadReach, trace};
+use stickslip::solve::{Prepared, Solved, prepare};
+use stickslip::watch::Quiet;
+
+struct Case {
+    scenario: Scenario,
+    prepared: Prepared,
+    values: stickslip::model::parameter::ParameterValues,
+}
+
+impl Case {
+    fn new(name: &str, set: &[(&str, f64)]) -> Case {
+        let scenario = embedded::load(name).expect("embedded");
+        let mut values = scenario.parameter_values();
+        for (name, value) in set {
+            *values.get_mut(*name).expect("a parameter") = *value;
+        }
+        Case {
+            prepared: prepare(&scenario, &Quiet).expect("sound"),
+            values,
+            scenario,
+        }
+    }
+
+    fn solve(&self) -> Solved {
+        self.prepared
+            .solve(&self.scenario, &self.values, self.scenario.rules, &Quiet)
+            .expect("solvable")
+    }
+
+    fn trace(&self, name: &str, to: Option<f64>) -> LoadPath {
+        let reach = LoadReach { to, through: false };
+        let solved = self.solve();
+        trace(
+            &self.prepared,
+            &self.scenario,
+            &self.values,
+            Some(&solved),
+            name,
+            reach,
+            &Quiet,
+        )
+        .expect("a path")
+    }
+
+    fn limit(&self, name: &str) -> stickslip::path::limit::Limit {
+        let solved = self.solve();
+        limit(
+            &self.prepared,
+            &self.scenario,
+            &self.values,
+            Some(&solved),
+            name,
+            &Quiet,
+        )
+        .expect("a path")
+    }
+}
+
+fn close(found: f64, expected: f64, relative: f64) {
+    assert!(
+        (found - expected).abs() <= relative * expected.abs(),
+        "{found} is not {expected} within {relative:e}"
+    );
+}
+
+/// ```text
+///   F   F   F   F   F   F
+///   ●───●───●───●───●───● → F2      slip spreads from the pulled end: at F2 = k r the k-th support slips, r = f F
+///   △   △   △   △   △   △
+/// ```
+#[test]
+fn the_beam_slips_support_by_support_and_then_as_a_whole() {
+    let case = Case::new("beam", &[("F2", 0.0)]);
+    let path = case.trace("pull", None);
+    let r = 50.0;
+    assert_eq!(path.breakpoints.len(), 6);
+    for (k, breakpoint) in path.breakpoints.iter().enumerate() {
+        close(breakpoint.factor, (k + 1) as f64 * r, 1e-12);
+        assert_eq!(breakpoint.changes.len(), 1, "{breakpoint:?}");
+        assert_eq!(breakpoint.changes[0].pair, format!("c{}", 6 - k));
+        assert_eq!(breakpoint.changes[0].to, "slip+");
+    }
+    assert!(matches!(path.end, LoadEnd::Limit(_)), "{:?}", path.end);
+    // Between the breakpoints: z_j = (L/EA) [(n − j + 1) ρ + r (n − j)(n − j + 1)/2].
+    let pairs = path.pairs_at(&case.prepared, 2.5 * r).expect("on the path");
+    for (j, factor) in [(1usize, 2.0 * 0.5 + 1.0), (2, 0.5), (3, 0.0)] {
+        assert!((pairs[6 - j].z_t - 1e-5 * r * factor).abs() <= 1e-12 * 1e-5 * r);
+    }
+    // The parameter is another name of the same factor; the limit does not depend on where the path starts.
+    for start in [0.0, 100.0, 250.0] {
+        let limit = Case::new("beam", &[("F2", start)]).limit("F2");
+        close(limit.factor.expect("a limit"), 6.0 * r, 1e-12);
+        assert!(limit.confirmed);
+        let collapse = limit.collapse.expect("a mode");
+        assert!(collapse.direction.iter().all(|d| (d.z_t - 1.0).abs() < 1e-9 && d.z_n == 0.0));
+    }
+    // Beyond the limit there is no answer: the path starts from 0 and the safety is below 1.
+    let limit = Case::new("beam", &[("F2", 400.0)]).limit("pull");
+    assert!(limit.path.from_zero);
+    close(limit.safety.expect("a limit"), 0.75, 1e-12);
+}
+
+#[test]
+fn more_weight_on_a_sliding_beam_ends_nowhere() {
+    let case = Case::new("beam", &[]);
+    let path = case.trace("weight", None);
+    assert_eq!(path.end, LoadEnd::Unbounded);
+    // F2 = 250 slips n = ⌊250 / (0.5 F)⌋ supports: the last breakpoint, to none, at F = 500.
+    close(path.breakpoints.last().expect("some").factor, 500.0, 1e-12);
+    // Less weight instead: the limit from the other side, 6 f F = 250.
+    let path = case.trace("F", Some(10.0));
+    assert!(matches!(path.end, LoadEnd::Limit(_)));
+    close(*path.factors.last().expect("knots"), 250.0 / 3.0, 1e-12);
+}
+
+#[test]
+fn everything_from_zero_load_at_once() {
+    // No weight and no pull: every pair is degenerate at the start.
+    let case = Case::new("beam", &[("F", 0.0), ("F2", 0.0)]);
+    let path = case.trace("F", None);
+    assert_eq!(path.end, LoadEnd::Unbounded);
+    assert!(path.breakpoints.is_empty(), "{:?}", path.breakpoints);
+    let path = case.trace("F2", None);
+    assert!(matches!(path.end, LoadEnd::Limit(_)), "{:?}", path.end);
+    assert_eq!(path.limit(), Some(0.0));
+}
