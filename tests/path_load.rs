@@ -130,3 +130,63 @@ fn everything_from_zero_load_at_once() {
     assert!(matches!(path.end, LoadEnd::Limit(_)), "{:?}", path.end);
     assert_eq!(path.limit(), Some(0.0));
 }
+
+/// Two plates 8 × 4, the upper one free on the lower one: it slides at T = 200 f and overturns at T = 400.
+#[test]
+fn plates_slide_and_overturn_at_their_limits() {
+    for (f, expected) in [(0.3, 60.0), (0.75, 150.0), (2.5, 400.0)] {
+        let case = Case::new("plates-free", &[("f", f), ("T", 0.0)]);
+        let limit = case.limit("push");
+        close(limit.factor.expect("a limit"), expected, 1e-9);
+        assert!(limit.confirmed, "f = {f}");
+        let collapse = limit.collapse.expect("a mode");
+        assert_eq!(
+            collapse.class,
+            stickslip::answer::record::RayClass::Mechanism
+        );
+        let opens = collapse.direction.iter().any(|d| d.z_n > 1e-9);
+        assert_eq!(opens, expected == 400.0, "{}", collapse.mode);
+    }
+}
+
+/// NAFEMS CGS-4: F/G = (tan α + μ)/(1 − μ tan α) moves the block up, (tan α − μ)/(1 + μ tan α) down.
+#[test]
+fn a_slope_is_climbed_and_descended() {
+    let (tan, mu) = (0.1, 0.3);
+    let case = Case::new("slope", &[("F", 0.0)]);
+    let up = case.trace("push", None);
+    close(up.limit().expect("a limit"), (tan + mu) / (1.0 - mu * tan), 1e-9);
+    let down = case.trace("push", Some(-1.0));
+    close(down.limit().expect("a limit"), (tan - mu) / (1.0 + mu * tan), 1e-9);
+}
+
+/// The state on a path is the state solved for there, where there is only one.
+#[test]
+fn the_path_passes_through_the_answers_of_its_loads() {
+    for (name, load, factors) in [
+        ("plates-free", "T", vec![30.0, 75.0, 110.0, 140.0, 149.0]),
+        ("plates-hinged", "T", vec![50.0, 100.0, 200.0]),
+        ("frame-rotated", "H", vec![-20.0, 10.0, 45.0]),
+        ("block", "H", vec![0.05, 0.15, 0.24]),
+    ] {
+        let mut case = Case::new(name, &[(load, 0.0)]);
+        for factor in factors {
+            *case.values.get_mut(load).expect("a parameter") = 0.0;
+            let path = case.trace(load, Some(factor));
+            assert_eq!(path.end, LoadEnd::Target, "{name} {factor}");
+            let found = path.pairs.last().expect("the end");
+            *case.values.get_mut(load).expect("a parameter") = factor;
+            let solved = case.solve();
+            let size = |k: fn(&stickslip::answer::record::PairState) -> f64| {
+                solved.answer.pairs.iter().map(|p| k(p).abs()).fold(0.0, f64::max)
+            };
+            let (force, length) = (size(|p| p.x_n), size(|p| p.z_t).max(size(|p| p.z_n)));
+            for (a, b) in found.iter().zip(&solved.answer.pairs) {
+                assert!((a.x_n - b.x_n).abs() <= 1e-9 * force, "{name} {factor} {a:?} {b:?}");
+                assert!((a.x_t - b.x_t).abs() <= 1e-9 * force, "{name} {factor} {a:?} {b:?}");
+                assert!((a.z_t - b.z_t).abs() <= 1e-9 * length, "{name} {factor} {a:?} {b:?}");
+                assert_eq!(a.state, b.state, "{name} {factor} {}", a.id);
+            }
+        }
+    }
+}

@@ -1,6 +1,13 @@
 //! Unilateral joints: from the condensed structure to the complementarity problem and back.
 
+pub(crate) mod answer_box;
 pub mod complementarity;
+pub mod critical;
+pub mod enumerate;
+pub mod exact_check;
 pub mod given;
 pub mod numbers;
+pub mod scheme_solve;
+pub mod scheme_word;
 pub mod system;
+pub mod whole;

@@ -1,11 +1,12 @@
 //! K and F of the free structure, and their share in the main system.
 //!
-//! With u = T v + G z (see `dof`): K_m = Tᵀ K T, C = Tᵀ K G, D = Gᵀ K G.
+//! With u = T v + G z (see `elimination`): K_m = Tᵀ K T, C = Tᵀ K G, D = Gᵀ K G.
 
 use nalgebra::DMatrix;
 
-use super::dof::{Dofs, Elimination};
+use super::dof::Dofs;
 use super::element::{line_load, slots, spring, stiffness};
+use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
 use crate::model::structure::{Component, Load, Structure};
@@ -22,11 +23,13 @@ pub fn assemble(
     dofs: &Dofs,
     stop: &dyn Fn() -> bool,
 ) -> Result<SymmetricSparse, MainSystemError> {
-    let element_dofs = |index: usize| -> Vec<Option<usize>> {
-        slots(&structure.elements[index])
-            .into_iter()
-            .map(|slot| slot.and_then(|(node, component)| dofs.of(node, component)))
-            .collect()
+    let element_dofs = |index: usize, visit: &mut dyn FnMut(&[Option<usize>])| {
+        let slots = slots(&structure.elements[index]);
+        let mut at = [None; 8];
+        for (at, slot) in std::iter::zip(&mut at, slots.iter()) {
+            *at = slot.and_then(|(node, component)| dofs.of(node, component));
+        }
+        visit(&at[..slots.len()]);
     };
     let spring_dofs = |node: usize| [Component::X, Component::Y].map(|c| dofs.of(node, c));
     let lower = |at: &[Option<usize>], visit: &mut dyn FnMut(usize, usize, usize, usize)| {
@@ -46,7 +49,9 @@ pub fn assemble(
             // Every dof has its diagonal entry, also where nothing is attached.
             (0..dofs.count()).for_each(&mut *count);
             for index in 0..structure.elements.len() {
-                lower(&element_dofs(index), &mut |_, column, _, _| count(column));
+                element_dofs(index, &mut |at| {
+                    lower(at, &mut |_, column, _, _| count(column))
+                });
             }
             for spring in &structure.springs {
                 lower(&spring_dofs(spring.node), &mut |_, column, _, _| {
@@ -61,8 +66,8 @@ pub fn assemble(
                     return Err(MainSystemError::Interrupted);
                 }
                 let k = stiffness(structure, index)?;
-                lower(&element_dofs(index), &mut |row, column, i, j| {
-                    push(row, column, k[(i, j)]);
+                element_dofs(index, &mut |at| {
+                    lower(at, &mut |row, column, i, j| push(row, column, k[(i, j)]));
                 });
             }
             for element in &structure.springs {
@@ -112,8 +117,8 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
                 Load::Line { element, value } => {
                     let forces = line_load(structure, element, value);
                     let at = slots(&structure.elements[element]);
-                    for (slot, force) in at.into_iter().zip(&forces) {
-                        if let Some((node, component)) = slot {
+                    for (slot, force) in at.iter().zip(&forces) {
+                        if let Some((node, component)) = *slot {
                             add(node, component, *force);
                         }
                     }

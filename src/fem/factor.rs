@@ -9,8 +9,6 @@
 //! The other rows are ordered by approximate minimum degree, whose order is a postorder of its elimination tree;
 //! appending rows keeps it one, as faer's supernodes need.
 
-use std::ops::Range;
-
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::matmul::{matmul, triangular};
 use faer::linalg::triangular_solve::{
@@ -32,6 +30,7 @@ use nalgebra::DMatrix;
 use super::error::MainSystemError;
 use super::memory::available_memory;
 use super::sparse::SymmetricSparse;
+use super::watch::check_stop;
 use crate::watch::Watch;
 
 /// One thread: results do not depend on the machine's number of cores.
@@ -101,7 +100,7 @@ impl Factor {
             touched
         };
         let n = k_m.order();
-        let scale = scale_to_unit_diagonal(k_m);
+        let scale = k_m.scale_to_unit_diagonal();
         watch.progress("ordering the unknowns", 0.0);
         let forward = order_touched_last(k_m, touched)?;
         let tail = n - touched.iter().filter(|touched| **touched).count();
@@ -274,7 +273,7 @@ impl Factor {
             let block = llt.supernode(s);
             for j in 0..block.val().ncols() {
                 let pivot = block.val()[(j, j)].powi(2);
-                if !(pivot >= smallest.1) {
+                if pivot < smallest.1 {
                     smallest = (block.start() + j, pivot);
                 }
             }
@@ -309,24 +308,41 @@ impl Factor {
         Ok(Trailing { start, w })
     }
 
-    /// K_m⁻¹ b for every column of `b`, in place; gives also L⁻¹ Pᵀ S b.
-    pub fn solve(&self, b: &mut DMatrix<f64>) -> ForwardPart {
-        let n = self.order();
-        let mut x = Mat::<f64>::zeros(n, b.ncols());
-        for j in 0..b.ncols() {
-            for i in 0..b.nrows() {
-                x[(self.position[i] as usize, j)] = self.scale[i] * b[(i, j)];
-            }
+    /// K_m⁻¹ b, in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        let mut x = Mat::<f64>::zeros(self.order(), 1);
+        for (i, b) in b.iter().enumerate() {
+            x[(self.position[i] as usize, 0)] = self.scale[i] * b;
         }
         self.forward(x.as_mut(), 0, 0);
-        let forward = ForwardPart(x.clone());
         self.backward(x.as_mut());
-        for j in 0..b.ncols() {
-            for i in 0..b.nrows() {
-                b[(i, j)] = self.scale[i] * x[(self.position[i] as usize, j)];
+        for (i, b) in b.iter_mut().enumerate() {
+            *b = self.scale[i] * x[(self.position[i] as usize, 0)];
+        }
+    }
+
+    /// Cᵀ K_m⁻¹ b = Wᵀ L⁻¹ Pᵀ S b for every b, as columns.
+    pub fn project(&self, trailing: &Trailing, b: &[Vec<f64>]) -> DMatrix<f64> {
+        let (n, cases) = (self.order(), b.len());
+        // Row by row: the sweep goes down the rows, and the cases lie side by side.
+        let mut x = vec![0.0; n * cases];
+        for (case, b) in b.iter().enumerate() {
+            for (i, b) in b.iter().enumerate() {
+                x[self.position[i] as usize * cases + case] = self.scale[i] * b;
             }
         }
-        forward
+        let mut x = MatMut::from_row_major_slice_mut(&mut x, n, cases);
+        self.forward(x.as_mut(), 0, 0);
+        let mut out = DMatrix::zeros(trailing.w.ncols(), cases);
+        matmul(
+            MatMut::from_column_major_slice_mut(out.as_mut_slice(), trailing.w.ncols(), cases),
+            Accum::Replace,
+            trailing.w.transpose(),
+            x.as_ref().subrows(trailing.start, trailing.w.nrows()),
+            1.0,
+            PAR,
+        );
+        out
     }
 
     fn supernodes(&self) -> &SymbolicSupernodalCholesky<u32> {
@@ -409,9 +425,19 @@ impl Factor {
     }
 }
 
-/// L⁻¹ Pᵀ S b of a solve.
-#[derive(Debug)]
-pub struct ForwardPart(Mat<f64>);
+/// Seconds of faer's own Cholesky factorization of the same matrix, ordered by plain AMD: the yardstick.
+#[cfg(test)]
+pub fn plain_seconds(k: &SymmetricSparse) -> f64 {
+    let n = k.order();
+    let pattern = SymbolicSparseColMatRef::new_checked(n, n, &k.column_start, None, &k.rows);
+    let matrix = SparseColMatRef::new(pattern, &k.values);
+    faer::set_global_parallelism(PAR);
+    let clock = std::time::Instant::now();
+    let factor = matrix.sp_cholesky(Side::Lower);
+    let seconds = clock.elapsed().as_secs_f64();
+    assert!(factor.is_ok());
+    seconds
+}
 
 impl Trailing {
     /// D − Wᵀ W, exactly symmetric.
@@ -432,54 +458,6 @@ impl Trailing {
         r.fill_upper_triangle_with_lower_triangle();
         r
     }
-
-    /// Wᵀ y for every column of the forward part y = L⁻¹ Pᵀ S b: Cᵀ K_m⁻¹ b.
-    pub fn project(&self, y: &ForwardPart) -> DMatrix<f64> {
-        let rows = self.w.nrows();
-        let below = y.0.as_ref().subrows(self.start, rows);
-        let mut out = DMatrix::zeros(self.w.ncols(), y.0.ncols());
-        let (k, cases) = out.shape();
-        matmul(
-            MatMut::from_column_major_slice_mut(out.as_mut_slice(), k, cases),
-            Accum::Replace,
-            self.w.transpose(),
-            below,
-            1.0,
-            PAR,
-        );
-        out
-    }
-}
-
-fn check_stop(watch: &dyn Watch) -> Result<(), MainSystemError> {
-    if watch.stop() {
-        Err(MainSystemError::Interrupted)
-    } else {
-        Ok(())
-    }
-}
-
-/// S K S with S the powers of two nearest to 1/√K_ii (1 where K_ii is not positive); returns S.
-fn scale_to_unit_diagonal(k: &mut SymmetricSparse) -> Vec<f64> {
-    let scale: Vec<f64> = k
-        .diagonal()
-        .into_iter()
-        .map(|d| {
-            if d > 0.0 {
-                (-0.5 * d.log2()).round().exp2()
-            } else {
-                1.0
-            }
-        })
-        .collect();
-    for column in 0..k.order() {
-        let range: Range<usize> =
-            k.column_start[column] as usize..k.column_start[column + 1] as usize;
-        for at in range {
-            k.values[at] *= scale[column] * scale[k.rows[at] as usize];
-        }
-    }
-    scale
 }
 
 /// The order: AMD of the rows that are not touched, then the touched ones; entry i is the row at position i.

@@ -1,17 +1,19 @@
 //! The main system: every joint on. R, RF and the kernel of R; displacements for given loads and dislocations.
 //!
 //! ```text
-//!     K_m v + C z = Tᵀ F,   λ = Cᵀ v + D z − Gᵀ F       (u = T v + G z, see `dof`)
+//!     K_m v + C z = Tᵀ F,   λ = Cᵀ v + D z − Gᵀ F       (u = T v + G z, see `elimination`)
 //!     R  = D − Cᵀ K_m⁻¹ C
 //!     RF = Cᵀ K_m⁻¹ Tᵀ F − Gᵀ F
 //! ```
 
+use std::fmt;
 use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::assembly::{assemble, load_vectors, main_matrices, on_joints, on_masters};
-use super::dof::{Dofs, Elimination};
+use super::dof::Dofs;
+use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::{Factor, FactorError};
 use super::kernel::{self, RigidKernel};
@@ -54,7 +56,6 @@ pub struct Seconds {
 }
 
 /// R, RF, the kernel, and what is needed to return from the joints to the structure.
-#[derive(Debug)]
 pub struct MainSystem {
     pub(super) dofs: Dofs,
     pub(super) elimination: Elimination,
@@ -65,13 +66,21 @@ pub struct MainSystem {
     pub(super) f: Vec<Vec<f64>>,
     factor: Factor,
     c: Vec<(u32, u32, f64)>,
-    /// v per load case with z = 0.
-    v: DMatrix<f64>,
     r: DMatrix<f64>,
     rf: Vec<DVector<f64>>,
     z: DMatrix<f64>,
     motions: Vec<Motion>,
     seconds: Seconds,
+}
+
+impl fmt::Debug for MainSystem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("MainSystem")
+            .field("size", &self.size())
+            .field("joints", &self.joints.len())
+            .field("kernel", &self.z.ncols())
+            .finish_non_exhaustive()
+    }
 }
 
 impl MainSystem {
@@ -91,9 +100,9 @@ impl MainSystem {
         let elimination =
             Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
         let f = load_vectors(structure, &dofs)?;
+        let k = assemble(structure, &dofs, &|| watch.stop())?;
         let motions = loose_motions(structure, &dofs);
         let rigid = kernel::rigid_kernel(structure, joints, &motions)?;
-        let k = assemble(structure, &dofs, &|| watch.stop())?;
         let mut main = main_matrices(&k, &elimination);
         let mut seconds = Seconds {
             assemble: clock.elapsed().as_secs_f64(),
@@ -110,7 +119,7 @@ impl MainSystem {
                 FactorError::Other(error) => error,
                 FactorError::Singular(v) => {
                     let u = elimination.expand(&v, &vec![0.0; joints.len()]);
-                    kernel::mechanism(structure, &dofs.to_nodes(&u))
+                    kernel::mechanism(structure, &dofs.scatter(&u))
                 }
             })?;
         drop(main.k_m);
@@ -119,14 +128,9 @@ impl MainSystem {
         let clock = Instant::now();
         let trailing = factor.trailing(&main.c, joints.len(), watch)?;
         let mut r = trailing.schur(&main.d);
-        let mut v = DMatrix::zeros(elimination.masters(), f.len());
-        for (case, f) in f.iter().enumerate() {
-            v.column_mut(case)
-                .copy_from_slice(&on_masters(&elimination, f));
-        }
-        let forward = factor.solve(&mut v);
-        let condensed = trailing.project(&forward);
-        drop((trailing, forward));
+        let loads: Vec<Vec<f64>> = f.iter().map(|f| on_masters(&elimination, f)).collect();
+        let condensed = factor.project(&trailing, &loads);
+        drop((trailing, loads));
         let rf = f.iter().zip(condensed.column_iter()).map(|(f, column)| {
             let mut rf = column - DVector::from_vec(on_joints(&elimination, f));
             balance(&mut rf, &rigid, &motions, f, &dofs);
@@ -142,7 +146,6 @@ impl MainSystem {
             f,
             factor,
             c: main.c,
-            v,
             r,
             rf,
             z: rigid.z,
@@ -180,7 +183,7 @@ impl MainSystem {
             }
             if let Some(extended) = kernel::extend(&self.z, &z) {
                 self.z = extended;
-                let mut u = self.dofs.to_nodes(&u);
+                let mut u = self.dofs.scatter(&u);
                 let largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
                 if largest > 0.0 {
                     u.iter_mut().flatten().for_each(|u| *u /= largest);
@@ -219,23 +222,25 @@ impl MainSystem {
     /// # Panics
     /// If there are not as many factors as load cases and as many z as joints.
     pub fn displacements(&self, factors: &[f64], z: &DVector<f64>) -> Displacements {
-        Displacements(self.dofs.to_nodes(&self.base_displacements(factors, z)))
+        Displacements(self.dofs.scatter(&self.base_displacements(factors, z)))
     }
 
     fn base_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
         assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
         assert_eq!(z.len(), self.joints.len(), "a z for every joint");
-        let mut v = DMatrix::zeros(self.elimination.masters(), 1);
+        // K_m v = Tᵀ F − C z.
+        let mut f = vec![0.0; self.dofs.count()];
+        for (case, factor) in std::iter::zip(&self.f, factors) {
+            for (sum, f) in std::iter::zip(&mut f, case) {
+                *sum += factor * f;
+            }
+        }
+        let mut v = on_masters(&self.elimination, &f);
         for &(row, joint, value) in &self.c {
             v[row as usize] -= value * z[joint as usize];
         }
-        if z.iter().any(|z| *z != 0.0) {
-            self.factor.solve(&mut v);
-        }
-        for (case, factor) in factors.iter().enumerate() {
-            v.column_mut(0).axpy(*factor, &self.v.column(case), 1.0);
-        }
-        self.elimination.expand(v.as_slice(), z.as_slice())
+        self.factor.solve(&mut v);
+        self.elimination.expand(&v, z.as_slice())
     }
 
     /// Nodal forces K u − F − Bᵀ λ on the base dofs: what supports and ties have to give.
@@ -245,7 +250,7 @@ impl MainSystem {
         lambda: &DVector<f64>,
         factors: &[f64],
     ) -> Vec<f64> {
-        let mut forces = self.k.times(&self.dofs.from_nodes(&u.0));
+        let mut forces = self.k.times(&self.dofs.gather(&u.0));
         for (f, factor) in std::iter::zip(&self.f, factors) {
             for (force, f) in std::iter::zip(&mut forces, f) {
                 *force -= factor * f;
@@ -300,7 +305,7 @@ impl MainSystem {
     ) -> f64 {
         let unbalanced = self.unbalanced(u, lambda, factors);
         let joint_forces = self.joint_forces(lambda);
-        let terms = self.k.times_absolute(&self.dofs.from_nodes(&u.0));
+        let terms = self.k.times_absolute(&self.dofs.gather(&u.0));
         let rotation = self.dofs.is_rotation();
         // Index 0: forces, 1: moments.
         let mut scale = [0.0_f64; 2];
@@ -361,7 +366,7 @@ fn balance(rf: &mut DVector<f64>, rigid: &RigidKernel, motions: &[Motion], f: &[
     let work = DVector::from_iterator(
         motions.len(),
         motions.iter().map(|motion| {
-            let u = dofs.from_nodes(&motion.u);
+            let u = dofs.gather(&motion.u);
             -std::iter::zip(u, f).map(|(u, f)| u * f).sum::<f64>()
         }),
     );

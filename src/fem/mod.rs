@@ -11,22 +11,25 @@
 //!
 //! The joints reach this module as rows of B ([`crate::model::pair::Joint`]); it knows no contact law.
 //!
-//! Order of reading: `dof` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor` (sparse
+//! Order of reading: `dof`, `elimination` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor` (sparse
 //! Cholesky), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, reactions).
 
-mod main_system;
-mod recovery;
+pub mod main_system;
+pub mod recovery;
 
 mod assembly;
 mod dense;
 mod dof;
 mod element;
+mod elimination;
 mod error;
 mod factor;
+mod joint_rows;
 mod kernel;
 mod loose;
 mod memory;
 mod sparse;
+mod watch;
 
 #[cfg(test)]
 mod tests;

@@ -2,9 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::element::{Axis, corners, frame, quad4, slots, truss};
+use super::element::{Axis, corners, frame, quad4, slots, spring, truss};
 use super::main_system::{Displacements, MainSystem};
-use crate::model::structure::{Component, ElementKind, Load, Structure};
+use crate::model::structure::{Component, ElementKind, Load, Spring, Structure};
 
 /// Internal forces at one end of an element in bar axes: local x from start to end, local y = x turned +90°.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -113,6 +113,12 @@ impl MainSystem {
             .collect()
     }
 
+    /// Force of every spring on its node, in the order of [`Structure::springs`].
+    pub fn spring_forces(&self, structure: &Structure, u: &Displacements) -> Vec<[f64; 2]> {
+        let force = |s: &Spring| spring::force(s, [u.0[s.node][0], u.0[s.node][1]]);
+        structure.springs.iter().map(force).collect()
+    }
+
     /// Forces of the supports on the structure, one entry per supported node in the order of the nodes, for the
     /// displacements `u` and the joint forces `lambda` under Σ factor·F. Where a support holds several tied
     /// nodes it carries what they all hand over; if several supports hold them, the first of those does.
@@ -178,11 +184,11 @@ fn bar_end_forces(
         return [[0.0; 3]; 2];
     };
     let values: Vec<f64> = slots(element)
-        .into_iter()
+        .iter()
         .map(|slot| match slot {
-            Some((node, Component::X)) => u.0[node][0],
-            Some((node, Component::Y)) => u.0[node][1],
-            Some((node, Component::R)) => u.0[node][2],
+            Some((node, Component::X)) => u.0[*node][0],
+            Some((node, Component::Y)) => u.0[*node][1],
+            Some((node, Component::R)) => u.0[*node][2],
             None => 0.0,
         })
         .collect();

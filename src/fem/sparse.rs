@@ -1,5 +1,6 @@
 //! A symmetric sparse matrix, lower triangle by columns, and the counting sort that makes it from its terms.
 
+#[cfg(test)]
 use nalgebra::DMatrix;
 
 /// Lower triangle (with diagonal) by columns; rows ascending, none twice.
@@ -96,6 +97,28 @@ impl SymmetricSparse {
             .collect()
     }
 
+    /// S A S with S the powers of two nearest to 1/√A_ii (1 where A_ii is not positive); returns the diagonal of S.
+    pub fn scale_to_unit_diagonal(&mut self) -> Vec<f64> {
+        let scale: Vec<f64> = self
+            .diagonal()
+            .into_iter()
+            .map(|d| {
+                if d > 0.0 {
+                    (-0.5 * d.log2()).round().exp2()
+                } else {
+                    1.0
+                }
+            })
+            .collect();
+        for column in 0..self.order() {
+            let range = self.column_start[column] as usize..self.column_start[column + 1] as usize;
+            for at in range {
+                self.values[at] *= scale[column] * scale[self.rows[at] as usize];
+            }
+        }
+        scale
+    }
+
     /// A x.
     pub fn times(&self, x: &[f64]) -> Vec<f64> {
         self.products(x, |a, b| a * b)
@@ -121,7 +144,8 @@ impl SymmetricSparse {
         y
     }
 
-    /// The full matrix, for small problems and tests.
+    /// The full matrix.
+    #[cfg(test)]
     pub fn to_dense(&self) -> DMatrix<f64> {
         let mut dense = DMatrix::zeros(self.order(), self.order());
         for column in 0..self.order() {

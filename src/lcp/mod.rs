@@ -3,12 +3,17 @@
 mod dense;
 mod dictionary;
 pub mod driver;
+pub mod exact;
+pub mod filtered;
 pub mod lemke;
 pub mod mirrored;
 pub mod outcome;
 pub mod parametric;
 pub mod problem;
 pub mod ratio_test;
+pub mod rational_solve;
+pub mod scalar;
+pub mod tableau;
 pub mod trace;
 pub mod variable;
 pub mod vertex;

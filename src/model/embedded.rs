@@ -72,3 +72,28 @@ pub fn load(name: &str) -> Result<Scenario, Problems> {
         )),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scenario_loads_and_has_a_title_and_a_description() {
+        for name in names() {
+            match load(name) {
+                Ok(scenario) => {
+                    assert!(scenario.description.is_some(), "{name}");
+                    for (parameter, of) in &scenario.parameters {
+                        assert!(
+                            of.about.is_some() && of.step.is_some(),
+                            "{name}: {parameter}"
+                        );
+                    }
+                }
+                Err(problems) => panic!("{problems}"),
+            }
+        }
+        assert!(list().iter().all(|(_, title)| !title.is_empty()));
+        assert_eq!(list()[0].0, DEFAULT);
+    }
+}

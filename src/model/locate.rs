@@ -50,9 +50,16 @@ impl<'t> Document<'t> {
             Err(error) => Err(SyntaxError {
                 offset: error.range().start.min(text.len()),
                 message: format!("not JSON: {}", lower_first(&error.kind().to_string())),
-                help: advice(error.kind()),
+                help: advice(error.kind(), &text[error.range().start.min(text.len())..]),
             }),
             Ok(result) => {
+                let Some(root) = result.value else {
+                    return Err(SyntaxError {
+                        offset: 0,
+                        message: "not JSON: the file is empty".into(),
+                        help: "a scenario is a JSON object: { \"format\": \"stickslip/1\", … }",
+                    });
+                };
                 if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(text) {
                     let place = (error.line(), error.column());
                     let message = error.to_string();
@@ -68,14 +75,7 @@ impl<'t> Document<'t> {
                         });
                     }
                 }
-                match result.value {
-                    Some(root) => Ok(Document { text, root }),
-                    None => Err(SyntaxError {
-                        offset: 0,
-                        message: "not JSON: the file is empty".into(),
-                        help: "a scenario is a JSON object: { \"format\": \"stickslip/1\", … }",
-                    }),
-                }
+                Ok(Document { text, root })
             }
         }
     }
@@ -214,8 +214,14 @@ fn lower_first(message: &str) -> String {
 
 const SYNTAX: &str = "correct the JSON here, or just before this place";
 
-fn advice(kind: &ParseErrorKind) -> &'static str {
+fn advice(kind: &ParseErrorKind, rest: &str) -> &'static str {
     match kind {
+        _ if ["NaN", "Infinity", "-Infinity", "nan", "inf", "-inf"]
+            .iter()
+            .any(|word| rest.starts_with(word)) =>
+        {
+            "every number of a scenario is finite"
+        }
         ParseErrorKind::CommentsNotAllowed => {
             "remove the comment; `description` and a parameter's `about` hold remarks"
         }

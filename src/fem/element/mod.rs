@@ -7,31 +7,58 @@ pub mod quad4;
 pub mod spring;
 pub mod truss;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DVector, SMatrix};
 
 use super::error::MainSystemError;
 use crate::model::structure::{Component, Element, ElementKind, Structure};
 
-/// The (node, component) of each row of the element's stiffness, in its order: frame u_x, u_y, θ per node;
-/// truss and quad u_x, u_y per node. A released (hinged) end of a frame has no slot for its rotation: its row
-/// is condensed out and zero, marked `None`.
-pub fn slots(element: &Element) -> Vec<Option<(usize, Component)>> {
-    let mut slots = Vec::with_capacity(8);
+/// A place in an element's stiffness: node and component; `None` for a rotation released by a hinge.
+pub type Slot = Option<(usize, Component)>;
+
+/// The slots of an element's rows in their order: frame u_x, u_y, θ per node; truss and quad u_x, u_y per node. A
+/// released (hinged) end of a frame has no slot for its rotation: its row is condensed out and zero.
+#[derive(Clone, Copy, Debug)]
+pub struct Slots {
+    at: [Slot; 8],
+    count: usize,
+}
+
+impl std::ops::Deref for Slots {
+    type Target = [Slot];
+
+    fn deref(&self) -> &[Slot] {
+        &self.at[..self.count]
+    }
+}
+
+/// See [`Slots`].
+pub fn slots(element: &Element) -> Slots {
+    let mut slots = Slots {
+        at: [None; 8],
+        count: 0,
+    };
+    let mut push = |slot| {
+        slots.at[slots.count] = slot;
+        slots.count += 1;
+    };
     for (end, &node) in element.nodes.iter().enumerate() {
-        slots.push(Some((node, Component::X)));
-        slots.push(Some((node, Component::Y)));
+        push(Some((node, Component::X)));
+        push(Some((node, Component::Y)));
         if let ElementKind::Frame { hinges, .. } = &element.kind {
-            slots.push((!hinges[end]).then_some((node, Component::R)));
+            push((!hinges[end]).then_some((node, Component::R)));
         }
     }
     slots
 }
 
+/// Stiffness of an element, in the upper left corner of an array that holds the largest.
+pub type Stiffness = SMatrix<f64, 8, 8>;
+
 /// Stiffness of element number `index` in global axes, rows as in [`slots`]; forces per displacement.
 ///
 /// # Errors
 /// A bar without length or a quad that is not convex and counter-clockwise.
-pub fn stiffness(structure: &Structure, index: usize) -> Result<DMatrix<f64>, MainSystemError> {
+pub fn stiffness(structure: &Structure, index: usize) -> Result<Stiffness, MainSystemError> {
     let element = &structure.elements[index];
     let material = &structure.materials[element.material];
     let refuse = |what: &str| MainSystemError::Element {
@@ -42,32 +69,33 @@ pub fn stiffness(structure: &Structure, index: usize) -> Result<DMatrix<f64>, Ma
             .collect(),
         what: what.to_owned(),
     };
-    Ok(match &element.kind {
+    let axis = || {
+        Axis::of(structure, element).ok_or_else(|| refuse("its two nodes are at the same place"))
+    };
+    let mut stiffness = Stiffness::zeros();
+    match &element.kind {
         ElementKind::Frame {
             area,
             inertia,
             hinges,
         } => {
-            let axis = Axis::of(structure, element)
-                .ok_or_else(|| refuse("its two nodes are at the same place"))?;
-            let k = frame::stiffness(&axis, material.youngs_modulus, *area, *inertia, *hinges);
-            DMatrix::from_fn(6, 6, |i, j| k[(i, j)])
+            let k = frame::stiffness(&axis()?, material.youngs_modulus, *area, *inertia, *hinges);
+            stiffness.fixed_view_mut::<6, 6>(0, 0).copy_from(&k);
         }
         ElementKind::Truss { area } => {
-            let axis = Axis::of(structure, element)
-                .ok_or_else(|| refuse("its two nodes are at the same place"))?;
-            let k = truss::stiffness(&axis, material.youngs_modulus, *area);
-            DMatrix::from_fn(4, 4, |i, j| k[(i, j)])
+            let k = truss::stiffness(&axis()?, material.youngs_modulus, *area);
+            stiffness.fixed_view_mut::<4, 4>(0, 0).copy_from(&k);
         }
         ElementKind::Quad { thickness, plane } => {
             let corners = corners(structure, element);
-            let k = quad4::stiffness(&corners, &quad4::elasticity(material, *plane), *thickness)
-                .ok_or_else(|| {
-                    refuse("it is not convex, or its nodes do not go round counter-clockwise")
-                })?;
-            DMatrix::from_fn(8, 8, |i, j| k[(i, j)])
+            stiffness =
+                quad4::stiffness(&corners, &quad4::elasticity(material, *plane), *thickness)
+                    .ok_or_else(|| {
+                        refuse("it is not convex, or its nodes do not go round counter-clockwise")
+                    })?;
         }
-    })
+    }
+    Ok(stiffness)
 }
 
 /// Nodal forces that stand for a uniform force `q` per unit length on the bar `index`, global axes, rows as in
@@ -116,18 +144,10 @@ impl Axis {
     }
 
     /// Components in bar axes (x from start to end, y = x turned +90°) of a global vector.
-    pub fn to_local(&self, v: [f64; 2]) -> [f64; 2] {
+    pub fn to_local(self, v: [f64; 2]) -> [f64; 2] {
         [
             self.cos * v[0] + self.sin * v[1],
             self.cos * v[1] - self.sin * v[0],
-        ]
-    }
-
-    /// Global components of a vector in bar axes.
-    pub fn to_global(&self, v: [f64; 2]) -> [f64; 2] {
-        [
-            self.cos * v[0] - self.sin * v[1],
-            self.sin * v[0] + self.cos * v[1],
         ]
     }
 }

@@ -32,7 +32,8 @@ pub fn elasticity(material: &Material, plane: Plane) -> Matrix3 {
 
 /// Stiffness, rows u_x, u_y of each corner in turn; `None` if det J ≤ 0 at a corner (not convex, or clockwise).
 pub fn stiffness(corners: &[[f64; 2]; 4], d: &Matrix3, thickness: f64) -> Option<Matrix8> {
-    if CORNERS.iter().any(|&at| !(gradients(corners, at).1 > 0.0)) {
+    let convex = CORNERS.iter().all(|&at| gradients(corners, at).1 > 0.0);
+    if !convex {
         return None;
     }
     let g = 1.0 / 3.0_f64.sqrt();

@@ -8,7 +8,7 @@ use super::lcp::square;
 use super::loads::{check_case_name, factor};
 use super::matrix_market;
 use super::reader::{Cursor, Fields, Parameters};
-use super::words::{is_id, quoted};
+use super::words::{counted, is_id, quoted};
 use crate::model::memory;
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
@@ -122,7 +122,11 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
         let rows = cursor.list()?.len();
         if rows != size {
             cursor.problem(
-                format!("the matrix has {rows} rows, expected 2m = {size} for m = {pairs} pairs"),
+                format!(
+                    "the matrix has {}, expected 2m = {size} for {}",
+                    counted(rows, "row", "rows"),
+                    counted(pairs, "pair", "pairs")
+                ),
                 "rows and columns: all normals, then all tangentials",
             );
             return None;
@@ -130,9 +134,9 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
         (square(cursor)?, None)
     };
     let largest = largest(&matrix);
-    for i in 0..size {
-        for j in 0..i {
-            let (a, b) = (matrix[i][j], matrix[j][i]);
+    for (i, row) in matrix.iter().enumerate() {
+        for (j, &a) in row.iter().enumerate().take(i) {
+            let b = matrix[j][i];
             if (a - b).abs() > SYMMETRY * largest {
                 at.unwrap_or(cursor).problem(
                     format!(

@@ -7,6 +7,7 @@ use super::elements::entries;
 use super::law::{LawKind, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::structure::{Builder, Spot};
+use super::words::nearest;
 use crate::model::edge::Side;
 use crate::model::memory;
 use crate::model::pair::{JointDirection, Pair, joints};
@@ -110,6 +111,10 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
     Some(pairs.collect())
 }
 
+fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
+    !builder.nodes.contains_key(word) && nearest(word, [GROUND]).is_some()
+}
+
 /// The two sides of a contact: (node, against) of each pair, skipped ones included, and the normal.
 struct Sides {
     pairs: Vec<(usize, Option<usize>)>,
@@ -125,6 +130,10 @@ fn node_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
         .required("against")
         .and_then(|cursor| match cursor.string()? {
             GROUND => Some(None),
+            word if is_misspelt_ground(builder, word) => {
+                cursor.unknown("node", word, &[GROUND]);
+                None
+            }
             _ => Some(Some((cursor, builder.node(cursor)?))),
         })?;
     let node = node?;
@@ -164,13 +173,17 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
             normal: normal.unwrap_or([0.0 - outward[0], 0.0 - outward[1]]),
         });
     }
+    if is_misspelt_ground(builder, against.string()?) {
+        against.unknown("edge", against.string()?, &[GROUND]);
+        return None;
+    }
     let (other_plate, other_side) = match builder.spot(against)? {
         Spot::Edge { plate, side } => (plate, side),
         Spot::Node(_) => {
             against.problem(
                 format!(
                     "expected an edge or \"ground\", found the node {}",
-                    against.found()
+                    against.quoted()
                 ),
                 "an edge meets an edge with as many nodes, or the ground",
             );
@@ -179,7 +192,7 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
     };
     if (other_plate, other_side) == (plate, side) {
         against.problem(
-            format!("the edge {} is in contact with itself", against.found()),
+            format!("the edge {} is in contact with itself", against.quoted()),
             "name two different edges, or \"ground\"",
         );
         return None;
@@ -209,9 +222,9 @@ fn partners<'d>(
         against.problem(
             format!(
                 "the edges do not match: {} has {} nodes, {} has {}",
-                name(at),
+                at.quoted(),
                 nodes.len(),
-                name(against),
+                against.quoted(),
                 others.len()
             ),
             "give both plates the same grid lines along the joint",
@@ -250,13 +263,6 @@ fn partners<'d>(
         }
     }
     Some(others)
-}
-
-fn name(cursor: Cursor<'_>) -> String {
-    cursor
-        .string()
-        .map(|name| format!("\"{name}\""))
-        .unwrap_or_default()
 }
 
 fn refuse_foreign_numbers(fields: &Fields<'_>, law: LawKind) {
@@ -366,7 +372,9 @@ fn report_repeated_joints(builder: &Builder<'_>, sources: &[(Cursor<'_>, usize)]
         entry_of.resize(entry_of.len() + count, entry);
     }
     let mut reported = HashSet::new();
-    let mut taken: HashMap<(usize, Option<usize>), Vec<([f64; 2], usize)>> = HashMap::new();
+    // Of each two nodes: the directions that have a joint, and its pair.
+    type Directions = Vec<([f64; 2], usize)>;
+    let mut taken: HashMap<(usize, Option<usize>), Directions> = HashMap::new();
     // By pair, so that the later entry of the file is the one that repeats.
     let mut all = joints(pairs);
     all.sort_by_key(|joint| joint.pair);

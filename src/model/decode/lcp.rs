@@ -19,12 +19,10 @@ pub fn read(cursor: Cursor<'_>, parameters: &Parameters) -> Option<GivenLcp> {
         Some((rows.len(), square(matrix)))
     });
     let q = fields.required("q");
-    let Some((count, matrix)) = rows else {
-        return None;
-    };
-    let like_m = format!("as many as M has rows");
+    let (count, matrix) = rows?;
+    let like_m = "as many as M has rows";
     let q: Option<Vec<Number>> = q.and_then(|q| {
-        let entries = q.list_of(count, &like_m)?;
+        let entries = q.list_of(count, like_m)?;
         let entries: Vec<_> = entries
             .map(|entry| entry.number_or_parameter(parameters))
             .collect();
@@ -32,7 +30,7 @@ pub fn read(cursor: Cursor<'_>, parameters: &Parameters) -> Option<GivenLcp> {
     });
     let covering = match fields.optional("covering") {
         Some(cursor) => {
-            let entries = cursor.list_of(count, &like_m)?;
+            let entries = cursor.list_of(count, like_m)?;
             let entries: Vec<_> = entries
                 .map(|entry| entry.positive("an entry of the covering vector"))
                 .collect();
@@ -41,7 +39,7 @@ pub fn read(cursor: Cursor<'_>, parameters: &Parameters) -> Option<GivenLcp> {
         None => None,
     };
     let names = match fields.optional("names") {
-        Some(cursor) => names(cursor, count, &like_m),
+        Some(cursor) => names(cursor, count, like_m),
         None => Some((1..=count).map(|row| row.to_string()).collect()),
     };
     Some(GivenLcp {

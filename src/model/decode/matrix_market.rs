@@ -232,7 +232,11 @@ fn error(line: usize, message: impl Into<String>, help: &str) -> MatrixError {
     MatrixError {
         line,
         message: message.into(),
-        help: help.into(),
+        help: if help.is_empty() {
+            "correct this line of the matrix file".into()
+        } else {
+            help.into()
+        },
     }
 }
 

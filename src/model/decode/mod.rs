@@ -1,15 +1,21 @@
 //! Text of a scenario → checked [`Scenario`], collecting every problem on the way.
 
+mod bars;
 mod contact_system;
 mod contacts;
 mod elements;
+mod findings;
 mod law;
 mod lcp;
 mod loads;
 mod matrix_market;
+mod numbers;
+mod plates;
 mod reader;
 mod structure;
 mod supports;
+#[cfg(test)]
+mod tests;
 mod words;
 
 use std::path::PathBuf;
@@ -223,7 +229,7 @@ fn parameter(entry: Entry<'_>) -> Option<Parameter> {
                     "expected a number or an object with `value`, found {}",
                     cursor.found()
                 ),
-                "",
+                "write e.g. 0.3 or { \"value\": 0.3, \"min\": 0, \"max\": 1 }",
             );
             return None;
         }

@@ -39,6 +39,9 @@ pub struct Builder<'d> {
     ids: HashMap<&'d str, &'static str>,
     /// Names whose definition is wrong: reported there, not again where they are used.
     pub broken: HashSet<&'d str>,
+    pub ends_of_broken_bars: Vec<Cursor<'d>>,
+    /// Whether `nodes` was read at all; if not, unknown nodes are no news.
+    nodes_are_known: bool,
     /// Whether each node has a rotation; empty until the elements are complete.
     pub has_rotation: Vec<bool>,
     /// Whether every element was read, so that what they do not touch can be judged.
@@ -59,6 +62,8 @@ pub fn read<'d>(fields: &Fields<'d>, parameters: &'d Parameters) -> Option<(Stru
         nodes: HashMap::new(),
         ids: HashMap::new(),
         broken: HashSet::new(),
+        ends_of_broken_bars: Vec::new(),
+        nodes_are_known: true,
         has_rotation: Vec::new(),
         elements_complete: false,
     };
@@ -78,7 +83,9 @@ pub fn read<'d>(fields: &Fields<'d>, parameters: &'d Parameters) -> Option<(Stru
 /// The nodes of the file, with the places of their names.
 fn author_nodes<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Vec<Place<'d>> {
     let mut names = Vec::new();
-    let entries = fields.optional("nodes").and_then(Cursor::entries);
+    let nodes = fields.optional("nodes");
+    let entries = nodes.and_then(Cursor::entries);
+    builder.nodes_are_known = nodes.is_none() || entries.is_some();
     for entry in entries.unwrap_or_default() {
         builder.register(entry.key_place(), entry.name(), "node");
         // A node without a usable place stays known, with a place that no geometric check complains about.
@@ -192,7 +199,10 @@ impl<'d> Builder<'d> {
 
     fn unknown_spot(&self, cursor: Cursor<'d>, name: &str) {
         let bar = name.split_once('/').map(|(bar, _)| bar);
-        if self.broken.contains(name) || bar.is_some_and(|bar| self.broken.contains(bar)) {
+        if !self.nodes_are_known
+            || self.broken.contains(name)
+            || bar.is_some_and(|bar| self.broken.contains(bar))
+        {
             return;
         }
         if self.plates.contains_key(name) {
@@ -243,7 +253,7 @@ impl<'d> Builder<'d> {
             Spot::Node(node) => Some(node),
             Spot::Edge { .. } => {
                 cursor.problem(
-                    format!("expected a node, found the edge {}", cursor.found()),
+                    format!("expected a node, found the edge {}", cursor.quoted()),
                     "name one node, e.g. a plate node \"lower[0,8]\"",
                 );
                 None
@@ -257,7 +267,7 @@ impl<'d> Builder<'d> {
             Spot::Edge { plate, side } => Some((plate, side)),
             Spot::Node(_) => {
                 cursor.problem(
-                    format!("expected an edge, found the node {}", cursor.found()),
+                    format!("expected an edge, found the node {}", cursor.quoted()),
                     "edges belong to plates: \"lower.top\"",
                 );
                 None

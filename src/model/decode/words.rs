@@ -54,9 +54,16 @@ pub fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Opti
             let distance = strsim::osa_distance(&word.to_lowercase(), &name.to_lowercase());
             (distance, name)
         })
-        .filter(|(distance, name)| *distance <= allowed && *distance < name.chars().count().max(2))
+        .filter(|(distance, name)| {
+            *distance <= allowed && *distance < length.min(name.chars().count())
+        })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
+}
+
+/// `1 entry`, `2 entries`.
+pub fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 /// Whether this can be an id: letters, digits, `_`, `-`, starting with a letter.

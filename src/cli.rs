@@ -1,0 +1,390 @@
+//! The program as the shell sees it: arguments, streams, exit statuses.
+
+use std::io::{self, IsTerminal, Read, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+
+use crate::answer::record::{Answer, OutcomeKind, RayClass};
+use crate::export::json;
+use crate::model::embedded;
+use crate::model::load::load_named_or_file;
+use crate::model::rules::{Covering, Engine, TieBreak};
+use crate::model::scenario::Scenario;
+use crate::repl::{self, Signals, TerminalWatch};
+use crate::session::script;
+use crate::session::{CommandError, Format, Output, Session};
+use crate::view;
+use crate::view::style::{Role, Style};
+
+/// Structures with frictional contact, solved by Lemke's algorithm and explained pivot by pivot
+#[derive(Debug, Parser)]
+#[command(
+    name = "stickslip",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "Exit status: 0 an answer, or the command did its job; 1 an `expect` failed; 2 bad usage or input;\n\
+                  3 no answer: a mechanism or no equilibrium; 4 no answer: an artefact or fault, a failed check or a \
+                  limit; 130 interrupted."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Scenario to open: a file, or an embedded one by name (`stickslip scenarios`)
+    #[arg(default_value = embedded::DEFAULT)]
+    scenario: String,
+    #[command(flatten)]
+    look: Look,
+}
+
+/// How the output looks.
+#[derive(Args, Clone, Debug)]
+struct Look {
+    /// Colours: never on a pipe or with NO_COLOR, unless `always`
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
+    color: Color,
+    /// Plain ASCII only
+    #[arg(long, global = true)]
+    ascii: bool,
+    /// Columns of the output; otherwise those of the terminal, or 80
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1000))]
+    width: Option<u16>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    Text,
+    Json,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solve a scenario and print the answer
+    Solve(Solve),
+    /// Run a script of REPL commands; `-` reads it from stdin
+    Replay(Replay),
+    /// Find every problem in scenario files, solving nothing
+    Check {
+        /// Files, or embedded scenarios
+        #[arg(required = true, value_name = "SCENARIO")]
+        scenarios: Vec<String>,
+    },
+    /// List the embedded scenarios
+    Scenarios,
+    /// Print the completions of a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+#[derive(Args, Debug)]
+struct Solve {
+    /// A file, or an embedded scenario
+    #[arg(default_value = embedded::DEFAULT)]
+    scenario: String,
+    /// Change a parameter, as the REPL's `set` does: `--set f=0.3`, `--set F2=110%`
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    settings: Vec<String>,
+    /// Covering vector: cohesive, ones or weight
+    #[arg(long)]
+    covering: Option<Covering>,
+    /// Tie-break: lexicographic, natural, first-row or random:SEED
+    #[arg(long)]
+    tie_break: Option<TieBreak>,
+    /// Engine: scheme, tableau or exact
+    #[arg(long)]
+    engine: Option<Engine>,
+    /// For people, or the JSON of the whole result
+    #[arg(long, value_enum, default_value_t = Form::Text)]
+    format: Form,
+    /// Show how long it took
+    #[arg(long)]
+    timings: bool,
+}
+
+#[derive(Args, Debug)]
+struct Replay {
+    /// The script
+    script: PathBuf,
+    /// Text, or one JSON object per command
+    #[arg(long, value_enum, default_value_t = Form::Text)]
+    format: Form,
+    /// Go on after a command that fails
+    #[arg(long)]
+    keep_going: bool,
+}
+
+/// What ends the program early.
+enum Failure {
+    /// A message for stderr and a status.
+    Status(u8, String),
+    /// The results cannot be written.
+    Output(io::Error),
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Failure::Output(error)
+    }
+}
+
+impl From<CommandError> for Failure {
+    fn from(error: CommandError) -> Self {
+        match error {
+            CommandError::Output(error) => Failure::Output(error),
+            error => Failure::Status(error.status(), error.to_string()),
+        }
+    }
+}
+
+/// Runs the program with the arguments of the process; its exit status.
+pub fn main() -> u8 {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // help and version go to stdout and are no error
+            let status = u8::try_from(error.exit_code()).unwrap_or(2);
+            return match error.print() {
+                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => 2,
+                _ => status,
+            };
+        }
+    };
+    let errors = cli.look.style(&io::stderr());
+    match run(cli) {
+        Ok(status) => status,
+        Err(Failure::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
+        Err(Failure::Output(error)) => {
+            tell(&errors, &format!("cannot write the result: {error}"));
+            2
+        }
+        Err(Failure::Status(status, message)) => {
+            tell(&errors, &message);
+            status
+        }
+    }
+}
+
+/// An error on stderr; if nobody can read it, so be it.
+fn tell(style: &Style, message: &str) {
+    let lines: Vec<String> = message.lines().map(|line| style.text(line)).collect();
+    let _ = writeln!(
+        io::stderr(),
+        "{} {}",
+        style.paint(Role::Bad, "error:"),
+        lines.join("\n")
+    );
+}
+
+fn run(cli: Cli) -> Result<u8, Failure> {
+    let style = cli.look.style(&io::stdout());
+    let mut out = io::stdout();
+    match cli.command {
+        None => {
+            let signals = Signals::install()?;
+            let watch = TerminalWatch::new(&signals);
+            let scenario = load(&cli.scenario)?;
+            let session = Session::new(scenario, &watch);
+            watch.clear();
+            let mut session = session?;
+            Ok(repl::run(&mut session, style, &signals)?.status)
+        }
+        Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
+        Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
+        Some(Command::Check { scenarios }) => check(&scenarios, &style, &mut out),
+        Some(Command::Scenarios) => {
+            crate::session::write_scenarios(&mut out, &style)?;
+            Ok(0)
+        }
+        Some(Command::Completions { shell }) => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "stickslip", &mut script);
+            out.write_all(&script)?;
+            Ok(0)
+        }
+    }
+}
+
+impl Look {
+    /// The style for a stream.
+    fn style(&self, stream: &impl IsTerminal) -> Style {
+        let terminal = stream.is_terminal();
+        let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+        let color = match self.color {
+            Color::Always => true,
+            Color::Never => false,
+            Color::Auto => terminal && !set("NO_COLOR") && !repl::is_dumb(),
+        };
+        let width = match self.width {
+            Some(width) => usize::from(width),
+            None if terminal => {
+                crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20))
+            }
+            None => 80,
+        };
+        Style {
+            width,
+            color,
+            ascii: self.ascii,
+        }
+    }
+}
+
+fn load(name: &str) -> Result<Scenario, Failure> {
+    load_named_or_file(name).map_err(|problems| Failure::Status(2, problems.to_string()))
+}
+
+fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
+    let scenario = load(&arguments.scenario)?;
+    let settings: Vec<Vec<String>> = arguments
+        .settings
+        .iter()
+        .map(|setting| vec![setting.clone()])
+        .chain(rule("covering", arguments.covering))
+        .chain(rule("tie-break", arguments.tie_break))
+        .chain(rule("engine", arguments.engine))
+        .collect();
+    let session = Session::with_settings(scenario, &settings, &watch);
+    watch.clear();
+    let session = session?;
+    let Some(answer) = session.answer() else {
+        return Err(Failure::Status(4, "no answer".to_owned()));
+    };
+    match arguments.format {
+        Form::Json => {
+            let result = json::result(
+                answer,
+                &session.scenario().name,
+                session.values(),
+                arguments.timings,
+            );
+            let text = serde_json::to_string_pretty(&result).map_err(io::Error::other)?;
+            writeln!(out, "{text}")?;
+        }
+        Form::Text => write_answer(&session, answer, arguments.timings, style, out)?,
+    }
+    out.flush()?;
+    Ok(exit_status(answer))
+}
+
+/// `set` words of a rule given as an option.
+fn rule(name: &str, choice: Option<impl ToString>) -> Option<Vec<String>> {
+    choice.map(|choice| vec![name.to_owned(), choice.to_string()])
+}
+
+/// Status, pivots, pairs, ray: what one wants to see of an answer at once.
+fn write_answer(
+    session: &Session,
+    answer: &Answer,
+    timings: bool,
+    style: &Style,
+    out: &mut dyn Write,
+) -> Result<(), Failure> {
+    let scenario = session.scenario();
+    let units = &scenario.units;
+    view::status::write(out, answer, scenario, session.values(), style)?;
+    if !answer.pivots.is_empty() {
+        writeln!(out)?;
+        view::pivots::write(out, &answer.pivots, None, None, units, style)?;
+    }
+    writeln!(out)?;
+    if answer.solution.is_some() || !answer.pairs.is_empty() {
+        session.write_pairs(out, style)?;
+    }
+    if let Some(ray) = &answer.ray {
+        writeln!(out)?;
+        view::ray::write(out, ray, units, style)?;
+    }
+    if timings {
+        let t = &answer.timings;
+        writeln!(
+            out,
+            "\nfactor {:.6} s, condense {:.6} s, lemke {:.6} s, total {:.6} s",
+            t.factor, t.condense, t.lemke, t.total
+        )?;
+    }
+    Ok(())
+}
+
+/// The status of a `solve` (see the help).
+fn exit_status(answer: &Answer) -> u8 {
+    match answer.outcome {
+        OutcomeKind::Trivial | OutcomeKind::Normal => 0,
+        OutcomeKind::Ray => match answer.ray.as_ref().map(|ray| ray.class) {
+            Some(RayClass::Mechanism | RayClass::NoEquilibrium) => 3,
+            Some(RayClass::Artefact | RayClass::Fault) | None => 4,
+        },
+        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => 4,
+    }
+}
+
+fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
+    let (name, text) = if arguments.script == Path::new("-") {
+        let mut bytes = Vec::new();
+        io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .map_err(|error| Failure::Status(2, format!("cannot read stdin: {error}")))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| Failure::Status(2, "stdin: the script is not UTF-8".to_owned()))?;
+        ("stdin".to_owned(), text)
+    } else {
+        let name = arguments.script.display().to_string();
+        (name, script::read(&arguments.script)?)
+    };
+    let mut session = Session::new(load(embedded::DEFAULT)?, &watch)?;
+    let format = match arguments.format {
+        Form::Text => Format::Text,
+        Form::Json => Format::JsonLines,
+    };
+    let errors = Style {
+        color: style.color && io::stderr().is_terminal(),
+        ..style
+    };
+    let mut io = Output::new(out, style, format, &watch);
+    let ended = script::run(
+        &mut session,
+        &name,
+        &text,
+        arguments.keep_going,
+        &mut io,
+        &mut |error| {
+            watch.clear();
+            tell(&errors, &error.to_string());
+        },
+    );
+    watch.clear();
+    Ok(ended?.status)
+}
+
+fn check(names: &[String], style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let mut status = 0;
+    for name in names {
+        match load_named_or_file(name) {
+            Ok(scenario) => {
+                let line = format!("{name}: no problems found ({})", scenario.title);
+                writeln!(out, "{}", style.text(&line))?;
+            }
+            Err(problems) => {
+                status = 2;
+                for line in problems.to_string().lines() {
+                    writeln!(io::stderr(), "{}", style.text(line))?;
+                }
+            }
+        }
+    }
+    out.flush()?;
+    Ok(status)
+}

@@ -1,0 +1,165 @@
+//! Results as CSV (RFC 4180): a head line of names, numbers in full precision, CRLF line ends.
+
+use std::io::{self, Write};
+
+use crate::answer::record::Answer;
+
+/// One field: text that is quoted where it must be, or a number.
+enum Field<'a> {
+    Text(&'a str),
+    Number(f64),
+    Count(usize),
+    Empty,
+}
+
+/// Writes the pairs.
+pub fn pairs(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
+    use Field::{Empty, Number, Text};
+    head(
+        out,
+        "id,law,state,held,x_n,x_t,z_n,z_t,bound,reserve_plus,reserve_minus,x,y",
+    )?;
+    for pair in &answer.pairs {
+        let place = |i: usize| pair.position.map_or(Empty, |at| Number(at[i]));
+        row(
+            out,
+            &[
+                Text(&pair.id),
+                Text(pair.law),
+                Text(pair.state.word()),
+                pair.held.map_or(Empty, |held| Text(held.word())),
+                Number(pair.x_n),
+                Number(pair.x_t),
+                Number(pair.z_n),
+                Number(pair.z_t),
+                Number(pair.bound),
+                Number(pair.reserve_plus),
+                Number(pair.reserve_minus),
+                place(0),
+                place(1),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes the pivots; several tied rows stand in one field, separated by blanks.
+pub fn pivots(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
+    use Field::{Count, Empty, Number, Text};
+    head(
+        out,
+        "step,entering,leaving,p,ties,pair,joint,from,to,sentence",
+    )?;
+    for pivot in &answer.pivots {
+        let ties = pivot.ties.join(" ");
+        let turned = pivot.turned.as_ref();
+        let joint = turned.map(|turned| match turned.joint {
+            crate::answer::record::TurnedJoint::Normal => "normal",
+            crate::answer::record::TurnedJoint::Tangential => "tangential",
+        });
+        row(
+            out,
+            &[
+                Count(pivot.step),
+                Text(&pivot.entering),
+                Text(&pivot.leaving),
+                Number(pivot.p),
+                Text(&ties),
+                turned.map_or(Empty, |turned| Text(&turned.pair)),
+                joint.map_or(Empty, Text),
+                turned.map_or(Empty, |turned| Text(&turned.from)),
+                turned.map_or(Empty, |turned| Text(&turned.to)),
+                Text(&pivot.sentence),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes the nodal displacements; only the head line where there are none.
+pub fn displacements(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
+    use Field::{Number, Text};
+    head(out, "node,ux,uy,rz")?;
+    for node in answer.displacements.iter().flatten() {
+        row(
+            out,
+            &[
+                Text(&node.node),
+                Number(node.ux),
+                Number(node.uy),
+                Number(node.rz),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes the member end forces; only the head line where there are none.
+pub fn members(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
+    use Field::{Count, Number, Text};
+    head(out, "bar,element,start_N,start_Q,start_M,end_N,end_Q,end_M")?;
+    for member in answer.members.iter().flatten() {
+        row(
+            out,
+            &[
+                Text(&member.bar),
+                Count(member.element),
+                Number(member.start.n),
+                Number(member.start.q),
+                Number(member.start.m),
+                Number(member.end.n),
+                Number(member.end.q),
+                Number(member.end.m),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes the support reactions; only the head line where there are none.
+pub fn reactions(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
+    use Field::{Number, Text};
+    head(out, "node,fx,fy,m")?;
+    for reaction in answer.reactions.iter().flatten() {
+        row(
+            out,
+            &[
+                Text(&reaction.node),
+                Number(reaction.fx),
+                Number(reaction.fy),
+                Number(reaction.m),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+fn head(out: &mut dyn Write, names: &str) -> io::Result<()> {
+    write!(out, "{names}\r\n")
+}
+
+fn row(out: &mut dyn Write, fields: &[Field<'_>]) -> io::Result<()> {
+    for (place, field) in fields.iter().enumerate() {
+        if place > 0 {
+            out.write_all(b",")?;
+        }
+        match field {
+            Field::Text(text) => out.write_all(quoted(text).as_bytes())?,
+            // −0 is 0; what is not finite has no number in CSV and stays empty.
+            Field::Number(number) if *number == 0.0 => out.write_all(b"0.0")?,
+            Field::Number(number) if number.is_finite() => write!(out, "{number:?}")?,
+            Field::Number(_) | Field::Empty => {}
+            Field::Count(count) => write!(out, "{count}")?,
+        }
+    }
+    out.write_all(b"\r\n")
+}
+
+/// A field in quotes if it holds a comma, a quote or a line end; quotes inside are doubled.
+pub fn quoted(text: &str) -> std::borrow::Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\"")).into()
+    } else {
+        text.into()
+    }
+}

@@ -1,0 +1,114 @@
+//! Results as JSON: `stickslip-result/1`, and plain arrays of one kind of record.
+//!
+//! Keys are stable. Numbers are in the scenario's units and in full precision.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::answer::record::{Answer, OutcomeKind};
+use crate::model::parameter::ParameterValues;
+
+/// The result of one solve.
+///
+/// After a pivot limit, a breakdown or a failed check, `pairs`, `displacements`, `members`, `reactions` and
+/// `solution` are absent and `ray` is null; at a ray the displacements, members and reactions are absent; for a
+/// contact system or a bare LCP they always are. `timings` only on request: two runs of one scenario are then
+/// the same to the byte.
+pub fn result(
+    answer: &Answer,
+    scenario_name: &str,
+    parameters: &ParameterValues,
+    timings: bool,
+) -> Value {
+    let failed = matches!(
+        answer.outcome,
+        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed
+    );
+    let mut object = Map::new();
+    let mut put = |key: &str, value: Value| {
+        object.insert(key.to_owned(), value);
+    };
+    put("format", "stickslip-result/1".into());
+    put("scenario", scenario_name.into());
+    put("parameters", value(parameters));
+    put("outcome", value(&answer.outcome));
+    put("marginal", answer.marginal.into());
+    let ray = answer
+        .ray
+        .as_ref()
+        .filter(|_| answer.outcome == OutcomeKind::Ray);
+    put("ray", value(&ray));
+    put("p", value(&answer.p));
+    put("covering", answer.covering.as_str().into());
+    put("tie_break", answer.tie_break.as_str().into());
+    put("engine", answer.engine.as_str().into());
+    put("attempts", value(&answer.attempts));
+    put("pivots", pivots(answer));
+    if !failed {
+        put("pairs", pairs(answer));
+        if let Some(solution) = &answer.solution {
+            put("solution", value(solution));
+        }
+    }
+    put("check", value(&answer.check));
+    if answer.is_answer() {
+        if answer.displacements.is_some() {
+            put("displacements", displacements(answer));
+        }
+        if answer.members.is_some() {
+            put("members", members(answer));
+        }
+        if answer.reactions.is_some() {
+            put("reactions", reactions(answer));
+        }
+    }
+    put("size", value(&answer.size));
+    if timings {
+        put("timings", value(&answer.timings));
+    }
+    Value::Object(object)
+}
+
+/// The pairs as an array.
+pub fn pairs(answer: &Answer) -> Value {
+    value(&answer.pairs)
+}
+
+/// The pivots as an array.
+pub fn pivots(answer: &Answer) -> Value {
+    value(&answer.pivots)
+}
+
+/// The displacements as an array; empty where there are none.
+pub fn displacements(answer: &Answer) -> Value {
+    value(&answer.displacements.as_deref().unwrap_or_default())
+}
+
+/// The member end forces as an array; empty where there are none.
+pub fn members(answer: &Answer) -> Value {
+    value(&answer.members.as_deref().unwrap_or_default())
+}
+
+/// The support reactions as an array; empty where there are none.
+pub fn reactions(answer: &Answer) -> Value {
+    value(&answer.reactions.as_deref().unwrap_or_default())
+}
+
+/// A record as a value, −0 written as 0. The records hold strings, numbers and lists only, with string keys:
+/// serde_json has no way to fail on them.
+fn value(record: &impl Serialize) -> Value {
+    let mut value = serde_json::to_value(record).unwrap_or(Value::Null);
+    unsign_zeros(&mut value);
+    value
+}
+
+fn unsign_zeros(value: &mut Value) {
+    match value {
+        Value::Number(number) if number.as_f64() == Some(0.0) && number.is_f64() => {
+            *value = Value::from(0.0);
+        }
+        Value::Array(list) => list.iter_mut().for_each(unsign_zeros),
+        Value::Object(map) => map.values_mut().for_each(unsign_zeros),
+        _ => {}
+    }
+}

@@ -1,0 +1,8 @@
+//! Results for other programs: JSON, CSV, and writing a file so that a crash never leaves half of one.
+
+pub mod atomic;
+pub mod csv;
+pub mod json;
+
+#[cfg(test)]
+mod tests;

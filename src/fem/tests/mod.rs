@@ -1,0 +1,7 @@
+//! Structures with known answers, against the whole way from K to R and back.
+
+mod builder;
+mod closed_forms;
+mod kernel;
+mod large;
+mod refusals;

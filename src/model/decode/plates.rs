@@ -1,0 +1,213 @@
+//! Plates and quads.
+
+use super::elements::{id_of, material_of};
+use super::reader::{Cursor, Fields};
+use super::structure::Builder;
+use crate::model::mesh::{GridLines, PlateGrid};
+use crate::model::structure::{Element, ElementKind, Plane};
+
+/// Reads one plate.
+pub fn plate<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<PlateGrid> {
+    let fields = cursor.fields(&[
+        "id",
+        "origin",
+        "size",
+        "divisions",
+        "x",
+        "y",
+        "rotation",
+        "thickness",
+        "material",
+        "plane",
+    ])?;
+    let id = id_of(builder, &fields, "plate");
+    let grid = plate_grid(builder, &fields, id);
+    match (&grid, id) {
+        (Some(_), Some(id)) => {
+            let index = builder.plates.len();
+            // A repeated id was reported; the first plate keeps it.
+            builder.plates.entry(id).or_insert(index);
+        }
+        (None, Some(id)) => {
+            builder.broken.insert(id);
+        }
+        _ => {}
+    }
+    grid
+}
+
+fn plate_grid<'d>(
+    builder: &Builder<'d>,
+    fields: &Fields<'d>,
+    id: Option<&'d str>,
+) -> Option<PlateGrid> {
+    let origin = fields.required("origin").and_then(Cursor::vector);
+    let rotation = match fields.optional("rotation") {
+        Some(cursor) => cursor.number(),
+        None => Some(0.0),
+    };
+    let lines = grid_lines(fields);
+    let common = membrane(builder, fields);
+    let [x, y] = lines?;
+    let (thickness, material, plane) = common?;
+    Some(PlateGrid {
+        id: id?.to_string(),
+        origin: origin?,
+        rotation: rotation?,
+        x,
+        y,
+        thickness,
+        plane,
+        material,
+    })
+}
+
+/// Thickness, material and plane of a plate or quad.
+fn membrane<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<(f64, usize, Plane)> {
+    let thickness = fields
+        .required("thickness")
+        .and_then(|cursor| cursor.positive("thickness"));
+    let material = material_of(builder, fields);
+    let at = fields.required("plane");
+    let plane = at
+        .and_then(|cursor| cursor.choice(&[("strain", Plane::Strain), ("stress", Plane::Stress)]));
+    if let (Some(material), Some(Plane::Strain), Some(at)) = (material, plane, at)
+        && builder.structure.materials[material].poisson_ratio == 0.5
+    {
+        at.problem(
+            "plane strain cannot have nu = 0.5: the material would be incompressible",
+            "lower nu of the material below 0.5, or use plane \"stress\"",
+        );
+        return None;
+    }
+    Some((thickness?, material?, plane?))
+}
+
+fn grid_lines(fields: &Fields<'_>) -> Option<[GridLines; 2]> {
+    let graded = fields.entry("x").or(fields.entry("y")).is_some();
+    let uniform = fields.entry("size").or(fields.entry("divisions")).is_some();
+    if graded && uniform {
+        fields.refuse(
+            &["x", "y"],
+            |key| format!("`{key}` cannot stand beside `size` and `divisions`"),
+            "give either `size` and `divisions`, or the grid lines `x` and `y`",
+        );
+        return None;
+    }
+    if graded {
+        let x = fields.required("x").and_then(increasing);
+        let y = fields.required("y").and_then(increasing);
+        return Some([GridLines::Graded(x?), GridLines::Graded(y?)]);
+    }
+    let size = fields.required("size").and_then(|cursor| {
+        let size = cursor.vector()?;
+        if size[0] > 0.0 && size[1] > 0.0 {
+            return Some(size);
+        }
+        cursor.problem(
+            format!(
+                "the size of a plate must be greater than 0, found [{}, {}]",
+                size[0], size[1]
+            ),
+            "give length and height; `rotation` turns a plate",
+        );
+        None
+    });
+    let divisions = fields.required("divisions").and_then(|cursor| {
+        let entries = cursor.list_of(2, "along the length and up")?;
+        let counts: Vec<Option<usize>> = entries.map(|entry| entry.whole("divisions", 1)).collect();
+        Some([counts[0]?, counts[1]?])
+    });
+    let (size, divisions) = (size?, divisions?);
+    Some([0, 1].map(|axis| GridLines::Uniform {
+        size: size[axis],
+        divisions: divisions[axis],
+    }))
+}
+
+fn increasing(cursor: Cursor<'_>) -> Option<Vec<f64>> {
+    let entries: Vec<Cursor<'_>> = cursor.list()?.collect();
+    if entries.len() < 2 {
+        cursor.problem(
+            format!("expected at least two grid lines, found {}", entries.len()),
+            "give the first and the last at least",
+        );
+        return None;
+    }
+    let lines: Vec<Option<f64>> = entries.iter().map(|entry| entry.number()).collect();
+    let lines: Vec<f64> = lines.into_iter().collect::<Option<_>>()?;
+    for k in 1..lines.len() {
+        if lines[k] <= lines[k - 1] {
+            entries[k].problem(
+                format!(
+                    "grid lines must increase, found {} after {}",
+                    lines[k],
+                    lines[k - 1]
+                ),
+                "give the distances from `origin` in increasing order, each once",
+            );
+            return None;
+        }
+    }
+    Some(lines)
+}
+
+/// Reads one quad.
+pub fn quad<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Element> {
+    let fields = cursor.fields(&["id", "nodes", "thickness", "material", "plane"])?;
+    // Only an element's name in messages, but checked like every id.
+    let id = id_of(builder, &fields, "quad");
+    let common = membrane(builder, &fields);
+    let corners = fields.required("nodes").and_then(|at| {
+        let entries = at.list_of(4, "the corners counter-clockwise")?;
+        let nodes: Vec<Option<usize>> = entries.map(|entry| builder.node(entry)).collect();
+        let nodes: Vec<usize> = nodes.into_iter().collect::<Option<_>>()?;
+        check_corners(builder, at, &nodes).then_some(nodes)
+    });
+    id?;
+    let (thickness, material, plane) = common?;
+    Some(Element {
+        nodes: corners?,
+        material,
+        kind: ElementKind::Quad { thickness, plane },
+    })
+}
+
+fn check_corners(builder: &Builder<'_>, cursor: Cursor<'_>, nodes: &[usize]) -> bool {
+    for (k, node) in nodes.iter().enumerate() {
+        if nodes[..k].contains(node) {
+            cursor.problem(
+                format!("the node \"{}\" is a corner twice", builder.node_id(*node)),
+                "a quad has four different corners",
+            );
+            return false;
+        }
+    }
+    let at = |k: usize| builder.structure.nodes[nodes[k % 4]].position;
+    // Turn at corner k relative to its sides: the sine of the inner angle if counter-clockwise.
+    let turns: Vec<f64> = (0..4)
+        .map(|k| {
+            let (a, b, c) = (at(k + 3), at(k), at(k + 1));
+            let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
+            (u[0] * v[1] - u[1] * v[0]) / (u[0].hypot(u[1]) * v[0].hypot(v[1]))
+        })
+        .collect();
+    const FLAT: f64 = 1e-9;
+    if turns.iter().all(|turn| *turn < -FLAT) {
+        cursor.problem(
+            "the corners of the quad run clockwise",
+            "list them counter-clockwise, i.e. in the reverse order",
+        );
+        return false;
+    }
+    // A corner at an unknown place gives NaN and was reported there.
+    let unknown = (0..4).any(|k| at(k)[0].is_nan());
+    if !unknown && !turns.iter().all(|turn| *turn > FLAT) {
+        cursor.problem(
+            "the quad is not convex: a corner is flat, re-entrant, or two sides cross",
+            "list the corners counter-clockwise and keep every inner angle below 180°",
+        );
+        return false;
+    }
+    true
+}

@@ -1,0 +1,186 @@
+//! What the line editor knows of the language: completion, hints, colours.
+
+use std::borrow::Cow;
+
+use rustyline::Context;
+use rustyline::completion::Completer;
+use rustyline::highlight::{CmdKind, Highlighter};
+use rustyline::hint::Hinter;
+use rustyline::{Helper, Validator};
+
+use crate::session::complete::{self, Candidate, Vocabulary};
+use crate::session::{command, values, words};
+use crate::view::style::{Role, Style};
+
+/// Completes, hints and colours by the grammar and the names of the session.
+#[derive(Helper, Validator)]
+pub struct Editing {
+    /// The names as of the last command.
+    pub vocabulary: Vocabulary,
+    /// Whether and how to colour.
+    pub style: Style,
+}
+
+/// A candidate with its explanation.
+pub struct Shown {
+    display: String,
+    replacement: String,
+}
+
+impl rustyline::completion::Candidate for Shown {
+    fn display(&self) -> &str {
+        &self.display
+    }
+
+    fn replacement(&self) -> &str {
+        &self.replacement
+    }
+}
+
+/// Columns of an explanation in the list of candidates.
+const ABOUT: usize = 40;
+
+impl Completer for Editing {
+    type Candidate = Shown;
+
+    fn complete(
+        &self,
+        line: &str,
+        position: usize,
+        _: &Context<'_>,
+    ) -> rustyline::Result<(usize, Vec<Shown>)> {
+        let completion = complete::completions(line, position, &self.vocabulary);
+        let only = completion.candidates.len() == 1;
+        let wide = completion
+            .candidates
+            .iter()
+            .map(|candidate| candidate.text.chars().count())
+            .max()
+            .unwrap_or(0);
+        let shown = |Candidate { text, about }: Candidate| {
+            let display = if about.is_empty() {
+                text.clone()
+            } else {
+                let about = self.style.fit(&self.style.text(&about), ABOUT);
+                format!("{text:<wide$}  {about}")
+            };
+            // a folder or an unfinished word goes on without a blank
+            let goes_on = text.ends_with(['/', ':']);
+            let replacement = if only && !goes_on {
+                format!("{text} ")
+            } else {
+                text
+            };
+            Shown {
+                display,
+                replacement,
+            }
+        };
+        Ok((
+            completion.start,
+            completion.candidates.into_iter().map(shown).collect(),
+        ))
+    }
+}
+
+impl Hinter for Editing {
+    type Hint = String;
+
+    fn hint(&self, line: &str, position: usize, _: &Context<'_>) -> Option<String> {
+        if position < line.len() {
+            return None;
+        }
+        complete::hint(line, &self.vocabulary)
+    }
+}
+
+impl Highlighter for Editing {
+    fn highlight<'l>(&self, line: &'l str, _: usize) -> Cow<'l, str> {
+        if !self.style.color {
+            return Cow::Borrowed(line);
+        }
+        Cow::Owned(coloured(line, &self.style))
+    }
+
+    fn highlight_hint<'h>(&self, hint: &'h str) -> Cow<'h, str> {
+        if self.style.color {
+            Cow::Owned(self.style.paint(Role::Muted, hint))
+        } else {
+            Cow::Borrowed(hint)
+        }
+    }
+
+    fn highlight_char(&self, _: &str, _: usize, kind: CmdKind) -> bool {
+        self.style.color && kind != CmdKind::MoveCursor
+    }
+}
+
+/// The line with its commands, numbers and comments coloured; the visible characters stay the same.
+fn coloured(line: &str, style: &Style) -> String {
+    let mut text = String::with_capacity(line.len() + 32);
+    let mut done = 0;
+    for (from, to) in words::spans(line) {
+        text.push_str(&line[done..from]);
+        done = to;
+        let mut first = true;
+        for piece in line[from..to].split_inclusive(char::is_whitespace) {
+            let word = piece.trim_end();
+            let blanks = &piece[word.len()..];
+            if word.is_empty() {
+                text.push_str(blanks);
+                continue;
+            }
+            let role = if first {
+                match command::resolve(word) {
+                    Ok(_) => Role::Accent,
+                    Err(command::GrammarError::Ambiguous { .. }) => Role::Plain,
+                    Err(_) => Role::Bad,
+                }
+            } else if values::number(word.trim_end_matches('%')).is_some() {
+                Role::Warning
+            } else {
+                Role::Plain
+            };
+            first = false;
+            text.push_str(&style.paint(role, word));
+            text.push_str(blanks);
+        }
+    }
+    let rest = &line[done..];
+    // what is left is a comment, or the separator before one
+    text.push_str(&style.paint(Role::Muted, rest));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_change_no_visible_character() {
+        let style = Style {
+            color: true,
+            ..Style::default()
+        };
+        for line in [
+            "set f 0.3; pairs c1 # and \"so\" on",
+            "  bogus 1 ;; status",
+            "echo \"a ; b\" 'c # d'",
+            "",
+            "ü ä;ö # ß",
+            "\\",
+        ] {
+            let mut plain = String::new();
+            let mut inside = false;
+            for c in coloured(line, &style).chars() {
+                match c {
+                    '\u{1b}' => inside = true,
+                    'm' if inside => inside = false,
+                    c if !inside => plain.push(c),
+                    _ => {}
+                }
+            }
+            assert_eq!(plain, line);
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The command line that stays: an editor on a terminal, plain lines without one.
+
+mod editor;
+mod pager;
+mod plain;
+mod signals;
+mod terminal;
+
+use std::io::{self, IsTerminal, Write};
+
+use crate::session::journal::{self, Journal};
+use crate::session::{CommandError, Session};
+use crate::view::status;
+use crate::view::style::Style;
+
+pub use signals::{Signals, TerminalWatch, is_dumb};
+
+/// How a face ended: what `main` does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ended {
+    /// Exit status.
+    pub status: u8,
+}
+
+/// Runs the REPL on stdin and stdout until `quit` or the end of the input.
+///
+/// # Errors
+/// The results cannot be written (a closed pipe is no error) or the terminal fails.
+pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result<Ended> {
+    let terminal = io::stdin().is_terminal() && io::stdout().is_terminal();
+    if !terminal {
+        return plain::run(session, style, signals, false);
+    }
+    if let (Some(state), Ok(here)) = (journal::state_directory(), std::env::current_dir()) {
+        session.keep_journal(Journal::new(&state, &here));
+    }
+    greet(session, &style, &mut io::stdout().lock())?;
+    let ended = if is_dumb() {
+        plain::run(session, style, signals, true)
+    } else {
+        terminal::run(session, style, signals)
+    }?;
+    // after a hang-up the journal stays: the next start offers it
+    if !signals.hung_up() {
+        session.close()?;
+    }
+    Ok(ended)
+}
+
+/// The first lines.
+fn greet(session: &Session, style: &Style, out: &mut dyn Write) -> io::Result<()> {
+    let scenario = session.scenario();
+    let title = format!("{} · {}", scenario.name, scenario.title);
+    writeln!(out, "{}", style.fit(&style.text(&title), style.width))?;
+    if let Some(answer) = session.answer() {
+        writeln!(
+            out,
+            "{}",
+            status::line(answer, None, &scenario.units, style)
+        )?;
+    }
+    writeln!(
+        out,
+        "`help` lists the commands, Tab completes, Ctrl-D leaves."
+    )?;
+    if let Some(left) = session.left_over() {
+        let changes = left.changes();
+        let s = if changes == 1 { "" } else { "s" };
+        writeln!(
+            out,
+            "A session in this directory ended without `quit`: `restore` brings back its {changes} change{s}, `restore discard` forgets them."
+        )?;
+    }
+    out.flush()
+}
+
+/// An error as it is shown.
+fn show_error(error: &CommandError, style: &Style) -> String {
+    use crate::view::style::Role;
+    let text = error.to_string();
+    let lines: Vec<String> = text.lines().map(|line| style.text(line)).collect();
+    format!("{} {}", style.paint(Role::Bad, "error:"), lines.join("\n"))
+}

@@ -1,0 +1,151 @@
+//! Lines from stdin without an editor: pipes, files, `TERM=dumb`.
+
+use std::io::{self, BufRead, IsTerminal, Read, Write};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+use crate::session::script::expects_error;
+use crate::session::{Next, Output, Session, words};
+use crate::view::style::Style;
+
+use super::signals::{Signals, TerminalWatch};
+use super::{Ended, show_error};
+
+/// A longer line is no command.
+const LONGEST: u64 = 1 << 20;
+/// Between two looks at the signals while nothing comes in.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// One result after the other; without a terminal no prompt.
+///
+/// A command that fails is told on stderr and the next one runs. On a pipe the exit status is that of the first
+/// failure; on a terminal a failure is part of the conversation.
+pub fn run(
+    session: &mut Session,
+    style: Style,
+    signals: &Signals,
+    prompt: bool,
+) -> io::Result<Ended> {
+    let lines = reader()?;
+    let mut stdout = io::stdout();
+    let mut status = 0;
+    let mut pending = 0;
+    let mut line_number = 0;
+    let mut waiting = false;
+    loop {
+        if prompt && !waiting {
+            write!(stdout, "> ")?;
+            stdout.flush()?;
+            waiting = true;
+        }
+        let input = lines.recv_timeout(LOOK);
+        if signals.must_end() {
+            return Ok(Ended {
+                status: signals.status(),
+            });
+        }
+        if signals.take_interrupt() {
+            if !prompt {
+                return Ok(Ended { status: 130 });
+            }
+            writeln!(stdout)?;
+            waiting = false;
+        }
+        let bytes = match input {
+            Ok(Input::Line(bytes)) => bytes,
+            Ok(Input::End) | Err(RecvTimeoutError::Disconnected) => break,
+            Ok(Input::Failed(error)) => return Err(error),
+            Err(RecvTimeoutError::Timeout) => continue,
+        };
+        waiting = false;
+        line_number += 1;
+        let line = String::from_utf8_lossy(&bytes).into_owned();
+        let line = line.trim_end_matches(['\n', '\r']);
+        let watch = TerminalWatch::new(signals);
+        let mut io = Output::text(&mut stdout, style, &watch);
+        io.line = line_number;
+        let result = session.execute(line, &mut io);
+        watch.clear();
+        let asked_for = words::commands(line)
+            .first()
+            .is_some_and(|first| expects_error(first));
+        match &result {
+            // the failure before was expected
+            Ok(_) if asked_for => pending = 0,
+            Ok(_) if words::commands(line).is_empty() => {}
+            _ => {
+                if status == 0 {
+                    status = pending;
+                }
+                pending = 0;
+            }
+        }
+        match result {
+            Ok(Next::Continue) => {}
+            Ok(Next::Quit) => break,
+            Err(error) if error.is_broken_pipe() => return Ok(Ended { status: 0 }),
+            Err(error) if error.is_output() => return Err(io::Error::other(error.to_string())),
+            Err(error) => {
+                // a stderr that is closed is no reason to stop
+                let _ = writeln!(io::stderr(), "{}", show_error(&error, &error_style(style)));
+                if error.is_interrupted() {
+                    signals.take_interrupt();
+                    if signals.must_end() || !prompt {
+                        return Ok(Ended {
+                            status: signals.status(),
+                        });
+                    }
+                }
+                pending = error.status();
+            }
+        }
+    }
+    if prompt {
+        return Ok(Ended { status: 0 });
+    }
+    let status = [status, pending, session.trouble_status()]
+        .into_iter()
+        .find(|status| *status != 0)
+        .unwrap_or(0);
+    Ok(Ended { status })
+}
+
+/// No colour on a stderr that is no terminal.
+fn error_style(style: Style) -> Style {
+    Style {
+        color: style.color && io::stderr().is_terminal(),
+        ..style
+    }
+}
+
+/// What the reader of stdin hands over.
+enum Input {
+    Line(Vec<u8>),
+    End,
+    Failed(io::Error),
+}
+
+/// Reads stdin on a thread of its own: a blocked read cannot be given up, a blocked thread can be left behind.
+fn reader() -> io::Result<Receiver<Input>> {
+    // a few lines ahead at most, so that an endless input does not pile up
+    let (sender, receiver) = mpsc::sync_channel(16);
+    let read = move || {
+        let mut stdin = io::stdin().lock();
+        loop {
+            let mut bytes = Vec::new();
+            let input = match stdin.by_ref().take(LONGEST).read_until(b'\n', &mut bytes) {
+                Ok(0) => Input::End,
+                Ok(_) => Input::Line(bytes),
+                Err(error) => Input::Failed(error),
+            };
+            let last = !matches!(input, Input::Line(_));
+            if sender.send(input).is_err() || last {
+                return;
+            }
+        }
+    };
+    std::thread::Builder::new()
+        .name("stdin".to_owned())
+        .spawn(read)?;
+    Ok(receiver)
+}

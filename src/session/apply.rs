@@ -1,0 +1,503 @@
+//! Command → change of the session. A change is made ready and solved on the side and taken over only when all of
+//! it succeeded.
+
+use std::io::Write;
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::model::embedded;
+use crate::model::load::load_named_or_file;
+use crate::view::number::short;
+use crate::view::status;
+use crate::view::style::Role;
+
+use super::command::{self, Command};
+use super::expect::{self, Facts};
+use super::values::{self, Setting};
+use super::{Change, CommandError, Next, Output, Session, Setup, journal, save, script};
+
+impl Session {
+    /// One command. The arms that only show something are in `reports`.
+    pub(super) fn apply(
+        &mut self,
+        command: Command,
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<Next, CommandError> {
+        match command {
+            Command::Load { scenario } => self.load(&scenario, text, io)?,
+            Command::Scenarios => scenarios(io)?,
+            Command::Save { file } => self.save(file.as_deref(), io)?,
+            Command::Params => self.report_parameters(io)?,
+            Command::Set { words } => self.set(&words, text, io)?,
+            Command::Reset { name } => self.reset(name.as_deref(), text, io)?,
+            Command::Undo => self.undo(text, io)?,
+            Command::Redo => self.redo(text, io)?,
+            Command::Diff => self.report_difference(io)?,
+            Command::Solve => self.solve_again(io)?,
+            Command::Status => self.report_status(io)?,
+            Command::Pairs { words } => self.report_pairs(&words, io)?,
+            Command::Displacements { nodes } => self.report_displacements(&nodes, io)?,
+            Command::Members { bar } => self.report_members(bar.as_deref(), io)?,
+            Command::Reactions => self.report_reactions(io)?,
+            Command::Check => self.report_check(io)?,
+            Command::Pivots { range } => self.report_pivots(range.as_deref(), io)?,
+            Command::Step { words } => self.step(&words, io)?,
+            Command::Why { pair } => self.report_why(&pair, io)?,
+            Command::Ray => self.report_ray(io)?,
+            Command::Plot {
+                picture,
+                at,
+                width,
+                height,
+                bar,
+            } => self.plot(picture, &at, width, height, bar.as_deref(), io)?,
+            Command::Source { file } => return script::source(self, &file, io),
+            Command::Record { file } => self.record(&file, io)?,
+            Command::Expect { words } => self.expect(&words, io)?,
+            Command::Export { what, file } => self.export(what, &file, io)?,
+            Command::Echo { words } => io.say(&words.join(" "))?,
+            Command::Restore { discard } => self.restore(discard.is_some(), io)?,
+            Command::Help { command } => help(command.as_deref(), io)?,
+            Command::History => self.report_history(io)?,
+            Command::Quit => return Ok(Next::Quit),
+        }
+        Ok(Next::Continue)
+    }
+
+    /// Takes `next` over if it can be solved (or need not be yet), and says what changed.
+    fn change(&mut self, next: Setup, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        self.change_noting(next, text, &[], io)
+    }
+
+    /// [`Session::change`] with lines ahead of the status line.
+    fn change_noting(
+        &mut self,
+        next: Setup,
+        text: &str,
+        notes: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let before = self.now.clone();
+        let news = !before.same_choice(&next);
+        self.enter(next, io)?;
+        if news {
+            self.undo.push(Change {
+                command: text.to_owned(),
+                setup: before,
+            });
+            self.redo.clear();
+            self.note_in_journal(text)?;
+        }
+        self.say_what_changed(notes, io)
+    }
+
+    /// Makes `next` the present setup, with its answer.
+    fn enter(&mut self, mut next: Setup, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let solved = if self.auto && !self.deferred {
+            Some(next.solve(io.watch)?)
+        } else {
+            None
+        };
+        let same_scenario = Arc::ptr_eq(&self.now.scenario, &next.scenario);
+        self.now = next;
+        self.take_answer(solved);
+        if !same_scenario {
+            self.previous = None;
+        }
+        Ok(())
+    }
+
+    fn note_in_journal(&mut self, text: &str) -> Result<(), CommandError> {
+        match &mut self.journal {
+            None => Ok(()),
+            Some(journal) => journal.append(text).map_err(|source| CommandError::File {
+                doing: "write the journal in",
+                path: journal::state_directory().unwrap_or_default(),
+                source,
+            }),
+        }
+    }
+
+    /// The one line after a change.
+    fn say_what_changed(&self, notes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let previous = self.previous_answer();
+        let units = &self.now.scenario.units;
+        io.report(
+            || {
+                let mut report = self.status_json();
+                if let Value::Object(map) = &mut report
+                    && !notes.is_empty()
+                {
+                    map.insert("notes".into(), json!(notes));
+                }
+                report
+            },
+            |out, style| {
+                for note in notes {
+                    writeln!(out, "{}", style.text(note))?;
+                }
+                match self.answer() {
+                    Some(answer) => {
+                        writeln!(out, "{}", status::line(answer, previous, units, style))?;
+                        for note in &answer.notes {
+                            writeln!(out, "{}", style.paint(Role::Warning, &style.text(note)))?;
+                        }
+                        Ok(())
+                    }
+                    None => writeln!(out, "not solved yet: `solve`, or `set auto on`"),
+                }
+            },
+        )?;
+        Ok(())
+    }
+
+    fn load(&mut self, name: &str, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let scenario = load_named_or_file(name).map_err(CommandError::Scenario)?;
+        let title = format!("{}: {}", scenario.name, scenario.title);
+        self.change_noting(Setup::of(scenario), text, &[title], io)
+    }
+
+    fn set(
+        &mut self,
+        words: &[String],
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let scenario = Arc::clone(&self.now.scenario);
+        let mut next = self.now.clone();
+        let mut notes = Vec::new();
+        match values::read(words, &scenario, &self.now.values)? {
+            Setting::Parameter(name, value) => {
+                if let Some(parameter) = scenario.parameters.get(&name) {
+                    let below = parameter.min.is_some_and(|min| value < min);
+                    let above = parameter.max.is_some_and(|max| value > max);
+                    if below || above {
+                        let end = |end: Option<f64>| end.map_or("…".to_owned(), short);
+                        notes.push(format!(
+                            "{name} = {} lies outside {} … {}, the range of its slider",
+                            short(value),
+                            end(parameter.min),
+                            end(parameter.max)
+                        ));
+                    }
+                }
+                next.values.insert(name, value);
+            }
+            Setting::Covering(covering) => next.rules.covering = covering,
+            Setting::TieBreak(tie_break) => next.rules.tie_break = tie_break,
+            Setting::Engine(engine) => next.rules.engine = engine,
+            Setting::Auto(auto) => return self.set_auto(auto, text, io),
+        }
+        self.change_noting(next, text, &notes, io)
+    }
+
+    fn set_auto(
+        &mut self,
+        auto: bool,
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        if auto && self.solved.is_none() && !self.deferred {
+            let solved = self.now.solve(io.watch)?;
+            self.take_answer(Some(solved));
+        }
+        let news = self.auto != auto;
+        self.auto = auto;
+        if news {
+            self.note_in_journal(text)?;
+        }
+        if auto {
+            self.say_what_changed(&[], io)
+        } else {
+            Ok(io.say("changes are collected until `solve` or `set auto on`")?)
+        }
+    }
+
+    fn reset(
+        &mut self,
+        name: Option<&str>,
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let mut next = self.now.clone();
+        let file = next.scenario.parameter_values();
+        let rules = next.scenario.rules;
+        match name {
+            None => {
+                next.values = file;
+                next.rules = rules;
+            }
+            Some("covering") => next.rules.covering = rules.covering,
+            Some("tie-break") => next.rules.tie_break = rules.tie_break,
+            Some("engine") => next.rules.engine = rules.engine,
+            Some(name) => {
+                let value = *file
+                    .get(name)
+                    .ok_or_else(|| values::unknown_parameter(name, &next.scenario))?;
+                next.values.insert(name.to_owned(), value);
+            }
+        }
+        self.change(next, text, io)
+    }
+
+    fn undo(&mut self, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let Some(change) = self.undo.last().cloned() else {
+            return Err(CommandError::Refused("nothing to undo".into()));
+        };
+        let before = self.now.clone();
+        self.enter(change.setup, io)?;
+        self.undo.pop();
+        let note = format!("undone: {}", change.command);
+        self.redo.push(Change {
+            command: change.command,
+            setup: before,
+        });
+        self.note_in_journal(text)?;
+        self.say_what_changed(&[note], io)
+    }
+
+    fn redo(&mut self, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let Some(change) = self.redo.last().cloned() else {
+            return Err(CommandError::Refused("nothing to redo".into()));
+        };
+        let before = self.now.clone();
+        self.enter(change.setup, io)?;
+        self.redo.pop();
+        let note = format!("done again: {}", change.command);
+        self.undo.push(Change {
+            command: change.command,
+            setup: before,
+        });
+        self.note_in_journal(text)?;
+        self.say_what_changed(&[note], io)
+    }
+
+    fn solve_again(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let mut next = self.now.clone();
+        let solved = next.solve(io.watch)?;
+        self.now = next;
+        self.take_answer(Some(solved));
+        self.say_what_changed(&[], io)
+    }
+
+    fn save(
+        &mut self,
+        file: Option<&std::path::Path>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let path = match file {
+            Some(path) => path.to_owned(),
+            None => self.now.scenario.path.clone().ok_or_else(|| {
+                CommandError::Refused(format!(
+                    "`{}` is an embedded scenario: write `save FILE`",
+                    self.now.scenario.name
+                ))
+            })?,
+        };
+        save::save(&self.now.scenario, &self.now.values, self.now.rules, &path)?;
+        Ok(io.say(&format!("saved {}", path.display()))?)
+    }
+
+    /// `step [N|back N|to K|first|last]`.
+    fn step(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let Some(last) = answer.pivots.last().map(|pivot| pivot.step) else {
+            return Err(CommandError::Refused(
+                "no pivots: the main system is the answer".into(),
+            ));
+        };
+        let here = self.shown_step().unwrap_or(last);
+        let count = |word: &str| {
+            word.parse::<usize>().map_err(|_| {
+                CommandError::Refused(format!(
+                    "step: `{word}` is no number of pivots; expected N, back N, to K, first or last"
+                ))
+            })
+        };
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let to = match words.as_slice() {
+            [] => here.saturating_add(1),
+            ["first"] => 0,
+            ["last"] => last,
+            ["back"] => here.saturating_sub(1),
+            ["back", n] => here.saturating_sub(count(n)?),
+            ["to", "first"] => 0,
+            ["to", "last"] => last,
+            ["to", k] => {
+                let k = count(k)?;
+                if k > last {
+                    return Err(CommandError::Refused(format!(
+                        "no pivot {k}: the pivots are 0 … {last}"
+                    )));
+                }
+                k
+            }
+            [n] => here.saturating_add(count(n)?),
+            _ => {
+                return Err(CommandError::Refused(
+                    "step: expected N, back N, to K, first or last".into(),
+                ));
+            }
+        }
+        .min(last);
+        self.position = (to < last).then_some(to);
+        self.report_step(to, last, to == here, io)
+    }
+
+    fn expect(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let expectation = expect::read(words)?;
+        let pairs = self.pairs();
+        let displacements = match expectation {
+            expect::Expectation::Node { .. } => self.displacements(),
+            _ => None,
+        };
+        let facts = Facts {
+            answer: self.answer(),
+            pairs: &pairs,
+            p: self.p(),
+            displacements: displacements.as_deref(),
+            error: self.last_error.as_deref(),
+        };
+        expectation.test(&facts).map_err(|failed| match failed {
+            Ok(unmet) => CommandError::Unmet(unmet),
+            Err(unknown) => CommandError::Refused(unknown),
+        })?;
+        match expectation {
+            expect::Expectation::Outcome(_) => self.trouble = None,
+            expect::Expectation::Error(_) => self.last_error = None,
+            _ => {}
+        }
+        Ok(io.say(&format!("as expected: {}", words.join(" ")))?)
+    }
+
+    /// Brings back what an earlier session left behind.
+    fn restore(&mut self, discard: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let Some(left) = self.left_over.take() else {
+            return Err(CommandError::Refused(
+                "nothing to restore: no session in this directory ended without `quit`".into(),
+            ));
+        };
+        let changes = left.changes();
+        if discard {
+            left.discard().map_err(|source| CommandError::File {
+                doing: "remove the journal in",
+                path: journal::state_directory().unwrap_or_default(),
+                source,
+            })?;
+            return Ok(io.say(&format!("{changes} changes forgotten"))?);
+        }
+        let kept = (
+            self.now.clone(),
+            self.solved.clone(),
+            self.previous.clone(),
+            self.position,
+            (self.auto, self.trouble),
+            (self.undo.clone(), self.redo.clone()),
+        );
+        let journal = self.journal.take();
+        let result = self.replay_journal(&left.commands, io);
+        self.journal = journal;
+        if let Err(error) = result {
+            (
+                self.now,
+                self.solved,
+                self.previous,
+                self.position,
+                (self.auto, self.trouble),
+                (self.undo, self.redo),
+            ) = kept;
+            self.left_over = Some(left);
+            return Err(error);
+        }
+        for command in &left.commands {
+            self.note_in_journal(command)?;
+        }
+        // the new journal holds everything: a file that stays behind is only offered once more
+        let _ = left.discard();
+        let s = if changes == 1 { "" } else { "s" };
+        self.say_what_changed(&[format!("{changes} change{s} restored")], io)
+    }
+
+    fn replay_journal(
+        &mut self,
+        commands: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        self.deferred = true;
+        let mut nowhere = std::io::sink();
+        let mut quiet = Output::text(&mut nowhere, io.style, io.watch);
+        let mut result = Ok(());
+        for (index, text) in commands.iter().enumerate() {
+            let applied = match command::parse(text) {
+                Ok(Some(command)) => self.apply(command, text, &mut quiet).map(|_| ()),
+                Ok(None) => Ok(()),
+                Err(error) => Err(error.into()),
+            };
+            if let Err(error) = applied {
+                result = Err(CommandError::Script {
+                    script: "journal".into(),
+                    line: index + 2,
+                    error: Box::new(error),
+                });
+                break;
+            }
+        }
+        self.deferred = false;
+        result?;
+        if self.auto {
+            let mut next = self.now.clone();
+            let solved = next.solve(io.watch)?;
+            self.now = next;
+            self.take_answer(Some(solved));
+        }
+        Ok(())
+    }
+}
+
+/// `scenarios`.
+fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
+    let list = embedded::list();
+    io.report(
+        || {
+            list.iter()
+                .map(|(name, title)| json!({"name": name, "title": title}))
+                .collect()
+        },
+        |out, style| write_scenarios(out, style),
+    )?;
+    Ok(())
+}
+
+/// A line per embedded scenario.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_scenarios(
+    out: &mut dyn Write,
+    style: &crate::view::style::Style,
+) -> std::io::Result<()> {
+    for (name, title) in embedded::list() {
+        let line = format!("{name:<14} {title}");
+        writeln!(out, "{}", style.fit(&style.text(&line), style.width))?;
+    }
+    Ok(())
+}
+
+fn help(command: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    let text = match command {
+        None => command::overview(),
+        Some(word) => command::help(word, io.style.width)?,
+    };
+    io.report(
+        || Value::String(text.clone()),
+        |out, style| {
+            for line in text.lines() {
+                writeln!(out, "{}", style.text(line))?;
+            }
+            Ok(())
+        },
+    )?;
+    Ok(())
+}

@@ -1,0 +1,610 @@
+//! The only grammar of the program: every command of the REPL, of scripts and of the full screen's `:` line.
+//!
+//! To add a command: a variant here (its doc comment is the help, `after_help` the example), its name in
+//! [`GROUPS`], and its arm in `apply`. Completion, hints and help follow from the grammar: the `value_name` of an
+//! argument says what may stand there (see [`super::complete`]).
+
+use std::path::PathBuf;
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use thiserror::Error;
+
+use super::words::{self, OpenQuote};
+
+/// One command with its arguments.
+#[derive(Clone, Debug, PartialEq, Subcommand)]
+pub enum Command {
+    /// Load a scenario, from a file or an embedded one by its name, and solve it
+    #[command(after_help = "Example:\n  load beam-ray\n  load my/structure.json")]
+    Load {
+        /// File, or name of an embedded scenario
+        #[arg(value_name = "SCENARIO")]
+        scenario: String,
+    },
+    /// List the embedded scenarios
+    #[command(after_help = "Example:\n  scenarios")]
+    Scenarios,
+    /// Write the scenario with the present values and rules to a file
+    ///
+    /// The text of the file that was loaded is kept, with its order, layout and units; only values that changed are
+    /// written anew. Without FILE it goes back to the file it came from. The file is replaced whole or not at all.
+    #[command(after_help = "Example:\n  set F2 150; save beam-150.json")]
+    Save {
+        /// File to write
+        #[arg(value_name = "FILE")]
+        file: Option<PathBuf>,
+    },
+    /// Show the parameters, their values and ranges
+    #[command(after_help = "Example:\n  params")]
+    Params,
+    /// Change a parameter or a rule, and solve again
+    ///
+    /// VALUE is a number; `110%` of the present value; `+10%` or `-10%` more or less than it; or `+= 10`, `-= 10`,
+    /// `*= 2`, `/= 2`. A value outside min … max is accepted: the range is the slider's.
+    ///
+    /// Rules: `set covering cohesive|ones|weight`, `set tie-break lexicographic|natural|first-row|random:SEED`,
+    /// `set engine scheme|tableau|exact`; `set auto off` stops solving after each change until `solve` or
+    /// `set auto on`.
+    #[command(
+        after_help = "Example:\n  set F2 120\n  set F2 += 10\n  set f 110%\n  set covering weight"
+    )]
+    Set {
+        /// Parameter, or auto, covering, tie-break, engine; then the value
+        #[arg(
+            value_name = "SETTING",
+            required = true,
+            trailing_var_arg = true,
+            allow_hyphen_values = true
+        )]
+        words: Vec<String>,
+    },
+    /// Put a parameter, or everything, back to the value of the file
+    #[command(after_help = "Example:\n  reset F2\n  reset")]
+    Reset {
+        /// Parameter; without it all of them and the rules
+        #[arg(value_name = "PARAMETER")]
+        name: Option<String>,
+    },
+    /// Take back the last change
+    #[command(after_help = "Example:\n  set F2 500; undo")]
+    Undo,
+    /// Do again what was undone
+    #[command(after_help = "Example:\n  undo; redo")]
+    Redo,
+    /// Show what differs from the file
+    #[command(after_help = "Example:\n  set F2 150; diff")]
+    Diff,
+
+    /// Solve with the present values
+    ///
+    /// Needed only after `set auto off`, or to solve the same once more.
+    #[command(after_help = "Example:\n  set auto off; set f 0.3; set F2 90; solve")]
+    Solve,
+    /// Say in one line what the answer is
+    #[command(after_help = "Example:\n  status")]
+    Status,
+    /// Show state, forces and slip of the contact pairs, at the pivot chosen by `step`
+    #[command(after_help = "Example:\n  pairs\n  pairs c1 c3\n  pairs joint[0]..joint[4] sort z_t")]
+    Pairs {
+        /// Pairs, or ranges A..B of them, and then `sort KEY`
+        #[arg(value_name = "PAIRS")]
+        words: Vec<String>,
+    },
+    /// Show the displacements of the nodes, at the pivot chosen by `step`
+    #[command(after_help = "Example:\n  displacements\n  displacements A B")]
+    Displacements {
+        /// Nodes; all of them if none is named
+        #[arg(value_name = "NODE")]
+        nodes: Vec<String>,
+    },
+    /// Show N, Q, M at the ends of the elements of the bars
+    #[command(after_help = "Example:\n  members\n  members AB")]
+    Members {
+        /// Bar; all of them if none is named
+        #[arg(value_name = "BAR")]
+        bar: Option<String>,
+    },
+    /// Show the forces of the supports on the structure
+    #[command(after_help = "Example:\n  reactions")]
+    Reactions,
+    /// Show the numbers of the fresh check of the answer
+    #[command(after_help = "Example:\n  check")]
+    Check,
+
+    /// List the pivots, each with its sentence
+    #[command(after_help = "Example:\n  pivots\n  pivots 2..4")]
+    Pivots {
+        /// One pivot, or FROM..TO; either end may be left out
+        #[arg(value_name = "RANGE")]
+        range: Option<String>,
+    },
+    /// Move along the pivots: `pairs` and `plot` then show the structure at that pivot
+    #[command(
+        after_help = "Example:\n  step first; step; step 2; step back 1; step to 4; step last"
+    )]
+    Step {
+        /// N, back N, to K, first or last; one pivot on if left out
+        #[arg(value_name = "STEP")]
+        words: Vec<String>,
+    },
+    /// Say why a pair is in its state, and which pivots brought it there
+    #[command(after_help = "Example:\n  why c6")]
+    Why {
+        /// The pair
+        #[arg(value_name = "PAIR")]
+        pair: String,
+    },
+
+    /// Show the ray: its class, its motion and what it means
+    #[command(after_help = "Example:\n  load beam-ray; ray")]
+    Ray,
+
+    /// Draw a picture of the present state
+    #[command(after_help = "Example:\n  plot slip\n  plot force\n  plot structure")]
+    Plot {
+        /// What to draw
+        #[arg(value_name = "PICTURE")]
+        picture: Picture,
+        /// Pivots to draw on one axis: numbers, `first`, `last`, separated by commas
+        #[arg(long, value_name = "PIVOTS", value_delimiter = ',')]
+        at: Vec<String>,
+        /// Columns of the picture
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1000))]
+        width: Option<u16>,
+        /// Lines of the picture
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(5..=500))]
+        height: Option<u16>,
+        /// Bar, for moment, shear and axial
+        #[arg(value_name = "BAR")]
+        bar: Option<String>,
+    },
+
+    /// Run the commands of a script
+    #[command(after_help = "Example:\n  source scenarios/scripts/beam.stick")]
+    Source {
+        /// The script
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
+    /// Write what is typed from now on to a script, with the answers as comments
+    ///
+    /// The script begins with the present scenario and values, so that `replay` and `source` bring the same answers.
+    #[command(after_help = "Example:\n  record session.stick; set F2 150; pairs; record off")]
+    Record {
+        /// The script to write, or `off`
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
+    /// Test the answer: the script fails where it is not as expected
+    ///
+    /// Forms, with OP one of = != < <= > >= and `± TOLERANCE` (or `+- TOLERANCE`) after `=`:
+    ///   expect outcome trivial|normal|ray|pivot-limit|breakdown|check-failed
+    ///   expect state PAIR open|stick|slip+|slip-|closed
+    ///   expect x_n|x_t|z_n|z_t|bound|reserve_plus|reserve_minus PAIR OP NUMBER
+    ///   expect ux|uy|rz NODE OP NUMBER
+    ///   expect p OP NUMBER
+    ///   expect pivots OP NUMBER
+    ///   expect ray mechanism|artefact|fault|no-equilibrium
+    ///   expect verdict certified|proved|undecided
+    ///   expect error "part of the message"      (after a command that fails)
+    /// States, forces and p are those at the pivot chosen by `step`.
+    #[command(
+        verbatim_doc_comment,
+        after_help = "Example:\n  expect outcome normal\n  expect x_n c1 = 100 ± 1e-6\n  expect pivots <= 20"
+    )]
+    Expect {
+        /// What is expected
+        #[arg(
+            value_name = "EXPECTATION",
+            required = true,
+            trailing_var_arg = true,
+            allow_hyphen_values = true
+        )]
+        words: Vec<String>,
+    },
+    /// Write results to a .csv or .json file
+    #[command(after_help = "Example:\n  export pairs pairs.csv\n  export result answer.json")]
+    Export {
+        /// What to write
+        #[arg(value_name = "WHAT")]
+        what: Export,
+        /// Its ending says the format: .csv or .json
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
+    /// Print the words that follow
+    #[command(after_help = "Example:\n  echo now with less friction")]
+    Echo {
+        /// Any words
+        #[arg(
+            value_name = "WORDS",
+            trailing_var_arg = true,
+            allow_hyphen_values = true
+        )]
+        words: Vec<String>,
+    },
+    /// Bring back the changes of a session in this directory that ended without `quit`
+    #[command(after_help = "Example:\n  restore\n  restore discard")]
+    Restore {
+        /// Forget those changes instead
+        #[arg(value_name = "DISCARD")]
+        discard: Option<Discard>,
+    },
+
+    /// Show all commands, or what one of them does
+    #[command(visible_alias = "?", after_help = "Example:\n  help set")]
+    Help {
+        /// The command
+        #[arg(value_name = "COMMAND")]
+        command: Option<String>,
+    },
+    /// List the commands given so far
+    #[command(after_help = "Example:\n  history")]
+    History,
+    /// Leave
+    #[command(visible_alias = "exit", after_help = "Example:\n  quit")]
+    Quit,
+}
+
+/// What `plot` draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Picture {
+    /// Slip z_τ along the contact zone
+    Slip,
+    /// Friction force x_τ within its bound ±(f x_n + c)
+    Force,
+    /// Distance open z_n
+    Gap,
+    /// Compressive force x_n
+    Pressure,
+    /// p over the pivots
+    P,
+    /// The structure with the states of its pairs, and its deformed shape
+    Structure,
+    /// Bending moment along a bar
+    Moment,
+    /// Shear force along a bar
+    Shear,
+    /// Normal force along a bar
+    Axial,
+}
+
+/// What `export` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Export {
+    /// Contact pairs
+    Pairs,
+    /// Pivots
+    Pivots,
+    /// Displacements of the nodes
+    Displacements,
+    /// Member end forces
+    Members,
+    /// Support reactions
+    Reactions,
+    /// The whole result as `solve --format json` prints it
+    Result,
+}
+
+/// The word of `restore discard`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Discard {
+    /// Forget the changes
+    Discard,
+}
+
+/// The groups of `help`, each with its commands in the order shown; every command stands in one of them.
+pub const GROUPS: &[(&str, &[&str])] = &[
+    (
+        "scenario",
+        &[
+            "load",
+            "scenarios",
+            "save",
+            "params",
+            "set",
+            "reset",
+            "undo",
+            "redo",
+            "diff",
+        ],
+    ),
+    (
+        "answer",
+        &[
+            "solve",
+            "status",
+            "pairs",
+            "displacements",
+            "members",
+            "reactions",
+            "check",
+        ],
+    ),
+    ("pivots", &["pivots", "step", "why"]),
+    ("trouble", &["ray"]),
+    ("pictures", &["plot"]),
+    (
+        "scripts",
+        &["source", "record", "expect", "export", "echo", "restore"],
+    ),
+    ("help", &["help", "history", "quit"]),
+];
+
+/// Clap's view of one line.
+#[derive(Parser)]
+#[command(
+    name = "",
+    no_binary_name = true,
+    disable_help_subcommand = true,
+    disable_version_flag = true,
+    disable_help_flag = true,
+    help_template = "{about-with-newline}\nUsage: {usage}\n\n{all-args}{after-help}\n"
+)]
+struct Line {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// A command that does not belong to the language.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum GrammarError {
+    /// Quotation not closed.
+    #[error(transparent)]
+    Quote(#[from] OpenQuote),
+    /// No such command.
+    #[error("unknown command `{word}`{}: `help` lists all commands", suggestion(.near))]
+    Unknown {
+        /// The word.
+        word: String,
+        /// Commands that look like it.
+        near: Vec<String>,
+    },
+    /// A prefix of several commands.
+    #[error("`{word}` may be {}: write one more letter", .candidates.join(", "))]
+    Ambiguous {
+        /// The word.
+        word: String,
+        /// What it may mean.
+        candidates: Vec<String>,
+    },
+    /// The arguments are wrong; the text is clap's, in one paragraph.
+    #[error("{0}")]
+    Arguments(String),
+}
+
+fn suggestion(near: &[String]) -> String {
+    match near {
+        [] => String::new(),
+        near => format!(" (did you mean `{}`?)", near.join("` or `")),
+    }
+}
+
+/// Words among `known` that look like `word`, best first, at most three.
+pub fn near<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+    let wanted = word.to_lowercase();
+    let mut scored: Vec<(f64, &str)> = known
+        .into_iter()
+        .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
+        .filter(|(score, _)| *score > 0.8)
+        .collect();
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(b.1)));
+    scored
+        .into_iter()
+        .take(3)
+        .map(|(_, name)| name.to_owned())
+        .collect()
+}
+
+/// "(did you mean …?)" with a blank before it, or nothing.
+pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    suggestion(&near(word, known))
+}
+
+/// The grammar as clap holds it: names, arguments, help.
+pub fn grammar() -> clap::Command {
+    let mut grammar = Line::command();
+    // Without building, clap's `mut_subcommands` loses nothing we need; each command keeps its own `--help`.
+    grammar = grammar.mut_subcommands(|command| {
+        command
+            .help_template("{about-with-newline}\nUsage: {usage}\n\n{all-args}{after-help}\n")
+            .disable_version_flag(true)
+    });
+    grammar
+}
+
+/// The full name of a command: itself, an alias, or a prefix that only one command has.
+///
+/// # Errors
+/// Unknown or ambiguous.
+pub fn resolve(word: &str) -> Result<String, GrammarError> {
+    let grammar = grammar();
+    let mut candidates = Vec::new();
+    for command in grammar.get_subcommands() {
+        let name = command.get_name();
+        if name == word || command.get_all_aliases().any(|alias| alias == word) {
+            return Ok(name.to_owned());
+        }
+        if !word.is_empty() && name.starts_with(word) {
+            candidates.push(name.to_owned());
+        }
+    }
+    match candidates.len() {
+        1 => Ok(candidates.remove(0)),
+        0 => Err(GrammarError::Unknown {
+            word: word.to_owned(),
+            near: near(word, grammar.get_subcommands().map(|c| c.get_name())),
+        }),
+        _ => Err(GrammarError::Ambiguous {
+            word: word.to_owned(),
+            candidates,
+        }),
+    }
+}
+
+/// Reads one command (no `;`, no comment); `None` for a blank one.
+///
+/// # Errors
+/// [`GrammarError`], with what to write instead.
+pub fn parse(text: &str) -> Result<Option<Command>, GrammarError> {
+    let mut words = words::split(text)?;
+    let Some(first) = words.first_mut() else {
+        return Ok(None);
+    };
+    let name = resolve(first)?;
+    first.clone_from(&name);
+    match grammar().try_get_matches_from(&words) {
+        Ok(matches) => Line::from_arg_matches(&matches)
+            .map(|line| Some(line.command))
+            .map_err(|error| GrammarError::Arguments(one_paragraph(&error, &name))),
+        Err(error) if error.kind() == clap::error::ErrorKind::DisplayHelp => {
+            Ok(Some(Command::Help {
+                command: Some(name),
+            }))
+        }
+        Err(error) => Err(GrammarError::Arguments(one_paragraph(&error, &name))),
+    }
+}
+
+/// Clap's message without its `error:`, its layout and its pointer to `--help`.
+fn one_paragraph(error: &clap::Error, name: &str) -> String {
+    let text = error.render().to_string();
+    let mut parts = Vec::new();
+    for line in text.lines() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with("For more information") {
+            continue;
+        }
+        if line.starts_with("Usage:") {
+            break;
+        }
+        parts.push(
+            line.trim_start_matches("error: ")
+                .trim_start_matches("tip: "),
+        );
+    }
+    format!("{name}: {}; see `help {name}`", parts.join(" "))
+}
+
+/// The overview of all commands, by group.
+pub fn overview() -> String {
+    let grammar = grammar();
+    let mut text = String::from(
+        "One command a line; `;` separates, `#` begins a comment, unique prefixes work.\n",
+    );
+    for (group, names) in GROUPS {
+        text.push_str(&format!("\n{group}\n"));
+        for name in *names {
+            let about = grammar
+                .find_subcommand(name)
+                .and_then(|command| command.get_about())
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            text.push_str(&format!("  {name:<14} {about}\n"));
+        }
+    }
+    text.push_str("\n`help COMMAND` says more, with an example.\n");
+    text
+}
+
+/// The help of one command, wrapped at `width` columns.
+///
+/// # Errors
+/// Unknown or ambiguous name.
+pub fn help(word: &str, width: usize) -> Result<String, GrammarError> {
+    let name = resolve(word)?;
+    let mut grammar = grammar().term_width(width);
+    grammar.build();
+    // `resolve` gave the name of an existing subcommand.
+    let Some(command) = grammar.find_subcommand_mut(&name) else {
+        return Err(GrammarError::Unknown {
+            word: name,
+            near: Vec::new(),
+        });
+    };
+    let text = command
+        .clone()
+        .term_width(width)
+        .render_long_help()
+        .to_string();
+    Ok(text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("-h, --help"))
+        .map(str::trim_end)
+        .collect::<Vec<_>>()
+        .join("\n")
+        .trim_end()
+        .to_owned()
+        + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clap_accepts_the_grammar() {
+        Line::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_stands_in_one_group_and_has_an_example() {
+        let grammar = grammar();
+        let mut grouped: Vec<&str> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| names.iter().copied())
+            .collect();
+        let mut known: Vec<&str> = grammar.get_subcommands().map(|c| c.get_name()).collect();
+        grouped.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(grouped, known);
+        for command in grammar.get_subcommands() {
+            let example = command
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(example.starts_with("Example:\n"), "{}", command.get_name());
+            for line in example.lines().skip(1) {
+                for one in words::commands(line) {
+                    assert!(parse(one).unwrap().is_some(), "{one}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn prefixes_and_typos() {
+        assert_eq!(parse("piv").unwrap(), Some(Command::Pivots { range: None }));
+        assert_eq!(parse("exit").unwrap(), Some(Command::Quit));
+        let ambiguous = parse("p").unwrap_err().to_string();
+        assert!(
+            ambiguous.contains("pairs, pivots, plot") || ambiguous.contains("params"),
+            "{ambiguous}"
+        );
+        let typo = parse("piars").unwrap_err().to_string();
+        assert!(typo.contains("did you mean `pairs`"), "{typo}");
+    }
+
+    #[test]
+    fn signs_are_no_options() {
+        let words = |text: &str| match parse(text).unwrap() {
+            Some(Command::Set { words }) => words,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(words("set F2 -10%"), ["F2", "-10%"]);
+        assert_eq!(words("set F2 -= 10"), ["F2", "-=", "10"]);
+        assert!(
+            matches!(parse("echo --at -x"), Ok(Some(Command::Echo { words })) if words.len() == 2)
+        );
+    }
+
+    #[test]
+    fn wrong_arguments_say_where_help_is() {
+        let error = parse("plot sli").unwrap_err().to_string();
+        assert!(
+            error.contains("slip") && error.contains("help plot"),
+            "{error}"
+        );
+        assert!(parse("load").unwrap_err().to_string().contains("help load"));
+    }
+}

@@ -1,0 +1,492 @@
+//! What may stand at a place of a line: completion and hints, from the grammar and the names of the session.
+//!
+//! The grammar says by the `value_name` of an argument which names fit (see [`names_of`]).
+
+use std::fs;
+use std::path::Path;
+
+use crate::model::embedded;
+use crate::model::rules::Covering;
+use crate::model::scenario::Source;
+
+use super::command;
+use super::expect;
+use super::reports::SORT_KEYS;
+use super::{Session, words};
+
+/// Never more candidates than this are offered.
+const MOST: usize = 500;
+
+/// The names of a session that can be completed: a copy, so that an editor can hold it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vocabulary {
+    /// Parameters and their present values.
+    pub parameters: Vec<(String, f64)>,
+    /// Pair ids.
+    pub pairs: Vec<String>,
+    /// Node ids.
+    pub nodes: Vec<String>,
+    /// Bar ids.
+    pub bars: Vec<String>,
+}
+
+/// One way to go on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Candidate {
+    /// Replaces the word.
+    pub text: String,
+    /// What it is, in a few words; may be empty.
+    pub about: String,
+}
+
+/// The word at the cursor may be replaced by one of the candidates.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Completion {
+    /// Byte where the word starts.
+    pub start: usize,
+    /// The candidates, in alphabetical order.
+    pub candidates: Vec<Candidate>,
+}
+
+impl Session {
+    /// The names that can be completed now.
+    pub fn vocabulary(&self) -> Vocabulary {
+        let (nodes, bars) = match &self.scenario().source {
+            Source::Structure(structure) => (
+                structure.nodes.iter().map(|node| node.id.clone()).collect(),
+                structure.bars.iter().map(|bar| bar.id.clone()).collect(),
+            ),
+            _ => (Vec::new(), Vec::new()),
+        };
+        let pairs = match &self.scenario().source {
+            Source::Structure(structure) => {
+                structure.pairs.iter().map(|pair| pair.id.clone()).collect()
+            }
+            Source::ContactSystem(system) => system.pairs.clone(),
+            Source::Lcp(_) => Vec::new(),
+        };
+        Vocabulary {
+            parameters: self
+                .values()
+                .iter()
+                .map(|(name, value)| (name.clone(), *value))
+                .collect(),
+            pairs,
+            nodes,
+            bars,
+        }
+    }
+}
+
+/// The start of the line up to the cursor, taken apart.
+struct Place<'a> {
+    /// Words of the command before the one at the cursor.
+    before: Vec<String>,
+    /// The word at the cursor, as typed, up to the cursor.
+    word: &'a str,
+    /// Its first byte.
+    start: usize,
+}
+
+/// `None` inside a comment or a quotation.
+fn place(line: &str, position: usize) -> Option<Place<'_>> {
+    let head = line.get(..position)?;
+    let (from, to) = *words::spans(head).last()?;
+    if to < head.len() {
+        return None; // behind a `#`
+    }
+    let command = &head[from..];
+    let start = command
+        .char_indices()
+        .rev()
+        .find(|(_, c)| c.is_whitespace())
+        .map_or(0, |(at, c)| at + c.len_utf8());
+    let before = words::split(&command[..start]).ok()?;
+    Some(Place {
+        before,
+        word: &command[start..],
+        start: from + start,
+    })
+}
+
+/// The ways to complete the word that ends at byte `position` of `line`.
+pub fn completions(line: &str, position: usize, vocabulary: &Vocabulary) -> Completion {
+    let Some(place) = place(line, position) else {
+        return Completion::default();
+    };
+    let mut candidates = match place.before.split_first() {
+        None => command::grammar()
+            .get_subcommands()
+            .map(|command| candidate(command.get_name(), about(command.get_about())))
+            .collect(),
+        Some((first, given)) => match command::resolve(first) {
+            Ok(name) => arguments(&name, given, place.word, vocabulary),
+            Err(_) => Vec::new(),
+        },
+    };
+    candidates.retain(|candidate| candidate.text.starts_with(place.word));
+    candidates.sort_by(|a, b| a.text.cmp(&b.text));
+    candidates.dedup_by(|a, b| a.text == b.text);
+    candidates.truncate(MOST);
+    Completion {
+        start: place.start,
+        candidates,
+    }
+}
+
+/// What could follow the end of `line`, in grey: the rest of the only command that fits, or the arguments of the
+/// command that stands there.
+pub fn hint(line: &str, vocabulary: &Vocabulary) -> Option<String> {
+    let place = place(line, line.len())?;
+    if place.before.is_empty() {
+        if place.word.is_empty() {
+            return None;
+        }
+        let name = command::resolve(place.word).ok()?;
+        let rest = name.strip_prefix(place.word)?;
+        let usage = usage(&name);
+        return Some(if usage.is_empty() {
+            rest.to_owned()
+        } else {
+            format!("{rest} {usage}")
+        })
+        .filter(|hint| !hint.is_empty());
+    }
+    let name = command::resolve(&place.before[0]).ok()?;
+    if !place.word.is_empty() {
+        let found = completions(line, line.len(), vocabulary).candidates;
+        return match found.as_slice() {
+            [only] if only.text.len() > place.word.len() => {
+                Some(only.text[place.word.len()..].to_owned())
+            }
+            _ => None,
+        };
+    }
+    match (name.as_str(), &place.before[1..]) {
+        ("set", [parameter]) => vocabulary
+            .parameters
+            .iter()
+            .find(|(name, _)| name == parameter)
+            .map(|(_, value)| format!("{value}")),
+        (_, []) => Some(usage(&name)).filter(|usage| !usage.is_empty()),
+        _ => None,
+    }
+}
+
+/// `PAIR`, `[FROM..TO]`: the positional arguments of a command.
+fn usage(name: &str) -> String {
+    let grammar = command::grammar();
+    let Some(command) = grammar.find_subcommand(name) else {
+        return String::new();
+    };
+    match name {
+        "set" => return "NAME VALUE".to_owned(),
+        "step" => return "[N|back N|to K|first|last]".to_owned(),
+        "pairs" => return "[PAIR…] [sort KEY]".to_owned(),
+        "pivots" => return "[FROM..TO]".to_owned(),
+        _ => {}
+    }
+    let words: Vec<String> = command
+        .get_positionals()
+        .map(|argument| {
+            let name = value_name(argument);
+            if argument.is_required_set() {
+                name
+            } else {
+                format!("[{name}]")
+            }
+        })
+        .collect();
+    words.join(" ")
+}
+
+fn value_name(argument: &clap::Arg) -> String {
+    argument
+        .get_value_names()
+        .and_then(|names| names.first())
+        .map(ToString::to_string)
+        .unwrap_or_default()
+}
+
+fn about(text: Option<&clap::builder::StyledStr>) -> String {
+    text.map(ToString::to_string).unwrap_or_default()
+}
+
+fn candidate(text: impl Into<String>, about: impl Into<String>) -> Candidate {
+    Candidate {
+        text: text.into(),
+        about: about.into(),
+    }
+}
+
+/// What may follow the words `given` of the command `name`.
+fn arguments(name: &str, given: &[String], word: &str, vocabulary: &Vocabulary) -> Vec<Candidate> {
+    let grammar = command::grammar();
+    let Some(command) = grammar.find_subcommand(name) else {
+        return Vec::new();
+    };
+    let options = || {
+        command
+            .get_arguments()
+            .filter_map(|argument| Some((argument.get_long()?, argument)))
+    };
+    // the value of an option
+    if let Some(option) = given.last().and_then(|last| last.strip_prefix("--"))
+        && let Some((_, argument)) = options().find(|(long, _)| *long == option)
+    {
+        return values(argument, given, vocabulary, word);
+    }
+    let mut candidates: Vec<Candidate> = if word.starts_with('-') {
+        options()
+            .map(|(long, argument)| candidate(format!("--{long}"), about(argument.get_help())))
+            .collect()
+    } else {
+        Vec::new()
+    };
+    let mut given_positionals = 0;
+    let mut skip = false;
+    for word in given {
+        if skip {
+            skip = false;
+        } else if word.starts_with("--") && options().next().is_some() {
+            skip = !word.contains('=');
+        } else {
+            given_positionals += 1;
+        }
+    }
+    let positionals: Vec<&clap::Arg> = command.get_positionals().collect();
+    let at = positionals.get(given_positionals).or_else(|| {
+        positionals
+            .last()
+            .filter(|last| last.get_num_args().is_some_and(|n| n.max_values() > 1))
+    });
+    if let Some(argument) = at {
+        candidates.extend(values(argument, given, vocabulary, word));
+    }
+    candidates
+}
+
+/// What an argument may be.
+fn values(
+    argument: &clap::Arg,
+    given: &[String],
+    vocabulary: &Vocabulary,
+    word: &str,
+) -> Vec<Candidate> {
+    let possible = argument.get_possible_values();
+    if !possible.is_empty() {
+        return possible
+            .iter()
+            .map(|value| candidate(value.get_name(), about(value.get_help())))
+            .collect();
+    }
+    names_of(&value_name(argument), given, vocabulary, word)
+}
+
+/// The names behind a `value_name` of the grammar.
+fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -> Vec<Candidate> {
+    let plain = |names: &[String]| {
+        names
+            .iter()
+            .map(|name| candidate(name, ""))
+            .collect::<Vec<_>>()
+    };
+    let fixed = |names: &[&str]| {
+        names
+            .iter()
+            .map(|name| candidate(*name, ""))
+            .collect::<Vec<_>>()
+    };
+    let parameters = || {
+        vocabulary
+            .parameters
+            .iter()
+            .map(|(name, value)| candidate(name, value.to_string()))
+            .collect::<Vec<_>>()
+    };
+    let rules = [
+        ("auto", "solve after each change"),
+        ("covering", "covering vector"),
+        ("engine", "implementation of Lemke's algorithm"),
+        ("tie-break", "what decides among tied rows"),
+    ];
+    let rules = || {
+        rules
+            .iter()
+            .map(|(name, about)| candidate(*name, *about))
+            .collect::<Vec<_>>()
+    };
+    match kind {
+        "SCENARIO" => {
+            let mut all: Vec<Candidate> = embedded::list()
+                .into_iter()
+                .map(|(name, title)| candidate(name, title))
+                .collect();
+            all.extend(files(word));
+            all
+        }
+        "FILE" => {
+            let mut all = files(word);
+            if word.is_empty() && given.is_empty() {
+                all.retain(|file| !file.text.starts_with('.'));
+            }
+            all
+        }
+        "PARAMETER" => {
+            let mut all = parameters();
+            all.extend(rules().into_iter().filter(|rule| rule.text != "auto"));
+            all
+        }
+        "SETTING" => match given {
+            [] => {
+                let mut all = parameters();
+                all.extend(rules());
+                all
+            }
+            [name] => match name.as_str() {
+                "covering" => Covering::ALL
+                    .iter()
+                    .map(|c| candidate(c.to_string(), ""))
+                    .collect(),
+                "tie-break" => fixed(&["lexicographic", "natural", "first-row", "random:"]),
+                "engine" => fixed(&["scheme", "tableau", "exact"]),
+                "auto" => fixed(&["on", "off"]),
+                _ => fixed(&["+=", "-=", "*=", "/="]),
+            },
+            _ => Vec::new(),
+        },
+        "PAIR" => plain(&vocabulary.pairs),
+        "PAIRS" => match given.last().map(String::as_str) {
+            Some("sort") => fixed(SORT_KEYS),
+            _ => {
+                let mut all = plain(&vocabulary.pairs);
+                all.push(candidate("sort", "by a column"));
+                all
+            }
+        },
+        "NODE" => plain(&vocabulary.nodes),
+        "BAR" => plain(&vocabulary.bars),
+        "STEP" => match given {
+            [] => fixed(&["back", "to", "first", "last"]),
+            _ => Vec::new(),
+        },
+        "PIVOTS" => fixed(&["first", "last", "first,last"]),
+        "COMMAND" => command::grammar()
+            .get_subcommands()
+            .map(|command| candidate(command.get_name(), about(command.get_about())))
+            .collect(),
+        "EXPECTATION" => match given {
+            [] => expect::subjects().map(|word| candidate(word, "")).collect(),
+            [subject] if expect::takes_pair(subject) => plain(&vocabulary.pairs),
+            [subject] if expect::takes_node(subject) => plain(&vocabulary.nodes),
+            [subject] => fixed(expect::choices(subject)),
+            [subject, _] if subject == "state" => fixed(expect::choices("state")),
+            _ => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
+}
+
+/// Files and folders that begin as the word does; folders end in a slash.
+fn files(word: &str) -> Vec<Candidate> {
+    let (folder, typed) = match word.rfind('/') {
+        Some(at) => (&word[..=at], &word[at + 1..]),
+        None => ("", word),
+    };
+    let here = if folder.is_empty() { "." } else { folder };
+    let Ok(entries) = fs::read_dir(Path::new(here)) else {
+        return Vec::new();
+    };
+    entries
+        .flatten()
+        .take(10_000)
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            if !name.starts_with(typed) || (name.starts_with('.') && !typed.starts_with('.')) {
+                return None;
+            }
+            let slash = if entry.path().is_dir() { "/" } else { "" };
+            // a name that needs quotation marks cannot be completed piece by piece: leave it out
+            let plain = words::quote(&name) == name;
+            plain.then(|| candidate(format!("{folder}{name}{slash}"), ""))
+        })
+        .take(MOST)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vocabulary() -> Vocabulary {
+        Vocabulary {
+            parameters: vec![("f".into(), 0.3), ("F2".into(), 100.0)],
+            pairs: vec!["c1".into(), "c2".into(), "joint[0]".into()],
+            nodes: vec!["A".into(), "B".into()],
+            bars: vec!["AB".into()],
+        }
+    }
+
+    fn at_end(line: &str) -> Vec<String> {
+        completions(line, line.len(), &vocabulary())
+            .candidates
+            .into_iter()
+            .map(|candidate| candidate.text)
+            .collect()
+    }
+
+    #[test]
+    fn each_place_gets_its_names() {
+        assert_eq!(at_end("pa"), ["pairs", "params"]);
+        assert_eq!(at_end("set F"), ["F2"]);
+        assert_eq!(at_end("set covering w"), ["weight"]);
+        assert_eq!(at_end("pairs c"), ["c1", "c2"]);
+        assert_eq!(at_end("pairs c1 sort z_"), ["z_n", "z_t"]);
+        assert_eq!(at_end("why j"), ["joint[0]"]);
+        assert_eq!(at_end("members "), ["AB"]);
+        assert_eq!(at_end("expect state c1 slip"), ["slip+", "slip-"]);
+        assert_eq!(at_end("expect x_n "), ["c1", "c2", "joint[0]"]);
+        assert_eq!(at_end("plot sl"), ["slip"]);
+        assert_eq!(at_end("plot slip --w"), ["--width"]);
+        assert_eq!(at_end("plot slip --at f"), ["first", "first,last"]);
+        assert_eq!(at_end("help se"), ["set"]);
+        assert_eq!(at_end("load beam-r"), ["beam-ray"]);
+        assert_eq!(at_end("set f 0.3; wh"), ["why"]);
+        assert_eq!(at_end("reset co"), ["covering"]);
+        assert!(at_end("pairs # c").is_empty());
+        assert!(at_end("echo \"pa").is_empty());
+        assert!(at_end("bogus c").is_empty());
+    }
+
+    #[test]
+    fn the_start_of_the_word_is_told() {
+        let line = "status; set F";
+        assert_eq!(completions(line, line.len(), &vocabulary()).start, 12);
+    }
+
+    #[test]
+    fn hints_say_what_follows() {
+        assert_eq!(
+            hint("piv", &vocabulary()).as_deref(),
+            Some("ots [FROM..TO]")
+        );
+        assert_eq!(hint("set F2 ", &vocabulary()).as_deref(), Some("100"));
+        assert_eq!(hint("why ", &vocabulary()).as_deref(), Some("PAIR"));
+        assert_eq!(
+            hint("set covering w", &vocabulary()).as_deref(),
+            Some("eight")
+        );
+        assert_eq!(hint("", &vocabulary()), None);
+        assert_eq!(hint("p", &vocabulary()), None);
+    }
+
+    #[test]
+    fn no_place_of_a_line_is_too_strange() {
+        for line in ["set ü é", "\"", "a;;;b", "pairs \u{2003}c"] {
+            for position in 0..=line.len() + 1 {
+                let _ = completions(line, position, &vocabulary());
+            }
+            let _ = hint(line, &vocabulary());
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Why a command failed, and the exit status that this means for a script.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::model::problem::Problems;
+
+use super::command::GrammarError;
+use super::expect::{ExpectationSyntax, Unmet};
+use super::save::SaveError;
+use super::values::SetError;
+use super::worker::WorkerError;
+
+/// A command that failed; the session is as it was.
+#[derive(Debug, Error)]
+pub enum CommandError {
+    /// Not in the language.
+    #[error(transparent)]
+    Grammar(#[from] GrammarError),
+    /// `set` with wrong words.
+    #[error(transparent)]
+    Set(#[from] SetError),
+    /// `expect` with wrong words.
+    #[error(transparent)]
+    ExpectationSyntax(#[from] ExpectationSyntax),
+    /// `expect` that does not hold.
+    #[error(transparent)]
+    Unmet(#[from] Unmet),
+    /// A scenario with problems.
+    #[error("{0}")]
+    Scenario(Problems),
+    /// The main system or the rules do not allow to solve.
+    #[error("{0}")]
+    Solve(String),
+    /// The user stopped it.
+    #[error("interrupted: the session is as it was")]
+    Interrupted,
+    /// An error of this program.
+    #[error("{0}")]
+    Internal(String),
+    /// `save` failed.
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    /// A file that cannot be read or written.
+    #[error("cannot {doing} {}: {source}", .path.display())]
+    File {
+        /// `read`, `write` …
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A command of a script failed.
+    #[error("{script}:{line}: {error}")]
+    Script {
+        /// Name of the script.
+        script: String,
+        /// Line, from 1.
+        line: usize,
+        /// What happened there.
+        error: Box<CommandError>,
+    },
+    /// Anything else about the words or the state: what, and what to do.
+    #[error("{0}")]
+    Refused(String),
+    /// The place for the results does not take them.
+    #[error("cannot write the result: {0}")]
+    Output(#[from] io::Error),
+}
+
+impl From<WorkerError> for CommandError {
+    fn from(error: WorkerError) -> Self {
+        match error {
+            WorkerError::Interrupted => CommandError::Interrupted,
+            panicked @ WorkerError::Panicked(_) => CommandError::Internal(panicked.to_string()),
+        }
+    }
+}
+
+impl CommandError {
+    /// Exit status of a script that ends with this error.
+    pub fn status(&self) -> u8 {
+        match self {
+            CommandError::Unmet(_) => 1,
+            CommandError::Internal(_) => 4,
+            CommandError::Interrupted => 130,
+            CommandError::Script { error, .. } => error.status(),
+            _ => 2,
+        }
+    }
+
+    /// Whether the reader of the results has gone away, which ends a program quietly.
+    pub fn is_broken_pipe(&self) -> bool {
+        match self {
+            CommandError::Output(error) => error.kind() == io::ErrorKind::BrokenPipe,
+            CommandError::Script { error, .. } => error.is_broken_pipe(),
+            _ => false,
+        }
+    }
+
+    /// Whether the face cannot show anything any more.
+    pub fn is_output(&self) -> bool {
+        match self {
+            CommandError::Output(_) => true,
+            CommandError::Script { error, .. } => error.is_output(),
+            _ => false,
+        }
+    }
+
+    /// Whether the user stopped it.
+    pub fn is_interrupted(&self) -> bool {
+        match self {
+            CommandError::Interrupted => true,
+            CommandError::Script { error, .. } => error.is_interrupted(),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,455 @@
+//! The application without a terminal: one scenario, its values and rules, its answer, and the language of commands
+//! that works on them. The REPL, scripts and the full screen are faces of it.
+//!
+//! `words` → `command` (the grammar) → `apply` (changes) or `reports` (read-only) → [`Output`].
+
+mod apply;
+pub mod command;
+pub mod complete;
+mod error;
+pub mod expect;
+pub mod journal;
+mod output;
+mod plots;
+mod record;
+mod reports;
+pub mod save;
+pub mod script;
+pub mod values;
+pub mod words;
+pub mod worker;
+
+use std::sync::Arc;
+
+use serde_json::json;
+
+use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState, PlainSolution};
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::Rules;
+use crate::model::scenario::Scenario;
+use crate::solve::{self, PrepareError, Prepared, Solved};
+use crate::watch::Watch;
+
+pub use apply::write_scenarios;
+pub use error::CommandError;
+pub use output::{Format, Output};
+
+use journal::{Journal, LeftOver};
+use record::Recorder;
+use values::Setting;
+
+/// What comes after a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// The next command.
+    Continue,
+    /// The end.
+    Quit,
+}
+
+/// What the user has chosen: all that `undo` brings back.
+#[derive(Clone)]
+struct Setup {
+    scenario: Arc<Scenario>,
+    /// The factorization and R of the scenario; kept for every change of values and rules.
+    prepared: Option<Arc<Prepared>>,
+    values: ParameterValues,
+    rules: Rules,
+}
+
+/// A change that can be taken back.
+#[derive(Clone)]
+struct Change {
+    /// The command, as typed.
+    command: String,
+    /// What was before it (in `undo`), or after it (in `redo`).
+    setup: Setup,
+}
+
+/// A scenario that is being worked on.
+pub struct Session {
+    now: Setup,
+    solved: Option<Arc<Solved>>,
+    /// The answer before the last change.
+    previous: Option<Arc<Solved>>,
+    /// The pivot shown; `None` for the end.
+    position: Option<usize>,
+    auto: bool,
+    /// Changes are collected and solved once at the end (restoring a journal).
+    deferred: bool,
+    undo: Vec<Change>,
+    redo: Vec<Change>,
+    history: Vec<String>,
+    journal: Option<Journal>,
+    left_over: Option<LeftOver>,
+    recorder: Option<Recorder>,
+    /// Message of the command before, if it failed.
+    last_error: Option<String>,
+    /// A run that ended without an answer and that no `expect outcome` has asked for.
+    trouble: Option<OutcomeKind>,
+    /// Depth of nested scripts.
+    depth: usize,
+}
+
+impl Session {
+    /// A session on a scenario, solved with the values of its file.
+    ///
+    /// # Errors
+    /// A main system that cannot be factorized, rules that do not fit, an interruption.
+    pub fn new(scenario: Scenario, watch: &dyn Watch) -> Result<Self, CommandError> {
+        Self::with_settings(scenario, &[], watch)
+    }
+
+    /// A session on a scenario, solved after `settings`, each the words after a `set`.
+    ///
+    /// # Errors
+    /// As [`Session::new`], and settings that `set` would refuse.
+    pub fn with_settings(
+        scenario: Scenario,
+        settings: &[Vec<String>],
+        watch: &dyn Watch,
+    ) -> Result<Self, CommandError> {
+        let mut now = Setup::of(scenario);
+        for words in settings {
+            match values::read(words, &now.scenario, &now.values)? {
+                Setting::Parameter(name, value) => {
+                    now.values.insert(name, value);
+                }
+                Setting::Covering(covering) => now.rules.covering = covering,
+                Setting::TieBreak(tie_break) => now.rules.tie_break = tie_break,
+                Setting::Engine(engine) => now.rules.engine = engine,
+                Setting::Auto(_) => {
+                    return Err(CommandError::Refused(
+                        "`auto` is for a session: a single run is always solved".into(),
+                    ));
+                }
+            }
+        }
+        let solved = now.solve(watch)?;
+        let mut session = Session {
+            now,
+            solved: None,
+            previous: None,
+            position: None,
+            auto: true,
+            deferred: false,
+            undo: Vec::new(),
+            redo: Vec::new(),
+            history: Vec::new(),
+            journal: None,
+            left_over: None,
+            recorder: None,
+            last_error: None,
+            trouble: None,
+            depth: 0,
+        };
+        session.take_answer(Some(solved));
+        Ok(session)
+    }
+
+    /// The scenario as loaded.
+    pub fn scenario(&self) -> &Scenario {
+        &self.now.scenario
+    }
+
+    /// The scenario, shared: equal pointers mean that nothing was loaded in between.
+    pub fn shared_scenario(&self) -> Arc<Scenario> {
+        Arc::clone(&self.now.scenario)
+    }
+
+    /// The present parameter values.
+    pub fn values(&self) -> &ParameterValues {
+        &self.now.values
+    }
+
+    /// The present rules.
+    pub fn rules(&self) -> Rules {
+        self.now.rules
+    }
+
+    /// Whether each change is solved at once.
+    pub fn auto(&self) -> bool {
+        self.auto
+    }
+
+    /// The present answer; `None` after a change with `auto` off.
+    pub fn answer(&self) -> Option<&Answer> {
+        self.solved.as_deref().map(|solved| &solved.answer)
+    }
+
+    /// The present solved state, shared.
+    pub fn solved(&self) -> Option<Arc<Solved>> {
+        self.solved.clone()
+    }
+
+    /// The prepared geometry, shared.
+    pub fn prepared(&self) -> Option<Arc<Prepared>> {
+        self.now.prepared.clone()
+    }
+
+    /// The answer before the last change.
+    pub fn previous_answer(&self) -> Option<&Answer> {
+        self.previous.as_deref().map(|solved| &solved.answer)
+    }
+
+    /// The pivot chosen by `step`; `None` at the end.
+    pub fn position(&self) -> Option<usize> {
+        self.position
+    }
+
+    /// The step of the pivot shown; `None` where there are no pivots.
+    pub fn shown_step(&self) -> Option<usize> {
+        let last = self.answer()?.pivots.last()?.step;
+        Some(self.position.unwrap_or(last))
+    }
+
+    /// The pairs at the pivot shown.
+    pub fn pairs(&self) -> Vec<PairState> {
+        let Some(solved) = &self.solved else {
+            return Vec::new();
+        };
+        self.position
+            .zip(self.now.prepared.as_ref())
+            .and_then(|(step, prepared)| solved.pairs_at(prepared, step))
+            .unwrap_or_else(|| solved.answer.pairs.clone())
+    }
+
+    /// p at the pivot shown.
+    pub fn p(&self) -> Option<f64> {
+        let solved = self.solved.as_ref()?;
+        match self.position {
+            Some(step) => solved.p_at(step),
+            None => Some(solved.answer.p),
+        }
+    }
+
+    /// The displacements at the pivot shown; `None` where there are none.
+    pub fn displacements(&self) -> Option<Vec<NodeDisplacement>> {
+        let solved = self.solved.as_ref()?;
+        match self.position.zip(self.now.prepared.as_ref()) {
+            Some((step, prepared)) => solved.displacements_at(prepared, step),
+            None => solved.answer.displacements.clone(),
+        }
+    }
+
+    /// z and w of a bare LCP at the pivot shown; `None` for contact problems.
+    pub fn solution(&self) -> Option<PlainSolution> {
+        let solved = self.solved.as_ref()?;
+        match self.position {
+            Some(step) => solved.plain_at(step),
+            None => solved.answer.solution.clone(),
+        }
+    }
+
+    /// The commands given so far.
+    pub fn history(&self) -> &[String] {
+        &self.history
+    }
+
+    /// The exit status a script or pipe has earned by a run without an answer; 0 without one.
+    pub fn trouble_status(&self) -> u8 {
+        if self.trouble.is_some() { 4 } else { 0 }
+    }
+
+    /// Writes every change to `journal` from now on, and remembers what an earlier session left there.
+    pub fn keep_journal(&mut self, mut journal: Journal) {
+        self.left_over = journal.left_over();
+        journal.set_opening(self.as_commands());
+        self.journal = Some(journal);
+    }
+
+    /// What an earlier session in the same directory left behind.
+    pub fn left_over(&self) -> Option<&LeftOver> {
+        self.left_over.as_ref()
+    }
+
+    /// Ends the session in order: nothing is left to restore.
+    ///
+    /// # Errors
+    /// The journal cannot be removed.
+    pub fn close(&mut self) -> std::io::Result<()> {
+        self.recorder = None;
+        match &mut self.journal {
+            Some(journal) => journal.close(),
+            None => Ok(()),
+        }
+    }
+
+    /// Runs the commands of a line; stops at the first that fails (unless `expect error` follows it).
+    ///
+    /// # Errors
+    /// [`CommandError`]; the command that failed has left the session as it was.
+    pub fn execute(&mut self, line: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        let commands = words::commands(line);
+        for (index, command) in commands.iter().enumerate() {
+            match self.run(command, io) {
+                Ok(Next::Continue) => {}
+                Ok(next) => return Ok(next),
+                Err(error) => {
+                    let asked_for = commands
+                        .get(index + 1)
+                        .is_some_and(|next| script::expects_error(next));
+                    if !asked_for || error.is_output() || error.is_interrupted() {
+                        return Err(error);
+                    }
+                }
+            }
+        }
+        Ok(Next::Continue)
+    }
+
+    /// Runs one command.
+    pub(crate) fn run(&mut self, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        io.report = None;
+        let result = if self.depth == 0 && self.recorder.is_some() {
+            self.run_recorded(text, io)
+        } else {
+            self.run_plain(text, io)
+        };
+        if self.depth == 0 {
+            self.history.push(text.to_owned());
+        }
+        if io.format == Format::JsonLines {
+            let report = io.report.take().unwrap_or_default();
+            let line = match &result {
+                Ok(_) => json!({"command": text, "line": io.line, "ok": true, "report": report}),
+                Err(error) => json!({
+                    "command": text, "line": io.line, "ok": false,
+                    "error": error.to_string(), "status": error.status(),
+                }),
+            };
+            writeln!(io.out, "{line}")?;
+        }
+        io.out.flush()?;
+        result
+    }
+
+    fn run_plain(&mut self, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        let parsed = command::parse(text);
+        // `expect error` and `echo` look at or pass by the message of the command before them
+        let keeps_error = matches!(
+            parsed,
+            Ok(None | Some(command::Command::Expect { .. } | command::Command::Echo { .. }))
+        );
+        let result = match parsed {
+            Ok(None) => Ok(Next::Continue),
+            Ok(Some(command)) => self.apply(command, text, io),
+            Err(error) => Err(error.into()),
+        };
+        match &result {
+            Ok(_) if !keeps_error => self.last_error = None,
+            Err(error) if !matches!(error, CommandError::Unmet(_)) => {
+                self.last_error = Some(error.to_string());
+            }
+            _ => {}
+        }
+        result
+    }
+
+    /// Commands that bring a fresh session to the present scenario, values and rules.
+    pub fn as_commands(&self) -> Vec<String> {
+        let scenario = &self.now.scenario;
+        let mut commands = vec![format!("load {}", words::quote(&scenario.name))];
+        let mut sets: Vec<String> = self
+            .now
+            .values
+            .iter()
+            .filter(|(name, value)| {
+                scenario
+                    .parameters
+                    .get(*name)
+                    .is_none_or(|parameter| parameter.value.to_bits() != value.to_bits())
+            })
+            .map(|(name, value)| format!("set {name} {value}"))
+            .collect();
+        let (rules, file) = (self.now.rules, scenario.rules);
+        if rules.covering != file.covering {
+            sets.push(format!("set covering {}", rules.covering));
+        }
+        if rules.tie_break != file.tie_break {
+            sets.push(format!("set tie-break {}", rules.tie_break));
+        }
+        if rules.engine != file.engine {
+            sets.push(format!("set engine {}", rules.engine));
+        }
+        // one run for all of them: a run half-way might be refused
+        if sets.len() > 1 || !self.auto {
+            commands.push("set auto off".to_owned());
+        }
+        let several = sets.len() > 1;
+        commands.extend(sets);
+        if several && self.auto {
+            commands.push("set auto on".to_owned());
+        }
+        commands
+    }
+
+    /// Makes `solved` the present answer, shown at its end.
+    fn take_answer(&mut self, solved: Option<Arc<Solved>>) {
+        self.trouble = solved
+            .as_ref()
+            .map(|solved| solved.answer.outcome)
+            .filter(|outcome| {
+                matches!(
+                    outcome,
+                    OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed
+                )
+            })
+            .or(self.trouble);
+        self.previous = self.solved.take().or(self.previous.take());
+        self.solved = solved;
+        self.position = None;
+    }
+}
+
+impl Setup {
+    fn of(scenario: Scenario) -> Self {
+        Setup {
+            values: scenario.parameter_values(),
+            rules: scenario.rules,
+            scenario: Arc::new(scenario),
+            prepared: None,
+        }
+    }
+
+    /// Solves, preparing the geometry if that was not done yet.
+    fn solve(&mut self, watch: &dyn Watch) -> Result<Arc<Solved>, CommandError> {
+        let scenario = Arc::clone(&self.scenario);
+        let prepared = self.prepared.clone();
+        let (values, rules) = (self.values.clone(), self.rules);
+        let (prepared, solved) = worker::run(watch, move |watch| {
+            let prepared = match prepared {
+                Some(prepared) => prepared,
+                None => Arc::new(solve::prepare(&scenario, watch).map_err(
+                    |error| match error {
+                        PrepareError::Problems(problems) => CommandError::Scenario(problems),
+                        PrepareError::Interrupted => CommandError::Interrupted,
+                    },
+                )?),
+            };
+            let solved = prepared
+                .solve(&scenario, &values, rules, watch)
+                .map_err(|error| {
+                    if error.is_interrupted() {
+                        CommandError::Interrupted
+                    } else {
+                        CommandError::Solve(error.to_string())
+                    }
+                })?;
+            Ok::<_, CommandError>((prepared, Arc::new(solved)))
+        })??;
+        self.prepared = Some(prepared);
+        Ok(solved)
+    }
+
+    fn same_choice(&self, other: &Setup) -> bool {
+        Arc::ptr_eq(&self.scenario, &other.scenario)
+            && self.rules == other.rules
+            && self.values.len() == other.values.len()
+            && self
+                .values
+                .iter()
+                .zip(&other.values)
+                .all(|((a, x), (b, y))| a == b && x.to_bits() == y.to_bits())
+    }
+}

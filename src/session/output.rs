@@ -1,0 +1,76 @@
+//! Where a command writes: text or JSON lines, and how wide and colourful.
+
+use std::io::{self, Write};
+
+use serde_json::Value;
+
+use crate::view::style::Style;
+use crate::watch::Watch;
+
+/// What the results look like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// One JSON object per command.
+    JsonLines,
+}
+
+/// The place a face gives to [`Session::execute`](super::Session::execute).
+pub struct Output<'a> {
+    /// Receives the results; diagnostics come back as errors.
+    pub out: &'a mut dyn Write,
+    /// Width, colour, characters.
+    pub style: Style,
+    /// Text or JSON lines.
+    pub format: Format,
+    /// Sees progress and may ask to stop.
+    pub watch: &'a dyn Watch,
+    /// Line of the script, for JSON lines; 0 outside a script.
+    pub line: usize,
+    /// The report of the command that runs, in JSON.
+    pub(super) report: Option<Value>,
+}
+
+impl<'a> Output<'a> {
+    /// Text output.
+    pub fn text(out: &'a mut dyn Write, style: Style, watch: &'a dyn Watch) -> Self {
+        Self::new(out, style, Format::Text, watch)
+    }
+
+    /// Output in the given format.
+    pub fn new(out: &'a mut dyn Write, style: Style, format: Format, watch: &'a dyn Watch) -> Self {
+        Output {
+            out,
+            style,
+            format,
+            watch,
+            line: 0,
+            report: None,
+        }
+    }
+
+    /// Reports a result: only the form that is asked for is made.
+    pub(super) fn report(
+        &mut self,
+        json: impl FnOnce() -> Value,
+        text: impl FnOnce(&mut dyn Write, &Style) -> io::Result<()>,
+    ) -> io::Result<()> {
+        match self.format {
+            Format::Text => text(self.out, &self.style),
+            Format::JsonLines => {
+                self.report = Some(json());
+                Ok(())
+            }
+        }
+    }
+
+    /// Reports a sentence.
+    pub(super) fn say(&mut self, sentence: &str) -> io::Result<()> {
+        self.report(
+            || Value::String(sentence.to_owned()),
+            |out, _| writeln!(out, "{sentence}"),
+        )
+    }
+}

@@ -1,0 +1,270 @@
+//! `plot`: what is drawn of the state shown, and at which pivots.
+
+use serde_json::{Value, json};
+
+use crate::answer::record::PairState;
+use crate::model::scenario::Source;
+use crate::view::plot::diagram::{self, Force};
+use crate::view::plot::zone::{self, Quantity};
+use crate::view::plot::{structure, trace};
+use crate::view::style::Style;
+
+use super::command::{Picture, did_you_mean};
+use super::{CommandError, Output, Session};
+
+/// Lines of a plot if the user names none.
+const HEIGHT: usize = 14;
+/// Lines of the picture of a structure if the user names none.
+const STRUCTURE_HEIGHT: usize = 20;
+
+impl Session {
+    /// `plot PICTURE [BAR] [--at PIVOTS] [--width N] [--height N]`.
+    pub(super) fn plot(
+        &self,
+        picture: Picture,
+        at: &[String],
+        width: Option<u16>,
+        height: Option<u16>,
+        bar: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let saved = io.style;
+        if let Some(width) = width {
+            io.style.width = usize::from(width);
+        }
+        let height = height.map(usize::from);
+        let is_diagram = matches!(picture, Picture::Moment | Picture::Shear | Picture::Axial);
+        let result = if let Some(bar) = bar.filter(|_| !is_diagram) {
+            Err(CommandError::Refused(format!(
+                "plot: `{bar}` makes no sense here; a bar belongs to moment, shear and axial"
+            )))
+        } else {
+            match picture {
+                Picture::Slip => self.plot_zone(Quantity::Slip, at, height, io),
+                Picture::Force => self.plot_zone(Quantity::Force, at, height, io),
+                Picture::Gap => self.plot_zone(Quantity::Gap, at, height, io),
+                Picture::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
+                _ if !at.is_empty() => Err(CommandError::Refused(
+                    "plot: `--at` belongs to slip, force, gap and pressure; use `step` for the others".into(),
+                )),
+                Picture::P => self.plot_p(height, io),
+                Picture::Structure => self.plot_structure(height, io),
+                Picture::Moment => self.plot_diagram(Force::Moment, bar, height, io),
+                Picture::Shear => self.plot_diagram(Force::Shear, bar, height, io),
+                Picture::Axial => self.plot_diagram(Force::Axial, bar, height, io),
+            }
+        };
+        io.style = saved;
+        result
+    }
+
+    fn plot_zone(
+        &self,
+        quantity: Quantity,
+        at: &[String],
+        height: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        if answer.pairs.is_empty() {
+            return Err(CommandError::Refused(
+                "nothing to plot: there are no contact pairs in this answer".into(),
+            ));
+        }
+        let mut states: Vec<(String, Vec<PairState>)> = Vec::new();
+        if at.is_empty() {
+            let label = self
+                .position
+                .map_or(String::new(), |step| format!("pivot {step}"));
+            states.push((label, self.pairs()));
+        } else {
+            let last = answer.pivots.last().map(|pivot| pivot.step);
+            for word in at {
+                states.push(self.pairs_named(word, last)?);
+            }
+        }
+        let borrowed: Vec<(&str, &[PairState])> = states
+            .iter()
+            .map(|(label, pairs)| (label.as_str(), pairs.as_slice()))
+            .collect();
+        io.report(
+            || {
+                states
+                    .iter()
+                    .map(|(label, pairs)| json!({"at": label, "pairs": pairs}))
+                    .collect()
+            },
+            |out, style| {
+                zone::write(
+                    out,
+                    quantity,
+                    &borrowed,
+                    &self.now.scenario.units,
+                    height.unwrap_or(HEIGHT),
+                    style,
+                )
+            },
+        )?;
+        Ok(())
+    }
+
+    /// The pairs at a pivot named `first`, `last` or by its number.
+    fn pairs_named(
+        &self,
+        word: &str,
+        last: Option<usize>,
+    ) -> Result<(String, Vec<PairState>), CommandError> {
+        let (Some(solved), Some(prepared), Some(last)) = (&self.solved, &self.now.prepared, last)
+        else {
+            return Err(CommandError::Refused(
+                "plot: no pivots to choose with `--at`: the main system is the answer".into(),
+            ));
+        };
+        let step = match word {
+            "first" => 0,
+            "last" => last,
+            _ => word
+                .parse()
+                .ok()
+                .filter(|step| *step <= last)
+                .ok_or_else(|| {
+                    CommandError::Refused(format!(
+                        "plot: no pivot `{word}`; expected first, last or 0 … {last}"
+                    ))
+                })?,
+        };
+        let pairs = if step == last {
+            solved.answer.pairs.clone()
+        } else {
+            solved.pairs_at(prepared, step).ok_or_else(|| {
+                CommandError::Refused(format!("plot: pivot {step} cannot be shown"))
+            })?
+        };
+        Ok((format!("pivot {step}"), pairs))
+    }
+
+    fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        if answer.pivots.is_empty() {
+            return Err(CommandError::Refused(
+                "no pivots: the main system is the answer".into(),
+            ));
+        }
+        io.report(
+            || {
+                answer
+                    .pivots
+                    .iter()
+                    .map(|pivot| json!([pivot.step, pivot.p]))
+                    .collect()
+            },
+            |out, style| {
+                trace::write(
+                    out,
+                    &answer.pivots,
+                    self.position,
+                    &self.now.scenario.units,
+                    height.unwrap_or(HEIGHT),
+                    style,
+                )
+            },
+        )?;
+        Ok(())
+    }
+
+    fn plot_structure(
+        &self,
+        height: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        self.need_answer()?;
+        let Source::Structure(structure) = &self.now.scenario.source else {
+            return Err(not_a_structure());
+        };
+        let displacements = self.displacements();
+        let pairs = self.pairs();
+        let title = match self.position {
+            Some(step) => format!("{} at pivot {step}", self.now.scenario.name),
+            None => self.now.scenario.name.clone(),
+        };
+        let drawn = |out: &mut dyn std::io::Write, style: &Style| {
+            structure::write(
+                out,
+                &structure::Picture {
+                    title: &title,
+                    structure,
+                    displacements: displacements.as_deref(),
+                    pairs: Some(&pairs),
+                    magnification: structure::Magnification::Auto,
+                    height: height.unwrap_or(STRUCTURE_HEIGHT),
+                },
+                style,
+            )
+        };
+        io.report(
+            || json!({"displacements": displacements, "pairs": pairs}),
+            drawn,
+        )?;
+        Ok(())
+    }
+
+    fn plot_diagram(
+        &self,
+        force: Force,
+        bar: Option<&str>,
+        height: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let Source::Structure(structure) = &self.now.scenario.source else {
+            return Err(not_a_structure());
+        };
+        let Some(members) = &answer.members else {
+            return Err(CommandError::Refused(
+                "no member forces: there is no answer".into(),
+            ));
+        };
+        let names = || structure.bars.iter().map(|bar| bar.id.as_str());
+        let bars: Vec<&str> = match bar {
+            Some(bar) if names().any(|name| name == bar) => vec![bar],
+            Some(bar) => {
+                return Err(CommandError::Refused(format!(
+                    "no bar `{bar}`{}",
+                    did_you_mean(bar, names())
+                )));
+            }
+            None => names().collect(),
+        };
+        let Some(bar) = bars.first().copied() else {
+            return Err(CommandError::Refused("the structure has no bars".into()));
+        };
+        if bars.len() > 1 {
+            return Err(CommandError::Refused(format!(
+                "plot: of which bar? One of {}",
+                bars.join(", ")
+            )));
+        }
+        io.report(
+            || {
+                let points =
+                    diagram::series(structure, members, bar, force).map(|series| series.points);
+                json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
+            },
+            |out, style| {
+                let diagram = diagram::Diagram {
+                    structure,
+                    members,
+                    bar,
+                    force,
+                    height: height.unwrap_or(HEIGHT),
+                };
+                diagram::write(out, &diagram, &self.now.scenario.units, style)
+            },
+        )?;
+        Ok(())
+    }
+}
+
+fn not_a_structure() -> CommandError {
+    CommandError::Refused("the scenario is no structure: there is nothing to draw".into())
+}

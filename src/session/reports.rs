@@ -1,0 +1,736 @@
+//! Commands that show something and change nothing.
+
+use std::collections::HashMap;
+use std::io::{self, Write};
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::answer::record::{Answer, PairState, PlainSolution, State};
+use crate::export::{atomic, csv, json as json_export};
+use crate::model::scenario::Source;
+use crate::view;
+use crate::view::number::{short, with_unit};
+use crate::view::style::{Role, Style};
+
+use super::command::{Export, did_you_mean};
+use super::{CommandError, Output, Session};
+
+/// Keys of `pairs … sort KEY`.
+pub const SORT_KEYS: &[&str] = &[
+    "id",
+    "state",
+    "x_n",
+    "x_t",
+    "z_n",
+    "z_t",
+    "bound",
+    "reserve_plus",
+    "reserve_minus",
+    "position",
+];
+
+impl Session {
+    /// The present answer.
+    ///
+    /// # Errors
+    /// There is none because `auto` is off.
+    pub(super) fn need_answer(&self) -> Result<&Answer, CommandError> {
+        self.answer().ok_or_else(|| {
+            CommandError::Refused("not solved yet: `solve`, or `set auto on`".into())
+        })
+    }
+
+    /// Outcome, pivots, parameters and rules.
+    pub(super) fn status_json(&self) -> Value {
+        let values = json!(self.now.values);
+        match self.answer() {
+            None => json!({"outcome": null, "parameters": values}),
+            Some(answer) => {
+                let mut report = json!({
+                    "outcome": answer.outcome,
+                    "marginal": answer.marginal,
+                    "ray": answer.ray.as_ref().map(|ray| json!(ray.class)),
+                    "p": answer.p,
+                    "pivots": answer.pivots.len(),
+                    "parameters": values,
+                    "covering": answer.covering,
+                    "tie_break": answer.tie_break,
+                    "engine": answer.engine,
+                });
+                if let (Some(failure), Value::Object(map)) = (&answer.failure, &mut report) {
+                    map.insert("failure".into(), json!(failure));
+                }
+                report
+            }
+        }
+    }
+
+    pub(super) fn report_status(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        io.report(
+            || self.status_json(),
+            |out, style| {
+                view::status::write(out, answer, &self.now.scenario, &self.now.values, style)?;
+                if !self.auto {
+                    writeln!(out, "auto is off: changes wait for `solve`")?;
+                }
+                match self.position.zip(answer.pivots.last()) {
+                    Some((step, last)) => writeln!(
+                        out,
+                        "shown at pivot {step} of {}: `step last` for the end",
+                        last.step
+                    ),
+                    None => Ok(()),
+                }
+            },
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn report_parameters(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let scenario = &self.now.scenario;
+        io.report(
+            || {
+                self.now
+                    .values
+                    .iter()
+                    .map(|(name, value)| {
+                        let file = scenario.parameters.get(name);
+                        json!({
+                            "name": name,
+                            "value": value,
+                            "file": file.map(|p| p.value),
+                            "min": file.and_then(|p| p.min),
+                            "max": file.and_then(|p| p.max),
+                            "step": file.and_then(|p| p.step),
+                            "unit": file.and_then(|p| p.unit.clone()),
+                            "about": file.and_then(|p| p.about.clone()),
+                        })
+                    })
+                    .collect()
+            },
+            |out, style| view::parameters::write(out, scenario, &self.now.values, style),
+        )?;
+        Ok(())
+    }
+
+    /// `diff`: against the file.
+    pub(super) fn report_difference(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let scenario = &self.now.scenario;
+        let mut rows: Vec<(String, String, String, Option<&str>)> = Vec::new();
+        for (name, value) in &self.now.values {
+            let Some(file) = scenario.parameters.get(name) else {
+                continue;
+            };
+            if file.value.to_bits() != value.to_bits() {
+                rows.push((
+                    name.clone(),
+                    file.value.to_string(),
+                    value.to_string(),
+                    file.unit.as_deref(),
+                ));
+            }
+        }
+        let (now, file) = (self.now.rules, scenario.rules);
+        for (name, file, now) in [
+            (
+                "covering",
+                file.covering.to_string(),
+                now.covering.to_string(),
+            ),
+            (
+                "tie-break",
+                file.tie_break.to_string(),
+                now.tie_break.to_string(),
+            ),
+            ("engine", file.engine.to_string(), now.engine.to_string()),
+        ] {
+            if file != now {
+                rows.push((name.to_owned(), file, now, None));
+            }
+        }
+        io.report(
+            || {
+                rows.iter()
+                    .map(|(name, file, now, _)| json!({"name": name, "file": file, "now": now}))
+                    .collect()
+            },
+            |out, style| {
+                if rows.is_empty() {
+                    return writeln!(out, "nothing differs from the file");
+                }
+                for (name, file, now, unit) in &rows {
+                    let line = format!("{name:<14} {} (file: {file})", with_unit(now, *unit));
+                    writeln!(out, "{}", style.text(&line))?;
+                }
+                Ok(())
+            },
+        )?;
+        Ok(())
+    }
+
+    /// `pairs [IDS] [sort KEY]`.
+    pub(super) fn report_pairs(
+        &self,
+        words: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        self.need_answer()?;
+        if let (Source::Lcp(_), Some(solution)) = (&self.now.scenario.source, self.solution()) {
+            return self.report_solution(&solution, io);
+        }
+        let (ids, key) = match words.iter().position(|word| word == "sort") {
+            None => (words, None),
+            Some(at) => match &words[at + 1..] {
+                [key] => (&words[..at], Some(key.as_str())),
+                _ => {
+                    return Err(CommandError::Refused(format!(
+                        "pairs: `sort` takes one of {}",
+                        SORT_KEYS.join(", ")
+                    )));
+                }
+            },
+        };
+        let all = self.pairs();
+        let mut chosen = if ids.is_empty() {
+            all
+        } else {
+            let mut chosen = Vec::new();
+            for index in indices(ids, &all)? {
+                chosen.push(all[index].clone());
+            }
+            chosen
+        };
+        if let Some(key) = key {
+            sort(&mut chosen, key)?;
+        }
+        io.report(
+            || json!(chosen),
+            |out, style| {
+                if let Some(step) = self.position {
+                    let p = self
+                        .p()
+                        .map_or(String::new(), |p| format!(", p = {}", short(p)));
+                    writeln!(
+                        out,
+                        "{}",
+                        style.paint(Role::Muted, &format!("at pivot {step}{p}"))
+                    )?;
+                }
+                view::pairs::write(out, &chosen, &self.now.scenario.units, style)
+            },
+        )?;
+        Ok(())
+    }
+
+    /// z and w of a bare LCP, in the place of pairs.
+    fn report_solution(
+        &self,
+        solution: &PlainSolution,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        io.report(
+            || json!(solution),
+            |out, style| self.write_solution(solution, out, style),
+        )?;
+        Ok(())
+    }
+
+    fn write_solution(
+        &self,
+        solution: &PlainSolution,
+        out: &mut dyn Write,
+        style: &Style,
+    ) -> io::Result<()> {
+        let names: Vec<String> = match &self.now.scenario.source {
+            Source::Lcp(lcp) => lcp.names.clone(),
+            _ => (1..=solution.z.len()).map(|i| i.to_string()).collect(),
+        };
+        let wide = names
+            .iter()
+            .map(|name| name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .max(4);
+        let head = format!("{:<wide$} {:>14} {:>14}", "row", "z", "w");
+        writeln!(out, "{}", style.paint(Role::Header, &head))?;
+        for (name, (z, w)) in names.iter().zip(solution.z.iter().zip(&solution.w)) {
+            writeln!(
+                out,
+                "{:<wide$} {:>14} {:>14}",
+                style.text(name),
+                short(*z),
+                short(*w)
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Writes the pairs at the pivot shown, or z and w of a bare LCP.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_pairs(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        match self.solution() {
+            Some(solution) => self.write_solution(&solution, out, style),
+            None => view::pairs::write(out, &self.pairs(), &self.now.scenario.units, style),
+        }
+    }
+
+    pub(super) fn report_displacements(
+        &self,
+        nodes: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let all = self
+            .displacements()
+            .ok_or_else(|| self.none("displacements", answer))?;
+        let chosen = if nodes.is_empty() {
+            all
+        } else {
+            let by_name: HashMap<&str, usize> = all
+                .iter()
+                .enumerate()
+                .map(|(i, d)| (d.node.as_str(), i))
+                .collect();
+            let mut chosen = Vec::new();
+            for node in nodes {
+                let index = by_name.get(node.as_str()).ok_or_else(|| {
+                    CommandError::Refused(format!(
+                        "no node `{node}`{}",
+                        did_you_mean(node, all.iter().map(|d| d.node.as_str()))
+                    ))
+                })?;
+                chosen.push(all[*index].clone());
+            }
+            chosen
+        };
+        io.report(
+            || json!(chosen),
+            |out, style| view::displacements::write(out, &chosen, &self.now.scenario.units, style),
+        )?;
+        Ok(())
+    }
+
+    /// The error of a result that this answer or source does not have.
+    fn none(&self, what: &str, answer: &Answer) -> CommandError {
+        CommandError::Refused(match self.now.scenario.source {
+            Source::Structure(_) if !answer.is_answer() => format!(
+                "no {what}: there is no answer ({})",
+                view::status::outcome_word(answer.outcome)
+            ),
+            Source::Structure(_) => format!("no {what} at this pivot: `step last`"),
+            Source::ContactSystem(_) => {
+                format!("no {what}: the scenario is a contact system, not a structure")
+            }
+            Source::Lcp(_) => format!("no {what}: the scenario is a bare LCP"),
+        })
+    }
+
+    pub(super) fn report_members(
+        &self,
+        bar: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let members = answer
+            .members
+            .as_ref()
+            .ok_or_else(|| self.none("member forces", answer))?;
+        if let Some(bar) = bar
+            && !members.iter().any(|member| member.bar == bar)
+        {
+            return Err(CommandError::Refused(format!(
+                "no bar `{bar}`{}",
+                did_you_mean(bar, members.iter().map(|member| member.bar.as_str()))
+            )));
+        }
+        io.report(
+            || {
+                members
+                    .iter()
+                    .filter(|member| bar.is_none_or(|bar| member.bar == bar))
+                    .map(|member| json!(member))
+                    .collect()
+            },
+            |out, style| view::members::write(out, members, bar, &self.now.scenario.units, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let reactions = answer
+            .reactions
+            .as_ref()
+            .ok_or_else(|| self.none("reactions", answer))?;
+        io.report(
+            || json!(reactions),
+            |out, style| view::reactions::write(out, reactions, &self.now.scenario.units, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn report_check(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        io.report(
+            || json!(answer.check),
+            |out, style| view::check::write(out, answer, style),
+        )?;
+        Ok(())
+    }
+
+    /// `pivots [FROM..TO]`.
+    pub(super) fn report_pivots(
+        &self,
+        range: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let last = answer.pivots.last().map_or(0, |pivot| pivot.step);
+        let range = match range {
+            None => None,
+            Some(text) => {
+                let bad = || {
+                    CommandError::Refused(format!(
+                        "pivots: `{text}` is no range; expected K, FROM..TO, FROM.. or ..TO with 0 … {last}"
+                    ))
+                };
+                let end = |word: &str, open: usize| match word.trim() {
+                    "" => Ok(open),
+                    word => word.parse::<usize>().map_err(|_| bad()),
+                };
+                let (from, to) = match text.split_once("..") {
+                    Some((from, to)) => (end(from, 0)?, end(to.trim_start_matches('='), last)?),
+                    None => {
+                        let one = text.parse().map_err(|_| bad())?;
+                        (one, one)
+                    }
+                };
+                if from > to || from > last {
+                    return Err(bad());
+                }
+                Some(from..=to)
+            }
+        };
+        io.report(
+            || {
+                answer
+                    .pivots
+                    .iter()
+                    .filter(|pivot| {
+                        range
+                            .as_ref()
+                            .is_none_or(|range| range.contains(&pivot.step))
+                    })
+                    .map(|pivot| json!(pivot))
+                    .collect()
+            },
+            |out, style| {
+                view::pivots::write(
+                    out,
+                    &answer.pivots,
+                    range.clone(),
+                    self.position,
+                    &self.now.scenario.units,
+                    style,
+                )
+            },
+        )?;
+        Ok(())
+    }
+
+    /// The sentence of the pivot that `step` came to.
+    pub(super) fn report_step(
+        &self,
+        to: usize,
+        last: usize,
+        stayed: bool,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let pivot = answer.pivots.iter().find(|pivot| pivot.step == to);
+        io.report(
+            || json!({"step": to, "last": last, "pivot": pivot}),
+            |out, style| {
+                let sentence = pivot.map_or("", |pivot| pivot.sentence.as_str());
+                let end = match (stayed, to == last, to == 0) {
+                    (true, true, _) => " (the last pivot)",
+                    (true, _, true) => " (the first pivot)",
+                    _ => "",
+                };
+                let label = format!("pivot {to} of {last}{end}: ");
+                for line in style.hanging(&label, &style.text(sentence)) {
+                    writeln!(out, "{line}")?;
+                }
+                Ok(())
+            },
+        )?;
+        Ok(())
+    }
+
+    /// `why PAIR`: its state from its numbers, and the pivots that turned it.
+    pub(super) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let pairs = self.pairs();
+        let pair = pairs
+            .iter()
+            .find(|pair| pair.id == id)
+            .ok_or_else(|| no_pair(id, &pairs))?;
+        let units = &self.now.scenario.units;
+        let force = |value: f64| with_unit(&short(value), units.force.as_deref());
+        let length = |value: f64| with_unit(&short(value), units.length.as_deref());
+        let state = view::pairs::state_words(pair);
+        let cause = match (pair.state, pair.law) {
+            (State::Open, _) => format!(
+                "nothing presses it together: x_n = {} and it is open by {}",
+                force(pair.x_n),
+                length(pair.z_n)
+            ),
+            (State::Closed, _) => format!(
+                "it is pressed together with x_n = {}, and without friction x_t = 0",
+                force(pair.x_n)
+            ),
+            (State::Stick, _) => format!(
+                "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
+                force(pair.x_t.abs()),
+                force(pair.bound),
+                force(pair.reserve_plus),
+                force(pair.reserve_minus)
+            ),
+            (State::SlipPlus, _) => format!(
+                "its reserve x+ is used up: x_t = {} stands at the bound -{}, and it has slipped {} along +t",
+                force(pair.x_t),
+                force(pair.bound),
+                length(pair.z_t)
+            ),
+            (State::SlipMinus, _) => format!(
+                "its reserve x- is used up: x_t = {} stands at the bound {}, and it has slipped {} along -t",
+                force(pair.x_t),
+                force(pair.bound),
+                length(-pair.z_t)
+            ),
+        };
+        let shown = self.shown_step();
+        let turned: Vec<_> = answer
+            .pivots
+            .iter()
+            .filter(|pivot| shown.is_none_or(|shown| pivot.step <= shown))
+            .filter(|pivot| {
+                pivot
+                    .turned
+                    .as_ref()
+                    .is_some_and(|turned| turned.pair == id)
+            })
+            .collect();
+        io.report(
+            || json!({"pair": pair, "cause": cause, "pivots": turned}),
+            |out, style| {
+                let label = format!("{id} {state}: ");
+                for line in style.hanging(&style.text(&label), &style.text(&cause)) {
+                    writeln!(out, "{line}")?;
+                }
+                if turned.is_empty() {
+                    writeln!(out, "no pivot turned it: it is as in the main system")?;
+                }
+                for pivot in &turned {
+                    let label = format!("  pivot {}: ", pivot.step);
+                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
+                        writeln!(out, "{line}")?;
+                    }
+                }
+                Ok(())
+            },
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn report_ray(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let ray = answer.ray.as_ref().ok_or_else(|| {
+            CommandError::Refused(format!(
+                "no ray: the run ended {}",
+                view::status::outcome_word(answer.outcome)
+            ))
+        })?;
+        io.report(
+            || json!(ray),
+            |out, style| view::ray::write(out, ray, &self.now.scenario.units, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn report_history(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        io.report(
+            || json!(self.history),
+            |out, style| {
+                for (index, command) in self.history.iter().enumerate() {
+                    writeln!(out, "{:>5}  {}", index + 1, style.text(command))?;
+                }
+                Ok(())
+            },
+        )?;
+        Ok(())
+    }
+
+    /// `export WHAT FILE`.
+    pub(super) fn export(
+        &self,
+        what: Export,
+        path: &Path,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        // pairs and displacements are those at the pivot shown
+        let mut shown = answer.clone();
+        if self.position.is_some() {
+            shown.pairs = self.pairs();
+            shown.displacements = self.displacements();
+        }
+        let missing = match what {
+            Export::Displacements => shown.displacements.is_none(),
+            Export::Members => shown.members.is_none(),
+            Export::Reactions => shown.reactions.is_none(),
+            Export::Pairs | Export::Pivots | Export::Result => false,
+        };
+        if missing {
+            let word = match what {
+                Export::Displacements => "displacements",
+                Export::Members => "member forces",
+                _ => "reactions",
+            };
+            return Err(self.none(word, answer));
+        }
+        let ending = path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .unwrap_or_default();
+        let as_json = |value: Value| {
+            atomic::write(path, |out| {
+                let text = serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
+                writeln!(out, "{text}")
+            })
+        };
+        let written = match (what, ending) {
+            (Export::Pairs, "csv") => atomic::write(path, |out| csv::pairs(out, &shown)),
+            (Export::Pivots, "csv") => atomic::write(path, |out| csv::pivots(out, &shown)),
+            (Export::Displacements, "csv") => {
+                atomic::write(path, |out| csv::displacements(out, &shown))
+            }
+            (Export::Members, "csv") => atomic::write(path, |out| csv::members(out, &shown)),
+            (Export::Reactions, "csv") => atomic::write(path, |out| csv::reactions(out, &shown)),
+            (Export::Pairs, "json") => as_json(json_export::pairs(&shown)),
+            (Export::Pivots, "json") => as_json(json_export::pivots(&shown)),
+            (Export::Displacements, "json") => as_json(json_export::displacements(&shown)),
+            (Export::Members, "json") => as_json(json_export::members(&shown)),
+            (Export::Reactions, "json") => as_json(json_export::reactions(&shown)),
+            (Export::Result, "json") => as_json(json_export::result(
+                answer,
+                &self.now.scenario.name,
+                &self.now.values,
+                false,
+            )),
+            (Export::Result, _) => {
+                return Err(CommandError::Refused(format!(
+                    "the whole result is written as JSON: {} must end in .json",
+                    path.display()
+                )));
+            }
+            _ => {
+                return Err(CommandError::Refused(format!(
+                    "{} must end in .csv or .json",
+                    path.display()
+                )));
+            }
+        };
+        written.map_err(|error| CommandError::Refused(error.to_string()))?;
+        Ok(io.say(&format!("wrote {}", path.display()))?)
+    }
+}
+
+fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
+    if pairs.is_empty() {
+        return CommandError::Refused(format!(
+            "no pair `{id}`: this scenario has no contact pairs"
+        ));
+    }
+    CommandError::Refused(format!(
+        "no pair `{id}`{}",
+        did_you_mean(id, pairs.iter().map(|pair| pair.id.as_str()))
+    ))
+}
+
+/// Pairs named by ids, ranges `A..B`, or the name of an edge contact (`joint` for all `joint[…]`).
+fn indices(words: &[String], pairs: &[PairState]) -> Result<Vec<usize>, CommandError> {
+    let at: HashMap<&str, usize> = pairs
+        .iter()
+        .enumerate()
+        .map(|(i, pair)| (pair.id.as_str(), i))
+        .collect();
+    let find = |id: &str| at.get(id).copied().ok_or_else(|| no_pair(id, pairs));
+    let mut chosen = Vec::new();
+    for word in words
+        .iter()
+        .flat_map(|word| word.split(','))
+        .filter(|word| !word.is_empty())
+    {
+        if let Some(index) = at.get(word) {
+            chosen.push(*index);
+        } else if let Some((from, to)) = word.split_once("..") {
+            let (from, to) = (find(from)?, find(to)?);
+            if from <= to {
+                chosen.extend(from..=to);
+            } else {
+                chosen.extend((to..=from).rev());
+            }
+        } else {
+            let edge = format!("{word}[");
+            let before = chosen.len();
+            chosen.extend((0..pairs.len()).filter(|i| pairs[*i].id.starts_with(&edge)));
+            if chosen.len() == before {
+                return Err(no_pair(word, pairs));
+            }
+        }
+    }
+    Ok(chosen)
+}
+
+/// Sorts by a key; numbers from large to small, ids and positions upwards.
+fn sort(pairs: &mut [PairState], key: &str) -> Result<(), CommandError> {
+    let number: fn(&PairState) -> f64 = match key {
+        "id" => {
+            pairs.sort_by(|a, b| a.id.cmp(&b.id));
+            return Ok(());
+        }
+        "state" => {
+            pairs.sort_by_key(|pair| pair.state.word());
+            return Ok(());
+        }
+        "position" => {
+            pairs.sort_by(|a, b| {
+                let place = |pair: &PairState| pair.position.unwrap_or([f64::INFINITY; 2]);
+                let (a, b) = (place(a), place(b));
+                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+            });
+            return Ok(());
+        }
+        "x_n" => |pair| pair.x_n,
+        "x_t" => |pair| pair.x_t,
+        "z_n" => |pair| pair.z_n,
+        "z_t" => |pair| pair.z_t,
+        "bound" => |pair| pair.bound,
+        "reserve_plus" => |pair| pair.reserve_plus,
+        "reserve_minus" => |pair| pair.reserve_minus,
+        _ => {
+            return Err(CommandError::Refused(format!(
+                "pairs: no sort key `{key}`{}: expected {}",
+                did_you_mean(key, SORT_KEYS.iter().copied()),
+                SORT_KEYS.join(", ")
+            )));
+        }
+    };
+    pairs.sort_by(|a, b| number(b).total_cmp(&number(a)));
+    Ok(())
+}

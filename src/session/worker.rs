@@ -1,0 +1,138 @@
+//! A computation beside the session: it can be watched, given up within a fifth of a second, and cannot take the
+//! session down with it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::watch::Watch;
+
+/// Between two looks at whether the user wants to stop.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// How the computation ended without a result.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WorkerError {
+    /// The user stopped it.
+    #[error("interrupted: the session is as it was")]
+    Interrupted,
+    /// It panicked: an error of this program.
+    #[error(
+        "internal error in the computation ({0}): the session is as it was; please report the scenario"
+    )]
+    Panicked(String),
+}
+
+/// What the computation sees of the one who waits for it.
+#[derive(Default)]
+struct Desk {
+    stop: AtomicBool,
+    progress: Mutex<Option<(String, f64)>>,
+}
+
+impl Watch for Desk {
+    fn progress(&self, what: &str, done: f64) {
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        *progress = Some((what.to_owned(), done));
+    }
+
+    fn stop(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// Runs `job` on a thread of its own and passes its progress on to `watch`.
+///
+/// When `watch` asks to stop, the job is told so and no longer waited for: a job inside a long factorization ends
+/// by itself later and its result is dropped.
+///
+/// # Errors
+/// [`WorkerError`] if it was stopped or panicked.
+pub fn run<T: Send + 'static>(
+    watch: &dyn Watch,
+    job: impl FnOnce(&dyn Watch) -> T + Send + 'static,
+) -> Result<T, WorkerError> {
+    if watch.stop() {
+        return Err(WorkerError::Interrupted);
+    }
+    let desk = Arc::new(Desk::default());
+    let (sender, receiver) = mpsc::channel();
+    let theirs = Arc::clone(&desk);
+    let spawned = std::thread::Builder::new()
+        .name("solver".to_owned())
+        // deep elimination trees recurse
+        .stack_size(64 << 20)
+        .spawn(move || {
+            let result = catch_unwind(AssertUnwindSafe(|| job(&*theirs)));
+            // the receiver is gone if the user gave up: nothing is left to do with the result
+            let _ = sender.send(result);
+        });
+    if let Err(error) = spawned {
+        return Err(WorkerError::Panicked(format!(
+            "no thread could be started: {error}"
+        )));
+    }
+    loop {
+        match receiver.recv_timeout(LOOK) {
+            Ok(Ok(result)) => return Ok(result),
+            Ok(Err(panic)) => return Err(WorkerError::Panicked(panic_text(panic.as_ref()))),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(WorkerError::Panicked("its thread vanished".to_owned()));
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                if watch.stop() {
+                    desk.stop.store(true, Ordering::Relaxed);
+                    return Err(WorkerError::Interrupted);
+                }
+                let news = desk
+                    .progress
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .take();
+                if let Some((what, done)) = news {
+                    watch.progress(&what, done);
+                }
+            }
+        }
+    }
+}
+
+fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
+    panic
+        .downcast_ref::<&str>()
+        .map(|text| (*text).to_owned())
+        .or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "a panic without text".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Instant;
+
+    struct Impatient(Instant);
+    impl Watch for Impatient {
+        fn progress(&self, _: &str, _: f64) {}
+        fn stop(&self) -> bool {
+            self.0.elapsed() > Duration::from_millis(50)
+        }
+    }
+
+    #[test]
+    fn a_job_that_does_not_listen_is_left_alone_in_time() {
+        let start = Instant::now();
+        let result = run(&Impatient(start), |_| {
+            std::thread::sleep(Duration::from_secs(2))
+        });
+        assert_eq!(result, Err(WorkerError::Interrupted));
+        assert!(start.elapsed() < Duration::from_millis(200));
+    }
+
+    #[test]
+    fn a_panic_is_an_error() {
+        let result: Result<(), _> = run(&crate::watch::Quiet, |_| panic!("no {}", 1));
+        assert!(matches!(result, Err(WorkerError::Panicked(text)) if text == "no 1"));
+    }
+}

@@ -1,0 +1,62 @@
+//! The table of member end forces, bar by bar.
+
+use std::io::{self, Write};
+
+use super::number::{in_column, largest};
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use super::{force_unit, moment_unit};
+use crate::answer::record::MemberForces;
+use crate::model::scenario::Units;
+
+/// Writes N, Q, M at both ends of every element of `bar` (of all bars without one). Tension, and M with tension
+/// on the −y side of the bar, are positive.
+pub fn write(
+    out: &mut dyn Write,
+    members: &[MemberForces],
+    bar: Option<&str>,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let chosen: Vec<&MemberForces> = members
+        .iter()
+        .filter(|member| bar.is_none_or(|bar| member.bar == bar))
+        .collect();
+    if chosen.is_empty() {
+        let text = match bar {
+            Some(bar) => format!("no bar {bar}"),
+            None => "no bars".into(),
+        };
+        return writeln!(out, "{}", style.fit(&style.text(&text), style.width));
+    }
+    let force = force_unit(units);
+    let mut table = Table::new(vec![
+        Column::words("bar"),
+        Column::count("element"),
+        Column::words("end"),
+        Column::numbers("N", force.clone()),
+        Column::numbers("Q", force),
+        Column::numbers("M", moment_unit(units)),
+    ]);
+    let ends = |member: &&MemberForces| [member.start, member.end];
+    let forces = largest(chosen.iter().flat_map(ends).flat_map(|end| [end.n, end.q]));
+    let moments = largest(chosen.iter().flat_map(ends).map(|end| end.m));
+    for member in &chosen {
+        for (word, end) in [("start", member.start), ("end", member.end)] {
+            let first = word == "start";
+            table.rows.push(Row::new(vec![
+                Cell::from(if first { member.bar.as_str() } else { "" }),
+                Cell::from(if first {
+                    member.element.to_string()
+                } else {
+                    String::new()
+                }),
+                Cell::new(word, Role::Muted),
+                Cell::from(in_column(end.n, forces)),
+                Cell::from(in_column(end.q, forces)),
+                Cell::from(in_column(end.m, moments)),
+            ]));
+        }
+    }
+    table.write(out, style)
+}

@@ -1,0 +1,44 @@
+//! Reports: from records to text on any `dyn Write`. Nothing here knows a terminal; width, colour and the set of
+//! characters come in as a [`style::Style`].
+
+pub mod check;
+pub mod difference;
+pub mod displacements;
+pub mod members;
+pub mod number;
+pub mod pairs;
+pub mod parameters;
+pub mod pivots;
+pub mod plot;
+pub mod ray;
+pub mod reactions;
+pub mod status;
+pub mod style;
+pub mod table;
+
+#[cfg(test)]
+mod random;
+#[cfg(test)]
+pub(crate) mod sample;
+#[cfg(test)]
+mod snapshots;
+
+use crate::model::scenario::Units;
+
+/// Unit of a displacement, if the author named one.
+pub fn length_unit(units: &Units) -> Option<String> {
+    units.length.clone()
+}
+
+/// Unit of a force, if the author named one.
+pub fn force_unit(units: &Units) -> Option<String> {
+    units.force.clone()
+}
+
+/// Unit of a moment, `kN·m`, if the author named both its parts.
+pub fn moment_unit(units: &Units) -> Option<String> {
+    match (&units.force, &units.length) {
+        (Some(force), Some(length)) => Some(format!("{force}·{length}")),
+        _ => None,
+    }
+}

@@ -1,0 +1,18 @@
+//! Pictures in characters. The data of every plot is there apart from its drawing (`*_series`), because the
+//! full-screen interface draws the same data its own way.
+
+pub mod canvas;
+pub mod chart;
+pub mod diagram;
+pub mod structure;
+pub mod trace;
+pub mod zone;
+
+/// A curve: its name and its points in the order they are joined.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    /// Name for the legend.
+    pub label: String,
+    /// (abscissa, ordinate) in the author's units.
+    pub points: Vec<(f64, f64)>,
+}

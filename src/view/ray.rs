@@ -1,0 +1,111 @@
+//! A ray: what it is, what moves, what it means.
+
+use std::io::{self, Write};
+
+use super::force_unit;
+use super::number::{denoised, in_column, short, with_unit};
+use super::status::{class_word, verdict_word};
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::answer::record::{Ray, RayClass, Verdict};
+use crate::model::scenario::Units;
+
+/// What a class means, in a few words.
+pub fn class_meaning(class: RayClass) -> &'static str {
+    match class {
+        RayClass::Mechanism => "the loads do work on a motion that costs no energy",
+        RayClass::Artefact => "z+ and z- of a pair grow together; says nothing about the structure",
+        RayClass::Fault => {
+            "the structure stands without its contacts: an answer exists, the run failed"
+        }
+        RayClass::NoEquilibrium => "the run found no equilibrium",
+    }
+}
+
+/// What a verdict means, in a few words.
+pub fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
+    match verdict {
+        Some(Verdict::Certified) => "no contact forces within friction balance the loads",
+        Some(Verdict::Proved) => "enumeration of all working schemes found no answer",
+        Some(Verdict::Undecided) => {
+            "admissible forces exist, but none that obeys the law of slip was found"
+        }
+        None => "not examined",
+    }
+}
+
+/// Writes class, verdict, p, mode, explanation and the direction pair by pair (pairs that do not move are counted).
+pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io::Result<()> {
+    let role = match ray.class {
+        RayClass::Mechanism | RayClass::NoEquilibrium => Role::Warning,
+        RayClass::Artefact | RayClass::Fault => Role::Bad,
+    };
+    let head = style.fit(&format!("ray: {}", class_word(ray.class)), style.width);
+    writeln!(out, "{}", style.paint(role, &head))?;
+    let verdict = match ray.verdict {
+        Some(verdict) => format!(
+            "{}: {}",
+            verdict_word(verdict),
+            verdict_meaning(ray.verdict)
+        ),
+        None if matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium) => {
+            verdict_meaning(None).into()
+        }
+        // An artefact or a fault claims nothing about the structure.
+        None => String::new(),
+    };
+    let p = with_unit(&short(ray.p), force_unit(units).as_deref());
+    let rows = [
+        ("class", class_meaning(ray.class)),
+        ("verdict", verdict.as_str()),
+        ("p", p.as_str()),
+        ("mode", ray.mode.as_str()),
+        ("meaning", ray.explanation.as_str()),
+    ];
+    for (label, text) in rows {
+        if text.is_empty() {
+            continue;
+        }
+        for line in style.hanging(&format!("{label:<9}"), text) {
+            writeln!(out, "{line}")?;
+        }
+    }
+    let moves = |value: f64| denoised(value, 1.0) != 0.0;
+    let moving: Vec<_> = ray
+        .direction
+        .iter()
+        .filter(|d| moves(d.z_n) || moves(d.z_t))
+        .collect();
+    if moving.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    let mut table = Table::new(vec![
+        Column::words("pair"),
+        Column::numbers("z̄_n", None),
+        Column::numbers("z̄_τ", None),
+        Column::words("motion").droppable(1),
+    ]);
+    for direction in &moving {
+        let motion = match (moves(direction.z_n), moves(direction.z_t)) {
+            (true, true) => "parts and slips",
+            (true, false) => "parts",
+            _ if direction.z_t > 0.0 => "slips +",
+            _ => "slips -",
+        };
+        table.rows.push(Row::new(vec![
+            Cell::from(direction.pair.as_str()),
+            Cell::from(in_column(direction.z_n, 1.0)),
+            Cell::from(in_column(direction.z_t, 1.0)),
+            Cell::from(motion),
+        ]));
+    }
+    table.write(out, style)?;
+    let still = ray.direction.len() - moving.len();
+    if still > 0 {
+        let pairs = if still == 1 { "pair does" } else { "pairs do" };
+        let text = style.fit(&format!("{still} {pairs} not move"), style.width);
+        writeln!(out, "{}", style.paint(Role::Muted, &text))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,351 @@
+//! The line after every change, and the longer `status`.
+
+use std::io::{self, Write};
+
+use unicode_width::UnicodeWidthStr;
+
+use super::number::{residual, short, with_unit};
+use super::style::{Role, Style};
+use super::{force_unit, length_unit};
+use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, State, Verdict};
+use crate::model::parameter::ParameterValues;
+use crate::model::scenario::{Scenario, Source, Units};
+
+/// The word of an outcome, as in results.
+pub fn outcome_word(outcome: OutcomeKind) -> &'static str {
+    match outcome {
+        OutcomeKind::Trivial => "trivial",
+        OutcomeKind::Normal => "normal",
+        OutcomeKind::Ray => "ray",
+        OutcomeKind::PivotLimit => "pivot-limit",
+        OutcomeKind::Breakdown => "breakdown",
+        OutcomeKind::CheckFailed => "check-failed",
+    }
+}
+
+/// The word of a class of rays, as in results.
+pub fn class_word(class: RayClass) -> &'static str {
+    match class {
+        RayClass::Mechanism => "mechanism",
+        RayClass::Artefact => "artefact",
+        RayClass::Fault => "fault",
+        RayClass::NoEquilibrium => "no-equilibrium",
+    }
+}
+
+/// The word of a verdict, as in results.
+pub fn verdict_word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Certified => "certified",
+        Verdict::Proved => "proved",
+        Verdict::Undecided => "undecided",
+    }
+}
+
+/// `5 pivots`, `1 pivot`, `no pivot`.
+pub fn pivot_count(answer: &Answer) -> String {
+    match answer.pivots.len() {
+        0 => "no pivot".into(),
+        1 => "1 pivot".into(),
+        n => format!("{n} pivots"),
+    }
+}
+
+/// `2 stick 4 slip+ 0 open`: stick, slip and open always where there is friction, the others where they occur.
+pub fn state_counts(pairs: &[PairState]) -> String {
+    let count = |state: State| pairs.iter().filter(|pair| pair.state == state).count();
+    let friction = pairs.iter().any(|pair| pair.law != "frictionless");
+    let unilateral = pairs.iter().any(|pair| pair.law != "bound");
+    let (plus, minus, closed) = (
+        count(State::SlipPlus),
+        count(State::SlipMinus),
+        count(State::Closed),
+    );
+    let mut parts = Vec::new();
+    if friction {
+        parts.push(format!("{} stick", count(State::Stick)));
+    }
+    if friction && (plus > 0 || minus == 0) {
+        parts.push(format!("{plus} slip+"));
+    }
+    if minus > 0 {
+        parts.push(format!("{minus} slip-"));
+    }
+    if closed > 0 || !friction {
+        parts.push(format!("{closed} closed"));
+    }
+    if unilateral {
+        parts.push(format!("{} open", count(State::Open)));
+    }
+    parts.join(" ")
+}
+
+/// The largest slip of a pair in contact: (|z_τ|, pair).
+pub fn max_slip(pairs: &[PairState]) -> Option<(f64, &PairState)> {
+    pairs
+        .iter()
+        .filter(|pair| matches!(pair.state, State::SlipPlus | State::SlipMinus))
+        .map(|pair| (pair.z_t.abs(), pair))
+        .filter(|(slip, _)| slip.is_finite())
+        // The first of equals, so that the line does not depend on the order of evaluation.
+        .fold(None, |best: Option<(f64, &PairState)>, next| match best {
+            Some(best) if best.0 >= next.0 => Some(best),
+            _ => Some(next),
+        })
+}
+
+/// The largest opening: (z_n, pair).
+pub fn max_opening(pairs: &[PairState]) -> Option<(f64, &PairState)> {
+    pairs
+        .iter()
+        .filter(|pair| pair.state == State::Open && pair.z_n.is_finite())
+        .map(|pair| (pair.z_n, pair))
+        .fold(None, |best: Option<(f64, &PairState)>, next| match best {
+            Some(best) if best.0 >= next.0 => Some(best),
+            _ => Some(next),
+        })
+}
+
+/// The line after a change:
+/// `normal · 5 pivots · 2 stick 4 slip+ 0 open · max slip 0.005 m at c6 (was 0.0005)`;
+/// `ray: mechanism · p 3.33 kN · 12 pivots · …`; `breakdown · …` with the reason.
+///
+/// Where `style.width` is too narrow, counts of 0 are left out, then the number of pivots, then what was before;
+/// the line is never wrapped.
+pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &Style) -> String {
+    let (head, role) = headline(answer);
+    match answer.outcome {
+        OutcomeKind::Trivial | OutcomeKind::Normal if !answer.pairs.is_empty() => {
+            let count = pivot_count(answer);
+            let states = state_counts(&answer.pairs);
+            let (extreme, before) = extreme(answer, previous, units);
+            let with_before = match before {
+                Some(before) => format!("{extreme} (was {before})"),
+                None => extreme.clone(),
+            };
+            // What gives way in turn where the line is too narrow: counts of 0, the pivots, what was before.
+            let occurring = occurring(&states);
+            let ways = [
+                vec![count.clone(), states, with_before.clone()],
+                vec![count, occurring.clone(), with_before.clone()],
+                vec![occurring.clone(), with_before],
+                vec![occurring.clone(), extreme],
+                vec![occurring],
+            ];
+            let mut ways = ways.into_iter().map(|parts| joined(&head, &parts, style));
+            let fitting = ways.find(|(text, _)| text.width() <= style.width);
+            finished(
+                fitting.unwrap_or_else(|| joined(&head, &[], style)),
+                role,
+                style,
+            )
+        }
+        OutcomeKind::Trivial | OutcomeKind::Normal => {
+            finished(joined(&head, &[pivot_count(answer)], style), role, style)
+        }
+        OutcomeKind::Ray => {
+            let mut parts = Vec::new();
+            if let Some(ray) = &answer.ray {
+                let p = with_unit(&short(ray.p), p_unit(answer, units).as_deref());
+                parts.push(format!("p {p}"));
+                parts.push(pivot_count(answer));
+                if let Some(verdict) = ray.verdict {
+                    parts.push(verdict_word(verdict).into());
+                }
+                if !ray.mode.is_empty() {
+                    parts.push(ray.mode.clone());
+                }
+            }
+            finished(joined(&head, &parts, style), role, style)
+        }
+        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => {
+            let mut parts = vec![pivot_count(answer)];
+            parts.extend(answer.failure.clone());
+            finished(joined(&head, &parts, style), role, style)
+        }
+    }
+}
+
+/// The states of a count that occur: `2 stick 4 slip+` of `2 stick 4 slip+ 0 open`.
+fn occurring(states: &str) -> String {
+    let words: Vec<&str> = states.split(' ').collect();
+    let some: Vec<String> = words
+        .chunks(2)
+        .filter(|count| count.first() != Some(&"0"))
+        .map(|count| count.join(" "))
+        .collect();
+    some.join(" ")
+}
+
+/// The parts of a line and the length of its first one in bytes.
+fn joined(head: &str, parts: &[String], style: &Style) -> (String, usize) {
+    let dot = format!(" {} ", style.dot());
+    let mut text = style.text(head);
+    let length = text.len();
+    for part in parts {
+        text.push_str(&dot);
+        text.push_str(&style.text(part));
+    }
+    (text, length)
+}
+
+/// The line cut to the width, its first part in colour.
+fn finished((text, head): (String, usize), role: Role, style: &Style) -> String {
+    let text = style.fit(&text, style.width);
+    match text.split_at_checked(head) {
+        Some((head, rest)) => format!("{}{rest}", style.paint(role, head)),
+        None => style.paint(role, &text),
+    }
+}
+
+/// First words of the line and their colour.
+fn headline(answer: &Answer) -> (String, Role) {
+    let word = outcome_word(answer.outcome);
+    let role = Role::of_outcome(answer.outcome);
+    match &answer.ray {
+        Some(ray) if answer.outcome == OutcomeKind::Ray => {
+            (format!("ray: {}", class_word(ray.class)), role)
+        }
+        _ if answer.marginal => (format!("{word} (marginal)"), Role::Warning),
+        _ => (word.to_owned(), role),
+    }
+}
+
+/// The largest slip, else the largest opening, and what it was before if that was something else.
+fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units) -> (String, Option<String>) {
+    let unit = length_unit(units);
+    let previous = previous.filter(|previous| previous.is_answer());
+    let slip_before = previous.map(|p| max_slip(&p.pairs).map_or(0.0, |(slip, _)| slip));
+    let (what, value, at, before) = if let Some((slip, pair)) = max_slip(&answer.pairs) {
+        ("max slip", slip, &pair.id, slip_before)
+    } else if let Some((opening, pair)) = max_opening(&answer.pairs) {
+        let before = previous.map(|p| max_opening(&p.pairs).map_or(0.0, |(gap, _)| gap));
+        ("max opening", opening, &pair.id, before)
+    } else {
+        let before = slip_before.filter(|slip| *slip > 0.0).map(short);
+        return ("no slip".into(), before);
+    };
+    let now = short(value);
+    let before = before.map(short).filter(|before| *before != now);
+    let text = format!("{what} {} at {at}", with_unit(&now, unit.as_deref()));
+    (text, before)
+}
+
+/// p is a force in contact problems and has no unit in a bare LCP.
+fn p_unit(answer: &Answer, units: &Units) -> Option<String> {
+    if answer.covering == "given" || answer.solution.is_some() || answer.pairs.is_empty() {
+        None
+    } else {
+        force_unit(units)
+    }
+}
+
+/// The longer `status`: what is solved, outcome, size, rules, check figures, attempts, notes, parameters.
+pub fn write(
+    out: &mut dyn Write,
+    answer: &Answer,
+    scenario: &Scenario,
+    parameters: &ParameterValues,
+    style: &Style,
+) -> io::Result<()> {
+    let units = &scenario.units;
+    let title = format!("{} · {}", scenario.name, scenario.title);
+    let title = style.fit(&style.text(&title), style.width);
+    writeln!(out, "{}", style.paint(Role::Title, &title))?;
+    writeln!(out, "{}", line(answer, None, units, style))?;
+
+    let mut rows: Vec<(&str, String)> = Vec::new();
+    if let Some(failure) = &answer.failure {
+        rows.push(("no answer", failure.clone()));
+    }
+    if let Some(ray) = &answer.ray {
+        rows.push(("mode", ray.mode.clone()));
+        rows.push(("meaning", ray.explanation.clone()));
+    }
+    if answer.marginal {
+        let p = with_unit(&short(answer.p), p_unit(answer, units).as_deref());
+        rows.push((
+            "marginal",
+            format!("exactly on a limit: p stopped at {p} instead of 0"),
+        ));
+    }
+    let size = &answer.size;
+    let mut sizes = Vec::new();
+    if let Some(unknowns) = size.unknowns {
+        sizes.push(match size.free {
+            Some(free) => format!("{unknowns} unknowns ({free} free)"),
+            None => format!("{unknowns} unknowns"),
+        });
+    }
+    if !matches!(scenario.source, Source::Lcp(_)) {
+        sizes.push(format!(
+            "{} contact {}",
+            size.pairs,
+            if size.pairs == 1 { "pair" } else { "pairs" }
+        ));
+    }
+    sizes.push(format!("LCP of {}", size.lcp));
+    rows.push(("size", sizes.join(" · ")));
+    rows.push((
+        "rules",
+        format!(
+            "covering {} · tie-break {} · engine {}",
+            answer.covering, answer.tie_break, answer.engine
+        ),
+    ));
+    if answer.is_answer() || answer.outcome == OutcomeKind::CheckFailed {
+        let check = &answer.check;
+        let mut figures = vec![
+            format!("min w {}", residual(check.min_w)),
+            format!("min z {}", residual(check.min_z)),
+            format!("w·z {}", residual(check.complementarity)),
+        ];
+        if let Some(equilibrium) = check.equilibrium {
+            figures.push(format!("equilibrium {}", residual(equilibrium)));
+        }
+        let word = if check.passed { "passed" } else { "FAILED" };
+        rows.push(("check", format!("{word}: {}", figures.join(" · "))));
+    }
+    if answer.attempts.len() > 1 {
+        for (i, attempt) in answer.attempts.iter().enumerate() {
+            rows.push((
+                if i == 0 { "attempts" } else { "" },
+                format!(
+                    "{} · {} · {}: {}",
+                    attempt.covering,
+                    attempt.tie_break,
+                    attempt.engine,
+                    outcome_word(attempt.outcome)
+                ),
+            ));
+        }
+    }
+    for (i, note) in answer.notes.iter().enumerate() {
+        rows.push((if i == 0 { "notes" } else { "" }, note.clone()));
+    }
+    if !parameters.is_empty() {
+        let values: Vec<String> = parameters
+            .iter()
+            .map(|(name, value)| {
+                let unit = scenario
+                    .parameters
+                    .get(name)
+                    .and_then(|p| p.unit.as_deref());
+                format!("{name} = {}", with_unit(&short(*value), unit))
+            })
+            .collect();
+        rows.push(("parameters", values.join(", ")));
+    }
+    for (label, text) in rows {
+        let label = format!("{label:<12}");
+        for (i, line) in style.hanging(&label, &text).iter().enumerate() {
+            match line.strip_prefix(label.as_str()) {
+                Some(rest) if i == 0 => {
+                    writeln!(out, "{}{rest}", style.paint(Role::Muted, &label))?
+                }
+                _ => writeln!(out, "{line}")?,
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,245 @@
+//! How a report looks: its width, whether it may use colour, whether it must do without Unicode.
+
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+use crate::answer::record::{OutcomeKind, State};
+
+/// What the place that shows a report can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// Characters per line; no line gets longer.
+    pub width: usize,
+    /// Whether ANSI colours (the 16 of every terminal) may be used. Colour never carries meaning alone.
+    pub color: bool,
+    /// Whether everything must be printable ASCII.
+    pub ascii: bool,
+}
+
+impl Default for Style {
+    /// 80 columns, Unicode, no colour: what a pipe gets.
+    fn default() -> Self {
+        Style {
+            width: 80,
+            color: false,
+            ascii: false,
+        }
+    }
+}
+
+/// What a piece of text is, as far as its colour goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Plain text.
+    Plain,
+    /// Heading of a report.
+    Title,
+    /// Heading of a column.
+    Header,
+    /// Less important: units, legends, hints.
+    Muted,
+    /// An answer, a check that passed.
+    Good,
+    /// Worth a look.
+    Warning,
+    /// No answer, a check that failed.
+    Bad,
+    /// The present position, a changed value.
+    Accent,
+    /// State of a pair.
+    State(State),
+    /// The i-th of several curves.
+    Series(usize),
+}
+
+impl Role {
+    /// Role of an outcome.
+    pub fn of_outcome(outcome: OutcomeKind) -> Role {
+        match outcome {
+            OutcomeKind::Trivial | OutcomeKind::Normal => Role::Good,
+            OutcomeKind::Ray => Role::Warning,
+            OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => {
+                Role::Bad
+            }
+        }
+    }
+
+    /// SGR parameters; `None` for plain text.
+    fn sgr(self) -> Option<&'static str> {
+        // Colours of the curves: cyan, yellow, magenta, green, blue, red.
+        const CURVES: [&str; 6] = ["36", "33", "35", "32", "34", "31"];
+        match self {
+            Role::Plain => None,
+            Role::Title | Role::Header => Some("1"),
+            Role::Muted => Some("90"),
+            Role::Good => Some("32"),
+            Role::Warning => Some("33"),
+            Role::Bad => Some("1;31"),
+            Role::Accent => Some("1;36"),
+            Role::State(State::Stick) => Some("32"),
+            Role::State(State::SlipPlus) => Some("33"),
+            Role::State(State::SlipMinus) => Some("35"),
+            Role::State(State::Open) => Some("34"),
+            Role::State(State::Closed) => Some("36"),
+            Role::Series(i) => Some(CURVES[i % CURVES.len()]),
+        }
+    }
+}
+
+impl Style {
+    /// `text` in the colour of `role`, where colour is allowed.
+    pub fn paint(&self, role: Role, text: &str) -> String {
+        match role.sgr() {
+            Some(sgr) if self.color && !text.is_empty() => format!("\x1b[{sgr}m{text}\x1b[0m"),
+            _ => text.to_owned(),
+        }
+    }
+
+    /// `text` in the characters allowed here. Control characters (a scenario's title may hold any) become `?`,
+    /// line ends and tabs a space.
+    pub fn text(&self, text: &str) -> String {
+        let mut plain = String::with_capacity(text.len());
+        for c in text.chars() {
+            match c {
+                '\n' | '\t' => plain.push(' '),
+                '\r' => {}
+                c if c.is_control() => plain.push('?'),
+                c if self.ascii && !c.is_ascii() => plain.push_str(ascii(c)),
+                c => plain.push(c),
+            }
+        }
+        plain
+    }
+
+    /// The dot between parts of a line.
+    pub fn dot(&self) -> &'static str {
+        if self.ascii { "-" } else { "·" }
+    }
+
+    /// The arrow of a change.
+    pub fn arrow(&self) -> &'static str {
+        if self.ascii { "->" } else { "→" }
+    }
+
+    /// Marks the present position in a list; one character.
+    pub fn mark(&self) -> char {
+        if self.ascii { '>' } else { '▸' }
+    }
+
+    /// Stands for what was left out.
+    pub fn ellipsis(&self) -> &'static str {
+        if self.ascii { "~" } else { "…" }
+    }
+
+    /// `text` cut to `width` characters, with an ellipsis if something is lost.
+    pub fn fit(&self, text: &str, width: usize) -> String {
+        if text.width() <= width {
+            return text.to_owned();
+        }
+        let mut cut = String::new();
+        let mut used = 0;
+        for c in text.chars() {
+            let w = c.width().unwrap_or(0);
+            if used + w + 1 > width {
+                break;
+            }
+            used += w;
+            cut.push(c);
+        }
+        if width > 0 {
+            cut.push_str(self.ellipsis());
+        }
+        cut
+    }
+
+    /// `text` broken between words into lines of at most `width` characters; a longer word is broken inside.
+    pub fn wrap(&self, text: &str, width: usize) -> Vec<String> {
+        let width = width.max(1);
+        let mut lines = Vec::new();
+        let mut line = String::new();
+        for word in self.text(text).split_whitespace() {
+            let gap = usize::from(!line.is_empty());
+            if line.width() + gap + word.width() <= width {
+                if gap == 1 {
+                    line.push(' ');
+                }
+                line.push_str(word);
+                continue;
+            }
+            if !line.is_empty() {
+                lines.push(std::mem::take(&mut line));
+            }
+            for c in word.chars() {
+                if line.width() + c.width().unwrap_or(0) > width && !line.is_empty() {
+                    lines.push(std::mem::take(&mut line));
+                }
+                line.push(c);
+            }
+        }
+        if !line.is_empty() {
+            lines.push(line);
+        }
+        lines
+    }
+
+    /// `label` and behind it `text`, broken into lines that hang under the text's first word.
+    pub fn hanging(&self, label: &str, text: &str) -> Vec<String> {
+        let label = self.text(label);
+        let indent = label.width().min(self.width / 2);
+        let mut lines = self.wrap(text, self.width.saturating_sub(indent));
+        if lines.is_empty() {
+            lines.push(String::new());
+        }
+        for (i, line) in lines.iter_mut().enumerate() {
+            let head = if i == 0 {
+                self.fit(&label, indent)
+            } else {
+                " ".repeat(indent)
+            };
+            *line = self.fit(format!("{head}{line}").trim_end(), self.width);
+        }
+        lines
+    }
+}
+
+/// ASCII for the characters this program uses; `?` for any other.
+fn ascii(c: char) -> &'static str {
+    match c {
+        '·' | '−' | '–' | '—' | '⁻' => "-",
+        '±' => "+-",
+        '⁺' => "+",
+        '→' => "->",
+        '←' => "<-",
+        'τ' => "t",
+        '…' => "...",
+        '≤' => "<=",
+        '≥' => ">=",
+        '≠' => "!=",
+        '×' => "x",
+        '²' => "2",
+        '³' => "3",
+        '°' => "deg",
+        'α' => "alpha",
+        'φ' => "phi",
+        'μ' | 'µ' => "mu",
+        'λ' => "lambda",
+        'Δ' => "d",
+        '√' => "sqrt ",
+        '‖' => "|",
+        'ᵀ' => "^T",
+        '’' | '‘' | '′' => "'",
+        '“' | '”' => "\"",
+        '\u{304}' => "",
+        '\u{a0}' => " ",
+        _ => "?",
+    }
+}
+
+/// `text` padded with spaces to `width` characters, at its right.
+pub fn pad_right(text: &str, width: usize) -> String {
+    format!("{text}{}", " ".repeat(width.saturating_sub(text.width())))
+}
+
+/// `text` padded with spaces to `width` characters, at its left.
+pub fn pad_left(text: &str, width: usize) -> String {
+    format!("{}{text}", " ".repeat(width.saturating_sub(text.width())))
+}
