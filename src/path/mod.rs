@@ -3,4 +3,5 @@
 pub mod change;
 pub mod limit;
 pub mod load;
+pub mod stages;
 pub mod start;

@@ -134,6 +134,13 @@ impl Prepared {
                 self.solve_contact(system, values, rules, watch)?
             }
         };
+        if !scenario.stages.is_empty() {
+            solved.answer.notes.push(
+                "every load case acts at once with its factor: the load history of the scenario was not followed \
+                 (`stages` follows it)"
+                    .to_owned(),
+            );
+        }
         let timings = &mut solved.answer.timings;
         timings.factor = self.factor_seconds;
         timings.condense = self.condense_seconds;
