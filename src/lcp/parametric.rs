@@ -564,36 +564,58 @@ impl Parametric {
         reach: Reach,
         observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Path {
-        let start = self.point_at(0.0).unwrap_or_else(|| self.read_point());
-        let mut knots = vec![Knot {
+        let point = self.point_at(0.0).unwrap_or_else(|| self.read_point());
+        let mut knots = Some(vec![Knot {
             t: 0.0,
-            point: start,
+            point,
             leaving: Vec::new(),
             scheme: self.scheme.iter().copied().collect(),
-        }];
+        }]);
+        let (end, pivots) = self.run(reach, &mut knots, observer);
+        Path {
+            knots: knots.unwrap_or_default(),
+            end,
+            pivots,
+        }
+    }
+
+    /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots.
+    pub fn walk(
+        &mut self,
+        reach: Reach,
+        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> (End, usize) {
+        self.run(reach, &mut None, observer)
+    }
+
+    fn run(
+        &mut self,
+        reach: Reach,
+        knots: &mut Option<Vec<Knot>>,
+        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> (End, usize) {
         let mut met: HashSet<(Vec<usize>, Variable)> = HashSet::new();
         let mut pivots = 0;
         let end = loop {
             if pivots > reach.pivots {
                 break End::PivotLimit;
             }
-            match self.advance(reach, &mut knots, &mut met) {
+            match self.advance(reach, knots, &mut met) {
                 ControlFlow::Break(end) => break end,
                 ControlFlow::Continue(()) => pivots += 1,
             }
-            let t = knots.last().map_or(0.0, |knot| knot.t);
-            if observer(t).is_break() {
+            if observer(self.dictionary.value_of(Local::P)).is_break() {
                 break End::Interrupted;
             }
         };
-        Path { knots, end, pivots }
+        (end, pivots)
     }
 
     /// One pivot, or the end.
     fn advance(
         &mut self,
         reach: Reach,
-        knots: &mut Vec<Knot>,
+        knots: &mut Option<Vec<Knot>>,
         met: &mut HashSet<(Vec<usize>, Variable)>,
     ) -> ControlFlow<End> {
         let lost = || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
@@ -657,16 +679,21 @@ impl Parametric {
         let scheme: Vec<usize> = self.scheme.iter().copied().collect();
         if step > 0.0 {
             met.clear();
-            let point = vertex(&self.lcp, &self.knot_basis(row)).unwrap_or_else(|| self.read_point());
-            knots.push(Knot {
-                t: point.p,
-                point,
-                leaving: vec![name],
-                scheme,
-            });
-        } else if let Some(knot) = knots.last_mut() {
-            knot.leaving.push(name);
-            knot.scheme.clone_from(&scheme);
+            if let Some(knots) = knots {
+                let point =
+                    vertex(&self.lcp, &self.knot_basis(row)).unwrap_or_else(|| self.read_point());
+                knots.push(Knot {
+                    t: point.p,
+                    point,
+                    leaving: vec![name],
+                    scheme,
+                });
+            }
+        } else {
+            if let Some(knot) = knots.as_mut().and_then(|knots| knots.last_mut()) {
+                knot.leaving.push(name);
+                knot.scheme.clone_from(&scheme);
+            }
             if !met.insert((scheme, name)) {
                 return ControlFlow::Break(End::Breakdown(
                     "a working scheme came back at the same load".to_owned(),
@@ -677,8 +704,11 @@ impl Parametric {
     }
 
     /// Ends at t = `end` after the last step.
-    fn finish(&mut self, c: usize, step: f64, end: f64, knots: &mut Vec<Knot>) {
+    fn finish(&mut self, c: usize, step: f64, end: f64, knots: &mut Option<Vec<Knot>>) {
         self.settle(c, step);
+        let Some(knots) = knots else {
+            return;
+        };
         let mut point = self.point_at(end).unwrap_or_else(|| self.read_point());
         point.p = end;
         knots.push(Knot {

@@ -11,10 +11,11 @@ use std::sync::Arc;
 
 use super::change::{Change, changes, sentence};
 use super::rate::{number_rates, rate, rate_lcp};
-use super::start::{PathError, cold, final_basis, order, state_of};
+use super::start::{PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::complementarity::{ContactLcp, Couple, contact_lcp};
+use crate::contact::load_path::order;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::words::short;

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::change::{Change, changes, sentence};
-use super::start::{PIVOTS, PathError, cold, final_basis, is_answer, order, path_lcp, state_of};
+use super::start::{PIVOTS, PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::complementarity::ContactLcp;
+use crate::contact::load_path::{is_answer, order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::words::short;

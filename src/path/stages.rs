@@ -15,10 +15,11 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::change::{Change, changes, sentence};
-use super::start::{Cold, PIVOTS, PathError, cold, order, path_lcp, state_of};
+use super::start::{Cold, PIVOTS, PathError, cold, state_of};
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray};
 use crate::contact::complementarity::{ContactLcp, Couple};
+use crate::contact::load_path::{order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::ray;
