@@ -2,9 +2,12 @@
 
 pub mod change;
 pub mod friction;
+pub mod grid;
 pub mod limit;
 pub mod load;
 mod rate;
 pub mod sensitivity;
 pub mod stages;
 pub mod start;
+pub mod sweep;
+pub mod sweep_file;
