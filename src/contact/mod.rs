@@ -10,5 +10,6 @@ pub mod load_path;
 pub mod numbers;
 pub mod scheme_solve;
 pub mod scheme_word;
+pub mod sharpen;
 pub mod system;
 pub mod whole;

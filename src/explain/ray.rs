@@ -10,8 +10,11 @@ use crate::contact::system::ContactSystem;
 use crate::lcp::outcome::RayDirection;
 use crate::model::pair::Law;
 
-/// Relative size below which a force or a power counts as none.
+/// Relative size below which a force or a displacement counts as none.
 const NOTHING: f64 = 1e-9;
+
+/// A power below this multiple of the terms it sums is rounding.
+const NO_POWER: f64 = 256.0 * f64::EPSILON;
 
 /// Motions of the releasable joints that cost no energy: the kernel of R without what bound pairs hold.
 pub fn releasable_kernel(system: &ContactSystem) -> DMatrix<f64> {
@@ -64,9 +67,12 @@ pub fn classify(
     }
     let load = load_with_gaps(system, numbers);
     let force = (&system.stiffness * &direction).amax();
-    let power = load.dot(&direction);
+    // The motion without its rounding: 1e-9 beyond a limit the power is 1e-9 of the terms it sums.
+    let motion = &system.kernel * (system.kernel.transpose() * &direction);
+    let power = load.dot(&motion);
+    let terms = load.abs().dot(&motion.abs());
     let costs_nothing = force <= NOTHING * system.stiffness.amax();
-    let class = if largest > 0.0 && costs_nothing && power < -NOTHING * load.amax() {
+    let class = if largest > 0.0 && costs_nothing && power < -NO_POWER * terms {
         RayClass::Mechanism
     } else {
         RayClass::NoEquilibrium

@@ -153,6 +153,28 @@ pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
     Some(Point { z, w, p })
 }
 
+/// The point of a basis after one step of Newton's method from `point`, whose w (of all rows, better known than from
+/// the data) is given; z and p stay ≥ 0. `None` where the equations are singular.
+pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> Option<Point> {
+    let whole = Whole::new(lcp);
+    let n = basis.active.len();
+    if basis.z.len() + usize::from(basis.p) != n {
+        return None;
+    }
+    let right = DVector::from_fn(n, |a, _| -w[basis.active[a]]);
+    let step = whole.system(basis).solve(&right)?;
+    let mut point = point.clone();
+    for (b, &k) in basis.z.iter().enumerate() {
+        point.z[k] = (point.z[k] + step[b]).max(0.0);
+    }
+    if basis.p {
+        point.p = (point.p + step[n - 1]).max(0.0);
+    }
+    point.w = whole.response(basis, &point.z, point.p, 1.0);
+    point.w.iter_mut().for_each(|w| *w = w.max(0.0));
+    Some(point)
+}
+
 /// Direction at a basis in which `entering` grows by 1; `None` where the equations are singular.
 pub fn direction(lcp: &MirroredLcp, basis: &Basis, entering: Variable) -> Option<RayDirection> {
     let whole = Whole::new(lcp);

@@ -16,6 +16,7 @@ use crate::answer::record::{
 };
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::sharpen::sharpen;
 use crate::contact::system::ContactSystem;
 use crate::explain::{ray, sentence};
 use crate::fem::Displacements;
@@ -159,9 +160,14 @@ impl Prepared {
         let numbers = contact_numbers(system, &factors, values);
         let start = Instant::now();
         let contact = contact_lcp(system, &numbers, rules.covering)?;
-        let run = run_scheme(&contact.lcp, contact.tie_rule(rules.tie_break), watch);
+        let mut run = run_scheme(&contact.lcp, contact.tie_rule(rules.tie_break), watch);
         if run.outcome == Outcome::Interrupted {
             return Err(SolveError::Interrupted);
+        }
+        if matches!(run.outcome, Outcome::Ray(_)) {
+            let basis = Basis::after(&run.pivots);
+            let point = std::mem::take(&mut run.point);
+            run.point = sharpen(system, &numbers, &contact, &basis, point);
         }
         let seconds = start.elapsed().as_secs_f64();
         let words = [
