@@ -8,6 +8,7 @@ pub mod export;
 pub mod fem;
 pub mod lcp;
 pub mod model;
+pub mod path;
 pub mod repl;
 pub mod session;
 pub mod solve;

@@ -6,6 +6,7 @@ pub mod critical;
 pub mod enumerate;
 pub mod exact_check;
 pub mod given;
+pub mod load_path;
 pub mod numbers;
 pub mod scheme_solve;
 pub mod scheme_word;

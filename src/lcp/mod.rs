@@ -8,6 +8,7 @@ pub mod filtered;
 pub mod lemke;
 pub mod mirrored;
 pub mod outcome;
+pub mod parametric;
 pub mod problem;
 pub mod ratio_test;
 pub mod rational_solve;

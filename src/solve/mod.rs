@@ -4,6 +4,7 @@ pub mod attempt;
 pub mod numbers;
 pub mod prepared;
 pub mod solved;
+pub mod warm;
 
 pub use prepared::{PrepareError, Prepared, prepare};
 pub use solved::{SolveError, Solved};

@@ -135,6 +135,13 @@ impl Prepared {
                 self.solve_contact(system, values, rules, watch)?
             }
         };
+        if !scenario.stages.is_empty() {
+            solved.answer.notes.push(
+                "every load case acts at once with its factor: the load history of the scenario was not followed \
+                 (`stages` follows it)"
+                    .to_owned(),
+            );
+        }
         let timings = &mut solved.answer.timings;
         timings.factor = self.factor_seconds;
         timings.condense = self.condense_seconds;
@@ -261,7 +268,7 @@ impl Prepared {
 
     /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
     /// given contact system.
-    fn add_released_slips(
+    pub(crate) fn add_released_slips(
         &self,
         pairs: &mut [PairState],
         numbers: &ContactNumbers,
@@ -300,7 +307,7 @@ impl Prepared {
 }
 
 /// The whole mutual displacement of the joints: z with the gaps taken off.
-fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
+pub(crate) fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
     let mut z = state.z.clone();
     for (i, gap) in numbers.gap.iter().enumerate() {
         z[i] -= gap;
