@@ -327,7 +327,7 @@ impl Parametric {
             }
         }
         let size = self.size_of(&d.value);
-        let response: DVector<f64> = &self.lcp.matrix * &z;
+        let response: DVector<f64> = &*self.lcp.matrix * &z;
         (0..self.lcp.size())
             .map(|i| {
                 let w = response[i] + self.lcp.q[i] + self.lcp.covering[i] * t;
