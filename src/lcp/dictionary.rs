@@ -125,8 +125,8 @@ impl Dictionary {
                 if let Local::W(i) = local {
                     let right = primary(i);
                     if right != 0.0 {
-                        let t = &dictionary.t
-                            [column * dictionary.size..(column + 1) * dictionary.size];
+                        let t =
+                            &dictionary.t[column * dictionary.size..(column + 1) * dictionary.size];
                         for (entry, t) in response.iter_mut().zip(t) {
                             *entry -= right * t;
                         }
@@ -523,17 +523,5 @@ impl Dictionary {
         self.value = value;
         self.pending = 0;
         true
-    }
-
-    /// z over the primary rows (in present orientation) and p.
-    pub(crate) fn solution(&self) -> (DVector<f64>, f64) {
-        let read = |place: Place| match place {
-            Place::Row(r) => self.value[r],
-            Place::Column(_) => 0.0,
-        };
-        (
-            DVector::from_fn(self.size, |i, _| read(self.place_z[i])),
-            read(self.place_p),
-        )
     }
 }
