@@ -11,7 +11,7 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::dictionary::{Along, Dictionary, Local, Place};
+use super::dictionary::{Dictionary, Local, Place};
 use super::driver::{Engine, Step};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Outcome, Point, RayDirection};
@@ -54,6 +54,8 @@ pub struct SchemeEngine {
     ended: Option<Outcome>,
     /// p at step 0: the natural size of p.
     first_p: f64,
+    /// Natural size of p for a response of size 1: mean row scale over mean covering.
+    force_per_p: f64,
     /// Row of every basic variable in the whole tableau (see [`TieRule::FirstRow`]).
     table_row: HashMap<Variable, usize>,
     /// Bases met, where the rule may cycle.
@@ -62,6 +64,8 @@ pub struct SchemeEngine {
     artefact_point: Option<Point>,
     /// The dictionary is known to be fresh from the data.
     fresh: bool,
+    /// How often the dictionary was built afresh.
+    refreshes: usize,
     column: Vec<f64>,
 }
 
@@ -69,6 +73,8 @@ impl SchemeEngine {
     /// A run that stands before the entry of p.
     pub fn new(lcp: Arc<MirroredLcp>, rule: TieRule) -> SchemeEngine {
         let dictionary = Dictionary::new(&lcp);
+        let rows: f64 = lcp.scale.row.iter().sum();
+        let covering: f64 = lcp.covering.iter().map(|d| d.abs()).sum();
         let seed = if let TieRule::Random(seed) = rule {
             seed
         } else {
@@ -82,12 +88,14 @@ impl SchemeEngine {
             entering: None,
             ended: None,
             first_p: 0.0,
+            force_per_p: if covering > 0.0 { rows / covering } else { 1.0 },
             table_row: (0..lcp.whole_size)
                 .map(|row| (Variable::W(row), row))
                 .collect(),
             bases: HashSet::new(),
             artefact_point: None,
             fresh: true,
+            refreshes: 0,
             column: Vec::new(),
             lcp,
         }
@@ -96,6 +104,11 @@ impl SchemeEngine {
     /// The problem that is solved.
     pub fn lcp(&self) -> &MirroredLcp {
         &self.lcp
+    }
+
+    /// How often the dictionary was built afresh from the data.
+    pub fn refreshes(&self) -> usize {
+        self.refreshes
     }
 
     fn variable(&self, local: Local, hidden: bool) -> Variable {
@@ -128,15 +141,8 @@ impl SchemeEngine {
         match local {
             Local::W(i) => self.lcp.scale.row[i] * size + self.lcp.covering[i] * p_rate.abs(),
             Local::Z(k) => size / self.lcp.scale.column[k],
-            Local::P => size * self.force_per_p(),
+            Local::P => size * self.force_per_p,
         }
-    }
-
-    /// Natural size of p for a response of size 1: the median of row_i / d_i would do; the mean is as good.
-    fn force_per_p(&self) -> f64 {
-        let rows: f64 = self.lcp.scale.row.iter().sum();
-        let covering: f64 = self.lcp.covering.iter().sum();
-        if covering > 0.0 { rows / covering } else { 1.0 }
     }
 
     fn value_size(&self, local: Local, size: f64, p: f64) -> f64 {
@@ -149,44 +155,37 @@ impl SchemeEngine {
         }
     }
 
-    /// Rows that fall when the variable of column c grows, with the smallest fall relative to its size.
+    /// Σ column_k |Δz_k| along column c, the entering variable included.
+    fn rate_total(&self, c: usize) -> f64 {
+        let entering = match self.dictionary.column[c] {
+            Local::Z(k) => self.lcp.scale.column[k],
+            _ => 0.0,
+        };
+        self.size_of(&self.column) + entering
+    }
+
+    /// Rows that fall when the variable of column c grows.
     fn candidates(&self, c: usize) -> Vec<Candidate> {
         let d = &self.dictionary;
         let p = d.along(Local::P, c, &self.column);
-        let mut size = self.size_of(&self.column);
-        if let Local::Z(k) = d.column[c] {
-            size += self.lcp.scale.column[k];
-        }
+        let size = self.rate_total(c);
         let value_size = self.size_of(&d.value);
         let mut candidates = Vec::new();
-        let mut consider =
-            |local: Local, hidden: bool, along: Along, rate_size: f64, value_size: f64| {
-                if along.rate < -NOISE * rate_size {
-                    candidates.push(Candidate {
-                        variable: local,
-                        hidden,
-                        value: along.value.max(0.0),
-                        fall: -along.rate,
-                        noise: NOISE * value_size,
-                    });
-                }
-            };
-        for (r, &local) in d.row.iter().enumerate() {
-            consider(
-                local,
-                false,
-                Along {
-                    value: d.value[r],
-                    rate: self.column[r],
-                },
-                self.rate_size(local, size, p.rate),
-                self.value_size(local, value_size, p.value),
-            );
+        for (r, (&local, &rate)) in d.row.iter().zip(&self.column).enumerate() {
+            if rate < 0.0 && rate < -NOISE * self.rate_size(local, size, p.rate) {
+                candidates.push(Candidate {
+                    variable: local,
+                    hidden: false,
+                    value: d.value[r].max(0.0),
+                    fall: -rate,
+                    noise: NOISE * self.value_size(local, value_size, p.value),
+                });
+            }
         }
         for (i, mirror) in self.lcp.mirrors.iter().enumerate() {
             let Some(mirror) = mirror else { continue };
-            // A slipping couple's other reserve cannot be used up where e ≥ 0 makes it ≥ 0 by construction; it is
-            // watched for e = 0 too, because its tie with w_n is what the textbook rules stumble over.
+            // A slipping couple's other reserve cannot be used up where e > 0 keeps it ≥ 0 by construction; it is
+            // watched for e ≤ 0, where the textbook rules stumble over it.
             let visible = match d.place(Local::W(i)) {
                 Place::Row(_) => true,
                 Place::Column(j) => j == c,
@@ -194,54 +193,81 @@ impl SchemeEngine {
             if !visible && mirror.covering > 0.0 {
                 continue;
             }
-            let own = if visible { 1.0 } else { 0.0 };
-            let double = 2.0 * mirror.friction;
-            let normal = mirror
-                .normal
-                .map_or((0.0, 0.0), |n| match d.place(Local::W(n)) {
-                    // An open pair's x_n is an exact zero, not noise.
-                    Place::Column(j) if j != c => (0.0, 0.0),
-                    _ => (
-                        self.rate_size(Local::W(n), size, p.rate),
-                        self.value_size(Local::W(n), value_size, p.value),
-                    ),
+            let along = d.hidden(&self.lcp, i, c, &self.column);
+            if along.rate >= 0.0 {
+                continue;
+            }
+            // An open pair's x_n is an exact zero and no source of noise.
+            let normal = mirror.normal.filter(|&n| match d.place(Local::W(n)) {
+                Place::Row(_) => true,
+                Place::Column(j) => j == c,
+            });
+            let sum = |of: &dyn Fn(Local) -> f64, covering: f64| {
+                let own = if visible { of(Local::W(i)) } else { 0.0 };
+                let normal = normal.map_or(0.0, |n| of(Local::W(n)));
+                own + 2.0 * mirror.friction * normal + (mirror.covering * covering).abs()
+            };
+            let rate_size = sum(&|local| self.rate_size(local, size, p.rate), p.rate);
+            if along.rate < -NOISE * rate_size {
+                let value_size = sum(
+                    &|local| self.value_size(local, value_size, p.value),
+                    p.value,
+                ) + mirror.constant;
+                candidates.push(Candidate {
+                    variable: Local::W(i),
+                    hidden: true,
+                    value: along.value.max(0.0),
+                    fall: -along.rate,
+                    noise: NOISE * value_size,
                 });
-            consider(
-                Local::W(i),
-                true,
-                d.hidden(&self.lcp, i, c, &self.column),
-                own * self.rate_size(Local::W(i), size, p.rate)
-                    + double * normal.0
-                    + (mirror.covering * p.rate).abs(),
-                own * self.value_size(Local::W(i), value_size, p.value)
-                    + double * normal.1
-                    + mirror.constant
-                    + (mirror.covering * p.value).abs(),
-            );
+            }
         }
         candidates
     }
 
-    /// Whether some decision on column c hangs on a rate near the noise.
-    fn is_suspicious(&self, c: usize, blocking: Option<&Candidate>) -> bool {
+    /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it.
+    fn is_suspicious(&self, c: usize, tied: &[Candidate]) -> bool {
         if self.fresh {
             return false;
         }
-        let Some(blocking) = blocking else {
+        let Some(blocking) = tied.iter().max_by(|a, b| a.fall.total_cmp(&b.fall)) else {
             return true;
         };
-        let mut size = self.size_of(&self.column);
-        if let Local::Z(k) = self.dictionary.column[c] {
-            size += self.lcp.scale.column[k];
-        }
         let p_rate = self.dictionary.along(Local::P, c, &self.column).rate;
-        blocking.fall <= SUSPICIOUS * self.rate_size(blocking.variable, size, p_rate)
+        let size = self.rate_size(blocking.variable, self.rate_total(c), p_rate);
+        blocking.fall <= SUSPICIOUS * size && self.column_error(c) > DRIFT * blocking.fall / size
+    }
+
+    /// Largest error of column c against M Δz + d Δp over all rows, relative to their natural sizes.
+    fn column_error(&self, c: usize) -> f64 {
+        let d = &self.dictionary;
+        let along = |local: Local| d.along(local, c, &self.column).rate;
+        let z = nalgebra::DVector::from_fn(self.lcp.size(), |i, _| {
+            let rate = along(Local::Z(i));
+            if d.turned[i] { -rate } else { rate }
+        });
+        let p = along(Local::P);
+        let size = self.rate_total(c);
+        let response = &self.lcp.matrix * z;
+        (0..self.lcp.size())
+            .map(|i| {
+                let w = response[i] + self.lcp.covering[i] * p;
+                let held = if d.turned[i] {
+                    d.hidden(&self.lcp, i, c, &self.column).rate
+                } else {
+                    along(Local::W(i))
+                };
+                let own = self.rate_size(Local::W(i), size, p).max(f64::MIN_POSITIVE);
+                (w - held).abs() / own
+            })
+            .fold(0.0, f64::max)
     }
 
     /// Builds the dictionary from the data; says whether that worked.
     fn refresh(&mut self) -> bool {
         if self.dictionary.rebuild(&self.lcp) {
             self.fresh = true;
+            self.refreshes += 1;
             true
         } else {
             false
@@ -371,7 +397,7 @@ impl SchemeEngine {
         match local {
             Local::W(i) => scale.row[i] / column,
             Local::Z(k) => 1.0 / (scale.column[k] * column),
-            Local::P => self.force_per_p() / column,
+            Local::P => self.force_per_p / column,
         }
     }
 
@@ -380,6 +406,12 @@ impl SchemeEngine {
         self.dictionary.column.iter().position(|&local| {
             matches!(local, Local::W(_)) && self.variable(local, false) == Variable::W(whole)
         })
+    }
+
+    fn fetch(&mut self, c: usize) {
+        let mut column = std::mem::take(&mut self.column);
+        self.dictionary.fetch_column(c, &mut column);
+        self.column = column;
     }
 
     /// Makes the pivot and its record.
@@ -526,10 +558,7 @@ impl SchemeEngine {
             w: vec![0.0; n],
             p: 0.0,
         };
-        let mut size = self.size_of(&self.column);
-        if let Local::Z(k) = d.column[c] {
-            size += lcp.scale.column[k];
-        }
+        let size = self.rate_total(c);
         let p_rate = d.along(Local::P, c, &self.column).rate;
         let mut put = |variable: Variable, rate: f64, noise: f64| {
             // Rates that did not block are ≥ 0 up to noise.
@@ -614,27 +643,15 @@ impl Engine for SchemeEngine {
                 "the equations of the working scheme are singular".to_owned(),
             ));
         }
-        let Some(mut c) = self.column_of(entering) else {
+        let Some(c) = self.column_of(entering) else {
             return self.end(Outcome::Breakdown(
                 "the entering variable is basic already".to_owned(),
             ));
         };
-        let mut column = std::mem::take(&mut self.column);
-        self.dictionary.fetch_column(c, &mut column);
-        self.column = column;
+        self.fetch(c);
         let (mut tied, mut step) = self.blocking(c);
-        if self.is_suspicious(c, tied.iter().max_by(|a, b| a.fall.total_cmp(&b.fall)))
-            && self.refresh()
-        {
-            let Some(again) = self.column_of(entering) else {
-                return self.end(Outcome::Breakdown(
-                    "the entering variable was lost".to_owned(),
-                ));
-            };
-            c = again;
-            let mut column = std::mem::take(&mut self.column);
-            self.dictionary.fetch_column(c, &mut column);
-            self.column = column;
+        if self.is_suspicious(c, &tied) && self.refresh() {
+            self.fetch(c);
             (tied, step) = self.blocking(c);
         }
         if tied.is_empty() {

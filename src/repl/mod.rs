@@ -40,8 +40,8 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
     } else {
         terminal::run(session, style, signals)
     }?;
-    // after a hang-up the journal stays: the next start offers it
-    if !signals.hung_up() {
+    // after a signal the journal stays: nobody said `quit`, the next start offers it
+    if !signals.must_end() {
         session.close()?;
     }
     Ok(ended)

@@ -449,6 +449,11 @@ impl Session {
         if self.auto {
             let mut next = self.now.clone();
             let solved = next.solve(io.watch)?;
+            for change in &mut self.undo {
+                if Arc::ptr_eq(&change.setup.scenario, &next.scenario) {
+                    change.setup.prepared.clone_from(&next.prepared);
+                }
+            }
             self.now = next;
             self.take_answer(Some(solved));
         }
@@ -487,7 +492,7 @@ pub fn write_scenarios(
 
 fn help(command: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
     let text = match command {
-        None => command::overview(),
+        None => command::overview(&io.style),
         Some(word) => command::help(word, io.style.width)?,
     };
     io.report(

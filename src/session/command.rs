@@ -9,6 +9,8 @@ use std::path::PathBuf;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use thiserror::Error;
 
+use crate::view::style::Style;
+
 use super::words::{self, OpenQuote};
 
 /// One command with its arguments.
@@ -80,7 +82,7 @@ pub enum Command {
     /// Needed only after `set auto off`, or to solve the same once more.
     #[command(after_help = "Example:\n  set auto off; set f 0.3; set F2 90; solve")]
     Solve,
-    /// Say in one line what the answer is
+    /// Say what the answer is, under which rules it was found, and its check
     #[command(after_help = "Example:\n  status")]
     Status,
     /// Show state, forces and slip of the contact pairs, at the pivot chosen by `step`
@@ -487,23 +489,33 @@ fn one_paragraph(error: &clap::Error, name: &str) -> String {
 }
 
 /// The overview of all commands, by group.
-pub fn overview() -> String {
+pub fn overview(style: &Style) -> String {
     let grammar = grammar();
-    let mut text = String::from(
-        "One command a line; `;` separates, `#` begins a comment, unique prefixes work.\n",
+    let mut text = String::new();
+    let mut add = |label: &str, words: &str| {
+        for line in style.hanging(label, words) {
+            text.push_str(line.trim_end());
+            text.push('\n');
+        }
+    };
+    add(
+        "",
+        "One command a line; `;` separates, `#` begins a comment, unique prefixes work.",
     );
     for (group, names) in GROUPS {
-        text.push_str(&format!("\n{group}\n"));
+        add("", "");
+        add("", group);
         for name in *names {
             let about = grammar
                 .find_subcommand(name)
                 .and_then(|command| command.get_about())
                 .map(ToString::to_string)
                 .unwrap_or_default();
-            text.push_str(&format!("  {name:<14} {about}\n"));
+            add(&format!("  {name:<14} "), &about);
         }
     }
-    text.push_str("\n`help COMMAND` says more, with an example.\n");
+    add("", "");
+    add("", "`help COMMAND` says more, with an example.");
     text
 }
 
@@ -527,15 +539,15 @@ pub fn help(word: &str, width: usize) -> Result<String, GrammarError> {
         .term_width(width)
         .render_long_help()
         .to_string();
-    Ok(text
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("-h, --help"))
-        .map(str::trim_end)
-        .collect::<Vec<_>>()
-        .join("\n")
-        .trim_end()
-        .to_owned()
-        + "\n")
+    let mut lines: Vec<String> = Vec::new();
+    for line in text.lines().map(str::trim_end) {
+        let blank = line.is_empty() && lines.last().is_some_and(String::is_empty);
+        if !blank && !line.trim_start().starts_with("-h, --help") {
+            // the grammar has no program name, which leaves a hole
+            lines.push(line.replace("Usage:  ", "Usage: "));
+        }
+    }
+    Ok(lines.join("\n").trim_end().to_owned() + "\n")
 }
 
 #[cfg(test)]

@@ -246,6 +246,11 @@ impl Session {
         &self.history
     }
 
+    /// How many changes can be taken back, and done again.
+    pub fn undo_depths(&self) -> (usize, usize) {
+        (self.undo.len(), self.redo.len())
+    }
+
     /// The exit status a script or pipe has earned by a run without an answer; 0 without one.
     pub fn trouble_status(&self) -> u8 {
         if self.trouble.is_some() { 4 } else { 0 }

@@ -298,9 +298,10 @@ impl Session {
             let mut chosen = Vec::new();
             for node in nodes {
                 let index = by_name.get(node.as_str()).ok_or_else(|| {
-                    CommandError::Refused(format!(
-                        "no node `{node}`{}",
-                        did_you_mean(node, all.iter().map(|d| d.node.as_str()))
+                    CommandError::Refused(no_such(
+                        "node",
+                        node,
+                        all.iter().map(|d| d.node.as_str()),
                     ))
                 })?;
                 chosen.push(all[*index].clone());
@@ -342,9 +343,10 @@ impl Session {
         if let Some(bar) = bar
             && !members.iter().any(|member| member.bar == bar)
         {
-            return Err(CommandError::Refused(format!(
-                "no bar `{bar}`{}",
-                did_you_mean(bar, members.iter().map(|member| member.bar.as_str()))
+            return Err(CommandError::Refused(no_such(
+                "bar",
+                bar,
+                distinct(members.iter().map(|member| member.bar.as_str())).into_iter(),
             )));
         }
         io.report(
@@ -493,6 +495,15 @@ impl Session {
                 "it is pressed together with x_n = {}, and without friction x_t = 0",
                 force(pair.x_n)
             ),
+            (State::Stick, _)
+                if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() =>
+            {
+                format!(
+                    "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
+                    force(pair.x_t.abs()),
+                    force(pair.bound)
+                )
+            }
             (State::Stick, _) => format!(
                 "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
                 force(pair.x_t.abs()),
@@ -650,16 +661,39 @@ impl Session {
     }
 }
 
+/// The names without those that repeat the one before.
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut names: Vec<&str> = names.collect();
+    names.dedup();
+    names
+}
+
 fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
-    if pairs.is_empty() {
-        return CommandError::Refused(format!(
-            "no pair `{id}`: this scenario has no contact pairs"
-        ));
+    CommandError::Refused(match pairs {
+        [] => format!("no pair `{id}`: this scenario has no contact pairs"),
+        pairs => no_such("pair", id, pairs.iter().map(|pair| pair.id.as_str())),
+    })
+}
+
+/// "no pair `c9` (did you mean …?): the pairs are c1 … c6".
+pub(super) fn no_such<'a>(
+    what: &str,
+    id: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> String {
+    let near = did_you_mean(id, known.clone());
+    let names: Vec<&str> = known.collect();
+    match names.as_slice() {
+        [] => format!("no {what} `{id}`: there is none"),
+        [one] => format!("no {what} `{id}`{near}: the only {what} is {one}"),
+        [first, .., last] if names.len() > 8 => {
+            format!("no {what} `{id}`{near}: the {what}s are {first} … {last}")
+        }
+        names => format!(
+            "no {what} `{id}`{near}: the {what}s are {}",
+            names.join(", ")
+        ),
     }
-    CommandError::Refused(format!(
-        "no pair `{id}`{}",
-        did_you_mean(id, pairs.iter().map(|pair| pair.id.as_str()))
-    ))
 }
 
 /// Pairs named by ids, ranges `A..B`, or the name of an edge contact (`joint` for all `joint[…]`).
