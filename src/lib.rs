@@ -10,6 +10,7 @@ pub mod lcp;
 pub mod model;
 pub mod repl;
 pub mod session;
+pub mod signals;
 pub mod solve;
 pub mod view;
 pub mod watch;
