@@ -206,7 +206,7 @@ fn named(code: &str, at: usize) -> Vec<String> {
             '}' => depth -= 1,
             _ => {}
         }
-        if depth == 1 && c.is_alphanumeric() || c == '_' && depth == 1 {
+        if depth == 1 && (c.is_alphanumeric() || c == '_') {
             if take {
                 name.push(c);
             }
