@@ -28,7 +28,8 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState, PlainSolution};
+pub use crate::answer::record::Answer;
+use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
@@ -461,5 +462,17 @@ impl Setup {
                 .iter()
                 .zip(&other.values)
                 .all(|((a, x), (b, y))| a == b && x.to_bits() == y.to_bits())
+    }
+}
+
+/// The status of a `solve` (see the help).
+pub fn exit_status(answer: &Answer) -> u8 {
+    match answer.outcome {
+        OutcomeKind::Trivial | OutcomeKind::Normal => 0,
+        OutcomeKind::Ray => match answer.ray.as_ref().map(|ray| ray.class) {
+            Some(RayClass::Mechanism | RayClass::NoEquilibrium) => 3,
+            Some(RayClass::Artefact | RayClass::Fault) | None => 4,
+        },
+        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => 4,
     }
 }
