@@ -216,6 +216,25 @@ pub fn certify_ray(report: &mut RayReport, subject: &Subject) -> bool {
     false
 }
 
+/// A ray of a path: class, direction and mode by pairs, certified where the equilibrium LP does.
+pub fn report(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    contact: &ContactLcp,
+    ray: &RayDirection,
+    p: f64,
+) -> Ray {
+    let subject = Subject {
+        system,
+        numbers,
+        cases: &[],
+        structure: None,
+    };
+    let mut report = look(&subject, contact, ray, p);
+    certify_ray(&mut report, &subject);
+    report.record(system, Covering::default())
+}
+
 /// Goes through all working schemes where they are few; `None` where they are many or the search was stopped.
 pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> {
     let Subject {

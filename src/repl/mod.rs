@@ -3,7 +3,6 @@
 mod editor;
 mod pager;
 mod plain;
-mod signals;
 mod terminal;
 
 use std::io::{self, IsTerminal, Write};
@@ -13,7 +12,7 @@ use crate::session::{CommandError, Session};
 use crate::view::status;
 use crate::view::style::Style;
 
-pub use signals::{Signals, TerminalWatch, is_dumb};
+use crate::signals::{Signals, is_dumb};
 
 /// How a face ended: what `main` does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +39,8 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
     } else {
         terminal::run(session, style, signals)
     }?;
-    // after a hang-up the journal stays: the next start offers it
-    if !signals.hung_up() {
+    // after a signal the journal stays: nobody said `quit`, the next start offers it
+    if !signals.must_end() {
         session.close()?;
     }
     Ok(ended)

@@ -9,7 +9,7 @@ use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
 use crate::view::style::Style;
 
-use super::command::{Picture, did_you_mean};
+use super::command::Picture;
 use super::{CommandError, Output, Session};
 
 /// Lines of a plot if the user names none.
@@ -275,9 +275,10 @@ impl Session {
         let bars: Vec<&str> = match bar {
             Some(bar) if names().any(|name| name == bar) => vec![bar],
             Some(bar) => {
-                return Err(CommandError::Refused(format!(
-                    "no bar `{bar}`{}",
-                    did_you_mean(bar, names())
+                return Err(CommandError::Refused(super::selection::no_such(
+                    "bar",
+                    bar,
+                    names(),
                 )));
             }
             None => names().collect(),

@@ -10,6 +10,7 @@ pub mod plain_answers;
 pub mod prepared;
 pub mod retry;
 pub mod solved;
+pub mod warm;
 
 pub use prepared::{PrepareError, Prepared, prepare};
 pub use solved::{SolveError, Solved};

@@ -17,6 +17,7 @@ use crate::answer::record::{
 };
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::sharpen::sharpen;
 use crate::contact::system::ContactSystem;
 use crate::explain::ray::{self, RayReport};
 use crate::explain::sentence;
@@ -149,6 +150,13 @@ impl Prepared {
                 self.solve_contact_judged(system, values, rules, watch)?
             }
         };
+        if !scenario.stages.is_empty() {
+            solved.answer.notes.push(
+                "every load case acts at once with its factor: the load history of the scenario was not followed \
+                 (`stages` follows it)"
+                    .to_owned(),
+            );
+        }
         let timings = &mut solved.answer.timings;
         timings.factor = self.factor_seconds;
         timings.condense = self.condense_seconds;
@@ -168,7 +176,7 @@ impl Prepared {
         let start = Instant::now();
         let contact = contact_lcp(system, numbers, rules.covering)?;
         let rule = contact.tie_rule(rules.tie_break);
-        let run = match rules.engine {
+        let mut run = match rules.engine {
             Engine::Scheme => run_scheme(&contact.lcp, rule, watch),
             Engine::Tableau => run_tableau(&contact.lcp, rule, watch),
             Engine::Exact => {
@@ -184,6 +192,11 @@ impl Prepared {
         };
         if run.outcome == Outcome::Interrupted {
             return Err(SolveError::Interrupted);
+        }
+        if matches!(run.outcome, Outcome::Ray(_)) && rules.engine != Engine::Exact {
+            let basis = Basis::after(&run.pivots);
+            let point = std::mem::take(&mut run.point);
+            run.point = sharpen(system, numbers, &contact, &basis, point);
         }
         let seconds = start.elapsed().as_secs_f64();
         let words = [
@@ -301,7 +314,7 @@ impl Prepared {
 
     /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
     /// given contact system.
-    pub(super) fn add_released_slips(
+    pub(crate) fn add_released_slips(
         &self,
         pairs: &mut [PairState],
         numbers: &ContactNumbers,
@@ -340,7 +353,7 @@ impl Prepared {
 }
 
 /// The whole mutual displacement of the joints: z with the gaps taken off.
-fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
+pub(crate) fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
     let mut z = state.z.clone();
     for (i, gap) in numbers.gap.iter().enumerate() {
         z[i] -= gap;
