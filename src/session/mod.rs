@@ -10,6 +10,7 @@ mod error;
 pub mod expect;
 pub mod journal;
 mod output;
+pub mod paths;
 mod plots;
 mod record;
 mod reports;
@@ -27,6 +28,7 @@ use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState, Pl
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
+use crate::path::record::PathRecord;
 use crate::solve::{self, PrepareError, Prepared, Solved};
 use crate::watch::Watch;
 
@@ -89,6 +91,8 @@ pub struct Session {
     trouble: Option<OutcomeKind>,
     /// Depth of nested scripts.
     depth: usize,
+    /// What the last `trace` or `stages` followed.
+    path: Option<Arc<PathRecord>>,
 }
 
 impl Session {
@@ -142,6 +146,7 @@ impl Session {
             last_error: None,
             trouble: None,
             depth: 0,
+            path: None,
         };
         session.take_answer(Some(solved));
         Ok(session)
@@ -239,6 +244,11 @@ impl Session {
             Some(step) => solved.plain_at(step),
             None => solved.answer.solution.clone(),
         }
+    }
+
+    /// What the last `trace` or `stages` followed.
+    pub fn path(&self) -> Option<Arc<PathRecord>> {
+        self.path.clone()
     }
 
     /// The commands given so far.

@@ -8,12 +8,16 @@ pub mod members;
 pub mod number;
 pub mod pairs;
 pub mod parameters;
+pub mod path;
 pub mod pivots;
 pub mod plot;
 pub mod ray;
 pub mod reactions;
+pub mod sensitivity;
+pub mod stages;
 pub mod status;
 pub mod style;
+pub mod sweep;
 pub mod table;
 
 #[cfg(test)]
