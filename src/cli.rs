@@ -15,8 +15,8 @@ use crate::path::grid::{Axis, Grid, Shard};
 use crate::path::sweep::{Format as RowFormat, Sweep};
 use crate::path::sweep_file::{self, SweepFileError, run_to_file};
 use crate::repl::{self, Signals, TerminalWatch};
-use crate::session::{paths, script};
 use crate::session::{CommandError, Format, Output, Session};
+use crate::session::{paths, script};
 use crate::view;
 use crate::view::style::{Role, Style};
 

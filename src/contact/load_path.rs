@@ -18,7 +18,10 @@ pub fn is_answer(lcp: &MirroredLcp, basis: &Basis) -> bool {
     let Some(point) = vertex(lcp, basis) else {
         return false;
     };
-    let force = lcp.q.amax().max(point.w.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
+    let force = lcp
+        .q
+        .amax()
+        .max(point.w.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
     let length = point.z.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     point.w.iter().all(|w| *w >= -1e-11 * force) && point.z.iter().all(|z| *z >= -1e-11 * length)
 }
@@ -72,4 +75,3 @@ pub fn order(contact: &ContactLcp) -> Vec<usize> {
         _ => (0..contact.rows.len()).collect(),
     }
 }
-

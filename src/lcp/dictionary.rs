@@ -125,8 +125,8 @@ impl Dictionary {
                 if let Local::W(i) = local {
                     let right = primary(i);
                     if right != 0.0 {
-                        let t = &dictionary.t
-                            [column * dictionary.size..(column + 1) * dictionary.size];
+                        let t =
+                            &dictionary.t[column * dictionary.size..(column + 1) * dictionary.size];
                         for (entry, t) in response.iter_mut().zip(t) {
                             *entry -= right * t;
                         }

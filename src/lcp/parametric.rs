@@ -213,9 +213,7 @@ impl Parametric {
 
     fn value_size(&self, local: Local, size: f64, t: f64) -> f64 {
         match local {
-            Local::W(i) => {
-                self.lcp.scale.row[i] * size + self.largest_q + self.largest_d * t.abs()
-            }
+            Local::W(i) => self.lcp.scale.row[i] * size + self.largest_q + self.largest_d * t.abs(),
             Local::Z(k) => size / self.lcp.scale.column[k],
             Local::P => t.abs(),
         }
@@ -244,7 +242,11 @@ impl Parametric {
                     candidates.push(Candidate {
                         variable,
                         hidden,
-                        value: if along.value <= noise { 0.0 } else { along.value },
+                        value: if along.value <= noise {
+                            0.0
+                        } else {
+                            along.value
+                        },
                         fall: -along.rate,
                         noise,
                     });
@@ -418,7 +420,13 @@ impl Parametric {
     }
 
     /// Makes the pivot; says what left.
-    fn exchange(&mut self, leaving: Candidate, c: usize, step: f64, tied: &[Candidate]) -> Variable {
+    fn exchange(
+        &mut self,
+        leaving: Candidate,
+        c: usize,
+        step: f64,
+        tied: &[Candidate],
+    ) -> Variable {
         let lcp = Arc::clone(&self.lcp);
         let name = self.variable(leaving.variable, leaving.hidden);
         let mut column = std::mem::take(&mut self.column);
@@ -500,7 +508,11 @@ impl Parametric {
         };
         let entering = self.variable(self.driver, false);
         let rate = direction(&self.lcp, &self.knot_basis(row), entering).map_or(raw, |d| d.p);
-        if rate.abs() <= NOISE * size { 0.0 } else { rate }
+        if rate.abs() <= NOISE * size {
+            0.0
+        } else {
+            rate
+        }
     }
 
     fn ray(&self, c: usize) -> RayDirection {
@@ -618,12 +630,10 @@ impl Parametric {
         knots: &mut Option<Vec<Knot>>,
         met: &mut HashSet<(Vec<usize>, Variable)>,
     ) -> ControlFlow<End> {
-        let lost = || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
+        let lost =
+            || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
         let singular = "the equations of the working scheme are singular";
-        if self.dictionary.pending() == 0
-            && !self.fresh
-            && self.drift() > DRIFT
-            && !self.refresh()
+        if self.dictionary.pending() == 0 && !self.fresh && self.drift() > DRIFT && !self.refresh()
         {
             return ControlFlow::Break(End::Breakdown(singular.to_owned()));
         }
@@ -634,8 +644,7 @@ impl Parametric {
         let mut t_rate = self.t_rate(c);
         let suspicious = !self.fresh
             && tied.iter().all(|row| {
-                row.fall
-                    <= SUSPICIOUS * self.rate_size(row.variable, self.column_size(c), t_rate)
+                row.fall <= SUSPICIOUS * self.rate_size(row.variable, self.column_size(c), t_rate)
             });
         if suspicious && self.refresh() {
             let Some(again) = self.fetch() else {

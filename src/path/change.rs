@@ -85,7 +85,11 @@ pub fn sentence(changes: &[Change]) -> String {
                 other if from.starts_with("open") => {
                     format!("{} from {from} to {other}", s("go"))
                 }
-                other => format!("{} ({})", s("open"), other.trim_start_matches("open ").trim_matches(['(', ')'])),
+                other => format!(
+                    "{} ({})",
+                    s("open"),
+                    other.trim_start_matches("open ").trim_matches(['(', ')'])
+                ),
             };
             format!("{subject} {verb}")
         })

@@ -208,7 +208,14 @@ impl Follower<'_> {
         let numbers = self.numbers(value);
         let contact = contact_lcp(self.system, &numbers, Covering::Ones).ok()?;
         let point = vertex(&contact.lcp, basis)?;
-        let lcp = rate_lcp(self.system, &numbers, &contact, &point, &self.rates, self.sign);
+        let lcp = rate_lcp(
+            self.system,
+            &numbers,
+            &contact,
+            &point,
+            &self.rates,
+            self.sign,
+        );
         let slope = rate(&lcp, basis)?;
         let mut place = Place {
             value,
@@ -298,7 +305,10 @@ impl Follower<'_> {
                     });
                 }
             }
-            let merged = path.breakpoints.last().is_none_or(|last| last.value != from);
+            let merged = path
+                .breakpoints
+                .last()
+                .is_none_or(|last| last.value != from);
             match path.intervals.last_mut() {
                 // Nothing that a pair shows changed here.
                 Some(last) if merged => last.to = reached.value,
@@ -354,12 +364,19 @@ impl Follower<'_> {
     /// A value a little further on.
     fn beside(&self, value: f64, to: f64) -> f64 {
         let beyond = value + self.sign * BEYOND * value.abs().max(1e-3);
-        if self.sign > 0.0 { beyond.min(to) } else { beyond.max(to) }
+        if self.sign > 0.0 {
+            beyond.min(to)
+        } else {
+            beyond.max(to)
+        }
     }
 
     fn differs(&self, a: &Place, b: &Place) -> bool {
         let z = |place: &Place| {
-            place.contact.joint_displacements(self.system, &place.point.z) * place.contact.length_unit
+            place
+                .contact
+                .joint_displacements(self.system, &place.point.z)
+                * place.contact.length_unit
         };
         let (a, b) = (z(a), z(b));
         (&a - &b).amax() > 1e-6 * a.amax().max(b.amax())
@@ -407,13 +424,20 @@ impl Follower<'_> {
             if left == 0.0 {
                 return Ok(here);
             }
-            watch.progress(&format!("{} = {}", self.name, short(here.value)), 1.0 - left / span);
+            watch.progress(
+                &format!("{} = {}", self.name, short(here.value)),
+                1.0 - left / span,
+            );
             if watch.stop() {
                 return Err(PathError::Interrupted);
             }
             let length = step.min(left);
             let at = |s: f64| {
-                if s * length >= left { to } else { here.value + self.sign * s * length }
+                if s * length >= left {
+                    to
+                } else {
+                    here.value + self.sign * s * length
+                }
             };
             let (middle, end) = (self.place(at(0.5), basis), self.place(at(1.0), basis));
             let (Some(middle), Some(end)) = (middle, end) else {
@@ -497,7 +521,11 @@ impl Follower<'_> {
             }
             let secant = b - f_b * (b - a) / (f_b - f_a);
             let inside = (secant - a) * (secant - b) < 0.0;
-            let x = if round % 3 == 2 || !inside { 0.5 * (a + b) } else { secant };
+            let x = if round % 3 == 2 || !inside {
+                0.5 * (a + b)
+            } else {
+                secant
+            };
             if x == a || x == b {
                 break;
             }
@@ -550,7 +578,10 @@ impl Cubic {
         let cube = 2.0 * (a - b) + da + db;
         let square = 3.0 * (b - a) - 2.0 * da - db;
         let root = (square * square - 3.0 * cube * da).max(0.0).sqrt();
-        let mut places = [(-square + root) / (3.0 * cube), (-square - root) / (3.0 * cube)];
+        let mut places = [
+            (-square + root) / (3.0 * cube),
+            (-square - root) / (3.0 * cube),
+        ];
         places.sort_by(f64::total_cmp);
         places
             .into_iter()

@@ -66,14 +66,19 @@ impl Axis {
     /// A step that is zero or leads away; too many points.
     pub fn stepped(name: &str, from: f64, to: f64, step: f64) -> Result<Axis, GridError> {
         let range = format!("{name}={from}:{to}:{step}");
-        if step == 0.0 || (to - from) * step < 0.0 || !(from.is_finite() && to.is_finite() && step.is_finite()) {
+        if step == 0.0
+            || (to - from) * step < 0.0
+            || !(from.is_finite() && to.is_finite() && step.is_finite())
+        {
             return Err(GridError::Range(format!(
                 "{range}: a step of {step} does not lead from {from} to {to}"
             )));
         }
         let steps = ((to - from) / step + 1e-9).floor();
         if steps >= MOST {
-            return Err(GridError::Range(format!("{range} has more than {MOST} points")));
+            return Err(GridError::Range(format!(
+                "{range} has more than {MOST} points"
+            )));
         }
         let count = steps as usize;
         let values = (0..=count)
@@ -102,7 +107,9 @@ impl Axis {
     pub fn counted(name: &str, from: f64, to: f64, count: usize) -> Result<Axis, GridError> {
         let range = format!("{name}={from}..{to}/{count}");
         if count == 0 || count as f64 > MOST || !(from.is_finite() && to.is_finite()) {
-            return Err(GridError::Range(format!("{range}: expected 1 to {MOST} points")));
+            return Err(GridError::Range(format!(
+                "{range}: expected 1 to {MOST} points"
+            )));
         }
         let last = (count - 1).max(1) as f64;
         let values = (0..count)
@@ -205,7 +212,10 @@ impl Grid {
                 return Err(GridError::Range(refusal));
             }
         }
-        let points = axes.iter().map(|axis| axis.values.len() as f64).product::<f64>();
+        let points = axes
+            .iter()
+            .map(|axis| axis.values.len() as f64)
+            .product::<f64>();
         if points > 1e12 {
             return Err(GridError::Axes(format!("{points:e} points are too many")));
         }
@@ -290,9 +300,22 @@ mod tests {
         assert_eq!(axis.values, [-0.2, -0.1, 0.0, 0.1, 0.2]);
         let axis = Axis::parse("f=1:0:-0.25").expect("a range");
         assert_eq!(axis.values, [1.0, 0.75, 0.5, 0.25, 0.0]);
-        assert_eq!(Axis::parse("f=0..1/3").expect("a range").values, [0.0, 0.5, 1.0]);
+        assert_eq!(
+            Axis::parse("f=0..1/3").expect("a range").values,
+            [0.0, 0.5, 1.0]
+        );
         assert_eq!(Axis::parse("f=2").expect("a value").values, [2.0]);
-        for wrong in ["f", "f=", "f=1:2", "f=1:2:-1", "f=0:1:0", "f=0:1e9:1e-9", "f=a..b", "f=0..1/0", "f=nan"] {
+        for wrong in [
+            "f",
+            "f=",
+            "f=1:2",
+            "f=1:2:-1",
+            "f=0:1:0",
+            "f=0:1e9:1e-9",
+            "f=a..b",
+            "f=0..1/0",
+            "f=nan",
+        ] {
             assert!(Axis::parse(wrong).is_err(), "{wrong}");
         }
     }

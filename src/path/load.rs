@@ -15,8 +15,8 @@ use crate::contact::load_path::{is_answer, order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::words::short;
-use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{End, Parametric, Path, Reach};
 use crate::lcp::vertex::{Basis, vertex};
 use crate::model::parameter::ParameterValues;
@@ -101,7 +101,11 @@ impl LoadParameter {
 
 /// The names that `trace` takes.
 pub fn known(prepared: &Prepared, scenario: &Scenario) -> String {
-    let cases: Vec<&str> = prepared.cases.iter().map(|(name, _)| name.as_str()).collect();
+    let cases: Vec<&str> = prepared
+        .cases
+        .iter()
+        .map(|(name, _)| name.as_str())
+        .collect();
     let parameters: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
     let mut text = if cases.is_empty() {
         "no load cases".to_owned()
@@ -235,9 +239,7 @@ pub fn trace(
             (engine, from_zero)
         }
     };
-    let target = reach
-        .to
-        .map_or(f64::INFINITY, |to| (to - start).abs());
+    let target = reach.to.map_or(f64::INFINITY, |to| (to - start).abs());
     let path = engine.follow(
         Reach {
             target,
@@ -281,7 +283,11 @@ pub fn trace(
         parameter,
         start,
         from_zero,
-        factors: path.knots.iter().map(|knot| start + sign * knot.t).collect(),
+        factors: path
+            .knots
+            .iter()
+            .map(|knot| start + sign * knot.t)
+            .collect(),
         pairs: Vec::new(),
         breakpoints: Vec::new(),
         end,
@@ -359,7 +365,12 @@ impl LoadPath {
         &self.contact
     }
 
-    fn pairs_of(&self, prepared: &Prepared, system: &ContactSystem, point: &Point) -> Vec<PairState> {
+    fn pairs_of(
+        &self,
+        prepared: &Prepared,
+        system: &ContactSystem,
+        point: &Point,
+    ) -> Vec<PairState> {
         let factor = self.start + self.sign * point.p;
         let numbers = self.numbers(factor);
         let state = state_of(system, &numbers, &self.contact, point);
@@ -385,7 +396,11 @@ impl LoadPath {
         let point = match segment {
             Some([a, b]) => {
                 let length = b.t - a.t;
-                let s = if length == 0.0 { 0.0 } else { (t - a.t) / length };
+                let s = if length == 0.0 {
+                    0.0
+                } else {
+                    (t - a.t) / length
+                };
                 between(&a.point, &b.point, s)
             }
             _ => knots.first().filter(|only| only.t == t)?.point.clone(),
@@ -476,7 +491,9 @@ impl LoadPath {
             LoadEnd::Unbounded => {
                 format!("beyond {name} = {at} nothing changes any more, however large the load")
             }
-            LoadEnd::Returned => format!("the path came back to {name} = {at} through turning points"),
+            LoadEnd::Returned => {
+                format!("the path came back to {name} = {at} through turning points")
+            }
         }
     }
 }

@@ -20,7 +20,11 @@ pub(crate) fn number_rates(
     name: &str,
 ) -> (ContactNumbers, Vec<f64>) {
     let is = |number: &Number| f64::from(number.parameter() == Some(name));
-    let factors: Vec<f64> = prepared.cases.iter().map(|(_, factor)| is(factor)).collect();
+    let factors: Vec<f64> = prepared
+        .cases
+        .iter()
+        .map(|(_, factor)| is(factor))
+        .collect();
     let m = system.pairs.len();
     let mut rates = ContactNumbers {
         friction: vec![0.0; m],

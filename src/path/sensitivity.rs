@@ -5,9 +5,9 @@ use super::start::{PathError, final_basis};
 use crate::answer::pairs::JointState;
 use crate::answer::record::PairState;
 use crate::contact::complementarity::load_with_gaps;
+use crate::model::scenario::Scenario;
 use crate::solve::solved::Trace;
 use crate::solve::{Prepared, Solved};
-use crate::model::scenario::Scenario;
 
 /// A variable of an answer counts as exactly on its limit below this multiple of the largest.
 const ON_LIMIT: f64 = 1e-11;
@@ -78,7 +78,8 @@ pub fn sensitivity(
         let lcp = rate_lcp(system, numbers, contact, last, &rates, 1.0);
         let Some(direction) = rate(&lcp, &basis) else {
             return Err(PathError::Missing(
-                "the equations of the final scheme are singular: there are no derivatives".to_owned(),
+                "the equations of the final scheme are singular: there are no derivatives"
+                    .to_owned(),
             ));
         };
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
@@ -106,9 +107,7 @@ pub fn sensitivity(
                         _ => 0.0,
                     },
                     z_n: contact.normal_row[i].map_or(0.0, |_| state.z[i]),
-                    z_t: pair
-                        .tangential
-                        .map_or(shown[i].z_t, |joint| state.z[joint]),
+                    z_t: pair.tangential.map_or(shown[i].z_t, |joint| state.z[joint]),
                 }
             })
             .collect();
@@ -127,7 +126,10 @@ pub fn sensitivity(
 /// Pairs that stand exactly between two states.
 pub fn on_limit(pairs: &[PairState]) -> Vec<String> {
     let largest = |value: fn(&PairState) -> f64| {
-        pairs.iter().map(|pair| value(pair).abs()).fold(0.0, f64::max)
+        pairs
+            .iter()
+            .map(|pair| value(pair).abs())
+            .fold(0.0, f64::max)
     };
     let force = largest(|pair| pair.x_n).max(largest(|pair| pair.x_t));
     pairs

@@ -159,7 +159,11 @@ pub fn follow_factors(
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let mut walk = Walk::start(prepared, system, values, watch)?;
     let mut history = History {
-        cases: prepared.cases.iter().map(|(name, _)| name.clone()).collect(),
+        cases: prepared
+            .cases
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect(),
         stages: Vec::new(),
         end: HistoryEnd::Complete,
     };
@@ -200,7 +204,11 @@ impl History {
             .windows(2)
             .find(|ends| (ends[0].t..=ends[1].t).contains(&t))?;
         let length = ends[1].t - ends[0].t;
-        let s = if length == 0.0 { 1.0 } else { (t - ends[0].t) / length };
+        let s = if length == 0.0 {
+            1.0
+        } else {
+            (t - ends[0].t) / length
+        };
         let mix = |a: f64, b: f64| if s == 1.0 { b } else { a + s * (b - a) };
         Some(
             ends[0]
@@ -360,8 +368,7 @@ impl<'a> Walk<'a> {
                 start: t,
             };
             let order = order(&stretch.contact);
-            let Some(mut engine) =
-                Parametric::new(Arc::clone(&stretch.contact.lcp), &basis, order)
+            let Some(mut engine) = Parametric::new(Arc::clone(&stretch.contact.lcp), &basis, order)
             else {
                 return Err(self.breakdown(t, "the equations of the open pairs are singular"));
             };
@@ -407,7 +414,8 @@ impl<'a> Walk<'a> {
                     let mut collapse =
                         ray::report(self.system, &numbers, &stretch.contact, &direction, 0.0);
                     collapse.explanation =
-                        "The loads of this stage cannot be reached: nothing resists this motion.".to_owned();
+                        "The loads of this stage cannot be reached: nothing resists this motion."
+                            .to_owned();
                     limit = Some((t, collapse));
                     break;
                 }
@@ -486,10 +494,9 @@ impl<'a> Walk<'a> {
                     here.scheme.binary_search(&normal).is_ok()
                         && self.numbers.cohesion[meaning.pair] == 0.0
                 });
-                let scale = contact.plus_row[meaning.pair].map_or(1.0, |plus| lcp.scale.column[plus]);
-                !free
-                    && scale * (next.point.z[row] - here.point.z[row])
-                        < -NOISE * scale * largest
+                let scale =
+                    contact.plus_row[meaning.pair].map_or(1.0, |plus| lcp.scale.column[plus]);
+                !free && scale * (next.point.z[row] - here.point.z[row]) < -NOISE * scale * largest
             })
         })
     }

@@ -21,7 +21,9 @@ pub enum PathError {
     #[error("a bare LCP has no loads and no friction: `{0}` needs contact pairs")]
     Plain(&'static str),
     /// Neither a load case nor a parameter that can be followed.
-    #[error("nothing to follow: `{name}` is no load case and no parameter of one; there are {known}")]
+    #[error(
+        "nothing to follow: `{name}` is no load case and no parameter of one; there are {known}"
+    )]
     Unknown {
         /// As given.
         name: String,
@@ -40,7 +42,9 @@ pub enum PathError {
     #[error("{0}")]
     Target(String),
     /// The case does not act on any pair.
-    #[error("load case {0} presses and pushes no contact pair: the state of the pairs does not depend on it")]
+    #[error(
+        "load case {0} presses and pushes no contact pair: the state of the pairs does not depend on it"
+    )]
     Idle(String),
     /// No answer to start from.
     #[error("there is no answer to start from: at {name} = {at} the run ended {how}")]

@@ -99,7 +99,8 @@ impl Hash {
 
     fn add(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            self.0 = (self.0 ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+            self.0 = (self.0 ^ u128::from(*byte))
+                .wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
         }
     }
 }
@@ -143,7 +144,12 @@ impl Sweep<'_> {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.name.clone(),
             hash: format!("{:032x}", hash.0),
-            grid: self.grid.axes.iter().map(|axis| axis.range.clone()).collect(),
+            grid: self
+                .grid
+                .axes
+                .iter()
+                .map(|axis| axis.range.clone())
+                .collect(),
             points: self.grid.len(),
             shard: self.shard,
         }
@@ -157,8 +163,21 @@ impl Sweep<'_> {
     /// Names of the columns.
     pub fn columns(&self) -> Vec<String> {
         let own = [
-            "outcome", "class", "p", "pivots", "open", "stick", "slip+", "slip-", "closed",
-            "max_slip", "max_slip_pair", "max_gap", "max_gap_pair", "max_x_n", "max_x_n_pair",
+            "outcome",
+            "class",
+            "p",
+            "pivots",
+            "open",
+            "stick",
+            "slip+",
+            "slip-",
+            "closed",
+            "max_slip",
+            "max_slip_pair",
+            "max_gap",
+            "max_gap_pair",
+            "max_x_n",
+            "max_x_n_pair",
             "failure",
         ];
         self.grid
@@ -174,7 +193,12 @@ impl Sweep<'_> {
     ///
     /// # Errors
     /// Where `out` cannot be written.
-    pub fn run(&self, found: usize, out: &mut dyn Write, watch: &dyn Watch) -> std::io::Result<Done> {
+    pub fn run(
+        &self,
+        found: usize,
+        out: &mut dyn Write,
+        watch: &dyn Watch,
+    ) -> std::io::Result<Done> {
         let points = self.shard.points(self.grid.len());
         let mut done = Done {
             written: 0,
@@ -188,7 +212,13 @@ impl Sweep<'_> {
             let end = (next + CHUNK).min(points.end);
             let rows: Vec<Option<Row>> = (next..end)
                 .into_par_iter()
-                .map(|index| if watch.stop() { None } else { self.row(index, watch) })
+                .map(|index| {
+                    if watch.stop() {
+                        None
+                    } else {
+                        self.row(index, watch)
+                    }
+                })
                 .collect();
             for row in rows.iter().map_while(Option::as_ref) {
                 out.write_all(row.line.as_bytes())?;
@@ -203,7 +233,12 @@ impl Sweep<'_> {
             next = end;
             let ready = done.found + done.written;
             watch.progress(
-                &progress(ready, done.total, done.written, start.elapsed().as_secs_f64()),
+                &progress(
+                    ready,
+                    done.total,
+                    done.written,
+                    start.elapsed().as_secs_f64(),
+                ),
                 ready as f64 / done.total as f64,
             );
         }
@@ -214,7 +249,10 @@ impl Sweep<'_> {
     pub fn key(&self, index: usize) -> String {
         let values = self.grid.point(index);
         match self.format {
-            Format::Csv => values.iter().map(|value| format!("{},", number(*value))).collect(),
+            Format::Csv => values
+                .iter()
+                .map(|value| format!("{},", number(*value)))
+                .collect(),
             Format::Json => {
                 let fields: Vec<String> = self
                     .grid
@@ -277,8 +315,16 @@ pub(super) fn preamble(header: &Header, format: Format, columns: &[String]) -> S
 }
 
 fn progress(ready: usize, total: usize, written: usize, seconds: f64) -> String {
-    let rate = if seconds > 0.0 { written as f64 / seconds } else { 0.0 };
-    let left = if rate > 0.0 { (total - ready) as f64 / rate } else { 0.0 };
+    let rate = if seconds > 0.0 {
+        written as f64 / seconds
+    } else {
+        0.0
+    };
+    let left = if rate > 0.0 {
+        (total - ready) as f64 / rate
+    } else {
+        0.0
+    };
     let left = match left as u64 {
         0..=119 => format!("{left:.0} s"),
         120..=7199 => format!("{:.0} min", left / 60.0),
@@ -296,7 +342,10 @@ fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) if text.contains([',', '"', '\n', '\r']) => {
-            format!("\"{}\"", text.replace('"', "\"\"").replace(['\n', '\r'], " "))
+            format!(
+                "\"{}\"",
+                text.replace('"', "\"\"").replace(['\n', '\r'], " ")
+            )
         }
         Value::String(text) => text.clone(),
         other => other.to_string(),
@@ -312,7 +361,13 @@ fn fields(answer: &Answer) -> Vec<Value> {
     let has_pairs = is_state && !answer.pairs.is_empty();
     let count = |state: State| {
         if has_pairs {
-            json!(answer.pairs.iter().filter(|pair| pair.state == state).count())
+            json!(
+                answer
+                    .pairs
+                    .iter()
+                    .filter(|pair| pair.state == state)
+                    .count()
+            )
         } else {
             Value::Null
         }
@@ -322,7 +377,11 @@ fn fields(answer: &Answer) -> Vec<Value> {
             return [Value::Null, Value::Null];
         }
         let best = (0..answer.pairs.len()).fold(0, |best, k| {
-            if value(k).abs() > value(best).abs() { k } else { best }
+            if value(k).abs() > value(best).abs() {
+                k
+            } else {
+                best
+            }
         });
         [json!(value(best)), json!(answer.pairs[best].id)]
     };
@@ -331,8 +390,15 @@ fn fields(answer: &Answer) -> Vec<Value> {
     let [force, force_pair] = largest(&|k| answer.pairs[k].x_n);
     vec![
         json!(answer.outcome),
-        answer.ray.as_ref().map_or(Value::Null, |ray| json!(ray.class)),
-        if is_state { json!(answer.p) } else { Value::Null },
+        answer
+            .ray
+            .as_ref()
+            .map_or(Value::Null, |ray| json!(ray.class)),
+        if is_state {
+            json!(answer.p)
+        } else {
+            Value::Null
+        },
         json!(answer.pivots.len()),
         count(State::Open),
         count(State::Stick),
@@ -345,6 +411,9 @@ fn fields(answer: &Answer) -> Vec<Value> {
         gap_pair,
         force,
         force_pair,
-        answer.failure.as_ref().map_or(Value::Null, |why| json!(why)),
+        answer
+            .failure
+            .as_ref()
+            .map_or(Value::Null, |why| json!(why)),
     ]
 }

@@ -43,7 +43,9 @@ pub enum SweepFileError {
         expected: String,
     },
     /// A row that does not stand where it should.
-    #[error("{path}: row {row} is not the one of this place in the sweep; remove the file and begin again")]
+    #[error(
+        "{path}: row {row} is not the one of this place in the sweep; remove the file and begin again"
+    )]
     Row {
         /// The file.
         path: PathBuf,
@@ -78,7 +80,10 @@ fn read_header(path: &Path, line: &str) -> Result<(Header, Format), SweepFileErr
     let header: Header = serde_json::from_str(text.trim_end())
         .map_err(|error| no(format!("its first line is no header ({error})")))?;
     if header.format != FORMAT {
-        return Err(no(format!("its format is {}, expected {FORMAT}", header.format)));
+        return Err(no(format!(
+            "its format is {}, expected {FORMAT}",
+            header.format
+        )));
     }
     if header.shard.number == 0 || header.shard.number > header.shard.of {
         return Err(no(format!("its shard is {}", header.shard)));
@@ -97,8 +102,7 @@ fn difference(found: &Header, expected: &Header) -> Option<(&'static str, String
             return Some((what, a.clone(), b.clone()));
         }
     }
-    (found.grid != expected.grid)
-        .then(|| ("grid", found.grid.join(" "), expected.grid.join(" ")))
+    (found.grid != expected.grid).then(|| ("grid", found.grid.join(" "), expected.grid.join(" ")))
 }
 
 fn same(path: &Path, found: &Header, expected: &Header) -> Result<(), SweepFileError> {
@@ -134,12 +138,17 @@ pub fn run_to_file(
         .truncate(false)
         .open(path)
         .map_err(io(path))?;
-    let (found, length) = if exists { scan(sweep, path, &file)? } else { (0, 0) };
+    let (found, length) = if exists {
+        scan(sweep, path, &file)?
+    } else {
+        (0, 0)
+    };
     file.set_len(length).map_err(io(path))?;
     file.seek(SeekFrom::End(0)).map_err(io(path))?;
     let mut out = BufWriter::new(file);
     if length == 0 {
-        out.write_all(sweep.preamble().as_bytes()).map_err(io(path))?;
+        out.write_all(sweep.preamble().as_bytes())
+            .map_err(io(path))?;
     }
     let done = sweep.run(found, &mut out, watch).map_err(io(path))?;
     out.flush().map_err(io(path))?;
@@ -168,7 +177,11 @@ fn scan(sweep: &Sweep<'_>, path: &Path, file: &File) -> Result<(usize, u64), Swe
             let mine = sweep.header();
             same(path, &header, &mine)?;
             let (what, found, expected) = if header.shard == mine.shard {
-                ("format", format!("{format:?}"), format!("{:?}", sweep.format))
+                (
+                    "format",
+                    format!("{format:?}"),
+                    format!("{:?}", sweep.format),
+                )
             } else {
                 ("shard", header.shard.to_string(), mine.shard.to_string())
             };
@@ -218,7 +231,11 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
             same(path, &header, first)?;
             let differs = if format == *other {
                 (header.shard.of != first.shard.of).then(|| {
-                    ("number of shards", header.shard.of.to_string(), first.shard.of.to_string())
+                    (
+                        "number of shards",
+                        header.shard.of.to_string(),
+                        first.shard.of.to_string(),
+                    )
                 })
             } else {
                 Some(("format", format!("{format:?}"), format!("{other:?}")))
@@ -236,7 +253,9 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
     }
     shards.sort_by_key(|(header, ..)| header.shard.number);
     let Some((first, format, _)) = shards.first().cloned() else {
-        return Err(SweepFileError::Shards("there is nothing to merge: name the files".to_owned()));
+        return Err(SweepFileError::Shards(
+            "there is nothing to merge: name the files".to_owned(),
+        ));
     };
     for pair in shards.windows(2) {
         if pair[0].0.shard == pair[1].0.shard {
@@ -249,7 +268,11 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
         }
     }
     let missing: Vec<String> = (1..=first.shard.of)
-        .filter(|number| shards.iter().all(|(header, ..)| header.shard.number != *number))
+        .filter(|number| {
+            shards
+                .iter()
+                .all(|(header, ..)| header.shard.number != *number)
+        })
         .map(|number| number.to_string())
         .collect();
     if !missing.is_empty() {
@@ -275,7 +298,8 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
             };
             let columns: Vec<String> = columns.trim_end().split(',').map(str::to_owned).collect();
             let text = preamble(&whole, format, &columns);
-            out.write_all(text.as_bytes()).map_err(SweepFileError::Output)?;
+            out.write_all(text.as_bytes())
+                .map_err(SweepFileError::Output)?;
         }
         let expected = header.shard.points(header.points).len();
         let mut found = 0;
@@ -286,7 +310,8 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
                 break;
             }
             found += 1;
-            out.write_all(line.as_bytes()).map_err(SweepFileError::Output)?;
+            out.write_all(line.as_bytes())
+                .map_err(SweepFileError::Output)?;
         }
         if found != expected || !line.is_empty() {
             return Err(SweepFileError::Shards(format!(

@@ -148,7 +148,9 @@ pub enum Command {
     /// NAME is a load case, the parameter of one, or a friction parameter. A load is followed from its present factor
     /// upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction up to the
     /// target, or else to the end of the slider. `plot path` and `export path` show the way afterwards.
-    #[command(after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through")]
+    #[command(
+        after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through"
+    )]
     Trace {
         /// What to follow
         #[arg(value_name = "TRACED")]
@@ -188,7 +190,9 @@ pub enum Command {
     ///
     /// A range is A..B, with the number of points N after it (11 if left out). With `--out` the rows go to a .csv or
     /// .json file as they come; Ctrl-C keeps what is done and `--resume` goes on from there.
-    #[command(after_help = "Example:\n  sweep f 0..1 21\n  sweep f 0..1 F2 0..400 41 --out beam.csv")]
+    #[command(
+        after_help = "Example:\n  sweep f 0..1 21\n  sweep f 0..1 F2 0..400 41 --out beam.csv"
+    )]
     Sweep {
         /// PARAMETER A..B [N], up to three times
         #[arg(value_name = "SWEPT", required = true, allow_negative_numbers = true)]

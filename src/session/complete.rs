@@ -402,7 +402,12 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
         },
         "TRACED" | "LOAD" => {
             let mut all = parameters();
-            all.extend(vocabulary.cases.iter().map(|case| candidate(case, "load case")));
+            all.extend(
+                vocabulary
+                    .cases
+                    .iter()
+                    .map(|case| candidate(case, "load case")),
+            );
             all
         }
         "to VALUE" => match given {

@@ -75,7 +75,11 @@ impl Session {
     }
 
     fn case_names(prepared: &Prepared) -> Vec<String> {
-        prepared.cases.iter().map(|(name, _)| name.clone()).collect()
+        prepared
+            .cases
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect()
     }
 
     /// `trace NAME [to V] [--through]`.
@@ -86,17 +90,18 @@ impl Session {
         through: bool,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let to = match to {
-            [] => None,
-            [word, value] if word == "to" => Some(value.parse::<f64>().map_err(|_| {
-                CommandError::Refused(format!("trace: `{value}` is no number"))
-            })?),
-            _ => {
-                return Err(CommandError::Refused(
-                    "trace: expected `trace NAME` or `trace NAME to VALUE`".into(),
-                ));
-            }
-        };
+        let to =
+            match to {
+                [] => None,
+                [word, value] if word == "to" => Some(value.parse::<f64>().map_err(|_| {
+                    CommandError::Refused(format!("trace: `{value}` is no number"))
+                })?),
+                _ => {
+                    return Err(CommandError::Refused(
+                        "trace: expected `trace NAME` or `trace NAME to VALUE`".into(),
+                    ));
+                }
+            };
         let ground = self.ground(io)?;
         let units = self.now.scenario.units.clone();
         let (prepared, solved) = (Arc::clone(&ground.prepared), ground.solved);
@@ -107,10 +112,20 @@ impl Session {
             let to = to.unwrap_or_else(|| {
                 let slider = scenario.parameters.get(name).and_then(|p| p.max);
                 let present = values.get(name).copied().unwrap_or_default();
-                slider.filter(|max| *max > present).unwrap_or(FRICTION.max(2.0 * present))
+                slider
+                    .filter(|max| *max > present)
+                    .unwrap_or(FRICTION.max(2.0 * present))
             });
             let path = worker::run(io.watch, move |watch| {
-                friction::trace(&prepared, &scenario, &values, Some(&solved), &what, to, watch)
+                friction::trace(
+                    &prepared,
+                    &scenario,
+                    &values,
+                    Some(&solved),
+                    &what,
+                    to,
+                    watch,
+                )
             })??;
             let record = PathRecord::of_friction(&path);
             io.report(
@@ -137,7 +152,15 @@ impl Session {
         let geometry = Arc::clone(&prepared);
         let path = worker::run(io.watch, move |watch| {
             let reach = LoadReach { to, through };
-            load::trace(&prepared, &scenario, &values, Some(&solved), &what, reach, watch)
+            load::trace(
+                &prepared,
+                &scenario,
+                &values,
+                Some(&solved),
+                &what,
+                reach,
+                watch,
+            )
         })??;
         let record = PathRecord::of_load(&path, &Self::case_names(&geometry));
         io.report(
@@ -329,7 +352,11 @@ impl Session {
             |out, style| {
                 view::sweep::write(out, &columns, &rows, grid.axes.len(), style)?;
                 if !done.is_complete() {
-                    writeln!(out, "stopped after {} of {} points", done.written, done.total)?;
+                    writeln!(
+                        out,
+                        "stopped after {} of {} points",
+                        done.written, done.total
+                    )?;
                 }
                 Ok(())
             },
@@ -373,9 +400,7 @@ impl Session {
         let units = &self.now.scenario.units;
         io.report(
             || json!(path),
-            |out, style| {
-                view::plot::path::write(out, path, quantity, &pairs, units, height, style)
-            },
+            |out, style| view::plot::path::write(out, path, quantity, &pairs, units, height, style),
         )?;
         Ok(())
     }
@@ -445,7 +470,11 @@ pub fn done_sentence(done: &Done, path: &Path) -> String {
         let left = done.total - done.found - done.written;
         format!("stopped, {left} are left: the same command with --resume goes on")
     };
-    format!("{} rows written to {}{found}; {rest}", done.written, path.display())
+    format!(
+        "{} rows written to {}{found}; {rest}",
+        done.written,
+        path.display()
+    )
 }
 
 /// Reads `P A..B [N]` up to three times.

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
+use super::length_unit;
 use super::number::{in_column, largest, short, with_unit};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use super::length_unit;
 use crate::answer::record::{PairState, RayClass, Verdict};
 use crate::model::scenario::Units;
 use crate::path::friction::{FrictionEnd, FrictionPath};
@@ -74,7 +74,8 @@ pub fn write_load(
 ) -> io::Result<()> {
     let name = &path.parameter.name;
     if path.from_zero {
-        let text = format!("there is no answer at the present load: the path starts from {name} = 0");
+        let text =
+            format!("there is no answer at the present load: the path starts from {name} = 0");
         sentences(out, &text, Role::Muted, style)?;
     }
     if path.breakpoints.is_empty() {
@@ -134,7 +135,11 @@ pub fn write_friction(
                     .iter()
                     .find(|(value, _)| *value == breakpoint.value)
                     .map(|(_, pairs)| max_slip(pairs));
-                (breakpoint.value, format!("{}{jump}", breakpoint.sentence), slip)
+                (
+                    breakpoint.value,
+                    format!("{}{jump}", breakpoint.sentence),
+                    slip,
+                )
             })
             .collect();
         breakpoints(out, &path.name, &rows, units, style)?;
@@ -166,7 +171,10 @@ pub fn write_limit(
         ),
         None => format!(" (present {})", with_unit(&short(limit.present), unit)),
     };
-    let text = format!("limit load: {name} = {}{safety}", with_unit(&exact(factor), unit));
+    let text = format!(
+        "limit load: {name} = {}{safety}",
+        with_unit(&exact(factor), unit)
+    );
     sentences(out, &text, Role::Title, style)?;
     if let Some(collapse) = &limit.collapse {
         let class = match collapse.class {

@@ -23,7 +23,11 @@ pub fn write(
             writeln!(out)?;
         }
         let title = format!("per unit of {}", rate.parameter);
-        writeln!(out, "{}", style.paint(Role::Title, &style.fit(&title, style.width)))?;
+        writeln!(
+            out,
+            "{}",
+            style.paint(Role::Title, &style.fit(&title, style.width))
+        )?;
         let forces = largest(rate.pairs.iter().flat_map(|pair| [pair.x_n, pair.x_t]));
         let lengths = largest(rate.pairs.iter().flat_map(|pair| [pair.z_n, pair.z_t]));
         if forces == 0.0 && lengths == 0.0 {

@@ -27,7 +27,12 @@ pub fn write(
         Column::words("balance").droppable(5),
     ]);
     let mut table = Table::new(columns);
-    let ends = || history.stages.iter().filter_map(|stage| stage.moments.last());
+    let ends = || {
+        history
+            .stages
+            .iter()
+            .filter_map(|stage| stage.moments.last())
+    };
     let factors: Vec<f64> = (0..history.cases.len())
         .map(|case| largest(ends().map(|end| end.factors[case])))
         .collect();
@@ -52,7 +57,10 @@ pub fn write(
         cells.extend([
             Cell::from(stage.pivots.to_string()),
             Cell::from(changes.to_string()),
-            Cell::from(in_column(largest(end.pairs.iter().map(|pair| pair.z_t)), slips)),
+            Cell::from(in_column(
+                largest(end.pairs.iter().map(|pair| pair.z_t)),
+                slips,
+            )),
             Cell::from(in_column(largest(stage.slip.iter().copied()), slips)),
             Cell::from(in_column(stage.dissipated, work)),
             Cell::from(
@@ -103,7 +111,12 @@ pub fn write_stage(
     let mut table = Table::new(columns);
     for moment in &stage.moments {
         let mut cells = vec![Cell::from(short(moment.t))];
-        cells.extend(moment.factors.iter().map(|factor| Cell::from(super::path::exact(*factor))));
+        cells.extend(
+            moment
+                .factors
+                .iter()
+                .map(|factor| Cell::from(super::path::exact(*factor))),
+        );
         cells.push(Cell::from(style.text(&moment.sentence)));
         table.rows.push(Row::new(cells));
     }

@@ -10,7 +10,13 @@ use super::table::{Cell, Column, Row, Table};
 
 /// Columns that go first where the table is too wide.
 const LESS: [&str; 7] = [
-    "failure", "max_x_n_pair", "max_x_n", "max_gap_pair", "max_gap", "closed", "class",
+    "failure",
+    "max_x_n_pair",
+    "max_x_n",
+    "max_gap_pair",
+    "max_gap",
+    "closed",
+    "class",
 ];
 
 /// Writes the columns that hold anything; the first `axes` of them are the parameters.
@@ -45,7 +51,11 @@ pub fn write(
                 } else {
                     Column::numbers(&columns[k], None)
                 };
-                if k < axes { column } else { column.droppable(rank) }
+                if k < axes {
+                    column
+                } else {
+                    column.droppable(rank)
+                }
             })
             .collect(),
     );

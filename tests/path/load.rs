@@ -98,7 +98,12 @@ fn the_beam_slips_support_by_support_and_then_as_a_whole() {
         close(limit.factor.expect("a limit"), 6.0 * r, 1e-12);
         assert!(limit.confirmed);
         let collapse = limit.collapse.expect("a mode");
-        assert!(collapse.direction.iter().all(|d| (d.z_t - 1.0).abs() < 1e-9 && d.z_n == 0.0));
+        assert!(
+            collapse
+                .direction
+                .iter()
+                .all(|d| (d.z_t - 1.0).abs() < 1e-9 && d.z_n == 0.0)
+        );
     }
     // Beyond the limit there is no answer: the path starts from 0 and the safety is below 1.
     let limit = Case::new("beam", &[("F2", 400.0)]).limit("pull");
@@ -155,9 +160,17 @@ fn a_slope_is_climbed_and_descended() {
     let (tan, mu) = (0.1, 0.3);
     let case = Case::new("slope", &[("F", 0.0)]);
     let up = case.trace("push", None);
-    close(up.limit().expect("a limit"), (tan + mu) / (1.0 - mu * tan), 1e-9);
+    close(
+        up.limit().expect("a limit"),
+        (tan + mu) / (1.0 - mu * tan),
+        1e-9,
+    );
     let down = case.trace("push", Some(-1.0));
-    close(down.limit().expect("a limit"), (tan - mu) / (1.0 + mu * tan), 1e-9);
+    close(
+        down.limit().expect("a limit"),
+        (tan - mu) / (1.0 + mu * tan),
+        1e-9,
+    );
 }
 
 /// The state on a path is the state solved for there, where there is only one.
@@ -181,13 +194,27 @@ fn the_path_passes_through_the_answers_of_its_loads() {
             *case.values.get_mut(load).expect("a parameter") = factor;
             let solved = case.solve();
             let size = |k: fn(&stickslip::answer::record::PairState) -> f64| {
-                solved.answer.pairs.iter().map(|p| k(p).abs()).fold(0.0, f64::max)
+                solved
+                    .answer
+                    .pairs
+                    .iter()
+                    .map(|p| k(p).abs())
+                    .fold(0.0, f64::max)
             };
             let (force, length) = (size(|p| p.x_n), size(|p| p.z_t).max(size(|p| p.z_n)));
             for (a, b) in found.iter().zip(&solved.answer.pairs) {
-                assert!((a.x_n - b.x_n).abs() <= 1e-9 * force, "{name} {factor} {a:?} {b:?}");
-                assert!((a.x_t - b.x_t).abs() <= 1e-9 * force, "{name} {factor} {a:?} {b:?}");
-                assert!((a.z_t - b.z_t).abs() <= 1e-9 * length, "{name} {factor} {a:?} {b:?}");
+                assert!(
+                    (a.x_n - b.x_n).abs() <= 1e-9 * force,
+                    "{name} {factor} {a:?} {b:?}"
+                );
+                assert!(
+                    (a.x_t - b.x_t).abs() <= 1e-9 * force,
+                    "{name} {factor} {a:?} {b:?}"
+                );
+                assert!(
+                    (a.z_t - b.z_t).abs() <= 1e-9 * length,
+                    "{name} {factor} {a:?} {b:?}"
+                );
                 assert_eq!(a.state, b.state, "{name} {factor} {}", a.id);
             }
         }

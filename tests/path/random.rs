@@ -49,7 +49,14 @@ fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, 
         })
         .collect();
     let numbers = ContactNumbers {
-        friction: vec![if ties { 0.25 } else { rng.random_range(0.0..0.4) }; m],
+        friction: vec![
+            if ties {
+                0.25
+            } else {
+                rng.random_range(0.0..0.4)
+            };
+            m
+        ],
         cohesion: vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m],
         gap: vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m],
         bound: vec![0.0; m],
@@ -120,7 +127,11 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
                 let (_, z) = cold(&system, &there);
                 let error = (z_of(&knot.point.z) - &z).amax();
                 // z_τ of pairs that just touch without force may be anything.
-                assert!(error <= 1e-9, "problem {k}.{step} at t = {}: {error:e}", knot.t);
+                assert!(
+                    error <= 1e-9,
+                    "problem {k}.{step} at t = {}: {error:e}",
+                    knot.t
+                );
             }
             let warm = follow_load(
                 &system,
@@ -133,8 +144,8 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
             )
             .expect("a way");
             let (_, z) = cold(&system, &next);
-            let found = warm.contact.joint_displacements(&system, &warm.point.z)
-                * warm.contact.length_unit;
+            let found =
+                warm.contact.joint_displacements(&system, &warm.point.z) * warm.contact.length_unit;
             assert!((&found - &z).amax() <= 1e-11, "problem {k}.{step}");
             basis = warm.basis;
             numbers = next;

@@ -5,11 +5,7 @@ use super::words::{did_you_mean, listed, quoted};
 use crate::model::scenario::Stage;
 
 /// Reads the stages; `cases` are the names of the load cases.
-pub fn read(
-    entry: Entry<'_>,
-    cases: &[&str],
-    parameters: &Parameters,
-) -> Option<Vec<Stage>> {
+pub fn read(entry: Entry<'_>, cases: &[&str], parameters: &Parameters) -> Option<Vec<Stage>> {
     let mut stages = Vec::new();
     let mut is_right = true;
     for cursor in entry.value().list()? {
