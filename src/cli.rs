@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
-use crate::answer::record::{Answer, OutcomeKind, RayClass};
 use crate::export::{atomic, json};
 use crate::model::embedded;
 use crate::model::load::load_named_or_file;
@@ -14,9 +13,9 @@ use crate::model::scenario::Scenario;
 use crate::path::grid::{Axis, Grid, Shard};
 use crate::path::sweep::{Format as RowFormat, Sweep};
 use crate::path::sweep_file::{self, SweepFileError, run_to_file};
-use crate::repl::{self, Signals, TerminalWatch};
+use crate::session::{Answer, exit_status, paths, script};
 use crate::session::{CommandError, Format, Output, Session};
-use crate::session::{paths, script};
+use crate::signals::{Signals, TerminalWatch, is_dumb};
 use crate::view;
 use crate::view::style::{Role, Style};
 
@@ -208,29 +207,82 @@ impl From<CommandError> for Failure {
     }
 }
 
-/// Runs the program with the arguments of the process; its exit status.
-pub fn main() -> u8 {
+/// What comes after the arguments: `main` switches to the next face.
+pub enum Next {
+    /// The program is done.
+    Exit(u8),
+    /// The command line that stays.
+    Repl(Box<Start>),
+}
+
+/// What the REPL starts from.
+pub struct Start {
+    /// The scenario, loaded and solved.
+    pub session: Session,
+    /// Style of stdout.
+    pub style: Style,
+    /// The handlers, installed.
+    pub signals: Signals,
+    errors: Style,
+}
+
+impl Start {
+    /// The exit status of the REPL; tells on stderr why it could not go on.
+    pub fn finish(&self, ended: io::Result<u8>) -> u8 {
+        status(ended.map_err(Failure::Output), &self.errors)
+    }
+}
+
+/// Runs what the arguments of the process ask for, up to the REPL.
+pub fn main() -> Next {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => {
-            // help and version go to stdout and are no error
-            let status = u8::try_from(error.exit_code()).unwrap_or(2);
-            return match error.print() {
-                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => 2,
-                _ => status,
-            };
-        }
+        Err(error) => return Next::Exit(usage(&error)),
     };
     let errors = cli.look.style(&io::stderr());
-    match run(cli) {
+    if cli.command.is_none() {
+        match start(&cli, errors) {
+            Ok(start) => return Next::Repl(Box::new(start)),
+            Err(failure) => return Next::Exit(status(Err(failure), &errors)),
+        }
+    }
+    Next::Exit(status(run(cli), &errors))
+}
+
+/// Help and version go to stdout and are no error.
+fn usage(error: &clap::Error) -> u8 {
+    let status = u8::try_from(error.exit_code()).unwrap_or(2);
+    match error.print() {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => 2,
+        _ => status,
+    }
+}
+
+fn start(cli: &Cli, errors: Style) -> Result<Start, Failure> {
+    let style = cli.look.style(&io::stdout());
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
+    let scenario = load(&cli.scenario)?;
+    let session = Session::new(scenario, &watch);
+    watch.clear();
+    Ok(Start {
+        session: session?,
+        style,
+        signals,
+        errors,
+    })
+}
+
+fn status(result: Result<u8, Failure>, errors: &Style) -> u8 {
+    match result {
         Ok(status) => status,
         Err(Failure::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
         Err(Failure::Output(error)) => {
-            tell(&errors, &format!("cannot write the result: {error}"));
+            tell(errors, &format!("cannot write the result: {error}"));
             2
         }
         Err(Failure::Status(status, message)) => {
-            tell(&errors, &message);
+            tell(errors, &message);
             status
         }
     }
@@ -251,15 +303,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
     let style = cli.look.style(&io::stdout());
     let mut out = io::stdout();
     match cli.command {
-        None => {
-            let signals = Signals::install()?;
-            let watch = TerminalWatch::new(&signals);
-            let scenario = load(&cli.scenario)?;
-            let session = Session::new(scenario, &watch);
-            watch.clear();
-            let mut session = session?;
-            Ok(repl::run(&mut session, style, &signals)?.status)
-        }
+        None => Ok(0), // the REPL: `main` starts it
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
         Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),
@@ -286,7 +330,7 @@ impl Look {
         let color = match self.color {
             Color::Always => true,
             Color::Never => false,
-            Color::Auto => terminal && !set("NO_COLOR") && !repl::is_dumb(),
+            Color::Auto => terminal && !set("NO_COLOR") && !is_dumb(),
         };
         let width = match self.width {
             Some(width) => usize::from(width),
@@ -464,18 +508,6 @@ fn write_answer(
         )?;
     }
     Ok(())
-}
-
-/// The status of a `solve` (see the help).
-fn exit_status(answer: &Answer) -> u8 {
-    match answer.outcome {
-        OutcomeKind::Trivial | OutcomeKind::Normal => 0,
-        OutcomeKind::Ray => match answer.ray.as_ref().map(|ray| ray.class) {
-            Some(RayClass::Mechanism | RayClass::NoEquilibrium) => 3,
-            Some(RayClass::Artefact | RayClass::Fault) | None => 4,
-        },
-        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => 4,
-    }
 }
 
 fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, Failure> {

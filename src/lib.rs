@@ -11,6 +11,7 @@ pub mod model;
 pub mod path;
 pub mod repl;
 pub mod session;
+pub mod signals;
 pub mod solve;
 pub mod view;
 pub mod watch;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 /// Every top module with what it may import besides itself and `watch`, the root helper.
 const ARROWS: &[(&str, &[&str])] = &[
     ("watch", &[]),
+    ("signals", &[]),
     ("model", &[]),
     ("lcp", &[]),
     ("fem", &["model"]),
@@ -42,9 +43,9 @@ const ARROWS: &[(&str, &[&str])] = &[
             "export",
         ],
     ),
-    ("repl", &["session", "view", "export", "model"]),
-    ("tui", &["session", "view", "export", "model"]),
-    ("cli", &["session", "view", "export", "model"]),
+    ("repl", &["session", "view", "export", "model", "signals"]),
+    ("tui", &["session", "view", "export", "model", "signals"]),
+    ("cli", &["session", "view", "export", "model", "signals"]),
 ];
 
 /// These put results before the user; nothing else writes to the terminal.
@@ -205,7 +206,7 @@ fn named(code: &str, at: usize) -> Vec<String> {
             '}' => depth -= 1,
             _ => {}
         }
-        if depth == 1 && c.is_alphanumeric() || c == '_' && depth == 1 {
+        if depth == 1 && (c.is_alphanumeric() || c == '_') {
             if take {
                 name.push(c);
             }

@@ -261,6 +261,29 @@ fn mixed_laws_gaps_and_cohesion_always_answer_where_r_is_positive_definite() {
 }
 
 #[test]
+fn only_a_gap_and_no_load() {
+    // λ = R (z − g) is rounding of R g here: it must not be judged against itself.
+    for (r, f) in [
+        ([[0.175, 0.25], [0.25, 0.675]], 0.0),
+        ([[1.0, 0.3], [0.3, 0.7]], 0.4),
+        ([[3.1, -0.7], [-0.7, 0.3]], 2.0),
+    ] {
+        for gap in [0.1, 0.3, 1e-7] {
+            let case = common::Case::text(&common::scenario_text(
+                serde_json::json!({ "contact_system": {
+                "pairs": ["c"], "stiffness": r, "loads": { "load": { "vector": [0, 0] } }, "friction": [f], "gap": [gap]
+            } }),
+            ));
+            let answer = case.solve(&[]);
+            common::is_answer(&answer);
+            common::close("z_n", answer.pairs[0].z_n, gap, 1e-12);
+            common::near("z_τ", answer.pairs[0].z_t, 0.0, 1e-12, gap);
+            assert_eq!((answer.pairs[0].x_n, answer.pairs[0].x_t), (0.0, 0.0));
+        }
+    }
+}
+
+#[test]
 fn every_rule_answers_right_or_says_so() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     let (mut answers, mut rays) = (0, 0);

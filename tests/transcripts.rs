@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use rand::{Rng, SeedableRng};
 use stickslip::model::embedded;
-use stickslip::session::command::{GROUPS, help, overview};
+use stickslip::session::help::{GROUPS, help, overview};
 use stickslip::session::journal::Journal;
 use stickslip::session::{CommandError, Format, Next, Output, Session, script};
 use stickslip::view::style::Style;

@@ -422,7 +422,11 @@ impl Dictionary {
 
     /// M, q, d of the present orientations.
     fn oriented(&self, lcp: &MirroredLcp) -> (DMatrix<f64>, DVector<f64>, DVector<f64>) {
-        let (mut matrix, mut q, mut d) = (lcp.matrix.clone(), lcp.q.clone(), lcp.covering.clone());
+        let (mut matrix, mut q, mut d) = (
+            DMatrix::clone(&lcp.matrix),
+            lcp.q.clone(),
+            lcp.covering.clone(),
+        );
         for i in (0..self.size).filter(|&i| self.turned[i]) {
             let Some(mirror) = &lcp.mirrors[i] else {
                 continue;
@@ -519,17 +523,5 @@ impl Dictionary {
         self.value = value;
         self.pending = 0;
         true
-    }
-
-    /// z over the primary rows (in present orientation) and p.
-    pub(crate) fn solution(&self) -> (DVector<f64>, f64) {
-        let read = |place: Place| match place {
-            Place::Row(r) => self.value[r],
-            Place::Column(_) => 0.0,
-        };
-        (
-            DVector::from_fn(self.size, |i, _| read(self.place_z[i])),
-            read(self.place_p),
-        )
     }
 }

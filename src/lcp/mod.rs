@@ -13,6 +13,7 @@ pub mod problem;
 pub mod ratio_test;
 pub mod rational_solve;
 pub mod scalar;
+mod stand;
 pub mod tableau;
 pub mod trace;
 pub mod variable;

@@ -117,7 +117,7 @@ impl<'a> Whole<'a> {
             let (j, negative) = self.rows[k];
             primary[j] += if negative { -value } else { value };
         }
-        let mut w = &self.lcp.matrix * primary;
+        let mut w = &*self.lcp.matrix * primary;
         w += shift * &self.lcp.q + p * &self.lcp.covering;
         let mut whole: Vec<f64> = (0..self.lcp.whole_size)
             .map(|k| {

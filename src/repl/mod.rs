@@ -3,7 +3,6 @@
 mod editor;
 mod pager;
 mod plain;
-mod signals;
 mod terminal;
 
 use std::io::{self, IsTerminal, Write};
@@ -13,7 +12,7 @@ use crate::session::{CommandError, Session};
 use crate::view::status;
 use crate::view::style::Style;
 
-pub use signals::{Signals, TerminalWatch, is_dumb};
+use crate::signals::{Signals, is_dumb};
 
 /// How a face ended: what `main` does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

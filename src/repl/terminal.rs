@@ -14,8 +14,8 @@ use crate::session::{CommandError, Next, Output, Session, journal};
 use crate::view::style::{Role, Style};
 
 use super::editor::{Editing, Pace};
-use super::signals::{Signals, TerminalWatch};
 use super::{Ended, pager, show_error};
+use crate::signals::{Signals, TerminalWatch};
 
 /// Lines of history kept.
 const HISTORY: usize = 10_000;

@@ -11,7 +11,7 @@ use crate::model::scenario::Source;
 
 use super::command;
 use super::expect;
-use super::reports::SORT_KEYS;
+use super::selection::SORT_KEYS;
 use super::{Session, words};
 
 /// Never more candidates than this are offered.

@@ -360,7 +360,7 @@ impl Expectation {
                 .iter()
                 .find(|pair| pair.id == id)
                 .ok_or_else(|| {
-                    Err(super::reports::no_such(
+                    Err(super::selection::no_such(
                         "pair",
                         id,
                         facts.pairs.iter().map(|pair| pair.id.as_str()),
@@ -416,7 +416,7 @@ impl Expectation {
                     .iter()
                     .find(|d| d.node == *node)
                     .ok_or_else(|| {
-                        Err(super::reports::no_such(
+                        Err(super::selection::no_such(
                             "node",
                             node,
                             displacements.iter().map(|d| d.node.as_str()),

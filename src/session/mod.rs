@@ -8,15 +8,21 @@ pub mod command;
 pub mod complete;
 mod error;
 pub mod expect;
+mod exports;
+pub mod help;
 pub mod journal;
 mod output;
 pub mod paths;
 mod plots;
+mod questions;
 mod record;
 mod reports;
+mod restore;
 pub mod save;
 pub mod script;
+mod selection;
 pub mod values;
+mod why;
 pub mod words;
 pub mod worker;
 
@@ -24,7 +30,8 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState, PlainSolution};
+pub use crate::answer::record::Answer;
+use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
@@ -466,5 +473,17 @@ impl Setup {
                 .iter()
                 .zip(&other.values)
                 .all(|((a, x), (b, y))| a == b && x.to_bits() == y.to_bits())
+    }
+}
+
+/// The status of a `solve` (see the help).
+pub fn exit_status(answer: &Answer) -> u8 {
+    match answer.outcome {
+        OutcomeKind::Trivial | OutcomeKind::Normal => 0,
+        OutcomeKind::Ray => match answer.ray.as_ref().map(|ray| ray.class) {
+            Some(RayClass::Mechanism | RayClass::NoEquilibrium) => 3,
+            Some(RayClass::Artefact | RayClass::Fault) | None => 4,
+        },
+        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => 4,
     }
 }

@@ -58,9 +58,9 @@ fn enumerate(f: f64) -> Vec<DVector<f64>> {
         let state = [scheme % 4, scheme / 4];
         let mut a = DMatrix::zeros(4, 4);
         let mut b = DVector::zeros(4);
-        for i in 0..2 {
+        for (i, state) in state.into_iter().enumerate() {
             let (n, t) = (i, 2 + i);
-            match state[i] {
+            match state {
                 0 => {
                     a.row_mut(n).copy_from(&r.row(n));
                     a.row_mut(t).copy_from(&r.row(t));
