@@ -5,12 +5,15 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
-use crate::export::json;
+use crate::export::{atomic, json};
 use crate::model::embedded;
 use crate::model::load::load_named_or_file;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
-use crate::session::{Answer, exit_status, script};
+use crate::path::grid::{Axis, Grid, Shard};
+use crate::path::sweep::{Format as RowFormat, Sweep};
+use crate::path::sweep_file::{self, SweepFileError, run_to_file};
+use crate::session::{Answer, exit_status, paths, script};
 use crate::session::{CommandError, Format, Output, Session};
 use crate::signals::{Signals, TerminalWatch, is_dumb};
 use crate::view;
@@ -69,6 +72,26 @@ enum Command {
     Solve(Solve),
     /// Run a script of REPL commands; `-` reads it from stdin
     Replay(Replay),
+    /// Solve at every point of a grid, on all cores
+    ///
+    /// Rows come in the order of the grid (the last parameter runs fastest) and are the same bytes whatever the number
+    /// of threads or shards. Ctrl-C keeps the rows that are done; --resume goes on from there.
+    #[command(
+        after_help = "Examples:\n  stickslip sweep beam --vary f=0:1:0.05 --out beam.csv\n  \
+                      stickslip sweep beam --vary f=0:1:0.05 --vary F2=0:400:10 --shard $K/$N --out part-$K.csv --resume\n  \
+                      stickslip merge part-*.csv > beam.csv"
+    )]
+    Sweep(SweepArguments),
+    /// Join the shards of a sweep into what one run would have written, checking that none is missing
+    #[command(after_help = "Example:\n  stickslip merge part-*.csv --out beam.csv")]
+    Merge {
+        /// The files of all shards, in any order
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// File to write; otherwise stdout
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Find every problem in scenario files, solving nothing
     Check {
         /// Files, or embedded scenarios
@@ -119,6 +142,46 @@ struct Replay {
     /// Go on after a command that fails
     #[arg(long)]
     keep_going: bool,
+}
+
+#[derive(Args, Debug)]
+struct SweepArguments {
+    /// A file, or an embedded scenario
+    #[arg(default_value = embedded::DEFAULT)]
+    scenario: String,
+    /// A parameter and its values: NAME=FROM:TO:STEP (TO included), NAME=FROM..TO/COUNT or NAME=VALUE; up to three
+    #[arg(long = "vary", value_name = "NAME=RANGE", required = true)]
+    axes: Vec<String>,
+    /// Change a parameter that is not varied, as `solve` does
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    settings: Vec<String>,
+    /// Covering vector: cohesive, ones or weight
+    #[arg(long)]
+    covering: Option<Covering>,
+    /// Tie-break: lexicographic, natural, first-row or random:SEED
+    #[arg(long)]
+    tie_break: Option<TieBreak>,
+    /// Engine: scheme, tableau or exact
+    #[arg(long)]
+    engine: Option<Engine>,
+    /// Only part K of N, for batch systems
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
+    /// File to write; otherwise stdout
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Continue the file if it is there
+    #[arg(long, requires = "out")]
+    resume: bool,
+    /// CSV, or JSON lines; otherwise by the ending of FILE, or CSV
+    #[arg(long, value_enum)]
+    format: Option<Rows>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Rows {
+    Csv,
+    Json,
 }
 
 /// What ends the program early.
@@ -243,6 +306,8 @@ fn run(cli: Cli) -> Result<u8, Failure> {
         None => Ok(0), // the REPL: `main` starts it
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
+        Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),
+        Some(Command::Merge { files, out: to }) => merge(&files, to.as_deref(), &mut out),
         Some(Command::Check { scenarios }) => check(&scenarios, &style, &mut out),
         Some(Command::Scenarios) => {
             crate::session::write_scenarios(&mut out, &style)?;
@@ -319,6 +384,91 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     }
     out.flush()?;
     Ok(exit_status(answer))
+}
+
+fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let usage = |message: String| Failure::Status(2, message);
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
+    let scenario = load(&arguments.scenario)?;
+    let axes: Vec<Axis> = arguments
+        .axes
+        .iter()
+        .map(|axis| Axis::parse(axis))
+        .collect::<Result<_, _>>()
+        .map_err(|error| usage(error.to_string()))?;
+    let grid = Grid::new(&scenario, axes).map_err(|error| usage(error.to_string()))?;
+    let settings: Vec<Vec<String>> = arguments
+        .settings
+        .iter()
+        .map(|setting| vec![setting.clone()])
+        .chain(rule("covering", arguments.covering))
+        .chain(rule("tie-break", arguments.tie_break))
+        .chain(rule("engine", arguments.engine))
+        .collect();
+    let session = Session::with_settings(scenario, &settings, &watch);
+    watch.clear();
+    let session = session?;
+    let Some(prepared) = session.prepared() else {
+        return Err(Failure::Status(4, "no prepared geometry".to_owned()));
+    };
+    let format = match (arguments.format, &arguments.out) {
+        (Some(Rows::Csv), _) | (None, None) => RowFormat::Csv,
+        (Some(Rows::Json), _) => RowFormat::Json,
+        (None, Some(path)) => paths::format_of(path)?,
+    };
+    let sweep = Sweep {
+        prepared: &prepared,
+        scenario: session.scenario(),
+        values: session.values(),
+        rules: session.rules(),
+        grid: &grid,
+        shard: arguments.shard.unwrap_or(Shard::WHOLE),
+        format,
+    };
+    let done = match &arguments.out {
+        Some(path) => {
+            let done = run_to_file(&sweep, path, arguments.resume, &watch);
+            watch.clear();
+            let done = done.map_err(|error| usage(error.to_string()))?;
+            writeln!(out, "{}", style.text(&paths::done_sentence(&done, path)))?;
+            done
+        }
+        None => {
+            out.write_all(sweep.preamble().as_bytes())?;
+            let done = sweep.run(0, out, &watch);
+            watch.clear();
+            done?
+        }
+    };
+    Ok(if done.is_complete() { 0 } else { 130 })
+}
+
+fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<u8, Failure> {
+    let failed = |error: SweepFileError| match error {
+        SweepFileError::Output(error) => Failure::Output(error),
+        error => Failure::Status(2, error.to_string()),
+    };
+    match to {
+        None => {
+            let mut buffer = io::BufWriter::new(out);
+            sweep_file::merge(files, &mut buffer).map_err(failed)?;
+        }
+        Some(path) => {
+            let mut rows = Ok(0);
+            let written = atomic::write(path, |file| {
+                rows = sweep_file::merge(files, file);
+                match &rows {
+                    Ok(_) => Ok(()),
+                    Err(error) => Err(io::Error::other(error.to_string())),
+                }
+            });
+            let rows = rows.map_err(failed)?;
+            written.map_err(|error| Failure::Status(2, error.to_string()))?;
+            writeln!(out, "{rows} rows written to {}", path.display())?;
+        }
+    }
+    Ok(0)
 }
 
 /// `set` words of a rule given as an option.

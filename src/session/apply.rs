@@ -12,7 +12,7 @@ use crate::view::number::short;
 use crate::view::status;
 use crate::view::style::Role;
 
-use super::command::Command;
+use super::command::{Command, Export};
 use super::expect::{self, Facts};
 use super::values::{self, Setting};
 use super::{Change, CommandError, Next, Output, Session, Setup, help, journal, save, script};
@@ -57,11 +57,25 @@ impl Session {
                 at,
                 width,
                 height,
-                bar,
-            } => self.plot(picture, &at, width, height, bar.as_deref(), io)?,
+                of,
+            } => self.plot(picture, &at, width, height, &of, io)?,
+            Command::Trace { name, to, through } => self.trace(&name, &to, through, io)?,
+            Command::Limit { name } => self.limit(&name, io)?,
+            Command::Sensitivity { parameter } => self.sensitivity(parameter.as_deref(), io)?,
+            Command::Stages { stage } => self.stages(stage, io)?,
+            Command::Sweep {
+                words,
+                out,
+                resume,
+                shard,
+            } => self.sweep(&words, out.as_deref(), resume, shard, io)?,
             Command::Source { file } => return script::source(self, &file, io),
             Command::Record { file } => self.record(&file, io)?,
             Command::Expect { words } => self.expect(&words, io)?,
+            Command::Export {
+                what: Export::Path,
+                file,
+            } => self.export_path(&file, io)?,
             Command::Export { what, file } => self.export(what, &file, io)?,
             Command::Echo { words } => io.say(&words.join(" "))?,
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
@@ -111,6 +125,7 @@ impl Session {
         self.take_answer(solved);
         if !same_scenario {
             self.previous = None;
+            self.path = None;
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ mod exports;
 pub mod help;
 pub mod journal;
 mod output;
+pub mod paths;
 mod plots;
 mod questions;
 mod record;
@@ -34,6 +35,7 @@ use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolut
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
+use crate::path::record::PathRecord;
 use crate::solve::{self, PrepareError, Prepared, Solved};
 use crate::watch::Watch;
 
@@ -96,6 +98,8 @@ pub struct Session {
     trouble: Option<OutcomeKind>,
     /// Depth of nested scripts.
     depth: usize,
+    /// What the last `trace` or `stages` followed.
+    path: Option<Arc<PathRecord>>,
 }
 
 impl Session {
@@ -149,6 +153,7 @@ impl Session {
             last_error: None,
             trouble: None,
             depth: 0,
+            path: None,
         };
         session.take_answer(Some(solved));
         Ok(session)
@@ -246,6 +251,11 @@ impl Session {
             Some(step) => solved.plain_at(step),
             None => solved.answer.solution.clone(),
         }
+    }
+
+    /// What the last `trace` or `stages` followed.
+    pub fn path(&self) -> Option<Arc<PathRecord>> {
+        self.path.clone()
     }
 
     /// The commands given so far.

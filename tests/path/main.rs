@@ -1,0 +1,8 @@
+//! Paths: loads, friction, history, sweeps, and the commands that follow them.
+
+mod friction;
+mod load;
+mod random;
+mod session;
+mod stages;
+mod sweep;
