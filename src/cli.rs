@@ -13,7 +13,8 @@ use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::repl::{self, Signals, TerminalWatch};
 use crate::session::script;
-use crate::session::{CommandError, Format, Output, Session};
+use crate::session::{CommandError, Format, Next, Output, Session};
+use crate::tui::{self, action::Leave};
 use crate::view;
 use crate::view::style::{Role, Style};
 
@@ -75,6 +76,12 @@ enum Command {
         /// Files, or embedded scenarios
         #[arg(required = true, value_name = "SCENARIO")]
         scenarios: Vec<String>,
+    },
+    /// Show a scenario in the full screen: vary it and watch
+    Tui {
+        /// A file, or an embedded scenario
+        #[arg(default_value = embedded::DEFAULT)]
+        scenario: String,
     },
     /// List the embedded scenarios
     Scenarios,
@@ -188,14 +195,21 @@ fn run(cli: Cli) -> Result<u8, Failure> {
     let style = cli.look.style(&io::stdout());
     let mut out = io::stdout();
     match cli.command {
-        None => {
-            let signals = Signals::install()?;
-            let watch = TerminalWatch::new(&signals);
-            let scenario = load(&cli.scenario)?;
-            let session = Session::new(scenario, &watch);
-            watch.clear();
-            let mut session = session?;
-            Ok(repl::run(&mut session, style, &signals)?.status)
+        None => converse(&cli.scenario, style, None),
+        Some(Command::Tui { scenario }) => {
+            if !repl::is_interactive() || repl::is_dumb() {
+                return Err(Failure::Status(
+                    2,
+                    "the full screen needs a terminal that understands cursor codes; `stickslip solve` and \
+                     `stickslip replay` work without"
+                        .to_owned(),
+                ));
+            }
+            let start = tui::Start {
+                tour: false,
+                home: Leave::Quit,
+            };
+            converse(&scenario, style, Some(start))
         }
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
@@ -240,6 +254,45 @@ impl Look {
 
 fn load(name: &str) -> Result<Scenario, Failure> {
     load_named_or_file(name).map_err(|problems| Failure::Status(2, problems.to_string()))
+}
+
+/// The REPL and the full screen by turns, with one session.
+fn converse(scenario: &str, style: Style, screen: Option<tui::Start>) -> Result<u8, Failure> {
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
+    let scenario = load(scenario)?;
+    let session = Session::new(scenario, &watch);
+    watch.clear();
+    let mut session = session?;
+    if repl::is_interactive() {
+        repl::keep_journal(&mut session);
+    }
+    let mut screen = screen;
+    let mut again = false;
+    loop {
+        if let Some(start) = screen.take() {
+            let (back, ended) = tui::run(session, style, start)?;
+            session = back;
+            if ended.leave == Leave::Quit {
+                // after a hang-up the journal stays: the next start offers it
+                if !ended.hung_up {
+                    session.close()?;
+                }
+                return Ok(ended.status);
+            }
+        }
+        let ended = repl::run(&mut session, style, &signals, again)?;
+        again = true;
+        match ended.next {
+            Next::FullScreen { tour } => {
+                screen = Some(tui::Start {
+                    tour,
+                    home: Leave::Repl,
+                });
+            }
+            Next::Continue | Next::Quit => return Ok(ended.status),
+        }
+    }
 }
 
 fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {

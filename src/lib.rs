@@ -11,5 +11,6 @@ pub mod model;
 pub mod repl;
 pub mod session;
 pub mod solve;
+pub mod tui;
 pub mod view;
 pub mod watch;

@@ -159,6 +159,10 @@ pub enum Command {
         bar: Option<String>,
     },
 
+    /// Go to the full screen, with this session; `q` there comes back
+    #[command(after_help = "Example:\n  tui")]
+    Tui,
+
     /// Run the commands of a script
     #[command(after_help = "Example:\n  source scenarios/scripts/beam.stick")]
     Source {
@@ -238,6 +242,9 @@ pub enum Command {
         #[arg(value_name = "COMMAND")]
         command: Option<String>,
     },
+    /// Take the guided tour: six steps in the full screen, from sticking to the ray
+    #[command(after_help = "Example:\n  tour")]
+    Tour,
     /// List the commands given so far
     #[command(after_help = "Example:\n  history")]
     History,
@@ -323,12 +330,12 @@ pub const GROUPS: &[(&str, &[&str])] = &[
     ),
     ("pivots", &["pivots", "step", "why"]),
     ("trouble", &["ray"]),
-    ("pictures", &["plot"]),
+    ("pictures", &["plot", "tui"]),
     (
         "scripts",
         &["source", "record", "expect", "export", "echo", "restore"],
     ),
-    ("help", &["help", "history", "quit"]),
+    ("help", &["help", "tour", "history", "quit"]),
 ];
 
 /// Clap's view of one line.

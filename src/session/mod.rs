@@ -15,6 +15,7 @@ mod record;
 mod reports;
 pub mod save;
 pub mod script;
+mod side;
 pub mod values;
 pub mod words;
 pub mod worker;
@@ -33,6 +34,7 @@ use crate::watch::Watch;
 pub use apply::write_scenarios;
 pub use error::CommandError;
 pub use output::{Format, Output};
+pub use side::{AllAnswers, OneAnswer};
 
 use journal::{Journal, LeftOver};
 use record::Recorder;
@@ -45,6 +47,11 @@ pub enum Next {
     Continue,
     /// The end.
     Quit,
+    /// The full screen, with the same session.
+    FullScreen {
+        /// Whether it begins with the tour.
+        tour: bool,
+    },
 }
 
 /// What the user has chosen: all that `undo` brings back.
@@ -190,6 +197,11 @@ impl Session {
     /// The answer before the last change.
     pub fn previous_answer(&self) -> Option<&Answer> {
         self.previous.as_deref().map(|solved| &solved.answer)
+    }
+
+    /// The solved state before the last change, shared.
+    pub fn previous(&self) -> Option<Arc<Solved>> {
+        self.previous.clone()
     }
 
     /// The pivot chosen by `step`; `None` at the end.

@@ -255,7 +255,7 @@ impl Prepared {
 
     /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
     /// given contact system.
-    fn add_released_slips(
+    pub(crate) fn add_released_slips(
         &self,
         pairs: &mut [PairState],
         numbers: &ContactNumbers,
