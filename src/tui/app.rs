@@ -58,15 +58,19 @@ impl Pane {
         }
     }
 
-    /// What it is for, in a line.
-    pub fn explanation(self) -> &'static str {
-        match self {
-            Pane::Structure => "where the pairs stick, slip, open; displacements enlarged",
-            Pane::Parameters => "+ and - vary the marked one; it is solved at once",
-            Pane::Pairs => "forces and motion of each pair of nodes that may touch",
-            Pane::Pivots => "Lemke lets p down to 0; each pivot turns one joint",
-            Pane::Plot => "along the contact zone; p and P choose the curve",
-            Pane::Answer => "how the run ended, and its check",
+    /// What it is for, in a line; `plain` says that there is a bare LCP and no contact.
+    pub fn explanation(self, plain: bool) -> &'static str {
+        match (self, plain) {
+            (Pane::Structure, false) => "what sticks, slips, opens",
+            (Pane::Structure, true) => "",
+            (Pane::Parameters, _) => "+ and - vary it at once",
+            (Pane::Pairs, false) => "forces and motion of each contact pair",
+            (Pane::Pairs, true) => "z and w at the pivot shown",
+            (Pane::Pivots, false) => "each turns one joint",
+            (Pane::Pivots, true) => "each swaps two variables",
+            (Pane::Plot, false) => "along the contact; p: the next plot",
+            (Pane::Plot, true) => "p falls to 0, or ends in a ray",
+            (Pane::Answer, _) => "how the run ended, and its check",
         }
     }
 
@@ -352,9 +356,7 @@ impl State {
         if self.shown.values.is_empty() && self.focus == Pane::Parameters {
             self.focus = Pane::Pivots;
         }
-        if !self.plots().contains(&self.plot) {
-            self.plot = self.plots()[0];
-        }
+        self.plot = self.plots()[0];
     }
 
     /// How long until the next [`super::action::Action::Tick`]; `None` while nothing moves.

@@ -175,7 +175,11 @@ fn draw_pane(
     let inner = usize::from(area.width).saturating_sub(2);
     let explains = state.explains && state.tour.is_none();
     let mut below = if explains {
-        pane.explanation().to_owned()
+        let plain = matches!(
+            state.shown.scenario.source,
+            crate::model::scenario::Source::Lcp(_)
+        );
+        pane.explanation(plain).to_owned()
     } else {
         String::new()
     };

@@ -96,23 +96,32 @@ fn cut_columns(area: Rect, columns: u16) -> (Rect, Rect) {
 fn middle(state: &State, body: Rect, places: &mut Places) {
     let (left, right) = cut_columns(body, body.width - (body.width * 2 / 5).clamp(30, 44));
     let (parameters, pivots) = cut_rows(right, parameter_rows(state).min(right.height / 2));
-    places.panes = vec![
-        (state.tab, left),
-        (Pane::Parameters, parameters),
-        (Pane::Pivots, pivots),
-    ];
-    places.tabs = Some((left, SHARED.to_vec()));
+    if state.shown.structure().is_some_and(is_flat) {
+        // a beam needs few rows: there is room for what happens along it
+        let (structure, rest) = cut_rows(left, 8);
+        let front = match state.tab {
+            Pane::Structure => Pane::Plot,
+            tab => tab,
+        };
+        places.panes = vec![(front, rest), (Pane::Structure, structure)];
+        places.tabs = Some((rest, SHARED[1..].to_vec()));
+    } else {
+        places.panes = vec![(state.tab, left)];
+        places.tabs = Some((left, SHARED.to_vec()));
+    }
+    places.panes.push((Pane::Parameters, parameters));
+    places.panes.push((Pane::Pivots, pivots));
 }
 
 fn wide(state: &State, body: Rect, places: &mut Places) {
-    let (left, right) = cut_columns(body, body.width - (body.width * 2 / 5).clamp(50, 90));
-    let flat = state.shown.structure().is_none_or(is_flat);
-    let share = if flat {
-        left.height / 4
-    } else {
-        left.height / 2
+    let (left, right) = cut_columns(body, body.width - (body.width / 2).clamp(56, 90));
+    let rows = match state.shown.structure() {
+        Some(structure) if !is_flat(structure) => left.height / 2,
+        Some(_) => left.height / 4,
+        None if state.shown.pairs.is_empty() => 5,
+        None => 9,
     };
-    let (structure, plot) = cut_rows(left, share.max(9));
+    let (structure, plot) = cut_rows(left, rows.max(5));
     let pivot_rows = state.shown.answer().map_or(0, |answer| answer.pivots.len());
     let (parameters, rest) = cut_rows(right, parameter_rows(state).min(right.height / 3));
     let (rest, answer) = cut_rows(rest, rest.height - 9.min(rest.height / 4));

@@ -58,7 +58,7 @@ fn help(state: &State) -> Vec<Line<'static>> {
         let mut heading = vec![Span::styled(context.title(), look.role(Role::Title))];
         if let Context::Pane(pane) = context {
             heading.push(Span::styled(
-                look.text(&format!("  {}", pane.explanation())),
+                look.text(&format!("  {}", pane.explanation(false))),
                 look.role(Role::Muted),
             ));
         }

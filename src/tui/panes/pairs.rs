@@ -28,9 +28,17 @@ fn table(state: &State, order: &[usize], width: usize) -> (Vec<Line<'static>>, u
         .map(|index| state.shown.pairs[*index].clone())
         .collect();
     let units = &state.shown.scenario.units;
-    let lines = super::report(state.look, width, |out, style| {
+    let mut lines = super::report(state.look, width, |out, style| {
         write(out, &pairs, units, style)
     });
+    // the remark on columns that found no room; no pair begins with a bracket
+    if lines
+        .last()
+        .and_then(|line| line.spans.first())
+        .is_some_and(|span| span.content.trim_start().starts_with('('))
+    {
+        lines.pop();
+    }
     let heading = lines.len().saturating_sub(pairs.len());
     (lines, heading)
 }

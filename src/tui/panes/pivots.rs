@@ -3,6 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
+use unicode_width::UnicodeWidthStr;
 
 use crate::answer::record::PivotRecord;
 use crate::tui::app::{Pane, State};
@@ -90,12 +91,30 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let tie = if ties { 7 } else { 0 };
     // mark, step, what turned, p, ties
     let fixed = 2 + step + 2 + 1 + number + tie;
-    let words = usize::from(area.width).saturating_sub(fixed).clamp(6, 30);
+    // what stopped p, where there is room for it
+    let longest = pivots
+        .iter()
+        .map(|pivot| pivot.leaving.width())
+        .max()
+        .unwrap_or(0);
+    let until = if usize::from(area.width) >= fixed + 24 + longest {
+        longest.max(5) + 3
+    } else {
+        0
+    };
+    let words = usize::from(area.width)
+        .saturating_sub(fixed + until)
+        .clamp(6, 30);
     let heading = format!(
-        "  {} {} {}{}",
+        "  {} {} {}{}{}",
         pad_left("", step),
         pad_right(" turned", words + 1),
         pad_left("p", number),
+        if until > 0 {
+            pad_right("   until", until)
+        } else {
+            String::new()
+        },
         if ties { "   ties" } else { "" }
     );
     buffer.set_stringn(
@@ -109,14 +128,33 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         let y = area.y + HEADING + row as u16;
         let here = first + row == selected;
         let mark = if here { look.report(1).mark() } else { ' ' };
+        let mut what = turned(pivot, arrow);
+        if what.width() > words {
+            what = what
+                .replace(&format!(" {arrow} "), " ")
+                .replace(" in, ", "/")
+                .replace(" out", "");
+        }
         let text = format!(
             "{mark} {}  {} {}",
             pad_left(&pivot.step.to_string(), step),
-            pad_right(&look.fit(&turned(pivot, arrow), words), words),
+            pad_right(&look.fit(&what, words), words),
             pad_left(&numbers[first + row], number),
         );
         let style = look.role(if here { Role::Accent } else { Role::Plain });
         let (x, _) = buffer.set_stringn(area.x, y, text, usize::from(area.width), style);
+        let x = if until > 0 {
+            let text = format!(
+                "   {}",
+                pad_right(&look.fit(&pivot.leaving, until - 3), until - 3)
+            );
+            let room = usize::from(area.right().saturating_sub(x));
+            buffer
+                .set_stringn(x, y, text, room, look.role(Role::Muted))
+                .0
+        } else {
+            x
+        };
         if pivot.ties.len() > 1 {
             let text = pad_left(&pivot.ties.len().to_string(), tie);
             let room = usize::from(area.right().saturating_sub(x));

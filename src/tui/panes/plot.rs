@@ -56,6 +56,10 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
     };
     let now_label = match shown.position {
         Some(step) => format!("pivot {step}"),
+        None if shown.at_ray() => {
+            let p = shown.p.map(crate::view::number::short).unwrap_or_default();
+            format!("last vertex, p = {p}")
+        }
         None => String::new(),
     };
     let before: Option<&[PairState]> = shown

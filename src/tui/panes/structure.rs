@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use crate::answer::record::PairState;
+use crate::answer::record::{PairDirection, PairState, State as PairMotion};
 use crate::model::structure::Structure;
 use crate::tui::app::{PERIOD, Pane, State};
 use crate::view::number::short;
@@ -197,16 +197,29 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// The signs of a picture, each once.
+/// The signs of a picture: those of one meaning together.
 #[derive(Default)]
 struct Legend(Vec<(String, Role, String)>);
 
 impl Legend {
-    fn note(&mut self, sign: impl ToString, role: Role, word: &str) {
-        let entry = (sign.to_string(), role, word.to_owned());
-        if !self.0.contains(&entry) {
-            self.0.push(entry);
+    fn note(&mut self, sign: char, role: Role, word: &str) {
+        match self.0.iter_mut().find(|(_, r, w)| *r == role && w == word) {
+            Some((signs, ..)) if signs.contains(sign) => {}
+            Some((signs, ..)) => signs.push(sign),
+            None => self.0.push((sign.to_string(), role, word.to_owned())),
         }
+    }
+
+    /// States of pairs first: they are what one looks for.
+    fn sort(&mut self) {
+        self.0
+            .sort_by_key(|(_, role, word)| match (role, word.as_str()) {
+                (Role::State(_), _) => 0,
+                (_, "load") => 1,
+                (_, "before") => 2,
+                (_, "undeformed") => 4,
+                _ => 3,
+            });
     }
 
     fn draw(&self, state: &State, area: Rect, buffer: &mut Buffer) {
@@ -275,7 +288,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
             Role::Muted,
             faint(&lines(structure, &rest, 0.0).outline, 5.0),
         );
-        legend.note(look.sign('┈', ':'), Role::Muted, "undeformed");
+        legend.note(look.sign('·', '.'), Role::Muted, "undeformed");
     }
     if grid_pitch(structure, view.pitch) >= GRID_PITCH {
         canvas.draw_under(Role::Muted, faint(&now.grid, 2.0));
@@ -302,6 +315,8 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
             legend.note(sign, Role::Muted, "spring");
         }
     }
+    let (left, right) = range(structure.nodes.iter().map(|node| node.position[0]));
+    let middle = view.place((0.5 * (left + right), 0.0)).0;
     for arrow in arrows(structure, &shown.values) {
         let count = arrow.nodes.len().max(1) as f64;
         let (mut x, mut y) = (0.0, 0.0);
@@ -311,13 +326,25 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
             y += node_y / count;
         }
         for (sign, step_x, step_y) in load_signs(arrow.force, look.ascii) {
-            let place = (x + step_x, y + step_y);
+            // a push stands before its body, a pull behind it: outside in either case
+            let side = if x < middle {
+                -step_x.abs()
+            } else {
+                step_x.abs()
+            };
+            let place = (x + side, y + step_y);
             if view.holds(place) {
                 canvas.put(place.0, place.1, sign, Role::Accent);
                 legend.note(sign, Role::Accent, "load");
             }
         }
     }
+    // in the mode of a ray a pair is shown by its motion
+    let directions = shown
+        .answer()
+        .filter(|_| shown.at_ray() && shown.mode.is_some())
+        .and_then(|answer| answer.ray.as_ref())
+        .map(|ray| ray.direction.as_slice());
     let mut marks: Vec<(usize, usize, bool)> = Vec::new();
     for (index, pair) in structure.pairs.iter().enumerate() {
         let Some(now) = shown.pairs.get(index) else {
@@ -327,11 +354,14 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         if !view.holds((x, y)) {
             continue;
         }
-        let sign = pair_sign(now.state, pair.tangent(), look.ascii);
-        let role = Role::State(now.state);
+        let state_shown = directions
+            .and_then(|directions| directions.get(index))
+            .map_or(now.state, in_motion);
+        let sign = pair_sign(state_shown, pair.tangent(), look.ascii);
+        let role = Role::State(state_shown);
         canvas.put(x, y, sign, role);
         canvas.label(x, y, &look.text(&pair.id), Role::Muted);
-        legend.note(sign, role, now.state.word());
+        legend.note(sign, role, state_shown.word());
         let changed =
             shown.position.is_none() && shown.changes.iter().any(|change| change.pair == pair.id);
         let selected = index == state.pair && matches!(state.focus, Pane::Pairs | Pane::Structure);
@@ -352,7 +382,22 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
             });
         }
     }
+    legend.sort();
     legend.draw(state, area, buffer);
+}
+
+/// The state a pair moves in, in the direction of a ray (largest 1).
+fn in_motion(direction: &PairDirection) -> PairMotion {
+    const NOTHING: f64 = 1e-9;
+    if direction.z_n > NOTHING {
+        PairMotion::Open
+    } else if direction.z_t > NOTHING {
+        PairMotion::SlipPlus
+    } else if direction.z_t < -NOTHING {
+        PairMotion::SlipMinus
+    } else {
+        PairMotion::Stick
+    }
 }
 
 /// The pairs of a contact system along a line.
@@ -392,5 +437,6 @@ fn draw_zone(state: &State, area: Rect, buffer: &mut Buffer) {
             buffer.set_line(area.x, area.y + row as u16, line, area.width);
         }
     }
+    legend.sort();
     legend.draw(state, area, buffer);
 }
