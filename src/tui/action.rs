@@ -189,8 +189,18 @@ pub struct Done {
     pub answers: Option<AllAnswers>,
 }
 
+impl std::fmt::Debug for Done {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Done")
+            .field("job", &self.job)
+            .field("error", &self.error)
+            .field("next", &self.next)
+            .finish_non_exhaustive()
+    }
+}
+
 /// What happens to the screen.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub enum Action {
     /// A bound key.
     Do(Do),
