@@ -80,7 +80,7 @@ fn draw_title(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
     let shown = &state.shown;
     let (outcome, role) = outcome(state);
-    let outcome = look.fit(&outcome, usize::from(area.width) * 2 / 3);
+    let outcome = look.fit(&outcome, usize::from(area.width).saturating_sub(12));
     let width = outcome.width() as u16;
     let start = area.right().saturating_sub(width);
     buffer.set_stringn(
@@ -212,30 +212,12 @@ fn draw_pane(
 /// The sentence of the pivot, or the tour.
 fn draw_sentence(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
-    let (head, text) = match state.tour.and_then(|at| Some((at, tour::STEPS.get(at)?))) {
-        Some((at, step)) => {
-            let keys = state.keys.rows(keymap::Context::Tour, look.ascii);
-            let key = |name: &str| {
-                keys.iter()
-                    .find(|(_, binding)| binding.name == name)
-                    .map_or("", |(keys, _)| keys)
-            };
-            let head = format!(
-                "Tour {} of {} ({} on, {} back, {} ends): ",
-                at + 1,
-                tour::STEPS.len(),
-                key("tour-next"),
-                key("tour-back"),
-                key("tour-end")
-            );
-            (head, step.text.to_owned())
-        }
-        None => (String::new(), panes::pivots::sentence(state)),
-    };
     let width = usize::from(area.width);
     let report = look.report(width);
-    let head = look.text(&head);
-    let mut lines = report.wrap(&format!("{head}{text}"), width);
+    let (mut lines, head) = match state.tour.and_then(|at| tour::lines(state, at, width)) {
+        Some(lines) => lines,
+        None => (report.wrap(&panes::pivots::sentence(state), width), 0),
+    };
     let rows = usize::from(area.height);
     if lines.len() > rows && rows > 0 {
         lines.truncate(rows);
@@ -250,11 +232,7 @@ fn draw_sentence(state: &State, area: Rect, buffer: &mut Buffer) {
     }
     for (row, line) in lines.iter().enumerate() {
         let y = area.y + row as u16;
-        let cut = if row == 0 {
-            head.trim_end().len().min(line.len())
-        } else {
-            0
-        };
+        let cut = if row == 0 { head.min(line.len()) } else { 0 };
         let cut = if line.is_char_boundary(cut) { cut } else { 0 };
         let spans = vec![
             Span::styled(line[..cut].to_owned(), look.role(Role::Accent)),

@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::app::{Pane, State};
+use super::tour;
 
 /// No pane makes sense below this.
 pub const SMALLEST: (u16, u16) = (40, 12);
@@ -46,10 +47,13 @@ pub fn places(state: &State) -> Option<Places> {
     let roomy = height >= SEVERAL.1;
     let about = take(u16::from(roomy));
     let sentence = match (state.tour, roomy) {
-        (Some(_), true) => take(if width >= 110 { 4 } else { 6 }),
+        (Some(at), true) => {
+            let lines = tour::lines(state, at, usize::from(width)).map_or(2, |(lines, _)| lines.len());
+            // at most 6
+            take(lines.clamp(2, 6) as u16)
+        }
         (Some(_), false) => take(4),
-        (None, true) => take(2),
-        (None, false) => take(1),
+        (None, _) => take(2),
     };
     let body = Rect::new(0, 1, width, left - 1);
     let mut places = Places {

@@ -20,7 +20,7 @@ use super::theme::Look;
 
 /// Width of the text of an overlay.
 pub fn text_width(state: &State) -> usize {
-    usize::from(state.size.0).saturating_sub(6).clamp(20, 130)
+    usize::from(state.size.0).saturating_sub(6).clamp(20, 160)
 }
 
 /// Lines of an overlay that are seen at once.
@@ -113,9 +113,10 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
         .max()
         .unwrap_or(0)
         .max(4);
-    const NUMBER: usize = 12;
-    const STATE: usize = 12;
-    let block = STATE + 3 * NUMBER + 2;
+    const NUMBER: usize = 11;
+    let words = found.answers.iter().flat_map(|answer| &answer.pairs);
+    let word = words.map(|pair| state_words(pair).len()).max().unwrap_or(0) + 1;
+    let block = word + 3 * NUMBER + 2;
     let fit = (width.saturating_sub(id + 1) / block).max(1);
     let all = || found.answers.iter().flat_map(|answer| &answer.pairs);
     let forces = largest(all().flat_map(|pair| [pair.x_n, pair.x_t]));
@@ -147,7 +148,7 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
         lines.push(Line::from(head));
         let columns = format!(
             "{}{}{}{}  ",
-            pad_right("state", STATE),
+            pad_right("state", word),
             pad_left("x_n", NUMBER),
             pad_left(&look.text("x_τ"), NUMBER),
             pad_left(&look.text("z_τ"), NUMBER)
@@ -168,7 +169,7 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
             for answer in answers {
                 let pair: &PairState = &answer.pairs[row];
                 spans.push(Span::styled(
-                    pad_right(state_words(pair), STATE),
+                    pad_right(state_words(pair), word),
                     look.role(Role::State(pair.state)),
                 ));
                 let numbers = [
@@ -314,8 +315,7 @@ fn draw_candidates(state: &State, entry: &super::entry::Entry, bottom: Rect, buf
         .min(entry.offered.len().saturating_sub(most));
     let shown: Vec<_> = entry.offered.iter().skip(first).take(most).collect();
     let name = shown.iter().map(|c| c.text.width()).max().unwrap_or(0);
-    let about = shown.iter().map(|c| c.about.width()).max().unwrap_or(0);
-    let width = (name + about + 4).min(usize::from(bottom.width)) as u16;
+    let width = bottom.width;
     let height = shown.len() as u16;
     let place = Rect::new(bottom.x, bottom.y.saturating_sub(height), width, height);
     Clear.render(place, buffer);

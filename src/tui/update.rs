@@ -474,6 +474,7 @@ pub fn begin_tour(state: &mut State, at: usize) -> Vec<Effect> {
         return Vec::new();
     };
     state.tour = Some(at);
+    state.message = None;
     state.overlay = Overlay::None;
     state.input = Input::None;
     state.playing = false;
@@ -556,6 +557,13 @@ fn settle(state: &mut State, job: &Job) {
         && let Some(step) = tour::STEPS.get(at)
     {
         state.plot = step.plot;
+        if at == 0 && (state.shown.previous.is_some() || !state.shown.changes.is_empty()) {
+            // the tour begins here: there is nothing before it
+            let mut shown = (*state.shown).clone();
+            shown.previous = None;
+            shown.changes.clear();
+            state.shown = Arc::new(shown);
+        }
     }
     let plots = state.plots();
     if !plots.contains(&state.plot) {
