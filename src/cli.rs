@@ -5,16 +5,14 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
-use crate::answer::record::{Answer, OutcomeKind, RayClass};
 use crate::export::json;
 use crate::model::embedded;
 use crate::model::load::load_named_or_file;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
-use crate::repl::{self, Signals, TerminalWatch};
-use crate::session::script;
-use crate::session::{CommandError, Format, Next, Output, Session};
-use crate::tui::{self, action::Leave};
+use crate::session::{Answer, exit_status, script};
+use crate::session::{CommandError, Format, Output, Session};
+use crate::signals::{Signals, TerminalWatch, is_dumb};
 use crate::view;
 use crate::view::style::{Role, Style};
 
@@ -152,29 +150,96 @@ impl From<CommandError> for Failure {
     }
 }
 
-/// Runs the program with the arguments of the process; its exit status.
-pub fn main() -> u8 {
+/// What comes after the arguments: `main` switches to the next face.
+pub enum Next {
+    /// The program is done.
+    Exit(u8),
+    /// The command line that stays.
+    Repl(Box<Start>),
+    /// The full screen.
+    Tui(Box<Start>),
+}
+
+/// What the REPL and the full screen start from.
+pub struct Start {
+    /// The scenario, loaded and solved.
+    pub session: Session,
+    /// Style of stdout.
+    pub style: Style,
+    /// The handlers, installed.
+    pub signals: Signals,
+    /// Style of stderr.
+    pub errors: Style,
+}
+
+/// The exit status of a face; tells on stderr, in the style `errors`, why it could not go on.
+pub fn finish(ended: io::Result<u8>, errors: &Style) -> u8 {
+    status(ended.map_err(Failure::Output), errors)
+}
+
+/// Runs what the arguments of the process ask for, up to the REPL.
+pub fn main() -> Next {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => {
-            // help and version go to stdout and are no error
-            let status = u8::try_from(error.exit_code()).unwrap_or(2);
-            return match error.print() {
-                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => 2,
-                _ => status,
-            };
-        }
+        Err(error) => return Next::Exit(usage(&error)),
     };
     let errors = cli.look.style(&io::stderr());
-    match run(cli) {
+    let started = match &cli.command {
+        None => start(&cli, &cli.scenario, errors).map(|start| Next::Repl(Box::new(start))),
+        Some(Command::Tui { scenario }) => {
+            start_screen(&cli, scenario, errors).map(|start| Next::Tui(Box::new(start)))
+        }
+        Some(_) => return Next::Exit(status(run(cli), &errors)),
+    };
+    started.unwrap_or_else(|failure| Next::Exit(status(Err(failure), &errors)))
+}
+
+/// Help and version go to stdout and are no error.
+fn usage(error: &clap::Error) -> u8 {
+    let status = u8::try_from(error.exit_code()).unwrap_or(2);
+    match error.print() {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => 2,
+        _ => status,
+    }
+}
+
+fn start_screen(cli: &Cli, scenario: &str, errors: Style) -> Result<Start, Failure> {
+    if !io::stdin().is_terminal() || !io::stdout().is_terminal() || is_dumb() {
+        return Err(Failure::Status(
+            2,
+            "the full screen needs a terminal that understands cursor codes; `stickslip solve` and `stickslip replay` \
+             work without"
+                .to_owned(),
+        ));
+    }
+    start(cli, scenario, errors)
+}
+
+fn start(cli: &Cli, scenario: &str, errors: Style) -> Result<Start, Failure> {
+    let style = cli.look.style(&io::stdout());
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
+    let scenario = load(scenario)?;
+    let session = Session::new(scenario, &watch);
+    watch.clear();
+    Ok(Start {
+        session: session?,
+        style,
+        signals,
+        errors,
+    })
+}
+
+fn status(result: Result<u8, Failure>, errors: &Style) -> u8 {
+    match result {
         Ok(status) => status,
         Err(Failure::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
         Err(Failure::Output(error)) => {
-            tell(&errors, &format!("cannot write the result: {error}"));
+            tell(errors, &format!("cannot write the result: {error}"));
             2
         }
         Err(Failure::Status(status, message)) => {
-            tell(&errors, &message);
+            tell(errors, &message);
             status
         }
     }
@@ -195,22 +260,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
     let style = cli.look.style(&io::stdout());
     let mut out = io::stdout();
     match cli.command {
-        None => converse(&cli.scenario, style, None),
-        Some(Command::Tui { scenario }) => {
-            if !repl::is_interactive() || repl::is_dumb() {
-                return Err(Failure::Status(
-                    2,
-                    "the full screen needs a terminal that understands cursor codes; `stickslip solve` and \
-                     `stickslip replay` work without"
-                        .to_owned(),
-                ));
-            }
-            let start = tui::Start {
-                tour: false,
-                home: Leave::Quit,
-            };
-            converse(&scenario, style, Some(start))
-        }
+        None | Some(Command::Tui { .. }) => Ok(0), // `main` starts those
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
         Some(Command::Check { scenarios }) => check(&scenarios, &style, &mut out),
@@ -235,7 +285,7 @@ impl Look {
         let color = match self.color {
             Color::Always => true,
             Color::Never => false,
-            Color::Auto => terminal && !set("NO_COLOR") && !repl::is_dumb(),
+            Color::Auto => terminal && !set("NO_COLOR") && !is_dumb(),
         };
         let width = match self.width {
             Some(width) => usize::from(width),
@@ -254,45 +304,6 @@ impl Look {
 
 fn load(name: &str) -> Result<Scenario, Failure> {
     load_named_or_file(name).map_err(|problems| Failure::Status(2, problems.to_string()))
-}
-
-/// The REPL and the full screen by turns, with one session.
-fn converse(scenario: &str, style: Style, screen: Option<tui::Start>) -> Result<u8, Failure> {
-    let signals = Signals::install()?;
-    let watch = TerminalWatch::new(&signals);
-    let scenario = load(scenario)?;
-    let session = Session::new(scenario, &watch);
-    watch.clear();
-    let mut session = session?;
-    if repl::is_interactive() {
-        repl::keep_journal(&mut session);
-    }
-    let mut screen = screen;
-    let mut again = false;
-    loop {
-        if let Some(start) = screen.take() {
-            let (back, ended) = tui::run(session, style, start)?;
-            session = back;
-            if ended.leave == Leave::Quit {
-                // after a hang-up the journal stays: the next start offers it
-                if !ended.hung_up {
-                    session.close()?;
-                }
-                return Ok(ended.status);
-            }
-        }
-        let ended = repl::run(&mut session, style, &signals, again)?;
-        again = true;
-        match ended.next {
-            Next::FullScreen { tour } => {
-                screen = Some(tui::Start {
-                    tour,
-                    home: Leave::Repl,
-                });
-            }
-            Next::Continue | Next::Quit => return Ok(ended.status),
-        }
-    }
 }
 
 fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
@@ -367,18 +378,6 @@ fn write_answer(
         )?;
     }
     Ok(())
-}
-
-/// The status of a `solve` (see the help).
-fn exit_status(answer: &Answer) -> u8 {
-    match answer.outcome {
-        OutcomeKind::Trivial | OutcomeKind::Normal => 0,
-        OutcomeKind::Ray => match answer.ray.as_ref().map(|ray| ray.class) {
-            Some(RayClass::Mechanism | RayClass::NoEquilibrium) => 3,
-            Some(RayClass::Artefact | RayClass::Fault) | None => 4,
-        },
-        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => 4,
-    }
 }
 
 fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, Failure> {

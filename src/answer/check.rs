@@ -2,6 +2,7 @@
 
 use super::pairs::JointState;
 use super::record::Check;
+use crate::contact::complementarity::load_with_gaps;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::MirroredLcp;
@@ -11,15 +12,19 @@ use crate::model::pair::Law;
 /// Largest relative violation that an answer may have.
 pub const TOLERANCE: f64 = 1e-9;
 
-/// Checks an answer over the joints. Forces are relative to the largest joint force or load, displacements to the
-/// largest |z|, products to both. `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
+/// Checks an answer over the joints. Forces are relative to the largest joint force or load (gaps closed by force are
+/// a load), displacements to the largest |z|, products to both. `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
 pub fn check_contact(
     system: &ContactSystem,
     numbers: &ContactNumbers,
     state: &JointState,
     equilibrium: Option<f64>,
 ) -> Check {
-    let force = state.force.amax().max(numbers.load.amax());
+    let force = state
+        .force
+        .amax()
+        .max(numbers.load.amax())
+        .max(load_with_gaps(system, numbers).amax());
     let length = state.z.amax();
     let relative = |value: f64, size: f64| if size > 0.0 { value / size } else { value };
     let mut check = Check {
@@ -59,7 +64,7 @@ pub fn check_contact(
 /// Checks an answer of a bare LCP from M and q; w is computed afresh.
 pub fn check_plain(lcp: &MirroredLcp, point: &Point) -> Check {
     let z = nalgebra::DVector::from_column_slice(&point.z);
-    let response = &lcp.matrix * &z;
+    let response = &*lcp.matrix * &z;
     let length = z.amax();
     let mut check = Check::default();
     for i in 0..lcp.size() {

@@ -72,7 +72,12 @@ pub fn pair_states(
     contact: &ContactLcp,
     state: &JointState,
 ) -> Vec<PairState> {
-    let largest = state.force.amax().max(state.p);
+    // What the joints would carry if gaps were closed by force tells the size of rounding where all else is zero.
+    let largest = state
+        .force
+        .amax()
+        .max(state.p)
+        .max(load_with_gaps(system, numbers).amax());
     system
         .pairs
         .iter()

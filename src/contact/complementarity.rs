@@ -60,6 +60,8 @@ pub enum CoveringError {
 pub struct ContactLcp {
     /// The dimensionless LCP.
     pub lcp: Arc<MirroredLcp>,
+    /// f of each pair: what the matrix depends on, apart from R.
+    pub friction: Vec<f64>,
     /// What each row of the whole LCP stands for.
     pub rows: Vec<RowMeaning>,
     /// User's force = dimensionless × this.
@@ -85,6 +87,9 @@ fn power_of_two(value: f64) -> f64 {
 
 /// RF − R·(g, 0): the forces in the joints of the main system, gaps closed by force.
 pub fn load_with_gaps(system: &ContactSystem, numbers: &ContactNumbers) -> DVector<f64> {
+    if numbers.gap.iter().all(|gap| *gap == 0.0) {
+        return numbers.load.clone();
+    }
     let mut gap = DVector::zeros(system.joint_count());
     for (pair, value) in numbers.gap.iter().enumerate() {
         gap[pair] = *value;
@@ -97,6 +102,19 @@ pub fn load_with_gaps(system: &ContactSystem, numbers: &ContactNumbers) -> DVect
 /// # Errors
 /// Where the covering cannot cover q.
 pub fn contact_lcp(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    covering: Covering,
+) -> Result<ContactLcp, CoveringError> {
+    contact_lcp_like(None, system, numbers, covering)
+}
+
+/// As [`contact_lcp`], with the matrix of an earlier LCP of the same system where the friction is the same.
+///
+/// # Errors
+/// Where the covering cannot cover q.
+pub fn contact_lcp_like(
+    earlier: Option<&ContactLcp>,
     system: &ContactSystem,
     numbers: &ContactNumbers,
     covering: Covering,
@@ -153,16 +171,23 @@ pub fn contact_lcp(
         * 1e-9;
     let column_scale: Vec<f64> = joint_scale.iter().map(|s| s.max(floor)).collect();
 
-    let mut matrix = DMatrix::zeros(count, count);
-    for column in 0..count {
-        let b = joint_of(column);
-        for (row, &i) in normals.iter().enumerate() {
-            matrix[(row, column)] = r(i, b);
-        }
-        for (k, &(i, joint)) in tangentials.iter().enumerate() {
-            matrix[(normals.len() + k, column)] = r(joint, b) + friction_of(i) * r(i, b);
-        }
-    }
+    let same = earlier.filter(|earlier| earlier.friction == numbers.friction);
+    let matrix = same.map_or_else(
+        || {
+            let mut matrix = DMatrix::zeros(count, count);
+            for column in 0..count {
+                let b = joint_of(column);
+                for (row, &i) in normals.iter().enumerate() {
+                    matrix[(row, column)] = r(i, b);
+                }
+                for (k, &(i, joint)) in tangentials.iter().enumerate() {
+                    matrix[(normals.len() + k, column)] = r(joint, b) + friction_of(i) * r(i, b);
+                }
+            }
+            Arc::new(matrix)
+        },
+        |earlier| Arc::clone(&earlier.lcp.matrix),
+    );
     let mut q = DVector::zeros(count);
     let mut d = DVector::zeros(count);
     let mut row_scale = vec![0.0; count];
@@ -239,6 +264,7 @@ pub fn contact_lcp(
     };
     Ok(ContactLcp {
         lcp: Arc::new(lcp),
+        friction: numbers.friction.clone(),
         rows,
         force_unit,
         length_unit,

@@ -96,7 +96,13 @@ pub fn given_system(
         Some(kernel) => {
             for (index, motion) in kernel.iter().enumerate() {
                 let z = DVector::from_column_slice(motion);
-                let residual = (&full * &z).amax() / (largest_entry * z.amax());
+                let force = (&full * &z).amax();
+                // A stiffness of zero resists nothing: 0 / 0 is no residual.
+                let residual = if force == 0.0 && z.amax() > 0.0 {
+                    0.0
+                } else {
+                    force / (largest_entry * z.amax())
+                };
                 if residual.is_nan() || residual > GIVEN_KERNEL {
                     return Err(GivenError::NoKernel { index, residual });
                 }

@@ -4,6 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::model::pair::Law;
 
+/// A joint whose unit dislocation is this close (squared) to the kernel lies in it.
+const FREE: f64 = 1e-12;
+
 /// A pair as the contact algebra sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPair {
@@ -48,5 +51,40 @@ impl ContactSystem {
     /// Number k of joints.
     pub fn joint_count(&self) -> usize {
         self.stiffness.nrows()
+    }
+
+    /// Makes joints that carry no elastic force at all exactly such: a joint whose unit dislocation lies in the kernel
+    /// (it alone holds some motion of a part) has a zero row and column in R, not one of rounding noise, against which
+    /// every zero test that is relative to √R_ii would fail. The kernel is given a basis that contains it.
+    pub fn settle(&mut self) {
+        let k = self.joint_count();
+        let free: Vec<usize> = (0..k)
+            .filter(|&i| 1.0 - self.kernel.row(i).norm_squared() <= FREE)
+            .collect();
+        if free.is_empty() {
+            return;
+        }
+        let mut rest = self.kernel.clone();
+        for &i in &free {
+            self.stiffness.row_mut(i).fill(0.0);
+            self.stiffness.column_mut(i).fill(0.0);
+            rest.row_mut(i).fill(0.0);
+        }
+        let svd = rest.svd(true, false);
+        let mut columns: Vec<DVector<f64>> = free
+            .iter()
+            .map(|&i| DVector::from_fn(k, |j, _| f64::from(i == j)))
+            .collect();
+        if let Some(u) = svd.u {
+            // The rest of the basis is orthonormal too: its singular values are 1 or 0.
+            columns.extend(
+                svd.singular_values
+                    .iter()
+                    .zip(u.column_iter())
+                    .filter(|(value, _)| **value > 0.5)
+                    .map(|(_, column)| column.into_owned()),
+            );
+        }
+        self.kernel = DMatrix::from_columns(&columns);
     }
 }

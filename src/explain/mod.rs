@@ -1,5 +1,14 @@
 //! Why: pivots in sentences, rays by class, in the words of the structure.
 
+pub mod certificate;
+pub mod kernel;
+pub mod loose;
+pub mod margin;
+pub mod mode;
 pub mod ray;
+pub mod remedy;
 pub mod sentence;
+pub mod tableau;
+pub mod ties;
+pub mod vertex;
 pub mod words;

@@ -1,80 +1,222 @@
-//! Rays: class by the signs of theory §4, direction, and what it means.
+//! Rays: class by the signs of theory §4, verdict, the motion in words, the work of the loads on it, and what would
+//! stop it. Never more than was proved.
 
-use nalgebra::{DMatrix, DVector};
+use std::ops::ControlFlow;
 
+use nalgebra::DVector;
+
+use super::certificate::{Certificate, certify};
+use super::kernel::releasable_kernel;
+use super::mode::{Mode, mode, pair_words};
+use super::remedy::{Remedy, Try, digits, remedies, sentence};
 use super::words::{list, short};
-use crate::answer::record::{PairDirection, Ray, RayClass};
-use crate::contact::complementarity::{ContactLcp, load_with_gaps};
+use crate::answer::record::{PairDirection, Ray, RayClass, Verdict};
+use crate::contact::complementarity::ContactLcp;
+use crate::contact::enumerate::{Enumeration, MOST_PAIRS, enumerate};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
+use crate::fem::MainSystem;
 use crate::lcp::outcome::RayDirection;
 use crate::model::pair::Law;
+use crate::model::rules::Covering;
+use crate::model::structure::Structure;
+use crate::watch::Watch;
 
-/// Relative size below which a force or a power counts as none.
-const NOTHING: f64 = 1e-9;
+/// z̄ whose part outside the kernel is below this share of it costs no energy.
+const NO_ENERGY: f64 = 1e-7;
+/// A power below this multiple of the terms it sums is rounding.
+const NO_POWER: f64 = 256.0 * f64::EPSILON;
+/// Most working schemes that are gone through to prove that there is no answer.
+const MOST_SCHEMES: u64 = 50_000;
 
-/// Motions of the releasable joints that cost no energy: the kernel of R without what bound pairs hold.
-pub fn releasable_kernel(system: &ContactSystem) -> DMatrix<f64> {
-    let held: Vec<usize> = (0..system.pairs.len())
-        .filter(|&i| matches!(system.pairs[i].law, Law::Bound { .. }))
-        .collect();
-    let kernel = &system.kernel;
-    if held.is_empty() || kernel.ncols() == 0 {
-        return kernel.clone();
-    }
-    let normal = DMatrix::from_fn(held.len().max(kernel.ncols()), kernel.ncols(), |a, b| {
-        held.get(a).map_or(0.0, |&joint| kernel[(joint, b)])
-    });
-    let svd = normal.svd(false, true);
-    let Some(v_t) = svd.v_t else {
-        return DMatrix::zeros(kernel.nrows(), 0);
-    };
-    let free: Vec<DVector<f64>> = (0..kernel.ncols())
-        .filter(|&k| svd.singular_values[k] <= 1e-8)
-        .map(|k| kernel * v_t.row(k).transpose())
-        .collect();
-    if free.is_empty() {
-        DMatrix::zeros(kernel.nrows(), 0)
-    } else {
-        DMatrix::from_columns(&free)
-    }
+/// Work of a load case on the mode, per unit of its largest entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CasePower {
+    /// Name of the case.
+    pub case: String,
+    /// Its factor.
+    pub factor: f64,
+    /// −factor·RF·z̄: > 0 drives the motion, < 0 resists it.
+    pub power: f64,
 }
 
-/// z̄ over the joints, scaled to largest 1, and the class of the ray.
+/// Everything known of a ray of a contact problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RayReport {
+    /// Class.
+    pub class: RayClass,
+    /// What has been proved.
+    pub verdict: Option<Verdict>,
+    /// p at the last vertex, user's units.
+    pub p: f64,
+    /// z̄ over the joints, largest entry 1.
+    pub direction: DVector<f64>,
+    /// Pair whose z⁺ and z⁻ grow together, of an artefact.
+    pub artefact: Option<usize>,
+    /// The motion of the structure, where z̄ costs no energy.
+    pub mode: Option<Mode>,
+    /// Work of each load case on z̄.
+    pub powers: Vec<CasePower>,
+    /// The proof of *certified*: a motion and the work on it.
+    pub certificate: Option<Certificate>,
+    /// The motion of the structure behind the certificate.
+    pub certificate_mode: Option<Mode>,
+    /// Whether forces within the laws' bounds that balance the loads were found by the LP.
+    pub balanced: bool,
+    /// What would stop it.
+    pub remedies: Vec<Remedy>,
+}
+
+/// What is looked at: a contact problem and, where it has one, its structure.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// Pairs, R, RF.
+    pub system: &'a ContactSystem,
+    /// Numbers of the laws and the load.
+    pub numbers: &'a ContactNumbers,
+    /// Name and factor of each load case.
+    pub cases: &'a [(String, f64)],
+    /// The structure and its main system.
+    pub structure: Option<(&'a Structure, &'a MainSystem)>,
+}
+
+/// z̄ over the joints, scaled to largest 1; the class; the pair of an artefact.
 pub fn classify(
     system: &ContactSystem,
     numbers: &ContactNumbers,
     contact: &ContactLcp,
     ray: &RayDirection,
-) -> (DVector<f64>, RayClass) {
+) -> (DVector<f64>, RayClass, Option<usize>) {
     let joints = contact.joint_displacements(system, &ray.z);
     let largest_z = ray.z.iter().fold(0.0, |a: f64, b| a.max(*b));
     let largest_w = ray.w.iter().fold(0.0, |a: f64, b| a.max(*b));
-    if largest_z > 0.0 && largest_w == 0.0 && ray.p == 0.0 && joints.amax() <= NOTHING * largest_z {
-        return (joints, RayClass::Artefact);
+    // Work per z of the stiffest joint: what a w has to be compared with.
+    let response = system.stiffness.amax() * contact.length_unit / contact.force_unit;
+    if largest_z > 0.0
+        && largest_w <= 1e-9 * response * largest_z
+        && ray.p <= 1e-9 * response * largest_z
+        && joints.amax() <= 1e-9 * largest_z
+    {
+        let pair = (0..system.pairs.len()).find(|&i| {
+            let grows = |row: Option<usize>| row.is_some_and(|row| ray.z[row] > 0.5 * largest_z);
+            grows(contact.plus_row[i]) && grows(contact.minus_row[i])
+        });
+        if pair.is_some() {
+            return (
+                DVector::zeros(system.joint_count()),
+                RayClass::Artefact,
+                pair,
+            );
+        }
     }
     let largest = joints.amax();
-    let direction = if largest > 0.0 {
+    let mut direction = if largest > 0.0 {
         joints / largest
     } else {
         joints
     };
-    if releasable_kernel(system).ncols() == 0 {
-        return (direction, RayClass::Fault);
+    // Entries that are rounding noise; 0 − 0 leaves no −0 in results.
+    direction
+        .iter_mut()
+        .filter(|z| z.abs() <= 1e-11)
+        .for_each(|z| *z = 0.0);
+    let kernel = releasable_kernel(system);
+    if kernel.ncols() == 0 {
+        return (direction, RayClass::Fault, None);
     }
-    let load = load_with_gaps(system, numbers);
-    let force = (&system.stiffness * &direction).amax();
-    let power = load.dot(&direction);
-    let costs_nothing = force <= NOTHING * system.stiffness.amax();
-    let class = if largest > 0.0 && costs_nothing && power < -NOTHING * load.amax() {
+    let inside = &kernel * (kernel.transpose() * &direction);
+    let costs_nothing =
+        direction.amax() > 0.0 && (&inside - &direction).norm() <= NO_ENERGY * direction.norm();
+    let (power, terms) = power(&numbers.load, &inside);
+    let class = if costs_nothing && power > NO_POWER * terms {
         RayClass::Mechanism
     } else {
         RayClass::NoEquilibrium
     };
-    (direction, class)
+    (direction, class, None)
 }
 
-/// The ray as the user reads it; p in the user's units.
+/// −RF·z̄ and the sum of the sizes of its terms.
+fn power(load: &DVector<f64>, z: &DVector<f64>) -> (f64, f64) {
+    load.iter()
+        .zip(z.iter())
+        .fold((0.0, 0.0), |(sum, terms), (a, b)| {
+            (sum - a * b, terms + (a * b).abs())
+        })
+}
+
+/// Class, direction, mode and power; nothing proved yet.
+pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64) -> RayReport {
+    let Subject {
+        system,
+        numbers,
+        cases,
+        structure,
+    } = *subject;
+    let (direction, class, artefact) = classify(system, numbers, contact, ray);
+    let moves = matches!(class, RayClass::Mechanism | RayClass::NoEquilibrium);
+    let mode = structure
+        .filter(|_| moves)
+        .and_then(|(structure, main)| mode(structure, main, &direction));
+    let powers = if moves {
+        system
+            .loads
+            .iter()
+            .zip(cases)
+            .map(|(load, (case, factor))| {
+                let (power, _) = power(&load.vector, &direction);
+                let noise = power.abs() <= 1e-12 * load.vector.amax();
+                CasePower {
+                    case: case.clone(),
+                    factor: *factor,
+                    power: if noise { 0.0 } else { factor * power },
+                }
+            })
+            .collect()
+    } else {
+        Vec::new()
+    };
+    RayReport {
+        class,
+        verdict: None,
+        p,
+        direction,
+        artefact,
+        mode,
+        powers,
+        certificate: None,
+        certificate_mode: None,
+        balanced: false,
+        remedies: Vec::new(),
+    }
+}
+
+/// Tries the equilibrium LP; true if it certifies that there is no answer.
+pub fn certify_ray(report: &mut RayReport, subject: &Subject) -> bool {
+    if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
+        return false;
+    }
+    report.certificate = certify(subject.system, subject.numbers, Some(&report.direction));
+    if let Some(certificate) = &report.certificate {
+        report.verdict = Some(Verdict::Certified);
+        report.certificate_mode = subject
+            .structure
+            .and_then(|(structure, main)| mode(structure, main, &certificate.direction));
+        return true;
+    }
+    report.verdict = Some(Verdict::Undecided);
+    let none = DVector::zeros(subject.numbers.load.len());
+    report.balanced = super::certificate::balanced_multipliers(
+        subject.system,
+        subject.numbers,
+        &subject.numbers.load,
+        &none,
+    )
+    .is_some();
+    false
+}
+
+/// A ray of a path: class, direction and mode by pairs, certified where the equilibrium LP does.
 pub fn report(
     system: &ContactSystem,
     numbers: &ContactNumbers,
@@ -82,87 +224,251 @@ pub fn report(
     ray: &RayDirection,
     p: f64,
 ) -> Ray {
-    let (direction, class) = classify(system, numbers, contact, ray);
-    let at = |i: usize| {
-        (
-            direction[i],
-            system.pairs[i]
-                .tangential
-                .map_or(0.0, |joint| direction[joint]),
-        )
+    let subject = Subject {
+        system,
+        numbers,
+        cases: &[],
+        structure: None,
     };
-    let named = |keep: &dyn Fn(f64, f64) -> bool| -> Vec<String> {
-        (0..system.pairs.len())
-            .filter(|&i| keep(at(i).0, at(i).1))
-            .map(|i| system.pairs[i].id.clone())
-            .collect()
-    };
-    let opening = named(&|z_n, _| z_n > NOTHING);
-    let plus = named(&|z_n, z_t| z_n <= NOTHING && z_t > NOTHING);
-    let minus = named(&|z_n, z_t| z_n <= NOTHING && z_t < -NOTHING);
-    let mut parts = Vec::new();
-    for (verb, pairs) in [("open", opening), ("slip +", plus), ("slip -", minus)] {
-        if !pairs.is_empty() {
-            let all = if pairs.len() == system.pairs.len() && pairs.len() > 2 {
-                "all pairs".to_owned()
-            } else {
-                list(&pairs)
-            };
-            parts.push(format!("{all} {verb}"));
+    let mut report = look(&subject, contact, ray, p);
+    certify_ray(&mut report, &subject);
+    report.record(system, Covering::default())
+}
+
+/// Goes through all working schemes where they are few; `None` where they are many or the search was stopped.
+pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> {
+    let Subject {
+        system, numbers, ..
+    } = *subject;
+    if system.pairs.len() > MOST_PAIRS {
+        return None;
+    }
+    let schemes: u64 = system
+        .pairs
+        .iter()
+        .enumerate()
+        .map(|(i, pair)| match pair.law {
+            Law::Frictionless { .. } => 2,
+            Law::Bound { .. } => 3,
+            Law::Coulomb { .. } if numbers.cohesion[i] > 0.0 => 6,
+            Law::Coulomb { .. } => 4,
+        })
+        .product();
+    if schemes > MOST_SCHEMES {
+        return None;
+    }
+    let found = enumerate(system, numbers, &mut |_| {
+        if watch.stop() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    })
+    .ok()?;
+    found.complete.then_some(found)
+}
+
+/// Looks for what would stop a certified motion.
+pub fn add_remedies(report: &mut RayReport, subject: &Subject, solves: Try, watch: &dyn Watch) {
+    if report.class != RayClass::Mechanism {
+        return;
+    }
+    let parts = report
+        .mode
+        .as_ref()
+        .map_or(&[][..], |mode| mode.parts.as_slice());
+    report.remedies = remedies(
+        subject.system,
+        subject.numbers,
+        subject.cases,
+        parts,
+        solves,
+        watch,
+    );
+}
+
+impl RayReport {
+    /// The motion in words.
+    pub fn mode_words(&self, system: &ContactSystem) -> String {
+        if let Some(pair) = self.artefact {
+            return format!(
+                "no motion: z+ and z- of pair {} grow together",
+                system.pairs[pair].id
+            );
+        }
+        let parts: Vec<String> = self
+            .mode
+            .iter()
+            .flat_map(|mode| &mode.parts)
+            .map(super::mode::PartMotion::words)
+            .collect();
+        let mut pairs = pair_words(system, &self.direction);
+        if self.class == RayClass::Mechanism
+            && let [only] = pairs.as_slice()
+            && parts.is_empty()
+            && let Some(names) = only
+                .strip_suffix(" slip +")
+                .or(only.strip_suffix(" slip -"))
+        {
+            let sign = &only[only.len() - 1..];
+            pairs = vec![format!("slip {sign} of {names}")];
+        }
+        let pairs = if pairs.is_empty() {
+            "no relative motion of the pairs".to_owned()
+        } else {
+            pairs.join("; ")
+        };
+        if parts.is_empty() {
+            pairs
+        } else {
+            format!("{}: {pairs}", parts.join("; "))
         }
     }
-    let mode = match class {
-        RayClass::Artefact => "no motion: z+ and z- of one pair grow together".to_owned(),
-        _ if parts.is_empty() => "no relative motion of the pairs".to_owned(),
-        _ => parts.join("; "),
-    };
-    let explanation = match class {
-        RayClass::Mechanism => format!(
-            "The loads do work on this motion and nothing resists it: what is missing is an extra tightening p = {} in \
-             every pair.",
-            short(p)
-        ),
-        RayClass::Artefact => "The pivoting rule left x- instead of x_n at an opening pair; this says nothing about \
-                               the structure. Use covering cohesive."
-            .to_owned(),
-        RayClass::Fault => "The structure stands without its contacts, so an answer exists: this ray is a failure of \
-                            the chosen rules, not a collapse."
-            .to_owned(),
-        RayClass::NoEquilibrium => format!(
-            "No state that obeys the laws of contact was found below p = {}; the motion is no pure mechanism.",
-            short(p)
-        ),
-    };
-    Ray {
-        class,
-        verdict: None,
-        p,
-        direction: (0..system.pairs.len())
-            .map(|i| {
-                let (z_n, z_t) = at(i);
-                PairDirection {
-                    pair: system.pairs[i].id.clone(),
-                    z_n,
-                    z_t,
+
+    /// What the ray means, in sentences.
+    pub fn explanation(&self, system: &ContactSystem, covering: Covering) -> String {
+        match self.class {
+            RayClass::Artefact => {
+                let pair = self
+                    .artefact
+                    .map_or(String::new(), |pair| format!(" {}", system.pairs[pair].id));
+                let cause = if covering == Covering::Ones {
+                    "With friction above 1, covering `ones` takes more friction from every pair than it gives \
+                     ((1 − f)p)"
+                } else {
+                    "An open pair has no friction under covering `weight`, so at the moment of opening both reserves are \
+                     zero together with the contact force"
+                };
+                let choice = if covering == Covering::Ones {
+                    "its two friction reserves are used up before its contact force is"
+                } else {
+                    "the tie-break let its second reserve leave before its contact force"
+                };
+                format!(
+                    "This says nothing about the structure. {cause}: where pair{pair} should open, {choice}, and slip in \
+                     both directions at once, which moves nothing, can grow without end."
+                )
+            }
+            RayClass::Fault => {
+                let why = if covering == Covering::Ones {
+                    " With covering `ones` and friction above 1 a pair cannot open while p > 0 (its reserves sum to \
+                     2(1 − f)p < 0), so an answer with open pairs is out of reach."
+                } else {
+                    ""
+                };
+                format!(
+                    "The structure stands without its contacts, so an answer exists for every load and every friction: \
+                     this ray is a failure of the chosen rules, not a collapse.{why}"
+                )
+            }
+            RayClass::Mechanism | RayClass::NoEquilibrium => self.no_answer(covering),
+        }
+    }
+
+    fn no_answer(&self, covering: Covering) -> String {
+        let p = short(self.p);
+        let missing = match covering {
+            Covering::Cohesive => {
+                format!("an extra pressing force p = {p} and as much cohesion in every pair")
+            }
+            Covering::Weight => format!("an extra pressing force p = {p} in every pair"),
+            Covering::Ones => format!("an extra p = {p} in every contact force and every reserve"),
+        };
+        let mut text = if self.class == RayClass::Mechanism {
+            format!(
+                "The motion costs no energy and the loads do work on it; only {missing} would just hold it."
+            )
+        } else {
+            format!(
+                "The run found no state that obeys the laws of contact with less than {missing}; its direction is no pure \
+                 mechanism."
+            )
+        };
+        match self.verdict {
+            Some(Verdict::Certified) => {
+                text += " Proved: no contact forces within the laws' bounds balance the loads";
+                if let Some(certificate) = &self.certificate {
+                    let taken = if certificate.dissipation > 0.0 {
+                        format!("at most {} of it", short(certificate.dissipation))
+                    } else {
+                        "none of it".to_owned()
+                    };
+                    text += &format!(
+                        " (there is a motion on which they do the work {} and contact can take {taken})",
+                        short(certificate.power)
+                    );
                 }
+                text += ".";
+            }
+            Some(Verdict::Proved) => {
+                text += " Proved: every working scheme was tried, none is an answer.";
+            }
+            _ if self.balanced => {
+                text += " Not proved: forces within friction that balance the loads do exist, but none that obeys the law \
+                         of slip was found.";
+            }
+            _ => text += " Whether there is an answer is not proved.",
+        }
+        let powers: Vec<String> = self
+            .powers
+            .iter()
+            .filter(|power| power.power != 0.0)
+            .map(|power| {
+                let word = if power.power > 0.0 {
+                    "drives"
+                } else {
+                    "resists"
+                };
+                format!("`{}` {word} it ({})", power.case, digits(power.power))
             })
-            .collect(),
-        mode,
-        explanation,
+            .collect();
+        if self.class == RayClass::Mechanism && !powers.is_empty() {
+            text += &format!(
+                " Work of the loads per unit of the motion: {}.",
+                list(&powers)
+            );
+        }
+        text + &sentence(&self.remedies)
+    }
+
+    /// As it stands in the result.
+    pub fn record(&self, system: &ContactSystem, covering: Covering) -> Ray {
+        Ray {
+            class: self.class,
+            verdict: self.verdict,
+            p: self.p,
+            direction: system
+                .pairs
+                .iter()
+                .enumerate()
+                .map(|(i, pair)| PairDirection {
+                    pair: pair.id.clone(),
+                    z_n: self.direction[i],
+                    z_t: pair.tangential.map_or(0.0, |joint| self.direction[joint]),
+                })
+                .collect(),
+            mode: self.mode_words(system),
+            explanation: self.explanation(system, covering),
+        }
     }
 }
 
-/// The ray of a bare LCP.
-pub fn plain_report(p: f64) -> Ray {
+/// The ray of a bare LCP; `verdict` where its answers were enumerated.
+pub fn plain_report(p: f64, verdict: Verdict) -> Ray {
+    let proof = match verdict {
+        Verdict::Proved => {
+            "Proved: every complementary basis was tried in exact arithmetic, none is an answer."
+        }
+        _ => "For a general M this proves nothing about whether one exists.",
+    };
     Ray {
         class: RayClass::NoEquilibrium,
-        verdict: None,
+        verdict: Some(verdict),
         p,
         direction: Vec::new(),
         mode: "the entering variable grows without bound".to_owned(),
         explanation: format!(
-            "No row blocks the entering variable at p = {}: Lemke's algorithm found no answer. For a general M this \
-             proves nothing about whether one exists.",
+            "No row blocks the entering variable at p = {}: Lemke's algorithm found no answer. {proof}",
             short(p)
         ),
     }

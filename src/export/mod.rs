@@ -3,6 +3,7 @@
 pub mod atomic;
 pub mod csv;
 pub mod json;
+pub mod lcp;
 
 #[cfg(test)]
 mod tests;

@@ -22,6 +22,7 @@ mod dense;
 mod dof;
 mod element;
 mod elimination;
+mod energy;
 mod error;
 mod factor;
 mod joint_rows;

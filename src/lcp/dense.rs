@@ -57,12 +57,14 @@ impl Factor {
             .then_some(solution)
     }
 
-    /// Solves A x = b with two steps of refinement, residuals in twice the precision; `None` if not finite.
+    /// Solves A x = b with refinement (two steps for small systems, one for large ones), residuals in twice the
+    /// precision; `None` if not finite.
     pub(crate) fn solve(&self, right: &DVector<f64>) -> Option<DVector<f64>> {
         let n = right.len();
         let mut solution = DVector::zeros(n);
         let mut residual = right.clone();
-        for _ in 0..3 {
+        let refinements = if n > 128 { 1 } else { 2 };
+        for round in 0..=refinements {
             let mut correction = Mat::from_fn(n, 1, |i, _| residual[i]);
             if n > 0 {
                 self.lu.solve_in_place(correction.as_mut());
@@ -73,28 +75,58 @@ impl Factor {
             if !solution.iter().all(|value: &f64| value.is_finite()) {
                 return None;
             }
-            for i in 0..n {
-                residual[i] = twofold_dot(
-                    right[i],
-                    (0..n).map(|j| (-self.matrix[(i, j)], solution[j])),
-                );
+            if round < refinements {
+                residual = self.residual(right, &solution);
             }
         }
         Some(solution)
     }
+
+    /// b − A x, the rounding errors of every product and sum carried along (Ogita, Rump, Oishi 2005), column by
+    /// column as the matrix is stored.
+    fn residual(&self, right: &DVector<f64>, x: &DVector<f64>) -> DVector<f64> {
+        let mut sum = right.clone();
+        let mut error = DVector::<f64>::zeros(right.len());
+        for (column, x) in self.matrix.column_iter().zip(x.iter()) {
+            let factor = Split::new(-x);
+            for ((sum, error), entry) in sum.iter_mut().zip(error.iter_mut()).zip(column.iter()) {
+                let (product, product_error) = Split::new(*entry).times(&factor);
+                let next = *sum + product;
+                let back = next - *sum;
+                *error += (*sum - (next - back)) + (product - back) + product_error;
+                *sum = next;
+            }
+        }
+        sum + error
+    }
 }
 
-/// start + Σ a·b with the rounding errors of every product and sum carried along (Ogita, Rump, Oishi 2005).
-pub(crate) fn twofold_dot(start: f64, terms: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let mut sum = start;
-    let mut error = 0.0;
-    for (a, b) in terms {
-        let product = a * b;
-        let product_error = a.mul_add(b, -product);
-        let next = sum + product;
-        let back = next - sum;
-        error += (sum - (next - back)) + (product - back) + product_error;
-        sum = next;
+/// A number cut into two halves of 26 bits (Veltkamp), so that products of halves are exact.
+struct Split {
+    value: f64,
+    high: f64,
+    low: f64,
+}
+
+impl Split {
+    #[inline]
+    fn new(value: f64) -> Split {
+        let carried = 134_217_729.0 * value;
+        let high = carried - (carried - value);
+        Split {
+            value,
+            high,
+            low: value - high,
+        }
     }
-    sum + error
+
+    /// Product and its rounding error (Dekker).
+    #[inline]
+    fn times(&self, other: &Split) -> (f64, f64) {
+        let product = self.value * other.value;
+        let error =
+            ((self.high * other.high - product) + self.high * other.low + self.low * other.high)
+                + self.low * other.low;
+        (product, error)
+    }
 }

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dense::{Factor, add_product};
 use super::mirrored::MirroredLcp;
+use super::vertex::Basis;
 
 /// A variable of the dictionary. `W(i)` and `Z(i)` of a mirrored row stand for the member of the couple that
 /// its orientation selects; the other w is known from [`Dictionary::hidden`], the other z is zero.
@@ -81,6 +82,73 @@ impl Dictionary {
             place_p: Place::Column(size),
             turned: vec![false; size],
         }
+    }
+
+    /// The dictionary of a basis without p, built from the data; `None` where its equations are singular or both z
+    /// of a mirrored couple are basic.
+    pub(crate) fn at_basis(lcp: &MirroredLcp, basis: &Basis) -> Option<Dictionary> {
+        if basis.p || basis.z != basis.active {
+            return None;
+        }
+        let mut dictionary = Dictionary::new(lcp);
+        let is_active = |whole: usize| basis.active.binary_search(&whole).is_ok();
+        for i in 0..lcp.size() {
+            let plain = is_active(lcp.whole[i]);
+            let mirrored = lcp.mirrors[i]
+                .as_ref()
+                .is_some_and(|mirror| is_active(mirror.whole));
+            if plain && mirrored {
+                return None;
+            }
+            dictionary.turned[i] = mirrored;
+            if plain || mirrored {
+                dictionary.row[i] = Local::Z(i);
+                dictionary.column[i] = Local::W(i);
+                dictionary.place_z[i] = Place::Row(i);
+                dictionary.place_w[i] = Place::Column(i);
+            }
+        }
+        dictionary.rebuild(lcp).then_some(dictionary)
+    }
+
+    /// Takes another load: the values and the column of p become those of the given q and d. M and the mirrors'
+    /// friction must be the same, and p nonbasic; `false` (and no change) where it is not.
+    pub(crate) fn reload(&mut self, lcp: &MirroredLcp) -> bool {
+        let Place::Column(c) = self.place_p else {
+            return false;
+        };
+        self.flush();
+        let respond = |dictionary: &Dictionary, primary: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            // Of w = M z + r with the nonbasic w held at 0: a nonbasic w enters its column as w − r.
+            let mut response = vec![0.0; dictionary.size];
+            for (column, &local) in dictionary.column.iter().enumerate() {
+                if let Local::W(i) = local {
+                    let right = primary(i);
+                    if right != 0.0 {
+                        let t =
+                            &dictionary.t[column * dictionary.size..(column + 1) * dictionary.size];
+                        for (entry, t) in response.iter_mut().zip(t) {
+                            *entry -= right * t;
+                        }
+                    }
+                }
+            }
+            for (entry, &local) in response.iter_mut().zip(&dictionary.row) {
+                if let Local::W(i) = local {
+                    *entry += primary(i);
+                }
+            }
+            response
+        };
+        let start = |i: usize| match &lcp.mirrors[i] {
+            Some(mirror) if self.turned[i] => lcp.mirror_start(i, mirror),
+            _ => (lcp.q[i], lcp.covering[i]),
+        };
+        let value = respond(self, &|i| start(i).0);
+        let column = respond(self, &|i| start(i).1);
+        self.value = value;
+        self.t[c * self.size..(c + 1) * self.size].copy_from_slice(&column);
+        true
     }
 
     /// Number of rank-one terms that wait.
@@ -354,7 +422,11 @@ impl Dictionary {
 
     /// M, q, d of the present orientations.
     fn oriented(&self, lcp: &MirroredLcp) -> (DMatrix<f64>, DVector<f64>, DVector<f64>) {
-        let (mut matrix, mut q, mut d) = (lcp.matrix.clone(), lcp.q.clone(), lcp.covering.clone());
+        let (mut matrix, mut q, mut d) = (
+            DMatrix::clone(&lcp.matrix),
+            lcp.q.clone(),
+            lcp.covering.clone(),
+        );
         for i in (0..self.size).filter(|&i| self.turned[i]) {
             let Some(mirror) = &lcp.mirrors[i] else {
                 continue;
@@ -451,17 +523,5 @@ impl Dictionary {
         self.value = value;
         self.pending = 0;
         true
-    }
-
-    /// z over the primary rows (in present orientation) and p.
-    pub(crate) fn solution(&self) -> (DVector<f64>, f64) {
-        let read = |place: Place| match place {
-            Place::Row(r) => self.value[r],
-            Place::Column(_) => 0.0,
-        };
-        (
-            DVector::from_fn(self.size, |i, _| read(self.place_z[i])),
-            read(self.place_p),
-        )
     }
 }

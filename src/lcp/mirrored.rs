@@ -8,6 +8,8 @@
 //! For a Coulomb pair w_i = x⁺, w_i' = x⁻, w_n = x_n, b = 2c, e = 2(d_τ − f d_n) (theory §5): so 2m rows carry
 //! all of the 3m-row LCP (8). A plain LCP is the case without mirrors.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::problem::{Lcp, Scale};
@@ -30,8 +32,8 @@ pub struct Mirror {
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MirroredLcp {
-    /// M over the primary rows, N × N.
-    pub matrix: DMatrix<f64>,
+    /// M over the primary rows, N × N; shared between LCPs that differ in q and d only.
+    pub matrix: Arc<DMatrix<f64>>,
     /// q, N.
     pub q: DVector<f64>,
     /// d ≥ 0, N.
@@ -56,7 +58,7 @@ impl MirroredLcp {
     pub fn plain(lcp: &Lcp<f64>) -> MirroredLcp {
         let n = lcp.size();
         MirroredLcp {
-            matrix: DMatrix::from_fn(n, n, |i, j| lcp.matrix[i][j]),
+            matrix: Arc::new(DMatrix::from_fn(n, n, |i, j| lcp.matrix[i][j])),
             q: DVector::from_column_slice(&lcp.q),
             covering: DVector::from_column_slice(&lcp.covering),
             whole: (0..n).collect(),

@@ -117,7 +117,7 @@ impl<'a> Whole<'a> {
             let (j, negative) = self.rows[k];
             primary[j] += if negative { -value } else { value };
         }
-        let mut w = &self.lcp.matrix * primary;
+        let mut w = &*self.lcp.matrix * primary;
         w += shift * &self.lcp.q + p * &self.lcp.covering;
         let mut whole: Vec<f64> = (0..self.lcp.whole_size)
             .map(|k| {
@@ -151,6 +151,28 @@ pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
     let p = if basis.p { solution[n - 1] } else { 0.0 };
     let w = whole.response(basis, &z, p, 1.0);
     Some(Point { z, w, p })
+}
+
+/// The point of a basis after one step of Newton's method from `point`, whose w (of all rows, better known than from
+/// the data) is given; z and p stay ≥ 0. `None` where the equations are singular.
+pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> Option<Point> {
+    let whole = Whole::new(lcp);
+    let n = basis.active.len();
+    if basis.z.len() + usize::from(basis.p) != n {
+        return None;
+    }
+    let right = DVector::from_fn(n, |a, _| -w[basis.active[a]]);
+    let step = whole.system(basis).solve(&right)?;
+    let mut point = point.clone();
+    for (b, &k) in basis.z.iter().enumerate() {
+        point.z[k] = (point.z[k] + step[b]).max(0.0);
+    }
+    if basis.p {
+        point.p = (point.p + step[n - 1]).max(0.0);
+    }
+    point.w = whole.response(basis, &point.z, point.p, 1.0);
+    point.w.iter_mut().for_each(|w| *w = w.max(0.0));
+    Some(point)
 }
 
 /// Direction at a basis in which `entering` grows by 1; `None` where the equations are singular.

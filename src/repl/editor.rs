@@ -1,12 +1,14 @@
 //! What the line editor knows of the language: completion, hints, colours.
 
 use std::borrow::Cow;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use rustyline::Context;
 use rustyline::completion::Completer;
 use rustyline::highlight::{CmdKind, Highlighter};
 use rustyline::hint::Hinter;
-use rustyline::{Helper, Validator};
+use rustyline::{Cmd, ConditionalEventHandler, Event, EventContext, Helper, Validator};
 
 use crate::session::complete::{self, Candidate, Vocabulary};
 use crate::session::{command, values, words};
@@ -83,14 +85,61 @@ impl Completer for Editing {
     }
 }
 
-impl Hinter for Editing {
-    type Hint = String;
+/// A hint: what Right takes over is only its first part.
+pub struct ShownHint {
+    text: String,
+    insert: Option<String>,
+}
 
-    fn hint(&self, line: &str, position: usize, _: &Context<'_>) -> Option<String> {
+impl rustyline::hint::Hint for ShownHint {
+    fn display(&self) -> &str {
+        &self.text
+    }
+
+    fn completion(&self) -> Option<&str> {
+        self.insert.as_deref()
+    }
+}
+
+impl Hinter for Editing {
+    type Hint = ShownHint;
+
+    fn hint(&self, line: &str, position: usize, _: &Context<'_>) -> Option<ShownHint> {
         if position < line.len() {
             return None;
         }
-        complete::hint(line, &self.vocabulary)
+        let hint = complete::hint(line, &self.vocabulary)?;
+        Some(ShownHint {
+            text: self.style.text(&hint.text()),
+            insert: Some(hint.insert).filter(|insert| !insert.is_empty()),
+        })
+    }
+}
+
+/// The pace of the keys: a line whose end follows its last character at once was pasted or typed ahead, and more
+/// lines may wait behind it in the editor's own buffer.
+#[derive(Clone, Default)]
+pub struct Pace(Arc<Mutex<[Option<Instant>; 2]>>);
+
+/// No hand is faster.
+const BY_HAND: Duration = Duration::from_millis(5);
+
+impl Pace {
+    /// Whether the last line came faster than by hand.
+    pub fn is_burst(&self) -> bool {
+        let keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match *keys {
+            [Some(before), Some(last)] => last.duration_since(before) < BY_HAND,
+            _ => false,
+        }
+    }
+}
+
+impl ConditionalEventHandler for Pace {
+    fn handle(&self, _: &Event, _: u16, _: bool, _: &EventContext<'_>) -> Option<Cmd> {
+        let mut keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        *keys = [keys[1], Some(Instant::now())];
+        None
     }
 }
 

@@ -3,7 +3,6 @@
 mod editor;
 mod pager;
 mod plain;
-mod signals;
 mod terminal;
 
 use std::io::{self, IsTerminal, Write};
@@ -13,7 +12,7 @@ use crate::session::{CommandError, Next, Session};
 use crate::view::status;
 use crate::view::style::Style;
 
-pub use signals::{Signals, TerminalWatch, is_dumb};
+use crate::signals::{Signals, is_dumb};
 
 /// How a face ended: what `main` does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,8 +67,8 @@ pub fn run(
     } else {
         terminal::run(session, style, signals)
     }?;
-    // after a hang-up the journal stays: the next start offers it
-    if !signals.hung_up() && ended.next == Next::Quit {
+    // after a signal the journal stays: nobody said `quit`, the next start offers it
+    if !signals.must_end() && ended.next == Next::Quit {
         session.close()?;
     }
     Ok(ended)

@@ -7,7 +7,7 @@ use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifier
 use crossterm::terminal;
 use unicode_width::UnicodeWidthChar;
 
-use super::signals::Signals;
+use crate::signals::Signals;
 
 /// How long the keys of a paste may be apart.
 const BURST: Duration = Duration::from_millis(10);

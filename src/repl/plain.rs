@@ -8,8 +8,8 @@ use crate::session::script::expects_error;
 use crate::session::{CommandError, Next, Output, Session, words};
 use crate::view::style::Style;
 
-use super::signals::{Signals, TerminalWatch};
 use super::{Ended, show_error};
+use crate::signals::{Signals, TerminalWatch};
 
 /// A longer line is no command.
 const LONGEST: u64 = 1 << 20;

@@ -8,14 +8,14 @@ use std::path::PathBuf;
 use rustyline::config::Configurer;
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
-use rustyline::{ColorMode, CompletionType, Config, Editor};
+use rustyline::{ColorMode, CompletionType, Config, Editor, Event, EventHandler};
 
 use crate::session::{CommandError, Next, Output, Session, journal};
 use crate::view::style::{Role, Style};
 
-use super::editor::Editing;
-use super::signals::{Signals, TerminalWatch};
+use super::editor::{Editing, Pace};
 use super::{Ended, pager, show_error};
+use crate::signals::{Signals, TerminalWatch};
 
 /// Lines of history kept.
 const HISTORY: usize = 10_000;
@@ -26,6 +26,11 @@ type Line = Editor<Editing, FileHistory>;
 pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result<Ended> {
     let mut editor = editor(session, style).map_err(io::Error::other)?;
     let history = History::open(&mut editor);
+    let pace = Pace::default();
+    editor.bind_sequence(
+        Event::Any,
+        EventHandler::Conditional(Box::new(pace.clone())),
+    );
     // an external printer makes the editor wait for more than keys, so that a signal can wake it
     let printer = editor.create_external_printer();
     if printer.is_ok() {
@@ -85,7 +90,8 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
         if !fixed_width {
             style.width = terminal_width();
         }
-        let paged = waiting.is_empty();
+        // nobody reads a page while the next lines are there already
+        let paged = waiting.is_empty() && !pace.is_burst();
         let (result, typed) = execute(session, &line, style, signals, paged);
         let mut typed: Vec<&str> = typed.split('\n').collect();
         begun = typed.pop().unwrap_or_default().to_owned();

@@ -12,10 +12,10 @@ use crate::view::number::short;
 use crate::view::status;
 use crate::view::style::Role;
 
-use super::command::{self, Command};
+use super::command::Command;
 use super::expect::{self, Facts};
 use super::values::{self, Setting};
-use super::{Change, CommandError, Next, Output, Session, Setup, journal, save, script};
+use super::{Change, CommandError, Next, Output, Session, Setup, help, journal, save, script};
 
 impl Session {
     /// One command. The arms that only show something are in `reports`.
@@ -41,10 +41,16 @@ impl Session {
             Command::Displacements { nodes } => self.report_displacements(&nodes, io)?,
             Command::Members { bar } => self.report_members(bar.as_deref(), io)?,
             Command::Reactions => self.report_reactions(io)?,
-            Command::Check => self.report_check(io)?,
+            Command::Check { how: None } => self.report_check(io)?,
+            Command::Check { how: Some(_) } => self.check_exactly(io)?,
             Command::Pivots { range } => self.report_pivots(range.as_deref(), io)?,
             Command::Step { words } => self.step(&words, io)?,
             Command::Why { pair } => self.report_why(&pair, io)?,
+            Command::Ties => self.report_ties(io)?,
+            Command::Tableau => self.report_tableau(io)?,
+            Command::Compare => self.compare(io)?,
+            Command::Enumerate { answer } => self.enumerate(answer, io)?,
+            Command::Critical { friction } => self.critical(&friction, io)?,
             Command::Ray => self.report_ray(io)?,
             Command::Plot {
                 picture,
@@ -59,7 +65,7 @@ impl Session {
             Command::Export { what, file } => self.export(what, &file, io)?,
             Command::Echo { words } => io.say(&words.join(" "))?,
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
-            Command::Help { command } => help(command.as_deref(), io)?,
+            Command::Help { command } => show_help(command.as_deref(), io)?,
             Command::History => self.report_history(io)?,
             Command::Tui => return Ok(Next::FullScreen { tour: false }),
             Command::Tour => return Ok(Next::FullScreen { tour: true }),
@@ -111,7 +117,7 @@ impl Session {
         Ok(())
     }
 
-    fn note_in_journal(&mut self, text: &str) -> Result<(), CommandError> {
+    pub(super) fn note_in_journal(&mut self, text: &str) -> Result<(), CommandError> {
         match &mut self.journal {
             None => Ok(()),
             Some(journal) => journal.append(text).map_err(|source| CommandError::File {
@@ -123,7 +129,11 @@ impl Session {
     }
 
     /// The one line after a change.
-    fn say_what_changed(&self, notes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn say_what_changed(
+        &self,
+        notes: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let previous = self.previous_answer();
         let units = &self.now.scenario.units;
         io.report(
@@ -373,89 +383,6 @@ impl Session {
         }
         Ok(io.say(&format!("as expected: {}", words.join(" ")))?)
     }
-
-    /// Brings back what an earlier session left behind.
-    fn restore(&mut self, discard: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let Some(left) = self.left_over.take() else {
-            return Err(CommandError::Refused(
-                "nothing to restore: no session in this directory ended without `quit`".into(),
-            ));
-        };
-        let changes = left.changes();
-        if discard {
-            left.discard().map_err(|source| CommandError::File {
-                doing: "remove the journal in",
-                path: journal::state_directory().unwrap_or_default(),
-                source,
-            })?;
-            return Ok(io.say(&format!("{changes} changes forgotten"))?);
-        }
-        let kept = (
-            self.now.clone(),
-            self.solved.clone(),
-            self.previous.clone(),
-            self.position,
-            (self.auto, self.trouble),
-            (self.undo.clone(), self.redo.clone()),
-        );
-        let journal = self.journal.take();
-        let result = self.replay_journal(&left.commands, io);
-        self.journal = journal;
-        if let Err(error) = result {
-            (
-                self.now,
-                self.solved,
-                self.previous,
-                self.position,
-                (self.auto, self.trouble),
-                (self.undo, self.redo),
-            ) = kept;
-            self.left_over = Some(left);
-            return Err(error);
-        }
-        for command in &left.commands {
-            self.note_in_journal(command)?;
-        }
-        // the new journal holds everything: a file that stays behind is only offered once more
-        let _ = left.discard();
-        let s = if changes == 1 { "" } else { "s" };
-        self.say_what_changed(&[format!("{changes} change{s} restored")], io)
-    }
-
-    fn replay_journal(
-        &mut self,
-        commands: &[String],
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        self.deferred = true;
-        let mut nowhere = std::io::sink();
-        let mut quiet = Output::text(&mut nowhere, io.style, io.watch);
-        let mut result = Ok(());
-        for (index, text) in commands.iter().enumerate() {
-            let applied = match command::parse(text) {
-                Ok(Some(command)) => self.apply(command, text, &mut quiet).map(|_| ()),
-                Ok(None) => Ok(()),
-                Err(error) => Err(error.into()),
-            };
-            if let Err(error) = applied {
-                result = Err(CommandError::Script {
-                    script: "journal".into(),
-                    line: index + 2,
-                    error: Box::new(error),
-                });
-                break;
-            }
-        }
-        self.deferred = false;
-        result?;
-        if self.auto {
-            let mut next = self.now.clone();
-            let solved = next.solve(io.watch)?;
-            self.now = next;
-            self.take_answer(Some(solved));
-        }
-        Ok(())
-    }
 }
 
 /// `scenarios`.
@@ -487,10 +414,10 @@ pub fn write_scenarios(
     Ok(())
 }
 
-fn help(command: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+fn show_help(command: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
     let text = match command {
-        None => command::overview(),
-        Some(word) => command::help(word, io.style.width)?,
+        None => help::overview(&io.style),
+        Some(word) => help::help(word, io.style.width)?,
     };
     io.report(
         || Value::String(text.clone()),

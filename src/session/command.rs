@@ -1,7 +1,7 @@
 //! The only grammar of the program: every command of the REPL, of scripts and of the full screen's `:` line.
 //!
 //! To add a command: a variant here (its doc comment is the help, `after_help` the example), its name in
-//! [`GROUPS`], and its arm in `apply`. Completion, hints and help follow from the grammar: the `value_name` of an
+//! [`GROUPS`](super::help::GROUPS), and its arm in `apply`. Completion, hints and help follow from the grammar: the `value_name` of an
 //! argument says what may stand there (see [`super::complete`]).
 
 use std::path::PathBuf;
@@ -80,7 +80,7 @@ pub enum Command {
     /// Needed only after `set auto off`, or to solve the same once more.
     #[command(after_help = "Example:\n  set auto off; set f 0.3; set F2 90; solve")]
     Solve,
-    /// Say in one line what the answer is
+    /// Say what the answer is, under which rules it was found, and its check
     #[command(after_help = "Example:\n  status")]
     Status,
     /// Show state, forces and slip of the contact pairs, at the pivot chosen by `step`
@@ -107,9 +107,15 @@ pub enum Command {
     /// Show the forces of the supports on the structure
     #[command(after_help = "Example:\n  reactions")]
     Reactions,
-    /// Show the numbers of the fresh check of the answer
-    #[command(after_help = "Example:\n  check")]
-    Check,
+    /// Show the numbers of the fresh check of the answer; `check exact` proves or refutes it
+    ///
+    /// `check exact` solves the final working scheme in exact arithmetic from the f64 data and tells every sign.
+    #[command(after_help = "Example:\n  check\n  check exact")]
+    Check {
+        /// In exact arithmetic
+        #[arg(value_name = "EXACT")]
+        how: Option<CheckHow>,
+    },
 
     /// List the pivots, each with its sentence
     #[command(after_help = "Example:\n  pivots\n  pivots 2..4")]
@@ -135,6 +141,35 @@ pub enum Command {
         pair: String,
     },
 
+    /// List the pivots with tied rows, what chose among them, and the vertices with basics at zero
+    #[command(after_help = "Example:\n  load cycling; ties")]
+    Ties,
+    /// Print the dictionary of a small problem at the pivot chosen by `step`
+    #[command(after_help = "Example:\n  load klarbring; set f 0.5; step first; tableau")]
+    Tableau,
+
+    /// Run every covering, tie-break and engine on the present values, and say which find the same answer
+    #[command(after_help = "Example:\n  load greco; set f 2; compare")]
+    Compare,
+    /// List every answer of a small problem; with a number, show that one
+    ///
+    /// Goes through all working schemes (at most 10 pairs; 9 rows of a bare LCP). `enumerate 2` makes the second answer
+    /// the one that `pairs`, `plot` and the others show; `solve` goes back to Lemke's.
+    #[command(after_help = "Example:\n  load klarbring; enumerate; enumerate 2; pairs")]
+    Enumerate {
+        /// Number of the answer to show
+        #[arg(value_name = "ANSWER")]
+        answer: Option<usize>,
+    },
+    /// Find the friction above which more than one answer is possible
+    ///
+    /// Exact up to 8 pairs; beyond, a search among drawn working schemes, reported as such.
+    #[command(after_help = "Example:\n  load klarbring; critical f")]
+    Critical {
+        /// The friction parameter
+        #[arg(value_name = "PARAMETER")]
+        friction: String,
+    },
     /// Show the ray: its class, its motion and what it means
     #[command(after_help = "Example:\n  load beam-ray; ray")]
     Ray,
@@ -268,12 +303,21 @@ pub enum Picture {
     P,
     /// The structure with the states of its pairs, and its deformed shape
     Structure,
+    /// The collapse mode of a ray
+    Mode,
     /// Bending moment along a bar
     Moment,
     /// Shear force along a bar
     Shear,
     /// Normal force along a bar
     Axial,
+}
+
+/// The word of `check exact`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CheckHow {
+    /// In exact arithmetic
+    Exact,
 }
 
 /// What `export` writes.
@@ -299,44 +343,6 @@ pub enum Discard {
     /// Forget the changes
     Discard,
 }
-
-/// The groups of `help`, each with its commands in the order shown; every command stands in one of them.
-pub const GROUPS: &[(&str, &[&str])] = &[
-    (
-        "scenario",
-        &[
-            "load",
-            "scenarios",
-            "save",
-            "params",
-            "set",
-            "reset",
-            "undo",
-            "redo",
-            "diff",
-        ],
-    ),
-    (
-        "answer",
-        &[
-            "solve",
-            "status",
-            "pairs",
-            "displacements",
-            "members",
-            "reactions",
-            "check",
-        ],
-    ),
-    ("pivots", &["pivots", "step", "why"]),
-    ("trouble", &["ray"]),
-    ("pictures", &["plot", "tui"]),
-    (
-        "scripts",
-        &["source", "record", "expect", "export", "echo", "restore"],
-    ),
-    ("help", &["help", "tour", "history", "quit"]),
-];
 
 /// Clap's view of one line.
 #[derive(Parser)]
@@ -493,58 +499,6 @@ fn one_paragraph(error: &clap::Error, name: &str) -> String {
     format!("{name}: {}; see `help {name}`", parts.join(" "))
 }
 
-/// The overview of all commands, by group.
-pub fn overview() -> String {
-    let grammar = grammar();
-    let mut text = String::from(
-        "One command a line; `;` separates, `#` begins a comment, unique prefixes work.\n",
-    );
-    for (group, names) in GROUPS {
-        text.push_str(&format!("\n{group}\n"));
-        for name in *names {
-            let about = grammar
-                .find_subcommand(name)
-                .and_then(|command| command.get_about())
-                .map(ToString::to_string)
-                .unwrap_or_default();
-            text.push_str(&format!("  {name:<14} {about}\n"));
-        }
-    }
-    text.push_str("\n`help COMMAND` says more, with an example.\n");
-    text
-}
-
-/// The help of one command, wrapped at `width` columns.
-///
-/// # Errors
-/// Unknown or ambiguous name.
-pub fn help(word: &str, width: usize) -> Result<String, GrammarError> {
-    let name = resolve(word)?;
-    let mut grammar = grammar().term_width(width);
-    grammar.build();
-    // `resolve` gave the name of an existing subcommand.
-    let Some(command) = grammar.find_subcommand_mut(&name) else {
-        return Err(GrammarError::Unknown {
-            word: name,
-            near: Vec::new(),
-        });
-    };
-    let text = command
-        .clone()
-        .term_width(width)
-        .render_long_help()
-        .to_string();
-    Ok(text
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("-h, --help"))
-        .map(str::trim_end)
-        .collect::<Vec<_>>()
-        .join("\n")
-        .trim_end()
-        .to_owned()
-        + "\n")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -552,31 +506,6 @@ mod tests {
     #[test]
     fn clap_accepts_the_grammar() {
         Line::command().debug_assert();
-    }
-
-    #[test]
-    fn every_command_stands_in_one_group_and_has_an_example() {
-        let grammar = grammar();
-        let mut grouped: Vec<&str> = GROUPS
-            .iter()
-            .flat_map(|(_, names)| names.iter().copied())
-            .collect();
-        let mut known: Vec<&str> = grammar.get_subcommands().map(|c| c.get_name()).collect();
-        grouped.sort_unstable();
-        known.sort_unstable();
-        assert_eq!(grouped, known);
-        for command in grammar.get_subcommands() {
-            let example = command
-                .get_after_help()
-                .map(ToString::to_string)
-                .unwrap_or_default();
-            assert!(example.starts_with("Example:\n"), "{}", command.get_name());
-            for line in example.lines().skip(1) {
-                for one in words::commands(line) {
-                    assert!(parse(one).unwrap().is_some(), "{one}");
-                }
-            }
-        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::model::scenario::Source;
 
 use super::command;
 use super::expect;
-use super::reports::SORT_KEYS;
+use super::selection::SORT_KEYS;
 use super::{Session, words};
 
 /// Never more candidates than this are offered.
@@ -134,9 +134,33 @@ pub fn completions(line: &str, position: usize, vocabulary: &Vocabulary) -> Comp
     }
 }
 
+/// What could follow the end of a line.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Hint {
+    /// Would be typed as it stands.
+    pub insert: String,
+    /// Says what comes then: `PAIR`, `[FROM..TO]`.
+    pub note: String,
+}
+
+impl Hint {
+    fn insert(text: impl Into<String>) -> Option<Self> {
+        Some(Hint {
+            insert: text.into(),
+            note: String::new(),
+        })
+        .filter(|hint| !hint.insert.is_empty())
+    }
+
+    /// Both together, as shown.
+    pub fn text(&self) -> String {
+        format!("{}{}", self.insert, self.note)
+    }
+}
+
 /// What could follow the end of `line`, in grey: the rest of the only command that fits, or the arguments of the
 /// command that stands there.
-pub fn hint(line: &str, vocabulary: &Vocabulary) -> Option<String> {
+pub fn hint(line: &str, vocabulary: &Vocabulary) -> Option<Hint> {
     let place = place(line, line.len())?;
     if place.before.is_empty() {
         if place.word.is_empty() {
@@ -145,19 +169,23 @@ pub fn hint(line: &str, vocabulary: &Vocabulary) -> Option<String> {
         let name = command::resolve(place.word).ok()?;
         let rest = name.strip_prefix(place.word)?;
         let usage = usage(&name);
-        return Some(if usage.is_empty() {
-            rest.to_owned()
+        let note = if usage.is_empty() {
+            usage
         } else {
-            format!("{rest} {usage}")
+            format!(" {usage}")
+        };
+        return Some(Hint {
+            insert: rest.to_owned(),
+            note,
         })
-        .filter(|hint| !hint.is_empty());
+        .filter(|hint| *hint != Hint::default());
     }
     let name = command::resolve(&place.before[0]).ok()?;
     if !place.word.is_empty() {
         let found = completions(line, line.len(), vocabulary).candidates;
         return match found.as_slice() {
             [only] if only.text.len() > place.word.len() => {
-                Some(only.text[place.word.len()..].to_owned())
+                Hint::insert(&only.text[place.word.len()..])
             }
             _ => None,
         };
@@ -167,8 +195,12 @@ pub fn hint(line: &str, vocabulary: &Vocabulary) -> Option<String> {
             .parameters
             .iter()
             .find(|(name, _)| name == parameter)
-            .map(|(_, value)| format!("{value}")),
-        (_, []) => Some(usage(&name)).filter(|usage| !usage.is_empty()),
+            .and_then(|(_, value)| Hint::insert(value.to_string())),
+        (_, []) => Some(Hint {
+            insert: String::new(),
+            note: usage(&name),
+        })
+        .filter(|hint| !hint.note.is_empty()),
         _ => None,
     }
 }
@@ -466,18 +498,14 @@ mod tests {
 
     #[test]
     fn hints_say_what_follows() {
-        assert_eq!(
-            hint("piv", &vocabulary()).as_deref(),
-            Some("ots [FROM..TO]")
-        );
-        assert_eq!(hint("set F2 ", &vocabulary()).as_deref(), Some("100"));
-        assert_eq!(hint("why ", &vocabulary()).as_deref(), Some("PAIR"));
-        assert_eq!(
-            hint("set covering w", &vocabulary()).as_deref(),
-            Some("eight")
-        );
-        assert_eq!(hint("", &vocabulary()), None);
-        assert_eq!(hint("p", &vocabulary()), None);
+        let hint = |line: &str| hint(line, &vocabulary()).map(|hint| (hint.insert, hint.note));
+        let both = |insert: &str, note: &str| Some((insert.to_owned(), note.to_owned()));
+        assert_eq!(hint("piv"), both("ots", " [FROM..TO]"));
+        assert_eq!(hint("set F2 "), both("100", ""));
+        assert_eq!(hint("why "), both("", "PAIR"));
+        assert_eq!(hint("set covering w"), both("eight", ""));
+        assert_eq!(hint(""), None);
+        assert_eq!(hint("p"), None);
     }
 
     #[test]

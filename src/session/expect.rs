@@ -360,9 +360,10 @@ impl Expectation {
                 .iter()
                 .find(|pair| pair.id == id)
                 .ok_or_else(|| {
-                    Err(format!(
-                        "expect: no pair `{id}`{}",
-                        did_you_mean(id, facts.pairs.iter().map(|pair| pair.id.as_str()))
+                    Err(super::selection::no_such(
+                        "pair",
+                        id,
+                        facts.pairs.iter().map(|pair| pair.id.as_str()),
                     ))
                 })
         };
@@ -415,9 +416,10 @@ impl Expectation {
                     .iter()
                     .find(|d| d.node == *node)
                     .ok_or_else(|| {
-                        Err(format!(
-                            "expect: no node `{node}`{}",
-                            did_you_mean(node, displacements.iter().map(|d| d.node.as_str()))
+                        Err(super::selection::no_such(
+                            "node",
+                            node,
+                            displacements.iter().map(|d| d.node.as_str()),
                         ))
                     })?;
                 let value = match component.as_str() {

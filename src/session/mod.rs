@@ -8,15 +8,21 @@ pub mod command;
 pub mod complete;
 mod error;
 pub mod expect;
+mod exports;
+pub mod help;
 pub mod journal;
 mod output;
 mod plots;
+mod questions;
 mod record;
 mod reports;
+mod restore;
 pub mod save;
 pub mod script;
+mod selection;
 mod side;
 pub mod values;
+mod why;
 pub mod words;
 pub mod worker;
 
@@ -24,11 +30,14 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use crate::answer::record::{Answer, NodeDisplacement, OutcomeKind, PairState, PlainSolution};
+pub use crate::answer::record as results;
+pub use crate::answer::record::Answer;
+use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
-use crate::solve::{self, PrepareError, Prepared, Solved};
+pub use crate::solve::Solved;
+use crate::solve::{self, PrepareError, Prepared};
 use crate::watch::Watch;
 
 pub use apply::write_scenarios;
@@ -258,6 +267,11 @@ impl Session {
         &self.history
     }
 
+    /// How many changes can be taken back, and done again.
+    pub fn undo_depths(&self) -> (usize, usize) {
+        (self.undo.len(), self.redo.len())
+    }
+
     /// The exit status a script or pipe has earned by a run without an answer; 0 without one.
     pub fn trouble_status(&self) -> u8 {
         if self.trouble.is_some() { 4 } else { 0 }
@@ -463,5 +477,17 @@ impl Setup {
                 .iter()
                 .zip(&other.values)
                 .all(|((a, x), (b, y))| a == b && x.to_bits() == y.to_bits())
+    }
+}
+
+/// The status of a `solve` (see the help).
+pub fn exit_status(answer: &Answer) -> u8 {
+    match answer.outcome {
+        OutcomeKind::Trivial | OutcomeKind::Normal => 0,
+        OutcomeKind::Ray => match answer.ray.as_ref().map(|ray| ray.class) {
+            Some(RayClass::Mechanism | RayClass::NoEquilibrium) => 3,
+            Some(RayClass::Artefact | RayClass::Fault) | None => 4,
+        },
+        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => 4,
     }
 }

@@ -2,14 +2,14 @@
 
 use serde_json::{Value, json};
 
-use crate::answer::record::PairState;
+use crate::answer::record::{NodeDisplacement, PairState};
 use crate::model::scenario::Source;
 use crate::view::plot::diagram::{self, Force};
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
 use crate::view::style::Style;
 
-use super::command::{Picture, did_you_mean};
+use super::command::Picture;
 use super::{CommandError, Output, Session};
 
 /// Lines of a plot if the user names none.
@@ -49,6 +49,7 @@ impl Session {
                 )),
                 Picture::P => self.plot_p(height, io),
                 Picture::Structure => self.plot_structure(height, io),
+                Picture::Mode => self.plot_mode(height, io),
                 Picture::Moment => self.plot_diagram(Force::Moment, bar, height, io),
                 Picture::Shear => self.plot_diagram(Force::Shear, bar, height, io),
                 Picture::Axial => self.plot_diagram(Force::Axial, bar, height, io),
@@ -208,6 +209,52 @@ impl Session {
         Ok(())
     }
 
+    /// The motion of the structure along the ray.
+    fn plot_mode(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        self.need_answer()?;
+        let Source::Structure(structure) = &self.now.scenario.source else {
+            return Err(not_a_structure());
+        };
+        let mode = self
+            .solved
+            .as_ref()
+            .and_then(|solved| solved.ray.as_ref())
+            .and_then(|ray| ray.mode.as_ref())
+            .ok_or_else(|| {
+                CommandError::Refused(
+                    "no mode to draw: the run did not end in a motion that costs no energy".into(),
+                )
+            })?;
+        let displacements: Vec<NodeDisplacement> = structure
+            .nodes
+            .iter()
+            .zip(&mode.displacements)
+            .map(|(node, u)| NodeDisplacement {
+                node: node.id.clone(),
+                ux: u[0],
+                uy: u[1],
+                rz: u[2],
+            })
+            .collect();
+        let title = format!("{}: collapse mode", self.now.scenario.name);
+        let drawn = |out: &mut dyn std::io::Write, style: &Style| {
+            structure::write(
+                out,
+                &structure::Picture {
+                    title: &title,
+                    structure,
+                    displacements: Some(&displacements),
+                    pairs: None,
+                    magnification: structure::Magnification::Auto,
+                    height: height.unwrap_or(STRUCTURE_HEIGHT),
+                },
+                style,
+            )
+        };
+        io.report(|| json!({"displacements": displacements}), drawn)?;
+        Ok(())
+    }
+
     fn plot_diagram(
         &self,
         force: Force,
@@ -228,9 +275,10 @@ impl Session {
         let bars: Vec<&str> = match bar {
             Some(bar) if names().any(|name| name == bar) => vec![bar],
             Some(bar) => {
-                return Err(CommandError::Refused(format!(
-                    "no bar `{bar}`{}",
-                    did_you_mean(bar, names())
+                return Err(CommandError::Refused(super::selection::no_such(
+                    "bar",
+                    bar,
+                    names(),
                 )));
             }
             None => names().collect(),

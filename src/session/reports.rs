@@ -2,33 +2,17 @@
 
 use std::collections::HashMap;
 use std::io::{self, Write};
-use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::answer::record::{Answer, PairState, PlainSolution, State};
-use crate::export::{atomic, csv, json as json_export};
+use crate::answer::record::{Answer, PlainSolution};
 use crate::model::scenario::Source;
 use crate::view;
 use crate::view::number::{short, with_unit};
 use crate::view::style::{Role, Style};
 
-use super::command::{Export, did_you_mean};
+use super::selection::{SORT_KEYS, distinct, indices, no_such, sort};
 use super::{CommandError, Output, Session};
-
-/// Keys of `pairs … sort KEY`.
-pub const SORT_KEYS: &[&str] = &[
-    "id",
-    "state",
-    "x_n",
-    "x_t",
-    "z_n",
-    "z_t",
-    "bound",
-    "reserve_plus",
-    "reserve_minus",
-    "position",
-];
 
 impl Session {
     /// The present answer.
@@ -72,6 +56,7 @@ impl Session {
             || self.status_json(),
             |out, style| {
                 view::status::write(out, answer, &self.now.scenario, &self.now.values, style)?;
+                view::loose::write(out, &self.loose(), style)?;
                 if !self.auto {
                     writeln!(out, "auto is off: changes wait for `solve`")?;
                 }
@@ -298,9 +283,10 @@ impl Session {
             let mut chosen = Vec::new();
             for node in nodes {
                 let index = by_name.get(node.as_str()).ok_or_else(|| {
-                    CommandError::Refused(format!(
-                        "no node `{node}`{}",
-                        did_you_mean(node, all.iter().map(|d| d.node.as_str()))
+                    CommandError::Refused(no_such(
+                        "node",
+                        node,
+                        all.iter().map(|d| d.node.as_str()),
                     ))
                 })?;
                 chosen.push(all[*index].clone());
@@ -315,7 +301,7 @@ impl Session {
     }
 
     /// The error of a result that this answer or source does not have.
-    fn none(&self, what: &str, answer: &Answer) -> CommandError {
+    pub(super) fn none(&self, what: &str, answer: &Answer) -> CommandError {
         CommandError::Refused(match self.now.scenario.source {
             Source::Structure(_) if !answer.is_answer() => format!(
                 "no {what}: there is no answer ({})",
@@ -342,9 +328,10 @@ impl Session {
         if let Some(bar) = bar
             && !members.iter().any(|member| member.bar == bar)
         {
-            return Err(CommandError::Refused(format!(
-                "no bar `{bar}`{}",
-                did_you_mean(bar, members.iter().map(|member| member.bar.as_str()))
+            return Err(CommandError::Refused(no_such(
+                "bar",
+                bar,
+                distinct(members.iter().map(|member| member.bar.as_str())).into_iter(),
             )));
         }
         io.report(
@@ -471,82 +458,6 @@ impl Session {
         Ok(())
     }
 
-    /// `why PAIR`: its state from its numbers, and the pivots that turned it.
-    pub(super) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        let pairs = self.pairs();
-        let pair = pairs
-            .iter()
-            .find(|pair| pair.id == id)
-            .ok_or_else(|| no_pair(id, &pairs))?;
-        let units = &self.now.scenario.units;
-        let force = |value: f64| with_unit(&short(value), units.force.as_deref());
-        let length = |value: f64| with_unit(&short(value), units.length.as_deref());
-        let state = view::pairs::state_words(pair);
-        let cause = match (pair.state, pair.law) {
-            (State::Open, _) => format!(
-                "nothing presses it together: x_n = {} and it is open by {}",
-                force(pair.x_n),
-                length(pair.z_n)
-            ),
-            (State::Closed, _) => format!(
-                "it is pressed together with x_n = {}, and without friction x_t = 0",
-                force(pair.x_n)
-            ),
-            (State::Stick, _) => format!(
-                "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
-                force(pair.x_t.abs()),
-                force(pair.bound),
-                force(pair.reserve_plus),
-                force(pair.reserve_minus)
-            ),
-            (State::SlipPlus, _) => format!(
-                "its reserve x+ is used up: x_t = {} stands at the bound -{}, and it has slipped {} along +t",
-                force(pair.x_t),
-                force(pair.bound),
-                length(pair.z_t)
-            ),
-            (State::SlipMinus, _) => format!(
-                "its reserve x- is used up: x_t = {} stands at the bound {}, and it has slipped {} along -t",
-                force(pair.x_t),
-                force(pair.bound),
-                length(-pair.z_t)
-            ),
-        };
-        let shown = self.shown_step();
-        let turned: Vec<_> = answer
-            .pivots
-            .iter()
-            .filter(|pivot| shown.is_none_or(|shown| pivot.step <= shown))
-            .filter(|pivot| {
-                pivot
-                    .turned
-                    .as_ref()
-                    .is_some_and(|turned| turned.pair == id)
-            })
-            .collect();
-        io.report(
-            || json!({"pair": pair, "cause": cause, "pivots": turned}),
-            |out, style| {
-                let label = format!("{id} {state}: ");
-                for line in style.hanging(&style.text(&label), &style.text(&cause)) {
-                    writeln!(out, "{line}")?;
-                }
-                if turned.is_empty() {
-                    writeln!(out, "no pivot turned it: it is as in the main system")?;
-                }
-                for pivot in &turned {
-                    let label = format!("  pivot {}: ", pivot.step);
-                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
-                        writeln!(out, "{line}")?;
-                    }
-                }
-                Ok(())
-            },
-        )?;
-        Ok(())
-    }
-
     pub(super) fn report_ray(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let ray = answer.ray.as_ref().ok_or_else(|| {
@@ -557,7 +468,10 @@ impl Session {
         })?;
         io.report(
             || json!(ray),
-            |out, style| view::ray::write(out, ray, &self.now.scenario.units, style),
+            |out, style| {
+                view::ray::write(out, ray, &self.now.scenario.units, style)?;
+                self.write_ray_details(out, style)
+            },
         )?;
         Ok(())
     }
@@ -574,163 +488,4 @@ impl Session {
         )?;
         Ok(())
     }
-
-    /// `export WHAT FILE`.
-    pub(super) fn export(
-        &self,
-        what: Export,
-        path: &Path,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        // pairs and displacements are those at the pivot shown
-        let mut shown = answer.clone();
-        if self.position.is_some() {
-            shown.pairs = self.pairs();
-            shown.displacements = self.displacements();
-        }
-        let missing = match what {
-            Export::Displacements => shown.displacements.is_none(),
-            Export::Members => shown.members.is_none(),
-            Export::Reactions => shown.reactions.is_none(),
-            Export::Pairs | Export::Pivots | Export::Result => false,
-        };
-        if missing {
-            let word = match what {
-                Export::Displacements => "displacements",
-                Export::Members => "member forces",
-                _ => "reactions",
-            };
-            return Err(self.none(word, answer));
-        }
-        let ending = path
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .unwrap_or_default();
-        let as_json = |value: Value| {
-            atomic::write(path, |out| {
-                let text = serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
-                writeln!(out, "{text}")
-            })
-        };
-        let written = match (what, ending) {
-            (Export::Pairs, "csv") => atomic::write(path, |out| csv::pairs(out, &shown)),
-            (Export::Pivots, "csv") => atomic::write(path, |out| csv::pivots(out, &shown)),
-            (Export::Displacements, "csv") => {
-                atomic::write(path, |out| csv::displacements(out, &shown))
-            }
-            (Export::Members, "csv") => atomic::write(path, |out| csv::members(out, &shown)),
-            (Export::Reactions, "csv") => atomic::write(path, |out| csv::reactions(out, &shown)),
-            (Export::Pairs, "json") => as_json(json_export::pairs(&shown)),
-            (Export::Pivots, "json") => as_json(json_export::pivots(&shown)),
-            (Export::Displacements, "json") => as_json(json_export::displacements(&shown)),
-            (Export::Members, "json") => as_json(json_export::members(&shown)),
-            (Export::Reactions, "json") => as_json(json_export::reactions(&shown)),
-            (Export::Result, "json") => as_json(json_export::result(
-                answer,
-                &self.now.scenario.name,
-                &self.now.values,
-                false,
-            )),
-            (Export::Result, _) => {
-                return Err(CommandError::Refused(format!(
-                    "the whole result is written as JSON: {} must end in .json",
-                    path.display()
-                )));
-            }
-            _ => {
-                return Err(CommandError::Refused(format!(
-                    "{} must end in .csv or .json",
-                    path.display()
-                )));
-            }
-        };
-        written.map_err(|error| CommandError::Refused(error.to_string()))?;
-        Ok(io.say(&format!("wrote {}", path.display()))?)
-    }
-}
-
-fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
-    if pairs.is_empty() {
-        return CommandError::Refused(format!(
-            "no pair `{id}`: this scenario has no contact pairs"
-        ));
-    }
-    CommandError::Refused(format!(
-        "no pair `{id}`{}",
-        did_you_mean(id, pairs.iter().map(|pair| pair.id.as_str()))
-    ))
-}
-
-/// Pairs named by ids, ranges `A..B`, or the name of an edge contact (`joint` for all `joint[…]`).
-fn indices(words: &[String], pairs: &[PairState]) -> Result<Vec<usize>, CommandError> {
-    let at: HashMap<&str, usize> = pairs
-        .iter()
-        .enumerate()
-        .map(|(i, pair)| (pair.id.as_str(), i))
-        .collect();
-    let find = |id: &str| at.get(id).copied().ok_or_else(|| no_pair(id, pairs));
-    let mut chosen = Vec::new();
-    for word in words
-        .iter()
-        .flat_map(|word| word.split(','))
-        .filter(|word| !word.is_empty())
-    {
-        if let Some(index) = at.get(word) {
-            chosen.push(*index);
-        } else if let Some((from, to)) = word.split_once("..") {
-            let (from, to) = (find(from)?, find(to)?);
-            if from <= to {
-                chosen.extend(from..=to);
-            } else {
-                chosen.extend((to..=from).rev());
-            }
-        } else {
-            let edge = format!("{word}[");
-            let before = chosen.len();
-            chosen.extend((0..pairs.len()).filter(|i| pairs[*i].id.starts_with(&edge)));
-            if chosen.len() == before {
-                return Err(no_pair(word, pairs));
-            }
-        }
-    }
-    Ok(chosen)
-}
-
-/// Sorts by a key; numbers from large to small, ids and positions upwards.
-fn sort(pairs: &mut [PairState], key: &str) -> Result<(), CommandError> {
-    let number: fn(&PairState) -> f64 = match key {
-        "id" => {
-            pairs.sort_by(|a, b| a.id.cmp(&b.id));
-            return Ok(());
-        }
-        "state" => {
-            pairs.sort_by_key(|pair| pair.state.word());
-            return Ok(());
-        }
-        "position" => {
-            pairs.sort_by(|a, b| {
-                let place = |pair: &PairState| pair.position.unwrap_or([f64::INFINITY; 2]);
-                let (a, b) = (place(a), place(b));
-                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
-            });
-            return Ok(());
-        }
-        "x_n" => |pair| pair.x_n,
-        "x_t" => |pair| pair.x_t,
-        "z_n" => |pair| pair.z_n,
-        "z_t" => |pair| pair.z_t,
-        "bound" => |pair| pair.bound,
-        "reserve_plus" => |pair| pair.reserve_plus,
-        "reserve_minus" => |pair| pair.reserve_minus,
-        _ => {
-            return Err(CommandError::Refused(format!(
-                "pairs: no sort key `{key}`{}: expected {}",
-                did_you_mean(key, SORT_KEYS.iter().copied()),
-                SORT_KEYS.join(", ")
-            )));
-        }
-    };
-    pairs.sort_by(|a, b| number(b).total_cmp(&number(a)));
-    Ok(())
 }

@@ -143,12 +143,10 @@ fn name_and_rest(text: &str) -> (&str, &str) {
     let mut end = text
         .find(|c: char| c.is_whitespace() || c == '=')
         .unwrap_or(text.len());
-    if text[end..].starts_with('=') {
+    let before = text[..end].ends_with(['+', '-', '*', '/']);
+    if before && text[end..].starts_with('=') {
         // the operator's first character belongs to the value: `F2+=10`
-        end -= text[..end]
-            .ends_with(['+', '-', '*', '/'])
-            .then_some(1)
-            .unwrap_or(0);
+        end -= 1;
     }
     (&text[..end], text[end..].trim())
 }

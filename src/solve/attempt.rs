@@ -4,11 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::answer::record::OutcomeKind;
-use crate::lcp::driver::run;
+use crate::lcp::driver::{Engine, run};
 use crate::lcp::lemke::SchemeEngine;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::ratio_test::TieRule;
+use crate::lcp::trace::Pivot;
 use crate::lcp::vertex::{Basis, direction, vertex};
 use crate::watch::Watch;
 
@@ -19,8 +20,15 @@ pub const PIVOT_LIMIT: usize = 200_000;
 /// of the last basis allow it.
 pub fn run_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> Run {
     let mut engine = SchemeEngine::new(Arc::clone(lcp), rule);
+    let mut run = watched(&mut engine, "Lemke", watch);
+    polish(lcp, &mut run);
+    run
+}
+
+/// Steps an engine to its end; `watch` hears of its progress and may stop it.
+pub(super) fn watched<E: Engine>(engine: &mut E, name: &str, watch: &dyn Watch) -> Run<E::Number> {
     let mut first_p = 0.0;
-    let mut observer = |pivot: &crate::lcp::trace::Pivot| {
+    let mut observer = |pivot: &Pivot| {
         if pivot.step == 0 {
             first_p = pivot.p_after;
         }
@@ -31,21 +39,20 @@ pub fn run_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> R
                 0.0
             };
             watch.progress(
-                &format!("Lemke, pivot {}", pivot.step),
+                &format!("{name}, pivot {}", pivot.step),
                 (1.0 - left).clamp(0.0, 1.0),
             );
-            if watch.stop() {
-                return ControlFlow::Break(());
-            }
+        }
+        if watch.stop() {
+            return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     };
-    let mut run = run(&mut engine, PIVOT_LIMIT, &mut observer);
-    polish(lcp, &mut run);
-    run
+    run(engine, PIVOT_LIMIT, &mut observer)
 }
 
-fn polish(lcp: &MirroredLcp, run: &mut Run) {
+/// Computes the last vertex and the ray afresh from the data, where the equations of the last basis allow it.
+pub(super) fn polish(lcp: &MirroredLcp, run: &mut Run) {
     let basis = Basis::after(&run.pivots);
     match &mut run.outcome {
         Outcome::Normal { .. } => {

@@ -1,9 +1,16 @@
 //! The pipeline: scenario → prepared geometry (once) → solved state (for every change of a parameter).
 
+pub mod all_answers;
 pub mod attempt;
+pub mod compare;
+pub mod explain;
+pub mod judge;
 pub mod numbers;
+pub mod plain_answers;
 pub mod prepared;
+pub mod retry;
 pub mod solved;
+pub mod warm;
 
 pub use prepared::{PrepareError, Prepared, prepare};
 pub use solved::{SolveError, Solved};

@@ -1,6 +1,7 @@
 //! What depends on the geometry alone: factorization, R, RF per load case. Computed once per scenario and reused
 //! for every change of f, c, gap and load factors.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
@@ -90,7 +91,7 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
     let mut prepared = match &scenario.source {
         Source::Structure(structure) => prepare_structure(scenario, structure, watch)?,
         Source::ContactSystem(given) => {
-            let (system, released) = given_system(given).map_err(|error| {
+            let (mut system, released) = given_system(given).map_err(|error| {
                 let path = match &error {
                     GivenError::Indefinite { .. } => "contact_system.stiffness".to_owned(),
                     GivenError::NoKernel { index, .. } => format!("contact_system.kernel[{index}]"),
@@ -98,6 +99,7 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
                 };
                 PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
             })?;
+            system.settle();
             Prepared {
                 geometry: Geometry::Contact { system, released },
                 cases: given
@@ -119,7 +121,7 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
 fn prepare_plain(given: &GivenLcp) -> Prepared {
     let n = given.q.len();
     let lcp = MirroredLcp {
-        matrix: DMatrix::from_fn(n, n, |i, j| given.matrix[i][j]),
+        matrix: Arc::new(DMatrix::from_fn(n, n, |i, j| given.matrix[i][j])),
         q: DVector::zeros(n),
         covering: given.covering.as_ref().map_or_else(
             || DVector::repeat(n, 1.0),
@@ -219,12 +221,13 @@ fn prepare_structure(
             vector: vector.clone(),
         })
         .collect();
-    let system = ContactSystem {
+    let mut system = ContactSystem {
         pairs,
         stiffness: main.stiffness().clone(),
         loads,
         kernel: main.kernel().clone(),
     };
+    system.settle();
     let seconds = main.timings();
     Ok(Prepared {
         geometry: Geometry::Structure {

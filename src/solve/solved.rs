@@ -6,18 +6,21 @@ use std::time::Instant;
 use nalgebra::DVector;
 
 use super::attempt::{kind, run_scheme};
-use super::numbers::{contact_numbers, factors};
+use super::judge::{EXACT_PAIRS, EXACT_ROWS, run_exact_contact, run_exact_plain, run_tableau};
 use super::prepared::{Geometry, Prepared};
+use super::retry::solve_plain_judged;
 use crate::answer::check::{check_contact, check_plain};
 use crate::answer::pairs::{JointState, joint_state, pair_states};
 use crate::answer::record::{
     Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState,
-    PlainSolution, Reaction, Size, Timings,
+    PlainSolution, Reaction, Size, Timings, Verdict,
 };
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::sharpen::sharpen;
 use crate::contact::system::ContactSystem;
-use crate::explain::{ray, sentence};
+use crate::explain::ray::{self, RayReport};
+use crate::explain::sentence;
 use crate::fem::Displacements;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
@@ -44,9 +47,19 @@ pub enum SolveError {
     /// A law got a value it cannot have.
     #[error("{0}")]
     Value(String),
-    /// An engine that is not built.
-    #[error("engine {0} is not built yet: use engine scheme")]
-    Engine(Engine),
+    /// More than the exact engine takes.
+    #[error(
+        "engine exact takes at most {most} {what} (this problem has {found}): use engine scheme or tableau; `check exact` \
+         proves an answer of any size"
+    )]
+    TooLargeForExact {
+        /// `contact pairs` or `rows`.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many it takes.
+        most: usize,
+    },
     /// Stopped from outside.
     #[error("interrupted")]
     Interrupted,
@@ -91,6 +104,12 @@ pub struct Solved {
     pub answer: Answer,
     /// How it came about.
     pub trace: Trace,
+    /// What is known of the ray it ended in; contact problems only.
+    pub ray: Option<Box<RayReport>>,
+    /// What retries or a comparison with the default rules add to the explanation.
+    pub(super) told: String,
+    /// Whether the run came back to a basis it had met.
+    pub cycled: bool,
 }
 
 impl Prepared {
@@ -110,9 +129,6 @@ impl Prepared {
                 return Err(SolveError::Value(refusal));
             }
         }
-        if rules.engine != Engine::Scheme {
-            return Err(SolveError::Engine(rules.engine));
-        }
         let start = Instant::now();
         let mut solved = match &self.geometry {
             Geometry::Plain {
@@ -128,12 +144,19 @@ impl Prepared {
                 for (entry, number) in lcp.q.iter_mut().zip(q) {
                     *entry = number.value(values);
                 }
-                solve_plain(Arc::new(lcp), names, *covering_given, rules, watch)?
+                solve_plain_judged(&Arc::new(lcp), names, *covering_given, rules, watch)?
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                self.solve_contact(system, values, rules, watch)?
+                self.solve_contact_judged(system, values, rules, watch)?
             }
         };
+        if !scenario.stages.is_empty() {
+            solved.answer.notes.push(
+                "every load case acts at once with its factor: the load history of the scenario was not followed \
+                 (`stages` follows it)"
+                    .to_owned(),
+            );
+        }
         let timings = &mut solved.answer.timings;
         timings.factor = self.factor_seconds;
         timings.condense = self.condense_seconds;
@@ -141,20 +164,39 @@ impl Prepared {
         Ok(solved)
     }
 
-    fn solve_contact(
+    /// One run under exactly these rules. A ray is classified; nothing is proved of it yet.
+    pub(super) fn attempt_contact(
         &self,
         system: &ContactSystem,
-        values: &ParameterValues,
+        numbers: &ContactNumbers,
+        factors: &[f64],
         rules: Rules,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        let factors = factors(self, values);
-        let numbers = contact_numbers(system, &factors, values);
         let start = Instant::now();
-        let contact = contact_lcp(system, &numbers, rules.covering)?;
-        let run = run_scheme(&contact.lcp, contact.tie_rule(rules.tie_break), watch);
+        let contact = contact_lcp(system, numbers, rules.covering)?;
+        let rule = contact.tie_rule(rules.tie_break);
+        let mut run = match rules.engine {
+            Engine::Scheme => run_scheme(&contact.lcp, rule, watch),
+            Engine::Tableau => run_tableau(&contact.lcp, rule, watch),
+            Engine::Exact => {
+                if system.pairs.len() > EXACT_PAIRS {
+                    return Err(SolveError::TooLargeForExact {
+                        what: "contact pairs",
+                        found: system.pairs.len(),
+                        most: EXACT_PAIRS,
+                    });
+                }
+                run_exact_contact(system, numbers, &contact, rules.covering, rule, watch)
+            }
+        };
         if run.outcome == Outcome::Interrupted {
             return Err(SolveError::Interrupted);
+        }
+        if matches!(run.outcome, Outcome::Ray(_)) && rules.engine != Engine::Exact {
+            let basis = Basis::after(&run.pivots);
+            let point = std::mem::take(&mut run.point);
+            run.point = sharpen(system, numbers, &contact, &basis, point);
         }
         let seconds = start.elapsed().as_secs_f64();
         let words = [
@@ -167,26 +209,43 @@ impl Prepared {
         answer.p = run.point.p * contact.force_unit;
         answer.pivots = sentence::pivot_records(&run.pivots, &contact, system);
 
-        let state = joint_state(system, &numbers, &contact, &run.point);
-        answer.pairs = pair_states(system, &numbers, &contact, &state);
-        self.add_released_slips(&mut answer.pairs, &numbers, &factors, &state);
+        let state = joint_state(system, numbers, &contact, &run.point);
+        answer.pairs = pair_states(system, numbers, &contact, &state);
+        self.add_released_slips(&mut answer.pairs, numbers, factors, &state);
+        let mut ray = None;
         if let Outcome::Ray(direction) = &run.outcome {
-            answer.ray = Some(ray::report(system, &numbers, &contact, direction, answer.p));
+            let cases = self.named_factors(factors);
+            let subject = self.subject(system, numbers, &cases);
+            let report = ray::look(&subject, &contact, direction, answer.p);
+            answer.ray = Some(report.record(system, rules.covering));
+            ray = Some(Box::new(report));
         }
         if answer.is_answer() {
-            self.complete(&mut answer, system, &numbers, &factors, &state);
+            self.complete(&mut answer, system, numbers, factors, &state);
         }
+        let refused = answer.outcome == OutcomeKind::CheckFailed;
+        let cycled = run.outcome == Outcome::Cycle;
         let trace = Trace::Contact {
             contact,
-            numbers,
-            factors,
+            numbers: numbers.clone(),
+            factors: factors.to_vec(),
             pivots: run.pivots,
             last: run.point,
         };
-        Ok(Solved { answer, trace })
+        let mut solved = Solved {
+            answer,
+            trace,
+            ray,
+            cycled,
+            told: String::new(),
+        };
+        if refused {
+            self.prove_after_all(&mut solved, watch);
+        }
+        Ok(solved)
     }
 
-    fn size(&self, system: &ContactSystem, contact: &ContactLcp) -> Size {
+    pub(super) fn size(&self, system: &ContactSystem, contact: &ContactLcp) -> Size {
         let unknowns = match &self.geometry {
             Geometry::Structure { main, .. } => Some(main.size()),
             _ => None,
@@ -200,7 +259,7 @@ impl Prepared {
     }
 
     /// Displacements, members, reactions and the fresh check of an answer.
-    fn complete(
+    pub(super) fn complete(
         &self,
         answer: &mut Answer,
         system: &ContactSystem,
@@ -294,7 +353,7 @@ impl Prepared {
 }
 
 /// The whole mutual displacement of the joints: z with the gaps taken off.
-fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
+pub(crate) fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
     let mut z = state.z.clone();
     for (i, gap) in numbers.gap.iter().enumerate() {
         z[i] -= gap;
@@ -345,16 +404,16 @@ fn fail_check(answer: &mut Answer) {
 }
 
 /// The parts of an answer that follow from the run alone.
-fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer {
+pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer {
     let outcome = kind(&run.outcome);
     let [covering, tie_break, engine] = words;
     let failure = match &run.outcome {
         Outcome::PivotLimit => Some(format!(
-            "the limit of {} pivots was reached",
+            "the limit of {} pivots was reached.",
             super::attempt::PIVOT_LIMIT
         )),
         Outcome::Cycle => Some(format!(
-            "the tie-break {tie_break} cycles: after {} pivots a working scheme came back",
+            "the tie-break {tie_break} cycles: after {} pivots a working scheme came back.",
             run.pivots.len()
         )),
         Outcome::Breakdown(why) => Some(why.clone()),
@@ -388,8 +447,9 @@ fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer {
     }
 }
 
-fn solve_plain(
-    lcp: Arc<MirroredLcp>,
+/// One run of a bare LCP under exactly these rules.
+pub(super) fn attempt_plain(
+    lcp: &Arc<MirroredLcp>,
     names: &[String],
     covering_given: bool,
     rules: Rules,
@@ -403,7 +463,18 @@ fn solve_plain(
         TieBreak::Random(seed) => TieRule::Random(seed),
     };
     let start = Instant::now();
-    let run = run_scheme(&lcp, rule, watch);
+    let run = match rules.engine {
+        Engine::Scheme => run_scheme(lcp, rule, watch),
+        Engine::Tableau => run_tableau(lcp, rule, watch),
+        Engine::Exact if lcp.size() > EXACT_ROWS => {
+            return Err(SolveError::TooLargeForExact {
+                what: "rows",
+                found: lcp.size(),
+                most: EXACT_ROWS,
+            });
+        }
+        Engine::Exact => run_exact_plain(lcp, rule, watch),
+    };
     if run.outcome == Outcome::Interrupted {
         return Err(SolveError::Interrupted);
     }
@@ -424,24 +495,28 @@ fn solve_plain(
     answer.timings.lemke = seconds;
     answer.pivots = sentence::plain_records(&run.pivots, names);
     if matches!(run.outcome, Outcome::Ray(_)) {
-        answer.ray = Some(ray::plain_report(run.point.p));
+        answer.ray = Some(ray::plain_report(run.point.p, Verdict::Undecided));
     }
     answer.solution = Some(PlainSolution {
         z: run.point.z.clone(),
         w: run.point.w.clone(),
     });
     if answer.is_answer() {
-        answer.check = check_plain(&lcp, &run.point);
+        answer.check = check_plain(lcp, &run.point);
         if !answer.check.passed {
             fail_check(&mut answer);
         }
     }
+    let cycled = run.outcome == Outcome::Cycle;
     Ok(Solved {
         answer,
         trace: Trace::Plain {
-            lcp,
+            lcp: Arc::clone(lcp),
             pivots: run.pivots,
         },
+        ray: None,
+        cycled,
+        told: String::new(),
     })
 }
 

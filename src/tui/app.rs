@@ -7,9 +7,9 @@ use std::time::Duration;
 use indexmap::IndexMap;
 use ratatui::text::Line;
 
-use crate::answer::record::PairState;
 use crate::model::parameter::Parameter;
 use crate::session::AllAnswers;
+use crate::session::results::PairState;
 use crate::view::style::Role;
 
 use super::action::{Job, Leave};

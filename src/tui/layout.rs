@@ -48,7 +48,8 @@ pub fn places(state: &State) -> Option<Places> {
     let about = take(u16::from(roomy));
     let sentence = match (state.tour, roomy) {
         (Some(at), true) => {
-            let lines = tour::lines(state, at, usize::from(width)).map_or(2, |(lines, _)| lines.len());
+            let lines =
+                tour::lines(state, at, usize::from(width)).map_or(2, |(lines, _)| lines.len());
             // at most 6
             take(lines.clamp(2, 6) as u16)
         }

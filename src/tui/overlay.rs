@@ -7,9 +7,9 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Clear, Widget};
 use unicode_width::UnicodeWidthStr;
 
-use crate::answer::record::PairState;
 use crate::session::AllAnswers;
 use crate::session::complete;
+use crate::session::results::PairState;
 use crate::view::number::{in_column, largest};
 use crate::view::pairs::state_words;
 use crate::view::style::{Role, pad_left, pad_right};
@@ -251,7 +251,9 @@ pub fn draw_input(state: &State, bottom: Rect, buffer: &mut Buffer) -> Option<(u
         Input::Command(entry) => (
             ":".to_owned(),
             entry,
-            complete::hint(&entry.text, &state.shown.vocabulary).unwrap_or_default(),
+            complete::hint(&entry.text, &state.shown.vocabulary)
+                .map(|hint| format!("{}{}", hint.insert, hint.note))
+                .unwrap_or_default(),
         ),
         Input::Value { name, entry } => {
             let value = state.value(name);

@@ -44,8 +44,6 @@ pub struct Ended {
     pub leave: Leave,
     /// Exit status, if it ends here; that of a signal if one ended it.
     pub status: u8,
-    /// Whether the terminal hung up, so that the journal stays.
-    pub hung_up: bool,
 }
 
 /// What comes in.
@@ -290,11 +288,7 @@ impl Loop {
                 }
                 Effect::Stop => self.worker.stop(),
                 Effect::Leave(leave) => {
-                    return Ok(Some(Ended {
-                        leave,
-                        status: 0,
-                        hung_up: false,
-                    }));
+                    return Ok(Some(Ended { leave, status: 0 }));
                 }
                 Effect::Suspend => self.suspend()?,
                 Effect::Redraw => self.redraw()?,
@@ -323,6 +317,5 @@ fn end(status: u8) -> Ended {
     Ended {
         leave: Leave::Quit,
         status,
-        hung_up: status == 129,
     }
 }

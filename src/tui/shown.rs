@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::answer::record::{Answer, NodeDisplacement, PairState, PlainSolution};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
 use crate::session::Session;
+use crate::session::Solved;
 use crate::session::complete::Vocabulary;
-use crate::solve::Solved;
+use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution};
 use crate::view::difference::{self, Change};
 
 /// A session at one moment.

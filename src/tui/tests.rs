@@ -9,9 +9,9 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::Modifier;
 
-use crate::answer::record::{OutcomeKind, State as PairMotion};
 use crate::model::embedded;
 use crate::session::Session;
+use crate::session::results::{OutcomeKind, State as PairMotion};
 use crate::watch::Quiet;
 
 use super::action::{Action, Do, Done, Effect, Job, Leave, Mouse};

@@ -2,8 +2,13 @@
 //! characters come in as a [`style::Style`].
 
 pub mod check;
+pub mod compare;
+pub mod critical;
 pub mod difference;
 pub mod displacements;
+pub mod enumerate;
+pub mod exact;
+pub mod loose;
 pub mod members;
 pub mod number;
 pub mod pairs;
@@ -15,6 +20,9 @@ pub mod reactions;
 pub mod status;
 pub mod style;
 pub mod table;
+pub mod tableau;
+pub mod ties;
+pub mod why;
 
 #[cfg(test)]
 mod random;

@@ -8,6 +8,8 @@ use super::status::{class_word, verdict_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{Ray, RayClass, Verdict};
+use crate::contact::system::ContactSystem;
+use crate::explain::ray::RayReport;
 use crate::model::scenario::Units;
 
 /// What a class means, in a few words.
@@ -27,9 +29,7 @@ pub fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
     match verdict {
         Some(Verdict::Certified) => "no contact forces within friction balance the loads",
         Some(Verdict::Proved) => "enumeration of all working schemes found no answer",
-        Some(Verdict::Undecided) => {
-            "admissible forces exist, but none that obeys the law of slip was found"
-        }
+        Some(Verdict::Undecided) => "neither an answer nor a proof that there is none was found",
         None => "not examined",
     }
 }
@@ -106,6 +106,61 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         let pairs = if still == 1 { "pair does" } else { "pairs do" };
         let text = style.fit(&format!("{still} {pairs} not move"), style.width);
         writeln!(out, "{}", style.paint(Role::Muted, &text))?;
+    }
+    Ok(())
+}
+
+/// Writes the work of each load case on the mode and the motion that certifies it.
+pub fn write_details(
+    out: &mut dyn Write,
+    report: &RayReport,
+    system: &ContactSystem,
+    style: &Style,
+) -> io::Result<()> {
+    if !report.powers.is_empty() && report.class == RayClass::Mechanism {
+        writeln!(out)?;
+        let mut table = Table::new(vec![
+            Column::words("load case"),
+            Column::numbers("factor", None),
+            Column::numbers("work on the mode", None),
+            Column::words("").droppable(1),
+        ]);
+        for power in &report.powers {
+            let word = match power.power.total_cmp(&0.0) {
+                _ if power.power == 0.0 => "idle",
+                std::cmp::Ordering::Greater => "drives",
+                _ => "resists",
+            };
+            table.rows.push(Row::new(vec![
+                Cell::from(power.case.as_str()),
+                Cell::from(short(power.factor)),
+                Cell::from(short(power.power)),
+                Cell::from(word),
+            ]));
+        }
+        table.write(out, style)?;
+    }
+    if let Some(certificate) = &report.certificate {
+        writeln!(out)?;
+        let words = match &report.certificate_mode {
+            Some(mode) if !mode.parts.is_empty() => mode
+                .parts
+                .iter()
+                .map(crate::explain::mode::PartMotion::words)
+                .collect::<Vec<_>>()
+                .join("; "),
+            _ => crate::explain::mode::pair_words(system, &certificate.direction).join("; "),
+        };
+        let text = format!(
+            "motion: {words}. Per unit of its largest entry the loads do the work {} on it; cohesion and known bounds take \
+             at most {}, pressed contact nothing (every pair parts by at least f times its slip). Verified in exact \
+             arithmetic",
+            short(certificate.power),
+            short(certificate.dissipation)
+        );
+        for line in style.hanging("proof    ", &style.text(&text)) {
+            writeln!(out, "{line}")?;
+        }
     }
     Ok(())
 }

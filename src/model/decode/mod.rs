@@ -12,6 +12,7 @@ mod matrix_market;
 mod numbers;
 mod plates;
 mod reader;
+mod stages;
 mod structure;
 mod supports;
 #[cfg(test)]
@@ -115,12 +116,6 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
         .optional("parameters")
         .and_then(parameters)
         .unwrap_or_default();
-    if let Some(stages) = fields.entry("stages") {
-        stages.key_problem(
-            "load histories (`stages`) are not supported yet",
-            "remove `stages`; without it every load case acts at once with its factor",
-        );
-    }
     let solver = fields.optional("solver");
     let rules = solver.and_then(rules).unwrap_or_default();
 
@@ -143,6 +138,28 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
             Source::Lcp(lcp::read(cursor, &parameters)?)
         }
     };
+    let stages = match (fields.entry("stages"), &source) {
+        (None, _) => Some(Vec::new()),
+        (Some(entry), Source::Lcp(_)) => {
+            entry.key_problem(
+                "an lcp has no `stages`: it has no load cases",
+                "remove `stages`",
+            );
+            None
+        }
+        (Some(entry), Source::Structure(structure)) => {
+            let cases: Vec<&str> = structure
+                .load_cases
+                .iter()
+                .map(|case| case.name.as_str())
+                .collect();
+            stages::read(entry, &cases, &parameters)
+        }
+        (Some(entry), Source::ContactSystem(system)) => {
+            let cases: Vec<&str> = system.loads.iter().map(|load| load.name.as_str()).collect();
+            stages::read(entry, &cases, &parameters)
+        }
+    };
     Some(Scenario {
         name: name.to_string(),
         path,
@@ -155,7 +172,7 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
             .map(|(name, parameter)| Some((name, parameter?)))
             .collect::<Option<IndexMap<_, _>>>()?,
         source,
-        stages: Vec::new(),
+        stages: stages?,
         rules,
         places,
     })

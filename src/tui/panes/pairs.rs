@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use ratatui::text::Line;
 
-use crate::answer::record::PairState;
+use crate::session::results::PairState;
 use crate::tui::app::{Pane, SortKey, State};
 use crate::view::number::{short, with_unit};
 use crate::view::pairs::{state_words, write};

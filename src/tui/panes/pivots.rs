@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use unicode_width::UnicodeWidthStr;
 
-use crate::answer::record::PivotRecord;
+use crate::session::results::PivotRecord;
 use crate::tui::app::{Pane, State};
 use crate::view::force_unit;
 use crate::view::number::{in_column, largest, short, with_unit};

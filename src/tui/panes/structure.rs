@@ -4,8 +4,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use crate::answer::record::{PairDirection, PairState, State as PairMotion};
 use crate::model::structure::Structure;
+use crate::session::results::{PairDirection, PairState, State as PairMotion};
 use crate::tui::app::{PERIOD, Pane, State};
 use crate::view::number::short;
 use crate::view::plot::canvas::{Canvas, Stroke};

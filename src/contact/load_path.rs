@@ -1,0 +1,77 @@
+//! The LCP of a contact problem whose load grows: load + t · increment in the place of the covering.
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use super::complementarity::{ContactLcp, contact_lcp, load_with_gaps};
+use super::numbers::ContactNumbers;
+use super::system::ContactSystem;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::ratio_test::TieRule;
+use crate::lcp::vertex::{Basis, vertex};
+use crate::model::pair::Law;
+use crate::model::rules::{Covering, TieBreak};
+
+/// Whether all variables of `basis` are ≥ 0 (up to rounding) in this LCP.
+pub fn is_answer(lcp: &MirroredLcp, basis: &Basis) -> bool {
+    let Some(point) = vertex(lcp, basis) else {
+        return false;
+    };
+    let force = lcp
+        .q
+        .amax()
+        .max(point.w.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
+    let length = point.z.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    point.w.iter().all(|w| *w >= -1e-11 * force) && point.z.iter().all(|z| *z >= -1e-11 * length)
+}
+
+/// The dimensionless LCP of base + t · increment: q is that of `numbers`, the covering that of the increment of the
+/// load (t in the user's units of the increment's factor).
+pub fn path_lcp(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    increment: &DVector<f64>,
+) -> ContactLcp {
+    let mut reference = numbers.clone();
+    if load_with_gaps(system, numbers).amax() == 0.0 {
+        reference.load = increment.clone();
+    }
+    // `ones` covers everything; only the matrix, the units and the rows are taken from it.
+    let mut contact = match contact_lcp(system, &reference, Covering::Ones) {
+        Ok(contact) => contact,
+        Err(_) => unreachable!("covering ones fits all numbers"),
+    };
+    let unit = contact.force_unit;
+    let load = load_with_gaps(system, numbers);
+    let mut lcp = MirroredLcp::clone(&contact.lcp);
+    for (i, pair) in system.pairs.iter().enumerate() {
+        if let Some(row) = contact.normal_row[i] {
+            lcp.q[row] = load[i] / unit;
+            lcp.covering[row] = increment[i] / unit;
+        }
+        if let (Some(row), Some(joint)) = (contact.plus_row[i], pair.tangential) {
+            let f = numbers.friction[i];
+            let extra = match pair.law {
+                Law::Bound { .. } => numbers.bound[i],
+                _ => numbers.cohesion[i],
+            };
+            lcp.q[row] = load[joint] / unit + f * (load[i] / unit) + extra / unit;
+            lcp.covering[row] = increment[joint] / unit + f * (increment[i] / unit);
+            if let Some(mirror) = &mut lcp.mirrors[row] {
+                mirror.covering = 0.0;
+            }
+        }
+    }
+    contact.lcp = Arc::new(lcp);
+    contact
+}
+
+/// The order of rows of the lexicographic rule.
+pub fn order(contact: &ContactLcp) -> Vec<usize> {
+    match contact.tie_rule(TieBreak::Lexicographic) {
+        TieRule::Lexicographic(order) => order,
+        // The rule asked for is this one.
+        _ => (0..contact.rows.len()).collect(),
+    }
+}

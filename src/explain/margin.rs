@@ -1,0 +1,252 @@
+//! How far the final working scheme holds: when a load factor or a friction parameter moves, which joint turns first.
+//!
+//! Within one scheme every quantity is linear in the load factors: those margins are exact. In a friction parameter it
+//! is a rational function: that margin comes from a search over a grid and bisection, and says so.
+
+use serde::Serialize;
+
+use super::vertex::value;
+use crate::contact::complementarity::{ContactLcp, Couple, CoveringError, contact_lcp};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::lcp::outcome::Point;
+use crate::lcp::variable::Variable;
+use crate::lcp::vertex::{Basis, vertex};
+use crate::model::rules::Covering;
+
+/// Points of the search in a friction parameter, each way.
+const GRID: usize = 64;
+/// Released joints up to which a friction parameter is searched.
+pub const MOST_RELEASED: usize = 200;
+/// Relative size of a basic variable below which it is at its limit already.
+const AT_LIMIT: f64 = 1e-10;
+
+/// A joint that turns.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Turn {
+    /// Value of the parameter.
+    pub at: f64,
+    /// Id of the pair.
+    pub pair: String,
+    /// What happens: "uses up its reserve x+".
+    pub what: String,
+}
+
+/// First turns when one parameter moves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Margin {
+    /// "factor of load case `pull`", "friction f".
+    pub parameter: String,
+    /// Its present value.
+    pub present: f64,
+    /// First turn of any pair downwards.
+    pub down: Option<Turn>,
+    /// First turn of any pair upwards.
+    pub up: Option<Turn>,
+    /// First turn of the pair asked for, downwards, if the others did not turn before.
+    pub own_down: Option<Turn>,
+    /// The same upwards.
+    pub own_up: Option<Turn>,
+    /// Exact (linear), or found by a search.
+    pub exact: bool,
+}
+
+/// A final scheme: all that its margins need.
+#[derive(Clone, Copy)]
+pub struct FinalScheme<'a> {
+    /// Pairs and R.
+    pub system: &'a ContactSystem,
+    /// Its LCP.
+    pub contact: &'a ContactLcp,
+    /// Present numbers.
+    pub numbers: &'a ContactNumbers,
+    /// The basis, p not in it.
+    pub basis: &'a Basis,
+    /// The vertex, dimensionless.
+    pub point: &'a Point,
+}
+
+/// Basic variables that may not become negative: not the reserves and slips of open pairs without cohesion.
+fn watched(scheme: &FinalScheme) -> Vec<Variable> {
+    let FinalScheme {
+        contact,
+        numbers,
+        basis,
+        ..
+    } = scheme;
+    super::vertex::basics(&contact.lcp, basis)
+        .into_iter()
+        .filter(|variable| {
+            let (Variable::W(row) | Variable::Z(row)) = variable else {
+                return false;
+            };
+            let meaning = contact.rows[*row];
+            let open = contact.normal_row[meaning.pair]
+                .is_some_and(|row| basis.z.binary_search(&row).is_ok());
+            let loose = open && numbers.cohesion[meaning.pair] == 0.0;
+            !loose || meaning.couple == Couple::Normal
+        })
+        .collect()
+}
+
+fn what(scheme: &FinalScheme, variable: Variable) -> (usize, &'static str) {
+    let (row, force) = match variable {
+        Variable::W(row) => (row, true),
+        Variable::Z(row) => (row, false),
+        Variable::P => return (0, "p"),
+    };
+    let meaning = scheme.contact.rows[row];
+    let words = match (meaning.couple, force) {
+        (Couple::Normal, true) => "loses its contact force",
+        (Couple::Normal, false) => "comes into contact",
+        (Couple::Plus, true) => "uses up its reserve x+",
+        (Couple::Minus, true) => "uses up its reserve x-",
+        (_, false) => "stops slipping",
+    };
+    (meaning.pair, words)
+}
+
+fn turn(scheme: &FinalScheme, at: f64, variable: Variable) -> Turn {
+    let (pair, what) = what(scheme, variable);
+    Turn {
+        at,
+        pair: scheme.system.pairs[pair].id.clone(),
+        what: what.to_owned(),
+    }
+}
+
+/// Margins in the factor of a load case whose RF per unit is `unit`.
+pub fn load_margin(
+    scheme: &FinalScheme,
+    pair: usize,
+    name: &str,
+    present: f64,
+    unit: &nalgebra::DVector<f64>,
+) -> Option<Margin> {
+    let m = scheme.system.pairs.len();
+    let rate = ContactNumbers {
+        friction: scheme.numbers.friction.clone(),
+        cohesion: vec![0.0; m],
+        gap: vec![0.0; m],
+        bound: vec![0.0; m],
+        load: unit.clone(),
+    };
+    // Only M and q of this LCP are used: any covering that can be written will do.
+    let change = contact_lcp(scheme.system, &rate, Covering::Ones).ok()?;
+    let rates = change.in_units(&vertex(&change.lcp, scheme.basis)?);
+    let values = scheme.contact.in_units(scheme.point);
+    let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (force, length) = (largest(&values.w), largest(&values.z));
+    let (force_rate, length_rate) = (largest(&rates.w), largest(&rates.z));
+    let mut margin = Margin {
+        parameter: format!("factor of load case `{name}`"),
+        present,
+        down: None,
+        up: None,
+        own_down: None,
+        own_up: None,
+        exact: true,
+    };
+    for variable in watched(scheme) {
+        let (value, rate) = (value(&values, variable), value(&rates, variable));
+        let (size, rate_size) = match variable {
+            Variable::Z(_) => (length, length_rate),
+            _ => (force, force_rate),
+        };
+        if rate.abs() <= 1e-12 * rate_size {
+            continue;
+        }
+        let value = if value <= AT_LIMIT * size { 0.0 } else { value };
+        let at = present - value / rate;
+        let own = what(scheme, variable).0 == pair;
+        let sooner = |slot: &mut Option<Turn>, up: bool| {
+            let earlier = slot
+                .as_ref()
+                .is_none_or(|found| if up { at < found.at } else { at > found.at });
+            if earlier {
+                *slot = Some(turn(scheme, at, variable));
+            }
+        };
+        if rate < 0.0 {
+            sooner(&mut margin.up, true);
+            if own {
+                sooner(&mut margin.own_up, true);
+            }
+        } else {
+            sooner(&mut margin.down, false);
+            if own {
+                sooner(&mut margin.own_down, false);
+            }
+        }
+    }
+    Some(margin)
+}
+
+/// Margins in a friction parameter; `at` gives the numbers for a value of it, `end` is the largest value looked at.
+pub fn friction_margin(
+    scheme: &FinalScheme,
+    pair: usize,
+    name: &str,
+    present: f64,
+    end: f64,
+    at: &dyn Fn(f64) -> ContactNumbers,
+) -> Option<Margin> {
+    if scheme.basis.z.len() > MOST_RELEASED {
+        return None;
+    }
+    let watched = watched(scheme);
+    // Basic variables in user's units relative to the present sizes, and which of them is most negative.
+    let now = scheme.contact.in_units(scheme.point);
+    let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (force, length) = (largest(&now.w), largest(&now.z));
+    let worst = |parameter: f64, own: bool| -> Option<(f64, Variable)> {
+        let lcp: Result<ContactLcp, CoveringError> =
+            contact_lcp(scheme.system, &at(parameter), Covering::Ones);
+        let lcp = lcp.ok()?;
+        let point = lcp.in_units(&vertex(&lcp.lcp, scheme.basis)?);
+        watched
+            .iter()
+            .filter(|variable| !own || what(scheme, **variable).0 == pair)
+            .map(|variable| {
+                let size = match variable {
+                    Variable::Z(_) => length,
+                    _ => force,
+                };
+                let size = if size > 0.0 { size } else { 1.0 };
+                (value(&point, *variable) / size, *variable)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let search = |target: f64, own: bool| -> Option<Turn> {
+        let mut good = present;
+        for k in 1..=GRID {
+            let next = present + (target - present) * k as f64 / GRID as f64;
+            let fails =
+                |parameter: f64| worst(parameter, own).is_none_or(|(least, _)| least < -AT_LIMIT);
+            if fails(next) {
+                let mut bad = next;
+                for _ in 0..60 {
+                    let middle = 0.5 * (good + bad);
+                    if fails(middle) {
+                        bad = middle;
+                    } else {
+                        good = middle;
+                    }
+                }
+                let (_, variable) = worst(bad, own)?;
+                return Some(turn(scheme, good, variable));
+            }
+            good = next;
+        }
+        None
+    };
+    Some(Margin {
+        parameter: format!("friction {name}"),
+        present,
+        down: (present > 0.0).then(|| search(0.0, false)).flatten(),
+        up: search(end, false),
+        own_down: (present > 0.0).then(|| search(0.0, true)).flatten(),
+        own_up: search(end, true),
+        exact: false,
+    })
+}

@@ -1,0 +1,384 @@
+//! A motion that costs no energy, in words: which parts move, how, and what that does to the pairs.
+
+use std::collections::HashMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::words::{list, short};
+use crate::contact::system::ContactSystem;
+use crate::fem::{MainSystem, Motion};
+use crate::model::pair::joints;
+use crate::model::structure::Structure;
+
+/// Entries below this share of the largest do not move.
+pub(super) const STILL: f64 = 1e-7;
+
+/// Rigid motion of one part.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RigidMotion {
+    /// All nodes move alike, by this vector.
+    Translation([f64; 2]),
+    /// Turns about a point.
+    Rotation {
+        /// The point that stays.
+        centre: [f64; 2],
+        /// Angle, counter-clockwise > 0.
+        angle: f64,
+    },
+}
+
+/// A part that moves as one rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartMotion {
+    /// Its name as it stands in a sentence: `` `upper` ``, `` `AB` and `BC` ``.
+    pub name: String,
+    /// How it moves.
+    pub motion: RigidMotion,
+}
+
+/// A motion of the structure that costs no energy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// [u_x, u_y, θ] per node.
+    pub displacements: Vec<[f64; 3]>,
+    /// The parts that move; empty where the motion is none of rigid bars and plates.
+    pub parts: Vec<PartMotion>,
+}
+
+/// Bars and plates with their nodes; loose quads are taken together where they hang together.
+struct Member {
+    id: String,
+    nodes: Vec<usize>,
+}
+
+fn members(structure: &Structure) -> Vec<Member> {
+    let nodes_of = |elements: std::ops::Range<usize>| {
+        let mut nodes: Vec<usize> = structure.elements[elements]
+            .iter()
+            .flat_map(|element| element.nodes.iter().copied())
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    };
+    let mut all: Vec<Member> = structure
+        .bars
+        .iter()
+        .map(|bar| (&bar.id, &bar.elements))
+        .chain(
+            structure
+                .plates
+                .iter()
+                .map(|plate| (&plate.id, &plate.elements)),
+        )
+        .map(|(id, elements)| Member {
+            id: format!("`{id}`"),
+            nodes: nodes_of(elements.clone()),
+        })
+        .collect();
+    let mut named = vec![false; structure.elements.len()];
+    for elements in structure
+        .bars
+        .iter()
+        .map(|bar| &bar.elements)
+        .chain(structure.plates.iter().map(|plate| &plate.elements))
+    {
+        named[elements.clone()].fill(true);
+    }
+    for (index, element) in structure.elements.iter().enumerate() {
+        if !named[index] {
+            let first = element
+                .nodes
+                .first()
+                .map_or("", |&n| &structure.nodes[n].id);
+            all.push(Member {
+                id: format!("the element at {first}"),
+                nodes: element.nodes.clone(),
+            });
+        }
+    }
+    all
+}
+
+/// Largest extent of the structure.
+fn size(structure: &Structure) -> f64 {
+    let span = |axis: usize| {
+        let (low, high) = structure
+            .nodes
+            .iter()
+            .map(|node| node.position[axis])
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+        high - low
+    };
+    if structure.nodes.is_empty() {
+        return 1.0;
+    }
+    let size = span(0).max(span(1));
+    if size > 0.0 { size } else { 1.0 }
+}
+
+/// The motion of the structure with these mutual displacements of the joints, if one costs no energy.
+pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) -> Option<Mode> {
+    let motions = main.kernel_motions();
+    if motions.is_empty() || direction.amax() == 0.0 {
+        return None;
+    }
+    let joints = joints(&structure.pairs);
+    let at = |motion: &Motion, joint: usize| -> f64 {
+        joints[joint]
+            .terms
+            .iter()
+            .map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1])
+            .sum()
+    };
+    let b = DMatrix::from_fn(joints.len(), motions.len(), |joint, k| {
+        at(&motions[k], joint)
+    });
+    let amounts = b.clone().svd(true, true).solve(direction, 1e-12).ok()?;
+    if (&b * &amounts - direction).amax() > 1e-6 * direction.amax() {
+        return None;
+    }
+    let mut displacements = vec![[0.0; 3]; structure.nodes.len()];
+    for (motion, amount) in motions.iter().zip(amounts.iter()) {
+        for (sum, u) in displacements.iter_mut().zip(&motion.u) {
+            for (sum, u) in sum.iter_mut().zip(u) {
+                *sum += amount * u;
+            }
+        }
+    }
+    let parts = parts(structure, &displacements).unwrap_or_default();
+    Some(Mode {
+        displacements,
+        parts,
+    })
+}
+
+/// The parts that move, each rigid; `None` where one of them is not.
+pub fn parts(structure: &Structure, displacements: &[[f64; 3]]) -> Option<Vec<PartMotion>> {
+    let extent = size(structure);
+    let largest = displacements
+        .iter()
+        .map(|u| u[0].hypot(u[1]))
+        .fold(0.0, f64::max);
+    if largest == 0.0 {
+        return Some(Vec::new());
+    }
+    // Members with the same rigid motion (u at the origin, angle) are one part.
+    let mut groups: Vec<([f64; 3], Vec<usize>)> = Vec::new();
+    let members = members(structure);
+    for (index, member) in members.iter().enumerate() {
+        let rigid = fit(structure, &member.nodes, displacements, 1e-6 * largest)?;
+        let moved = member
+            .nodes
+            .iter()
+            .any(|&n| displacements[n][0].hypot(displacements[n][1]) > STILL * largest);
+        if !moved {
+            continue;
+        }
+        let same = |other: &[f64; 3]| {
+            (other[0] - rigid[0]).abs() <= 1e-6 * largest
+                && (other[1] - rigid[1]).abs() <= 1e-6 * largest
+                && (other[2] - rigid[2]).abs() * extent <= 1e-6 * largest
+        };
+        match groups.iter_mut().find(|(other, _)| same(other)) {
+            Some((_, group)) => group.push(index),
+            None => groups.push((rigid, vec![index])),
+        }
+    }
+    Some(
+        groups
+            .into_iter()
+            .map(|(rigid, group)| {
+                let names: Vec<String> = group
+                    .iter()
+                    .map(|&member| members[member].id.clone())
+                    .collect();
+                PartMotion {
+                    name: part_name(&names, members.len()),
+                    motion: describe(rigid, extent, largest),
+                }
+            })
+            .collect(),
+    )
+}
+
+fn part_name(names: &[String], all: usize) -> String {
+    if names.len() == all && all > 1 {
+        "the whole structure".to_owned()
+    } else if names.len() > 4 {
+        format!(
+            "{} to {} ({} members)",
+            names[0],
+            names[names.len() - 1],
+            names.len()
+        )
+    } else {
+        list(names)
+    }
+}
+
+/// Rigid motion (u_x and u_y at the centre of the nodes, then moved to the origin; angle) of these nodes.
+fn fit(structure: &Structure, nodes: &[usize], u: &[[f64; 3]], tolerance: f64) -> Option<[f64; 3]> {
+    let count = nodes.len() as f64;
+    let mean = |read: &dyn Fn(usize) -> f64| nodes.iter().map(|&n| read(n)).sum::<f64>() / count;
+    let x = |n: usize| structure.nodes[n].position;
+    let centre = [mean(&|n| x(n)[0]), mean(&|n| x(n)[1])];
+    let shift = [mean(&|n| u[n][0]), mean(&|n| u[n][1])];
+    let (mut moment, mut inertia) = (0.0, 0.0);
+    for &n in nodes {
+        let arm = [x(n)[0] - centre[0], x(n)[1] - centre[1]];
+        moment += arm[0] * (u[n][1] - shift[1]) - arm[1] * (u[n][0] - shift[0]);
+        inertia += arm[0] * arm[0] + arm[1] * arm[1];
+    }
+    let angle = if inertia > 0.0 { moment / inertia } else { 0.0 };
+    for &n in nodes {
+        let arm = [x(n)[0] - centre[0], x(n)[1] - centre[1]];
+        let error = [
+            u[n][0] - shift[0] + angle * arm[1],
+            u[n][1] - shift[1] - angle * arm[0],
+        ];
+        if error[0].hypot(error[1]) > tolerance {
+            return None;
+        }
+    }
+    Some([
+        shift[0] + angle * centre[1],
+        shift[1] - angle * centre[0],
+        angle,
+    ])
+}
+
+fn describe([x, y, angle]: [f64; 3], extent: f64, largest: f64) -> RigidMotion {
+    if angle.abs() * extent <= 1e-6 * largest {
+        return RigidMotion::Translation([x, y]);
+    }
+    let tidy = |value: f64| {
+        if value.abs() <= 1e-6 * extent {
+            0.0
+        } else {
+            value
+        }
+    };
+    // u = (x − θ Y, y + θ X) is zero at the centre.
+    RigidMotion::Rotation {
+        centre: [tidy(-y / angle), tidy(x / angle)],
+        angle,
+    }
+}
+
+/// `+x`, `-y`, `(0.995, 0.0998)`.
+pub fn direction_word(u: [f64; 2]) -> String {
+    let size = u[0].hypot(u[1]);
+    let (x, y) = (u[0] / size, u[1] / size);
+    let sign = |v: f64| if v > 0.0 { '+' } else { '-' };
+    if y.abs() <= 1e-6 {
+        format!("{}x", sign(x))
+    } else if x.abs() <= 1e-6 {
+        format!("{}y", sign(y))
+    } else {
+        format!("({}, {})", short(x), short(y))
+    }
+}
+
+impl PartMotion {
+    /// "rigid translation of `upper` along +x".
+    pub fn words(&self) -> String {
+        match &self.motion {
+            RigidMotion::Translation(u) => {
+                format!(
+                    "rigid translation of {} along {}",
+                    self.name,
+                    direction_word(*u)
+                )
+            }
+            RigidMotion::Rotation { centre, angle } => format!(
+                "rotation of {} about ({}, {}), {}",
+                self.name,
+                coordinate(centre[0]),
+                coordinate(centre[1]),
+                if *angle > 0.0 {
+                    "counter-clockwise"
+                } else {
+                    "clockwise"
+                }
+            ),
+        }
+    }
+}
+
+fn coordinate(value: f64) -> String {
+    if value == 0.0 {
+        "0.0".to_owned()
+    } else {
+        short(value)
+    }
+}
+
+/// What a direction does to the pairs: "all pairs slip +", "base[0] to base[3] open".
+pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<String> {
+    let largest = direction.amax();
+    let mut kinds: HashMap<&str, Vec<usize>> = HashMap::new();
+    for i in 0..system.pairs.len() {
+        let z_n = direction[i];
+        let z_t = system.pairs[i]
+            .tangential
+            .map_or(0.0, |joint| direction[joint]);
+        let kind = if z_n > STILL * largest {
+            "open"
+        } else if z_n < -STILL * largest {
+            "close"
+        } else if z_t > STILL * largest {
+            "slip +"
+        } else if z_t < -STILL * largest {
+            "slip -"
+        } else {
+            continue;
+        };
+        kinds.entry(kind).or_default().push(i);
+    }
+    ["open", "close", "slip +", "slip -"]
+        .into_iter()
+        .filter_map(|kind| {
+            let pairs = kinds.get(kind)?;
+            let verb = if pairs.len() == 1 {
+                match kind {
+                    "open" => "opens".to_owned(),
+                    "close" => "closes".to_owned(),
+                    _ => kind.replace("slip", "slips"),
+                }
+            } else {
+                kind.to_owned()
+            };
+            Some(format!("{} {verb}", pair_names(system, pairs)))
+        })
+        .collect()
+}
+
+/// "all pairs", "pair c1", "pairs c1 and c3", "pairs base[0] to base[3]".
+pub fn pair_names(system: &ContactSystem, pairs: &[usize]) -> String {
+    let id = |i: usize| system.pairs[i].id.clone();
+    if pairs.len() == system.pairs.len() && pairs.len() > 1 {
+        return "all pairs".to_owned();
+    }
+    if let [one] = pairs {
+        return format!("pair {}", id(*one));
+    }
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for &i in pairs {
+        match runs.last_mut() {
+            Some((_, last)) if *last + 1 == i => *last = i,
+            _ => runs.push((i, i)),
+        }
+    }
+    let words: Vec<String> = runs
+        .into_iter()
+        .flat_map(|(first, last)| match last - first {
+            0 => vec![id(first)],
+            1 => vec![id(first), id(last)],
+            _ => vec![format!("{} to {}", id(first), id(last))],
+        })
+        .collect();
+    format!("pairs {}", list(&words))
+}

@@ -1,0 +1,73 @@
+//! The LCP itself, for other solvers: as a scenario of this program (JSON) or in Matrix Market files.
+
+use std::io::{self, Write};
+
+use serde_json::{Value, json};
+
+use crate::lcp::problem::Lcp;
+
+/// The LCP as a `stickslip/1` scenario with the source `lcp`: it loads and solves as it is.
+pub fn scenario(lcp: &Lcp<f64>, names: &[String], title: &str) -> Value {
+    json!({
+        "format": "stickslip/1",
+        "title": title,
+        "lcp": { "M": lcp.matrix, "q": lcp.q, "covering": lcp.covering, "names": names },
+    })
+}
+
+/// A dense matrix in Matrix Market array format, column by column; a vector is a matrix of one column.
+///
+/// # Errors
+/// Those of `out`.
+pub fn matrix_market(out: &mut dyn Write, rows: &[Vec<f64>], comment: &str) -> io::Result<()> {
+    let columns = rows.first().map_or(0, Vec::len);
+    writeln!(out, "%%MatrixMarket matrix array real general")?;
+    for line in comment.lines() {
+        writeln!(out, "% {line}")?;
+    }
+    writeln!(out, "{} {columns}", rows.len())?;
+    for j in 0..columns {
+        for row in rows {
+            writeln!(out, "{:e}", row[j])?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lcp::problem::Scale;
+    use crate::model::load::load_text;
+    use crate::model::scenario::Source;
+
+    #[test]
+    fn the_scenario_loads_to_the_same_lcp() {
+        let matrix = vec![vec![2.0, 1.0 / 3.0], vec![-1e-17, 1.5]];
+        let lcp = Lcp {
+            scale: Scale::plain(&matrix),
+            matrix,
+            q: vec![-1.0, 0.1],
+            covering: vec![1.0, 1.7],
+        };
+        let names = ["x_n[c1]", "x+[c1]"].map(str::to_owned);
+        let text = scenario(&lcp, &names, "two rows").to_string();
+        let loaded = load_text("two", &text, None).expect("a scenario");
+        let Source::Lcp(given) = loaded.source else {
+            panic!("an lcp")
+        };
+        assert_eq!(given.matrix, lcp.matrix);
+        assert_eq!(given.covering, Some(lcp.covering));
+        assert_eq!(given.names, names);
+    }
+
+    #[test]
+    fn matrix_market_goes_column_by_column() {
+        let mut out = Vec::new();
+        matrix_market(&mut out, &[vec![1.0, 2.0], vec![3.0, 4.5]], "M").expect("a vector takes it");
+        assert_eq!(
+            String::from_utf8(out).expect("text"),
+            "%%MatrixMarket matrix array real general\n% M\n2 2\n1e0\n3e0\n2e0\n4.5e0\n"
+        );
+    }
+}

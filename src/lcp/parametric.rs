@@ -1,0 +1,453 @@
+//! Lemke's algorithm with a load parameter: w = M z + q + t d followed in t from a known answer.
+//!
+//! t enters first and rises; where a variable reaches zero (a *knot*) it leaves, its complement enters, and t goes
+//! on with it. Between knots every variable is affine in t. d is the increment of the load and has any sign, so the
+//! mirrors must not cover (e ≥ 0 only where a bound grows with t). The rule for ties is the lexicographic one, so
+//! that starts from zero load, where everything is degenerate, end as well (theory §6, "Load parameter").
+
+use std::collections::{BTreeSet, HashSet};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::dictionary::{Dictionary, Local, Place};
+use super::mirrored::MirroredLcp;
+use super::outcome::{Point, RayDirection};
+use super::ratio_test::{TieRule, choose};
+use super::stand::{Candidate, NOISE, SUSPICIOUS, Sizes, Stand};
+use super::variable::Variable;
+use super::vertex::{Basis, direction, vertex};
+
+/// How far a path goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// t at which it ends; infinite: as far as it goes.
+    pub target: f64,
+    /// Whether it goes on where t has to fall.
+    pub through: bool,
+    /// No more pivots than this.
+    pub pivots: usize,
+}
+
+/// Why a path ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// t reached the target.
+    Target,
+    /// t would have to fall: there is no answer on this path just beyond its last knot.
+    Turning,
+    /// Nothing blocks while t stays: the limit of the load, with the direction of collapse.
+    Limit(RayDirection),
+    /// The last scheme holds for every larger t.
+    Unbounded,
+    /// Going through turning points t fell back to 0.
+    Returned,
+    /// More pivots than allowed.
+    PivotLimit,
+    /// Stopped from outside.
+    Interrupted,
+    /// The numbers no longer belong together.
+    Breakdown(String),
+}
+
+/// A breakpoint: where the scheme changes (the first: the start; the last: the end).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knot {
+    /// t.
+    pub t: f64,
+    /// All variables there, computed afresh from the data; its `p` is t.
+    pub point: Point,
+    /// What reached zero here, one after the other.
+    pub leaving: Vec<Variable>,
+    /// The scheme beyond it: rows of the whole LCP whose z is basic, ascending.
+    pub scheme: Vec<usize>,
+}
+
+/// A followed path: its knots; between two of them everything is affine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// The knots, start and end included. t rises along them except beyond turning points.
+    pub knots: Vec<Knot>,
+    /// Why it ended.
+    pub end: End,
+    /// Pivots made.
+    pub pivots: usize,
+}
+
+impl Path {
+    /// The scheme at the end.
+    pub fn last_scheme(&self) -> Basis {
+        let z = self
+            .knots
+            .last()
+            .map_or(Vec::new(), |knot| knot.scheme.clone());
+        Basis {
+            active: z.clone(),
+            z,
+            p: false,
+        }
+    }
+}
+
+/// The engine; see the module. It keeps its dictionary from one path to the next.
+#[derive(Clone, Debug)]
+pub struct Parametric {
+    stand: Stand,
+    rule: TieRule,
+    /// Rows of the whole LCP whose z is basic.
+    scheme: BTreeSet<usize>,
+    /// What grows; p (that is t) at the start.
+    driver: Local,
+}
+
+/// Natural sizes of a path: the largest of all rows, because q may be zero and everything degenerate.
+fn sizes(lcp: &MirroredLcp) -> Sizes {
+    let mirrors = || lcp.mirrors.iter().flatten();
+    let q = mirrors().fold(lcp.q.amax(), |a, m| a.max(m.constant.abs()));
+    let d = mirrors().fold(lcp.covering.amax(), |a, m| a.max(m.covering.abs()));
+    let row = lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b));
+    Sizes {
+        q: vec![q; lcp.size()],
+        d: vec![d; lcp.size()],
+        // t answers to a response of this size in the rows that the load increment moves most.
+        p_per_force: if d > 0.0 { row / d } else { 1.0 },
+        // t itself never blocks: it is watched by its target.
+        p: 0.0,
+    }
+}
+
+impl Parametric {
+    /// Stands on the answer `basis` of the LCP at t = 0 (q), ready to follow `covering` as load increment; `order`
+    /// is the order of rows of the lexicographic rule. `None` where the equations of the basis are singular.
+    pub fn new(lcp: Arc<MirroredLcp>, basis: &Basis, order: Vec<usize>) -> Option<Parametric> {
+        let dictionary = Dictionary::at_basis(&lcp, basis)?;
+        let sizes = sizes(&lcp);
+        Some(Parametric {
+            stand: Stand::new(lcp, dictionary, sizes),
+            rule: TieRule::Lexicographic(order),
+            scheme: basis.z.iter().copied().collect(),
+            driver: Local::P,
+        })
+    }
+
+    /// Takes the next load increment after a path that ended at its target: only q, d and the constants of the
+    /// mirrors may differ from the LCP so far. `false` where the dictionary cannot be carried over.
+    pub fn reload(&mut self, lcp: Arc<MirroredLcp>) -> bool {
+        if !self.stand.dictionary.reload(&lcp) {
+            return false;
+        }
+        self.stand.sizes = sizes(&lcp);
+        self.stand.lcp = lcp;
+        self.stand.fresh = false;
+        self.driver = Local::P;
+        self.stand.agrees() || self.stand.refresh()
+    }
+
+    /// The scheme it stands on.
+    pub fn basis(&self) -> Basis {
+        let z: Vec<usize> = self.scheme.iter().copied().collect();
+        Basis {
+            active: z.clone(),
+            z,
+            p: false,
+        }
+    }
+
+    /// All variables where it stands, as the kept dictionary holds them.
+    pub fn point(&self) -> Point {
+        self.stand.point()
+    }
+
+    fn fetch(&mut self) -> Option<usize> {
+        let c = self.stand.column_of(self.driver)?;
+        self.stand.fetch(c);
+        Some(c)
+    }
+
+    /// The rows that block; t is watched by its target and does not.
+    fn blocking(&self, c: usize) -> (Vec<Candidate>, f64) {
+        self.stand.blocking(c, false)
+    }
+
+    /// The vertex where `row` of the whole LCP has both its variables at zero; t is basic.
+    fn knot_basis(&self, row: usize) -> Basis {
+        let mut active = self.scheme.clone();
+        active.insert(row);
+        Basis {
+            z: self.scheme.iter().copied().filter(|&k| k != row).collect(),
+            active: active.into_iter().collect(),
+            p: true,
+        }
+    }
+
+    /// The answer of the present scheme at t, from the data.
+    fn point_at(&self, t: f64) -> Option<Point> {
+        let mut lcp = MirroredLcp::clone(&self.stand.lcp);
+        lcp.q += t * &lcp.covering;
+        for mirror in lcp.mirrors.iter_mut().flatten() {
+            mirror.constant += t * mirror.covering;
+        }
+        let mut point = vertex(&lcp, &self.basis())?;
+        point.p = t;
+        Some(point)
+    }
+
+    /// Index of the tied candidate that leaves.
+    fn choose(&self, tied: &[Candidate]) -> usize {
+        let names: Vec<Variable> = tied.iter().map(|row| self.stand.name(row)).collect();
+        // The lexicographic rule asks for no rows of the tableau and draws nothing.
+        let rows = self.stand.inverse_rows(tied, &|_| 0);
+        let mut random = ChaCha8Rng::seed_from_u64(0);
+        choose(&self.rule, &mut random, &names, &rows, false)
+    }
+
+    /// Makes the pivot; says what left.
+    fn exchange(
+        &mut self,
+        leaving: Candidate,
+        c: usize,
+        step: f64,
+        tied: &[Candidate],
+    ) -> Variable {
+        let name = self.stand.name(&leaving);
+        self.driver = self
+            .stand
+            .exchange(&leaving, c, step, tied)
+            .unwrap_or(Local::P);
+        match name {
+            Variable::W(k) => {
+                self.scheme.insert(k);
+            }
+            Variable::Z(k) => {
+                self.scheme.remove(&k);
+            }
+            Variable::P => {}
+        }
+        name
+    }
+
+    /// t leaves: the path ends at the target, the dictionary stands on its answer and p is nonbasic again.
+    fn settle(&mut self, c: usize, step: f64) {
+        if let Place::Row(r) = self.stand.dictionary.place(Local::P) {
+            let column = std::mem::take(&mut self.stand.column);
+            self.stand.dictionary.pivot(r, c, &column, step);
+            self.stand.column = column;
+        } else {
+            for (value, rate) in self
+                .stand
+                .dictionary
+                .value
+                .iter_mut()
+                .zip(&self.stand.column)
+            {
+                *value += rate * step;
+            }
+        }
+        self.driver = Local::P;
+        self.stand.fresh = false;
+    }
+
+    /// The rate of t along the present column, zero where it is noise.
+    fn t_rate(&self, c: usize) -> f64 {
+        let raw = self
+            .stand
+            .dictionary
+            .along(Local::P, c, &self.stand.column)
+            .rate;
+        if self.driver == Local::P {
+            return raw;
+        }
+        let size = self
+            .stand
+            .rate_size(Local::P, self.stand.rate_total(c), 0.0);
+        if raw.abs() > SUSPICIOUS * size {
+            return raw;
+        }
+        // Near the noise the data decide: the direction at the last knot, its equations solved afresh.
+        let row = match self.stand.variable(self.driver, false) {
+            Variable::W(k) | Variable::Z(k) => k,
+            Variable::P => return raw,
+        };
+        let entering = self.stand.variable(self.driver, false);
+        let rate = direction(&self.stand.lcp, &self.knot_basis(row), entering).map_or(raw, |d| d.p);
+        if rate.abs() <= NOISE * size {
+            0.0
+        } else {
+            rate
+        }
+    }
+
+    fn ray(&self, c: usize) -> RayDirection {
+        let mut ray = self.stand.ray(c);
+        let entering = ray.entering;
+        ray.p = 0.0;
+        let row = match entering {
+            Variable::W(k) | Variable::Z(k) => k,
+            Variable::P => return ray,
+        };
+        if let Some(fresh) = direction(&self.stand.lcp, &self.knot_basis(row), entering) {
+            // The dictionary knows which entries are zero; the fresh solution knows their size.
+            let keep = |mine: &mut [f64], fresh: &[f64]| {
+                for (mine, fresh) in mine.iter_mut().zip(fresh) {
+                    if *mine != 0.0 {
+                        *mine = fresh.max(0.0);
+                    }
+                }
+            };
+            keep(&mut ray.z, &fresh.z);
+            keep(&mut ray.w, &fresh.w);
+        }
+        ray
+    }
+
+    /// Follows the path; `observer` is called after every pivot with t and may break.
+    pub fn follow(
+        &mut self,
+        reach: Reach,
+        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Path {
+        let point = self.point_at(0.0).unwrap_or_else(|| self.stand.point());
+        let mut knots = Some(vec![Knot {
+            t: 0.0,
+            point,
+            leaving: Vec::new(),
+            scheme: self.scheme.iter().copied().collect(),
+        }]);
+        let (end, pivots) = self.run(reach, &mut knots, observer);
+        Path {
+            knots: knots.unwrap_or_default(),
+            end,
+            pivots,
+        }
+    }
+
+    /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots.
+    pub fn walk(
+        &mut self,
+        reach: Reach,
+        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> (End, usize) {
+        self.run(reach, &mut None, observer)
+    }
+
+    fn run(
+        &mut self,
+        reach: Reach,
+        knots: &mut Option<Vec<Knot>>,
+        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> (End, usize) {
+        let mut met: HashSet<(Vec<usize>, Variable)> = HashSet::new();
+        let mut pivots = 0;
+        let end = loop {
+            if pivots > reach.pivots {
+                break End::PivotLimit;
+            }
+            match self.advance(reach, knots, &mut met) {
+                ControlFlow::Break(end) => break end,
+                ControlFlow::Continue(()) => pivots += 1,
+            }
+            if observer(self.stand.dictionary.value_of(Local::P)).is_break() {
+                break End::Interrupted;
+            }
+        };
+        (end, pivots)
+    }
+
+    /// One pivot, or the end.
+    fn advance(
+        &mut self,
+        reach: Reach,
+        knots: &mut Option<Vec<Knot>>,
+        met: &mut HashSet<(Vec<usize>, Variable)>,
+    ) -> ControlFlow<End> {
+        let lost =
+            || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
+        let singular = "the equations of the working scheme are singular";
+        if !self.stand.keep_true() {
+            return ControlFlow::Break(End::Breakdown(singular.to_owned()));
+        }
+        let Some(c) = self.fetch() else {
+            return lost();
+        };
+        let (mut tied, mut step) = self.blocking(c);
+        if self.stand.is_suspicious(c, &tied) && self.stand.refresh() {
+            self.stand.fetch(c);
+            (tied, step) = self.blocking(c);
+        }
+        let t_rate = self.t_rate(c);
+        let t = self.stand.dictionary.value_of(Local::P);
+        if t_rate < 0.0 && step > 0.0 {
+            if !reach.through {
+                return ControlFlow::Break(End::Turning);
+            }
+            let room = t.max(0.0) / -t_rate;
+            if room <= step {
+                self.finish(c, room, 0.0, knots);
+                return ControlFlow::Break(End::Returned);
+            }
+        }
+        if t_rate > 0.0 && reach.target.is_finite() {
+            let room = (reach.target - t).max(0.0) / t_rate;
+            if room <= step {
+                self.finish(c, room, reach.target, knots);
+                return ControlFlow::Break(End::Target);
+            }
+        }
+        if tied.is_empty() {
+            return ControlFlow::Break(if t_rate > 0.0 {
+                End::Unbounded
+            } else {
+                End::Limit(self.ray(c))
+            });
+        }
+        let leaving = tied[self.choose(&tied)];
+        let name = self.exchange(leaving, c, step, &tied);
+        let row = match name {
+            Variable::W(k) | Variable::Z(k) => k,
+            Variable::P => return lost(),
+        };
+        let scheme: Vec<usize> = self.scheme.iter().copied().collect();
+        if step > 0.0 {
+            met.clear();
+            if let Some(knots) = knots {
+                let point = vertex(&self.stand.lcp, &self.knot_basis(row))
+                    .unwrap_or_else(|| self.stand.point());
+                knots.push(Knot {
+                    t: point.p,
+                    point,
+                    leaving: vec![name],
+                    scheme,
+                });
+            }
+        } else {
+            if let Some(knot) = knots.as_mut().and_then(|knots| knots.last_mut()) {
+                knot.leaving.push(name);
+                knot.scheme.clone_from(&scheme);
+            }
+            if !met.insert((scheme, name)) {
+                return ControlFlow::Break(End::Breakdown(
+                    "a working scheme came back at the same load".to_owned(),
+                ));
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Ends at t = `end` after the last step.
+    fn finish(&mut self, c: usize, step: f64, end: f64, knots: &mut Option<Vec<Knot>>) {
+        self.settle(c, step);
+        let Some(knots) = knots else {
+            return;
+        };
+        let mut point = self.point_at(end).unwrap_or_else(|| self.stand.point());
+        point.p = end;
+        knots.push(Knot {
+            t: end,
+            point,
+            leaving: Vec::new(),
+            scheme: self.scheme.iter().copied().collect(),
+        });
+    }
+}

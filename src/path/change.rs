@@ -1,0 +1,125 @@
+//! What changes at a breakpoint, in words.
+
+use crate::answer::record::{PairState, State};
+use crate::explain::words::list;
+
+/// A pair that changes its state at a breakpoint.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Change {
+    /// Id of the pair.
+    pub pair: String,
+    /// State before.
+    pub from: String,
+    /// State after.
+    pub to: String,
+}
+
+/// The state of a pair as a path tells it: its word, and for an open pair held by cohesion what it does.
+pub fn word(pair: &PairState) -> String {
+    match pair.held {
+        None => pair.state.word().to_owned(),
+        Some(State::Stick) => "open (held)".to_owned(),
+        Some(State::SlipPlus) => "open (slip +)".to_owned(),
+        Some(_) => "open (slip -)".to_owned(),
+    }
+}
+
+/// The pairs whose states differ.
+pub fn changes(before: &[PairState], after: &[PairState]) -> Vec<Change> {
+    before
+        .iter()
+        .zip(after)
+        .filter_map(|(before, after)| {
+            let (from, to) = (word(before), word(after));
+            (from != to).then(|| Change {
+                pair: after.id.clone(),
+                from,
+                to,
+            })
+        })
+        .collect()
+}
+
+/// `pair c5 slips +`, `pairs c1 and c2 open`; several kinds joined by `; `.
+pub fn sentence(changes: &[Change]) -> String {
+    let mut kinds: Vec<(&str, &str)> = Vec::new();
+    for change in changes {
+        let kind = (change.from.as_str(), change.to.as_str());
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    let parts: Vec<String> = kinds
+        .into_iter()
+        .map(|(from, to)| {
+            let pairs: Vec<String> = changes
+                .iter()
+                .filter(|change| change.from == from && change.to == to)
+                .map(|change| change.pair.clone())
+                .collect();
+            let one = pairs.len() == 1;
+            let subject = if one {
+                format!("pair {}", pairs[0])
+            } else {
+                format!("pairs {}", list(&pairs))
+            };
+            let s = |verb: &str| {
+                if one {
+                    format!("{verb}s")
+                } else {
+                    verb.to_owned()
+                }
+            };
+            let closes = if from.starts_with("open") {
+                format!("{} and ", s("close"))
+            } else {
+                String::new()
+            };
+            let verb = match to {
+                "stick" => format!("{closes}{}", s("stick")),
+                "slip+" => format!("{closes}{} +", s("slip")),
+                "slip-" => format!("{closes}{} -", s("slip")),
+                "closed" => s("close"),
+                "open" => s("open"),
+                // An open pair that cohesion still holds.
+                other if from.starts_with("open") => {
+                    format!("{} from {from} to {other}", s("go"))
+                }
+                other => format!(
+                    "{} ({})",
+                    s("open"),
+                    other.trim_start_matches("open ").trim_matches(['(', ')'])
+                ),
+            };
+            format!("{subject} {verb}")
+        })
+        .collect();
+    parts.join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Change, sentence};
+
+    fn change(pair: &str, from: &str, to: &str) -> Change {
+        Change {
+            pair: pair.into(),
+            from: from.into(),
+            to: to.into(),
+        }
+    }
+
+    #[test]
+    fn changes_of_one_kind_share_a_sentence() {
+        let changes = [
+            change("c1", "stick", "slip+"),
+            change("c2", "stick", "slip+"),
+            change("c3", "open", "stick"),
+        ];
+        assert_eq!(
+            sentence(&changes),
+            "pairs c1 and c2 slip +; pair c3 closes and sticks"
+        );
+        assert_eq!(sentence(&changes[..1]), "pair c1 slips +");
+    }
+}

@@ -1,0 +1,499 @@
+//! The answer followed over the factor of a load case: every breakpoint exact, the end a target, a turning point or
+//! the limit load (theory §6, "Load parameter").
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use super::change::{Change, changes, sentence};
+use super::start::{PIVOTS, PathError, cold, final_basis, state_of};
+use crate::answer::pairs::pair_states;
+use crate::answer::record::PairState;
+use crate::contact::complementarity::ContactLcp;
+use crate::contact::load_path::{is_answer, order, path_lcp};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::explain::words::short;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::{Point, RayDirection};
+use crate::lcp::parametric::{End, Parametric, Path, Reach};
+use crate::lcp::vertex::{Basis, vertex};
+use crate::model::parameter::ParameterValues;
+use crate::model::scenario::Scenario;
+use crate::solve::numbers::{contact_numbers, factors};
+use crate::solve::{Prepared, Solved};
+use crate::watch::Watch;
+
+/// What a load path varies: the factor of a case, or of all cases that one parameter drives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadParameter {
+    /// As asked for: the case or the parameter.
+    pub name: String,
+    /// Indices of the cases.
+    pub cases: Vec<usize>,
+}
+
+impl LoadParameter {
+    /// Finds a case of this name, or the cases whose factor is the parameter of this name.
+    ///
+    /// # Errors
+    /// An unknown name; a parameter that moves the laws of contact too.
+    pub fn find(
+        prepared: &Prepared,
+        scenario: &Scenario,
+        name: &str,
+    ) -> Result<LoadParameter, PathError> {
+        let system = prepared.system().ok_or(PathError::Plain("trace"))?;
+        if let Some(case) = prepared.cases.iter().position(|(known, _)| known == name) {
+            return Ok(LoadParameter {
+                name: name.to_owned(),
+                cases: vec![case],
+            });
+        }
+        let cases: Vec<usize> = (0..prepared.cases.len())
+            .filter(|&case| prepared.cases[case].1.parameter() == Some(name))
+            .collect();
+        let law = system.pairs.iter().find_map(|pair| {
+            let numbers = pair.law.numbers();
+            let (what, _) = numbers
+                .into_iter()
+                .find(|(_, number)| number.parameter() == Some(name))?;
+            Some(format!("it is the {what} of pair {}", pair.id))
+        });
+        if let Some(why) = law {
+            let rest = if cases.is_empty() {
+                "; only loads and friction can be followed exactly, use `sweep` for the others"
+            } else {
+                " and the factor of a load case as well; give them parameters of their own"
+            };
+            return Err(PathError::Mixed {
+                name: name.to_owned(),
+                why: format!("{why}{rest}"),
+            });
+        }
+        if cases.is_empty() {
+            return Err(PathError::Unknown {
+                name: name.to_owned(),
+                known: known(prepared, scenario),
+            });
+        }
+        Ok(LoadParameter {
+            name: name.to_owned(),
+            cases,
+        })
+    }
+
+    /// Its present value.
+    pub fn value(&self, factors: &[f64]) -> f64 {
+        // `find` leaves no empty list.
+        self.cases.first().map_or(0.0, |&case| factors[case])
+    }
+
+    /// RF per unit of it.
+    fn direction(&self, system: &ContactSystem) -> DVector<f64> {
+        self.cases.iter().fold(
+            DVector::zeros(system.joint_count()),
+            |sum: DVector<f64>, &case| sum + &system.loads[case].vector,
+        )
+    }
+}
+
+/// The names that `trace` takes.
+pub fn known(prepared: &Prepared, scenario: &Scenario) -> String {
+    let cases: Vec<&str> = prepared
+        .cases
+        .iter()
+        .map(|(name, _)| name.as_str())
+        .collect();
+    let parameters: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
+    let mut text = if cases.is_empty() {
+        "no load cases".to_owned()
+    } else {
+        format!("load cases {}", cases.join(", "))
+    };
+    if !parameters.is_empty() {
+        text.push_str(&format!("; parameters {}", parameters.join(", ")));
+    }
+    text
+}
+
+/// A load at which the scheme changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadBreakpoint {
+    /// Factor, exact to rounding.
+    pub factor: f64,
+    /// Index of its knot in the path.
+    pub knot: usize,
+    /// The pairs that change.
+    pub changes: Vec<Change>,
+    /// The pairs moved by a finite amount at this factor before it was reached.
+    pub at_constant_load: bool,
+    /// `c5 slips +`, in words.
+    pub sentence: String,
+}
+
+/// Why a load path ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoadEnd {
+    /// At the target.
+    Target,
+    /// At a turning point: beyond it there is no answer near the one followed.
+    Turning,
+    /// At the limit load.
+    Limit(RayDirection),
+    /// Nowhere: the last scheme holds for every larger factor.
+    Unbounded,
+    /// Back at the start, through turning points.
+    Returned,
+}
+
+/// A followed load path. Between two knots everything is affine in the factor.
+#[derive(Clone, Debug)]
+pub struct LoadPath {
+    /// What was varied.
+    pub parameter: LoadParameter,
+    /// Factor where it starts.
+    pub start: f64,
+    /// Whether it starts from factor 0 because the present state is no answer.
+    pub from_zero: bool,
+    /// Factors of the knots, in the order of the path.
+    pub factors: Vec<f64>,
+    /// The pairs at each knot.
+    pub pairs: Vec<Vec<PairState>>,
+    /// The breakpoints.
+    pub breakpoints: Vec<LoadBreakpoint>,
+    /// Why it ends.
+    pub end: LoadEnd,
+    /// Pivots made.
+    pub pivots: usize,
+    /// The knots and schemes, dimensionless.
+    path: Path,
+    contact: ContactLcp,
+    start_numbers: ContactNumbers,
+    all_factors: Vec<f64>,
+    direction: DVector<f64>,
+    sign: f64,
+}
+
+/// What to follow and how far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadReach {
+    /// Factor to reach; `None`: as far as it goes, upwards.
+    pub to: Option<f64>,
+    /// Whether to go on at turning points.
+    pub through: bool,
+}
+
+/// Follows the answer over a load.
+///
+/// Starts from `solved` where that is an answer, else from factor 0.
+///
+/// # Errors
+/// See [`PathError`].
+pub fn trace(
+    prepared: &Prepared,
+    scenario: &Scenario,
+    values: &ParameterValues,
+    solved: Option<&Solved>,
+    name: &str,
+    reach: LoadReach,
+    watch: &dyn Watch,
+) -> Result<LoadPath, PathError> {
+    let system = prepared.system().ok_or(PathError::Plain("trace"))?;
+    let parameter = LoadParameter::find(prepared, scenario, name)?;
+    if let Some(to) = reach.to
+        && !to.is_finite()
+    {
+        return Err(PathError::Target(format!("cannot follow {name} to {to}")));
+    }
+    let mut all_factors = factors(prepared, values);
+    let direction = parameter.direction(system);
+    if direction.amax() == 0.0 {
+        return Err(PathError::Idle(parameter.name));
+    }
+    let present = solved.and_then(final_basis);
+    let from_zero = present.is_none();
+    if from_zero {
+        for &case in &parameter.cases {
+            all_factors[case] = 0.0;
+        }
+    }
+    let start = parameter.value(&all_factors);
+    let numbers = contact_numbers(system, &all_factors, values);
+    let sign = match reach.to {
+        Some(to) if to < start => -1.0,
+        _ => 1.0,
+    };
+    let contact = path_lcp(system, &numbers, &(sign * &direction));
+    let (mut engine, from_zero) = match engine(&contact, present.as_ref()) {
+        Some(engine) => (engine, from_zero),
+        None => {
+            let found = cold(system, &numbers, watch)?;
+            let engine = engine_of(&contact, found.basis.as_ref());
+            let engine = engine.ok_or_else(|| PathError::NoStart {
+                name: name.to_owned(),
+                at: start,
+                how: found.how().to_owned(),
+            })?;
+            (engine, from_zero)
+        }
+    };
+    let target = reach.to.map_or(f64::INFINITY, |to| (to - start).abs());
+    let path = engine.follow(
+        Reach {
+            target,
+            through: reach.through,
+            pivots: PIVOTS,
+        },
+        &mut |t| {
+            let fraction = if target.is_finite() { t / target } else { 0.0 };
+            watch.progress(&format!("{name} = {}", short(start + sign * t)), fraction);
+            if watch.stop() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        },
+    );
+    let at = start + sign * path.knots.last().map_or(0.0, |knot| knot.t);
+    let end = match &path.end {
+        End::Target => LoadEnd::Target,
+        End::Turning => LoadEnd::Turning,
+        End::Limit(ray) => LoadEnd::Limit(ray.clone()),
+        End::Unbounded => LoadEnd::Unbounded,
+        End::Returned => LoadEnd::Returned,
+        End::Interrupted => return Err(PathError::Interrupted),
+        End::PivotLimit => {
+            return Err(PathError::Breakdown {
+                name: name.to_owned(),
+                at,
+                why: format!("the limit of {PIVOTS} pivots was reached"),
+            });
+        }
+        End::Breakdown(why) => {
+            return Err(PathError::Breakdown {
+                name: name.to_owned(),
+                at,
+                why: why.clone(),
+            });
+        }
+    };
+    let mut followed = LoadPath {
+        parameter,
+        start,
+        from_zero,
+        factors: path
+            .knots
+            .iter()
+            .map(|knot| start + sign * knot.t)
+            .collect(),
+        pairs: Vec::new(),
+        breakpoints: Vec::new(),
+        end,
+        pivots: path.pivots,
+        path,
+        contact,
+        start_numbers: numbers,
+        all_factors,
+        direction,
+        sign,
+    };
+    if followed.end == LoadEnd::Target
+        && let (Some(last), Some(to)) = (followed.factors.last_mut(), reach.to)
+    {
+        *last = to;
+    }
+    followed.describe(prepared, system);
+    Ok(followed)
+}
+
+fn engine(contact: &ContactLcp, basis: Option<&Basis>) -> Option<Parametric> {
+    let basis = basis?;
+    if !is_answer(&contact.lcp, basis) {
+        return None;
+    }
+    engine_of(contact, Some(basis))
+}
+
+fn engine_of(contact: &ContactLcp, basis: Option<&Basis>) -> Option<Parametric> {
+    Parametric::new(Arc::clone(&contact.lcp), basis?, order(contact))
+}
+
+/// a + s (b − a), exact at both ends; zero where both are.
+fn between(a: &Point, b: &Point, s: f64) -> Point {
+    let mix = |a: &[f64], b: &[f64]| -> Vec<f64> {
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| if s == 1.0 { *b } else { a + s * (b - a) })
+            .collect()
+    };
+    Point {
+        z: mix(&a.z, &b.z),
+        w: mix(&a.w, &b.w),
+        p: a.p + s * (b.p - a.p),
+    }
+}
+
+impl LoadPath {
+    /// The numbers of the laws and the load at a factor.
+    pub fn numbers(&self, factor: f64) -> ContactNumbers {
+        let mut numbers = self.start_numbers.clone();
+        numbers.load += (factor - self.start) * &self.direction;
+        numbers
+    }
+
+    /// The factors of all cases at a factor of the followed one.
+    pub fn case_factors(&self, factor: f64) -> Vec<f64> {
+        let mut all = self.all_factors.clone();
+        for &case in &self.parameter.cases {
+            all[case] = factor;
+        }
+        all
+    }
+
+    /// The limit factor, where the path ends in one.
+    pub fn limit(&self) -> Option<f64> {
+        match self.end {
+            LoadEnd::Limit(_) => self.factors.last().copied(),
+            _ => None,
+        }
+    }
+
+    /// The LCP the path runs in and the row names of its points.
+    pub fn contact(&self) -> &ContactLcp {
+        &self.contact
+    }
+
+    fn pairs_of(
+        &self,
+        prepared: &Prepared,
+        system: &ContactSystem,
+        point: &Point,
+    ) -> Vec<PairState> {
+        let factor = self.start + self.sign * point.p;
+        let numbers = self.numbers(factor);
+        let state = state_of(system, &numbers, &self.contact, point);
+        let mut pairs = pair_states(system, &numbers, &self.contact, &state);
+        prepared.add_released_slips(&mut pairs, &numbers, &self.case_factors(factor), &state);
+        pairs
+    }
+
+    /// The pairs at a factor, where the path passes it first; `None` where it does not.
+    pub fn pairs_at(&self, prepared: &Prepared, factor: f64) -> Option<Vec<PairState>> {
+        let system = prepared.system()?;
+        let t = self.sign * (factor - self.start);
+        let knots = &self.path.knots;
+        let beyond = knots.last().is_some_and(|last| t > last.t);
+        if beyond && self.end == LoadEnd::Unbounded {
+            let point = self.beyond(t)?;
+            return Some(self.pairs_of(prepared, system, &point));
+        }
+        let segment = knots.windows(2).find(|ends| {
+            let (low, high) = (ends[0].t.min(ends[1].t), ends[0].t.max(ends[1].t));
+            (low..=high).contains(&t)
+        });
+        let point = match segment {
+            Some([a, b]) => {
+                let length = b.t - a.t;
+                let s = if length == 0.0 {
+                    0.0
+                } else {
+                    (t - a.t) / length
+                };
+                between(&a.point, &b.point, s)
+            }
+            _ => knots.first().filter(|only| only.t == t)?.point.clone(),
+        };
+        Some(self.pairs_of(prepared, system, &point))
+    }
+
+    /// The answer of the last scheme at t beyond the last knot.
+    fn beyond(&self, t: f64) -> Option<Point> {
+        let mut lcp = MirroredLcp::clone(&self.contact.lcp);
+        lcp.q += t * &lcp.covering;
+        let mut point = vertex(&lcp, &self.path.last_scheme())?;
+        point.p = t;
+        Some(point)
+    }
+
+    /// A point of the path just after its last knot, where it goes on.
+    fn after_last(&self) -> Option<Point> {
+        let last = self.path.knots.last()?;
+        match &self.end {
+            LoadEnd::Limit(ray) => {
+                let mut point = last.point.clone();
+                let length = point.z.iter().fold(0.0, |a: f64, b| a.max(*b));
+                let length = if length > 0.0 { length } else { 1.0 };
+                for (z, rate) in point.z.iter_mut().zip(&ray.z) {
+                    *z += length * rate;
+                }
+                for (w, rate) in point.w.iter_mut().zip(&ray.w) {
+                    *w += length * rate;
+                }
+                Some(point)
+            }
+            LoadEnd::Unbounded => self.beyond(2.0 * last.t.max(1.0)),
+            _ => None,
+        }
+    }
+
+    /// Pairs and breakpoints from the knots.
+    fn describe(&mut self, prepared: &Prepared, system: &ContactSystem) {
+        let knots = &self.path.knots;
+        self.pairs = knots
+            .iter()
+            .map(|knot| self.pairs_of(prepared, system, &knot.point))
+            .collect();
+        let mut halfway: Vec<Vec<PairState>> = knots
+            .windows(2)
+            .map(|ends| {
+                let point = between(&ends[0].point, &ends[1].point, 0.5);
+                self.pairs_of(prepared, system, &point)
+            })
+            .collect();
+        halfway.extend(
+            self.after_last()
+                .map(|point| self.pairs_of(prepared, system, &point)),
+        );
+        for (k, after) in halfway.iter().enumerate() {
+            let before = match k {
+                0 => &self.pairs[0],
+                _ => &halfway[k - 1],
+            };
+            let changes = changes(before, after);
+            if changes.is_empty() {
+                continue;
+            }
+            self.breakpoints.push(LoadBreakpoint {
+                factor: self.factors[k],
+                knot: k,
+                sentence: sentence(&changes),
+                changes,
+                at_constant_load: k > 0 && knots[k].t == knots[k - 1].t,
+            });
+        }
+    }
+
+    /// How the path ended, in a sentence.
+    pub fn end_sentence(&self) -> String {
+        let name = &self.parameter.name;
+        let at = short(self.factors.last().copied().unwrap_or(self.start));
+        match &self.end {
+            LoadEnd::Target => format!("the target {name} = {at} is reached"),
+            LoadEnd::Turning => format!(
+                "turning point at {name} = {at}: the path goes on with a falling load only; beyond it the structure \
+                 jumps to another answer or has none (`--through` follows the path)"
+            ),
+            LoadEnd::Limit(_) => format!(
+                "limit load: beyond {name} = {at} nothing resists the motion in which the path ends"
+            ),
+            LoadEnd::Unbounded => {
+                format!("beyond {name} = {at} nothing changes any more, however large the load")
+            }
+            LoadEnd::Returned => {
+                format!("the path came back to {name} = {at} through turning points")
+            }
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Paths: how the answer changes with the load, with friction and with history, breakpoint by breakpoint.
+
+pub mod change;
+pub mod friction;
+pub mod grid;
+pub mod limit;
+pub mod load;
+mod rate;
+pub mod sensitivity;
+pub mod stages;
+pub mod start;
+pub mod sweep;
+pub mod sweep_file;

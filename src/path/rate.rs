@@ -1,0 +1,92 @@
+//! Rates of the answer within its scheme: what one more unit of a parameter does, from one extra solve.
+
+use nalgebra::DVector;
+
+use crate::contact::complementarity::{ContactLcp, load_with_gaps};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::{Point, RayDirection};
+use crate::lcp::variable::Variable;
+use crate::lcp::vertex::{Basis, direction};
+use crate::model::pair::Law;
+use crate::model::parameter::Number;
+use crate::solve::Prepared;
+
+/// d(numbers)/dθ and d(factors)/dθ for a parameter θ: numbers are θ itself or do not depend on it.
+pub(crate) fn number_rates(
+    prepared: &Prepared,
+    system: &ContactSystem,
+    name: &str,
+) -> (ContactNumbers, Vec<f64>) {
+    let is = |number: &Number| f64::from(number.parameter() == Some(name));
+    let factors: Vec<f64> = prepared
+        .cases
+        .iter()
+        .map(|(_, factor)| is(factor))
+        .collect();
+    let m = system.pairs.len();
+    let mut rates = ContactNumbers {
+        friction: vec![0.0; m],
+        cohesion: vec![0.0; m],
+        gap: vec![0.0; m],
+        bound: vec![0.0; m],
+        load: DVector::zeros(system.joint_count()),
+    };
+    for (i, pair) in system.pairs.iter().enumerate() {
+        match &pair.law {
+            Law::Coulomb {
+                friction,
+                cohesion,
+                gap,
+            } => {
+                rates.friction[i] = is(friction);
+                rates.cohesion[i] = is(cohesion);
+                rates.gap[i] = is(gap);
+            }
+            Law::Frictionless { gap } => rates.gap[i] = is(gap),
+            Law::Bound { bound } => rates.bound[i] = is(bound),
+        }
+    }
+    for (load, factor) in system.loads.iter().zip(&factors) {
+        rates.load += *factor * &load.vector;
+    }
+    (rates, factors)
+}
+
+/// The LCP at `point` with d = dM/dθ z + dq/dθ as covering: to first order w = M z + q + (θ − θ₀) d.
+pub(crate) fn rate_lcp(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    contact: &ContactLcp,
+    point: &Point,
+    rates: &ContactNumbers,
+    sign: f64,
+) -> MirroredLcp {
+    let mut lcp = MirroredLcp::clone(&contact.lcp);
+    let load = load_with_gaps(system, rates) * (sign / contact.force_unit);
+    for (i, pair) in system.pairs.iter().enumerate() {
+        let x_n = contact.normal_row[i].map_or(0.0, |row| point.w[row]);
+        if let Some(row) = contact.normal_row[i] {
+            lcp.covering[row] = load[i];
+        }
+        let (Some(row), Some(joint)) = (contact.plus_row[i], pair.tangential) else {
+            continue;
+        };
+        let extra = match pair.law {
+            Law::Bound { .. } => rates.bound[i],
+            _ => rates.cohesion[i],
+        };
+        let bound = sign * (rates.friction[i] * x_n + extra / contact.force_unit);
+        lcp.covering[row] = load[joint] + numbers.friction[i] * load[i] + bound;
+        if let Some(mirror) = &mut lcp.mirrors[row] {
+            mirror.covering = 2.0 * bound;
+        }
+    }
+    lcp
+}
+
+/// dz/dθ and dw/dθ within the scheme, dimensionless; `None` where its equations are singular.
+pub(crate) fn rate(lcp: &MirroredLcp, basis: &Basis) -> Option<RayDirection> {
+    direction(lcp, basis, Variable::P)
+}

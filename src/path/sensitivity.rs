@@ -1,0 +1,150 @@
+//! Sensitivity: derivatives of slips and forces with respect to every parameter, from the final scheme.
+
+use super::rate::{number_rates, rate, rate_lcp};
+use super::start::{PathError, final_basis};
+use crate::answer::pairs::JointState;
+use crate::answer::record::PairState;
+use crate::contact::complementarity::load_with_gaps;
+use crate::model::scenario::Scenario;
+use crate::solve::solved::Trace;
+use crate::solve::{Prepared, Solved};
+
+/// A variable of an answer counts as exactly on its limit below this multiple of the largest.
+const ON_LIMIT: f64 = 1e-11;
+
+/// Derivatives at one pair, in the user's units per unit of the parameter.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct PairRate {
+    /// Id of the pair.
+    pub pair: String,
+    /// dx_n/dθ.
+    pub x_n: f64,
+    /// dx_τ/dθ.
+    pub x_t: f64,
+    /// dz_n/dθ.
+    pub z_n: f64,
+    /// dz_τ/dθ.
+    pub z_t: f64,
+}
+
+/// Derivatives of the answer with respect to one parameter.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct ParameterRate {
+    /// The parameter θ.
+    pub parameter: String,
+    /// Its present value.
+    pub value: f64,
+    /// The pairs.
+    pub pairs: Vec<PairRate>,
+}
+
+/// Derivatives of the answer.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Sensitivity {
+    /// For each parameter, in the order of the file.
+    pub parameters: Vec<ParameterRate>,
+    /// Pairs exactly on a limit: there the derivatives hold to one side only.
+    pub on_limit: Vec<String>,
+}
+
+/// Derivatives with respect to every parameter of the scenario.
+///
+/// # Errors
+/// Where there is no answer, or a bare LCP.
+pub fn sensitivity(
+    prepared: &Prepared,
+    scenario: &Scenario,
+    solved: &Solved,
+    values: &crate::model::parameter::ParameterValues,
+) -> Result<Sensitivity, PathError> {
+    let system = prepared.system().ok_or(PathError::Plain("sensitivity"))?;
+    let (
+        Trace::Contact {
+            contact,
+            numbers,
+            last,
+            ..
+        },
+        Some(basis),
+    ) = (&solved.trace, final_basis(solved))
+    else {
+        return Err(PathError::Missing(
+            "there is no answer whose derivatives could be taken".to_owned(),
+        ));
+    };
+    let mut parameters = Vec::new();
+    for name in scenario.parameters.keys() {
+        let (rates, factor_rates) = number_rates(prepared, system, name);
+        let lcp = rate_lcp(system, numbers, contact, last, &rates, 1.0);
+        let Some(direction) = rate(&lcp, &basis) else {
+            return Err(PathError::Missing(
+                "the equations of the final scheme are singular: there are no derivatives"
+                    .to_owned(),
+            ));
+        };
+        let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
+        let state = JointState {
+            force: &system.stiffness * &z + load_with_gaps(system, &rates),
+            z,
+            p: 0.0,
+        };
+        // The released slips are linear in all of this, so their rates follow from the rates.
+        let mut shown = solved.answer.pairs.clone();
+        prepared.add_released_slips(&mut shown, &rates, &factor_rates, &state);
+        let pairs = system
+            .pairs
+            .iter()
+            .enumerate()
+            .map(|(i, pair)| {
+                let row = |row: Option<usize>| row.map(|row| direction.w[row] * contact.force_unit);
+                let x_n = row(contact.normal_row[i]).unwrap_or(state.force[i]);
+                let reserves = (row(contact.plus_row[i]), row(contact.minus_row[i]));
+                PairRate {
+                    pair: pair.id.clone(),
+                    x_n,
+                    x_t: match reserves {
+                        (Some(plus), Some(minus)) => 0.5 * (plus - minus),
+                        _ => 0.0,
+                    },
+                    z_n: contact.normal_row[i].map_or(0.0, |_| state.z[i]),
+                    z_t: pair.tangential.map_or(shown[i].z_t, |joint| state.z[joint]),
+                }
+            })
+            .collect();
+        parameters.push(ParameterRate {
+            parameter: name.clone(),
+            value: values.get(name).copied().unwrap_or_default(),
+            pairs,
+        });
+    }
+    Ok(Sensitivity {
+        parameters,
+        on_limit: on_limit(&solved.answer.pairs),
+    })
+}
+
+/// Pairs that stand exactly between two states.
+pub fn on_limit(pairs: &[PairState]) -> Vec<String> {
+    let largest = |value: fn(&PairState) -> f64| {
+        pairs
+            .iter()
+            .map(|pair| value(pair).abs())
+            .fold(0.0, f64::max)
+    };
+    let force = largest(|pair| pair.x_n).max(largest(|pair| pair.x_t));
+    pairs
+        .iter()
+        .filter(|pair| {
+            let zero = |x: f64| x.abs() <= ON_LIMIT * force;
+            let open = pair.z_n > 0.0;
+            let touching = pair.law != "bound" && !open && zero(pair.x_n);
+            let slipping = pair.law != "frictionless"
+                && !open
+                && !touching
+                && pair.z_t == 0.0
+                && (zero(pair.reserve_plus) || zero(pair.reserve_minus));
+            touching || slipping
+        })
+        .map(|pair| pair.id.clone())
+        .collect()
+}

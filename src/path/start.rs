@@ -1,0 +1,157 @@
+//! Where a path starts, and why it cannot.
+
+use crate::answer::pairs::{JointState, joint_state};
+use crate::contact::complementarity::{ContactLcp, contact_lcp};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::lcp::outcome::{Outcome, Point, RayDirection};
+use crate::lcp::vertex::Basis;
+use crate::model::rules::{Covering, TieBreak};
+use crate::solve::attempt::run_scheme;
+use crate::solve::{Solved, solved::Trace};
+use crate::watch::Watch;
+
+/// No path makes more pivots than this.
+pub const PIVOTS: usize = 100_000;
+
+/// Why a path cannot be followed. Its own end (turning point, limit) is no error.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PathError {
+    /// A bare LCP.
+    #[error("a bare LCP has no loads and no friction: `{0}` needs contact pairs")]
+    Plain(&'static str),
+    /// Neither a load case nor a parameter that can be followed.
+    #[error(
+        "nothing to follow: `{name}` is no load case and no parameter of one; there are {known}"
+    )]
+    Unknown {
+        /// As given.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// A parameter that moves more than loads or more than friction.
+    #[error("{name} cannot be followed: {why}")]
+    Mixed {
+        /// The parameter.
+        name: String,
+        /// What else it moves.
+        why: String,
+    },
+    /// A target that cannot be.
+    #[error("{0}")]
+    Target(String),
+    /// The case does not act on any pair.
+    #[error(
+        "load case {0} presses and pushes no contact pair: the state of the pairs does not depend on it"
+    )]
+    Idle(String),
+    /// No answer to start from.
+    #[error("there is no answer to start from: at {name} = {at} the run ended {how}")]
+    NoStart {
+        /// What is followed.
+        name: String,
+        /// Its value there.
+        at: f64,
+        /// `in a ray`, …
+        how: String,
+    },
+    /// A scenario without what is asked for.
+    #[error("{0}")]
+    Missing(String),
+    /// The numbers no longer belonged together.
+    #[error("the path broke down at {name} = {at}: {why}")]
+    Breakdown {
+        /// What is followed.
+        name: String,
+        /// Its value there.
+        at: f64,
+        /// What failed.
+        why: String,
+    },
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// An answer found without a path.
+#[derive(Clone, Debug)]
+pub(crate) struct Cold {
+    pub(crate) contact: ContactLcp,
+    /// `None` where the run ended in no answer.
+    pub(crate) basis: Option<Basis>,
+    pub(crate) point: Point,
+    pub(crate) outcome: Outcome,
+}
+
+impl Cold {
+    /// The ray it ended in.
+    pub(crate) fn ray(&self) -> Option<&RayDirection> {
+        match &self.outcome {
+            Outcome::Ray(ray) => Some(ray),
+            _ => None,
+        }
+    }
+
+    /// How it ended, for a message.
+    pub(crate) fn how(&self) -> &'static str {
+        match self.outcome {
+            Outcome::Trivial | Outcome::Normal { .. } => "with an answer",
+            Outcome::Ray(_) => "in a ray",
+            Outcome::PivotLimit | Outcome::Cycle => "at the limit of pivots",
+            Outcome::Breakdown(_) | Outcome::Interrupted => "in a breakdown",
+        }
+    }
+}
+
+/// Solves under the default rules.
+pub(crate) fn cold(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    watch: &dyn Watch,
+) -> Result<Cold, PathError> {
+    // The default covering fits all numbers.
+    let contact = contact_lcp(system, numbers, Covering::Cohesive)
+        .map_err(|error| PathError::Target(error.to_string()))?;
+    let run = run_scheme(
+        &contact.lcp,
+        contact.tie_rule(TieBreak::Lexicographic),
+        watch,
+    );
+    let basis = match run.outcome {
+        Outcome::Interrupted => return Err(PathError::Interrupted),
+        Outcome::Trivial | Outcome::Normal { marginal: false } => Some(Basis::after(&run.pivots)),
+        _ => None,
+    };
+    Ok(Cold {
+        contact,
+        basis,
+        point: run.point,
+        outcome: run.outcome,
+    })
+}
+
+/// The final scheme of a solved state; `None` where it is no answer, or one that only just is (marginal).
+pub fn final_basis(solved: &Solved) -> Option<Basis> {
+    match &solved.trace {
+        Trace::Contact { pivots, .. } if solved.answer.is_answer() && !solved.answer.marginal => {
+            let basis = Basis::after(pivots);
+            (!basis.p && basis.z == basis.active).then_some(basis)
+        }
+        _ => None,
+    }
+}
+
+/// A point of a path over the joints: t is no covering, so nothing of it is added to the forces.
+pub(crate) fn state_of(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    contact: &ContactLcp,
+    point: &Point,
+) -> JointState {
+    let point = Point {
+        p: 0.0,
+        ..point.clone()
+    };
+    joint_state(system, numbers, contact, &point)
+}

@@ -1,0 +1,402 @@
+//! A sweep: the answer at every point of a grid, one row each, in the order of the grid whatever the number of
+//! threads. Every point is solved cold, so that no row depends on another.
+
+use std::io::Write;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+use super::grid::{Grid, Shard};
+use crate::answer::record::{Answer, OutcomeKind, State};
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::Rules;
+use crate::model::scenario::{Scenario, Source};
+use crate::solve::Prepared;
+use crate::watch::{Quiet, Watch};
+
+/// Points that are solved before they are written.
+const CHUNK: usize = 256;
+
+/// How rows are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// A comment line with the header, column names, rows.
+    Csv,
+    /// A header object, then an object for each row, one a line.
+    Json,
+}
+
+/// What is swept.
+pub struct Sweep<'a> {
+    /// Geometry.
+    pub prepared: &'a Prepared,
+    /// Scenario.
+    pub scenario: &'a Scenario,
+    /// Values of the parameters that are not varied.
+    pub values: &'a ParameterValues,
+    /// Rules of every run.
+    pub rules: Rules,
+    /// The points.
+    pub grid: &'a Grid,
+    /// Which part of them.
+    pub shard: Shard,
+    /// How rows are written.
+    pub format: Format,
+}
+
+/// First line of a file: what it holds, and whether two files belong together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// `stickslip-sweep/1`.
+    pub format: String,
+    /// Version of the program.
+    pub version: String,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Of the text of the scenario, the values that are not varied and the rules.
+    pub hash: String,
+    /// Ranges of the axes.
+    pub grid: Vec<String>,
+    /// Points of the whole grid.
+    pub points: usize,
+    /// Part of them in this file.
+    pub shard: Shard,
+}
+
+/// What was done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Done {
+    /// Rows written now.
+    pub written: usize,
+    /// Rows that were there already.
+    pub found: usize,
+    /// Rows of the whole shard.
+    pub total: usize,
+    /// Rows with an answer among those written now.
+    pub answers: usize,
+}
+
+impl Done {
+    /// Whether nothing is missing.
+    pub fn is_complete(&self) -> bool {
+        self.found + self.written == self.total
+    }
+}
+
+/// Name of the format of sweep files.
+pub const FORMAT: &str = "stickslip-sweep/1";
+
+/// FNV-1a, 128 bits: the same on every machine.
+struct Hash(u128);
+
+impl Hash {
+    fn new() -> Hash {
+        Hash(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
+    }
+
+    fn add(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u128::from(*byte))
+                .wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+        }
+    }
+}
+
+/// A row: the point and what was found there.
+struct Row {
+    line: String,
+    is_answer: bool,
+}
+
+impl Sweep<'_> {
+    /// The header of the file.
+    pub fn header(&self) -> Header {
+        let mut hash = Hash::new();
+        hash.add(self.scenario.text.as_bytes());
+        if let Source::ContactSystem(given) = &self.scenario.source {
+            // The matrix may stand in a file of its own.
+            for entry in given.stiffness.iter().flatten() {
+                hash.add(&entry.to_bits().to_le_bytes());
+            }
+        }
+        for (name, value) in self.values {
+            if self.grid.axes.iter().all(|axis| axis.name != *name) {
+                hash.add(name.as_bytes());
+                hash.add(&value.to_bits().to_le_bytes());
+            }
+        }
+        let rules = self.rules;
+        hash.add(format!("{} {} {}", rules.covering, rules.tie_break, rules.engine).as_bytes());
+        Header {
+            format: FORMAT.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scenario: self.scenario.name.clone(),
+            hash: format!("{:032x}", hash.0),
+            grid: self
+                .grid
+                .axes
+                .iter()
+                .map(|axis| axis.range.clone())
+                .collect(),
+            points: self.grid.len(),
+            shard: self.shard,
+        }
+    }
+
+    /// The lines before the rows.
+    pub fn preamble(&self) -> String {
+        preamble(&self.header(), self.format, &self.columns())
+    }
+
+    /// Names of the columns.
+    pub fn columns(&self) -> Vec<String> {
+        let own = [
+            "outcome",
+            "class",
+            "p",
+            "pivots",
+            "open",
+            "stick",
+            "slip+",
+            "slip-",
+            "closed",
+            "max_slip",
+            "max_slip_pair",
+            "max_gap",
+            "max_gap_pair",
+            "max_x_n",
+            "max_x_n_pair",
+            "failure",
+        ];
+        self.grid
+            .axes
+            .iter()
+            .map(|axis| axis.name.clone())
+            .chain(own.map(str::to_owned))
+            .collect()
+    }
+
+    /// Solves the points of the shard after the first `found` and writes their rows to `out`, flushed as they come.
+    /// Stops after the rows that are ready when `watch` asks to.
+    ///
+    /// # Errors
+    /// Where `out` cannot be written.
+    pub fn run(
+        &self,
+        found: usize,
+        out: &mut dyn Write,
+        watch: &dyn Watch,
+    ) -> std::io::Result<Done> {
+        let points = self.shard.points(self.grid.len());
+        let mut done = Done {
+            written: 0,
+            found,
+            total: points.len(),
+            answers: 0,
+        };
+        let start = Instant::now();
+        let mut next = points.start + found;
+        while next < points.end && !watch.stop() {
+            let end = (next + CHUNK).min(points.end);
+            let rows: Vec<Option<Row>> = (next..end)
+                .into_par_iter()
+                .map(|index| (!watch.stop()).then(|| self.row(index)))
+                .collect();
+            for row in rows.iter().map_while(Option::as_ref) {
+                out.write_all(row.line.as_bytes())?;
+                done.written += 1;
+                done.answers += usize::from(row.is_answer);
+            }
+            out.flush()?;
+            if rows.iter().any(Option::is_none) {
+                // Stopped: what comes after the gap would stand in the wrong place.
+                break;
+            }
+            next = end;
+            let ready = done.found + done.written;
+            watch.progress(
+                &progress(
+                    ready,
+                    done.total,
+                    done.written,
+                    start.elapsed().as_secs_f64(),
+                ),
+                ready as f64 / done.total as f64,
+            );
+        }
+        Ok(done)
+    }
+
+    /// The fields of the parameters, by which a row is known again.
+    pub fn key(&self, index: usize) -> String {
+        let values = self.grid.point(index);
+        match self.format {
+            Format::Csv => values
+                .iter()
+                .map(|value| format!("{},", number(*value)))
+                .collect(),
+            Format::Json => {
+                let fields: Vec<String> = self
+                    .grid
+                    .axes
+                    .iter()
+                    .zip(values)
+                    .map(|(axis, value)| format!("{}:{}", json!(axis.name), number(value)))
+                    .collect();
+                format!("{{{},", fields.join(","))
+            }
+        }
+    }
+
+    fn row(&self, index: usize) -> Row {
+        let point = self.grid.point(index);
+        let mut values = self.values.clone();
+        for (axis, value) in self.grid.axes.iter().zip(&point) {
+            values.insert(axis.name.clone(), *value);
+        }
+        let solved = self
+            .prepared
+            .solve(self.scenario, &values, self.rules, &Quiet);
+        let (fields, is_answer) = match solved {
+            Ok(solved) => (fields(&solved.answer), solved.answer.is_answer()),
+            Err(error) => {
+                let mut fields = vec![Value::Null; self.columns().len() - point.len()];
+                fields[0] = json!("refused");
+                if let Some(failure) = fields.last_mut() {
+                    *failure = json!(error.to_string());
+                }
+                (fields, false)
+            }
+        };
+        let line = match self.format {
+            Format::Csv => {
+                let cells: Vec<String> = fields.iter().map(cell).collect();
+                format!("{}{}\n", self.key(index), cells.join(","))
+            }
+            Format::Json => {
+                let names = self.columns();
+                let object: Map<String, Value> =
+                    names[point.len()..].iter().cloned().zip(fields).collect();
+                let text = Value::Object(object).to_string();
+                format!("{}{}\n", self.key(index), text.trim_start_matches('{'))
+            }
+        };
+        Row { line, is_answer }
+    }
+}
+
+/// The lines before the rows under a header.
+pub(super) fn preamble(header: &Header, format: Format, columns: &[String]) -> String {
+    let header = json!(header);
+    match format {
+        Format::Csv => format!("# {header}\n{}\n", columns.join(",")),
+        Format::Json => format!("{header}\n"),
+    }
+}
+
+fn progress(ready: usize, total: usize, written: usize, seconds: f64) -> String {
+    let rate = if seconds > 0.0 {
+        written as f64 / seconds
+    } else {
+        0.0
+    };
+    let left = if rate > 0.0 {
+        (total - ready) as f64 / rate
+    } else {
+        0.0
+    };
+    let left = match left as u64 {
+        0..=119 => format!("{left:.0} s"),
+        120..=7199 => format!("{:.0} min", left / 60.0),
+        _ => format!("{:.1} h", left / 3600.0),
+    };
+    format!("{ready} of {total}, {rate:.0}/s, {left} left")
+}
+
+/// A number as JSON writes it: the shortest that reads back the same.
+fn number(value: f64) -> String {
+    json!(value).to_string()
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) if text.contains([',', '"', '\n', '\r']) => {
+            format!(
+                "\"{}\"",
+                text.replace('"', "\"\"").replace(['\n', '\r'], " ")
+            )
+        }
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// The columns after the parameters.
+fn fields(answer: &Answer) -> Vec<Value> {
+    let is_state = matches!(
+        answer.outcome,
+        OutcomeKind::Trivial | OutcomeKind::Normal | OutcomeKind::Ray
+    );
+    let has_pairs = is_state && !answer.pairs.is_empty();
+    let count = |state: State| {
+        if has_pairs {
+            json!(
+                answer
+                    .pairs
+                    .iter()
+                    .filter(|pair| pair.state == state)
+                    .count()
+            )
+        } else {
+            Value::Null
+        }
+    };
+    let largest = |value: &dyn Fn(usize) -> f64| -> [Value; 2] {
+        if !has_pairs {
+            return [Value::Null, Value::Null];
+        }
+        let best = (0..answer.pairs.len()).fold(0, |best, k| {
+            if value(k).abs() > value(best).abs() {
+                k
+            } else {
+                best
+            }
+        });
+        [json!(value(best)), json!(answer.pairs[best].id)]
+    };
+    let [slip, slip_pair] = largest(&|k| answer.pairs[k].z_t);
+    let [gap, gap_pair] = largest(&|k| answer.pairs[k].z_n);
+    let [force, force_pair] = largest(&|k| answer.pairs[k].x_n);
+    vec![
+        json!(answer.outcome),
+        answer
+            .ray
+            .as_ref()
+            .map_or(Value::Null, |ray| json!(ray.class)),
+        if is_state {
+            json!(answer.p)
+        } else {
+            Value::Null
+        },
+        json!(answer.pivots.len()),
+        count(State::Open),
+        count(State::Stick),
+        count(State::SlipPlus),
+        count(State::SlipMinus),
+        count(State::Closed),
+        slip,
+        slip_pair,
+        gap,
+        gap_pair,
+        force,
+        force_pair,
+        answer
+            .failure
+            .as_ref()
+            .map_or(Value::Null, |why| json!(why)),
+    ]
+}

@@ -1,0 +1,213 @@
+//! Commands that ask why: ties, the dictionary, other rules, all answers, critical friction, the exact check.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::contact::critical::Coverage;
+use crate::explain::margin::Margin;
+use crate::model::scenario::Source;
+use crate::solve::all_answers::{AllAnswers, QuestionError};
+use crate::solve::{Prepared, Solved};
+use crate::view;
+use crate::view::style::Style;
+use crate::watch::Watch;
+
+use super::{CommandError, Output, Session, worker};
+
+impl From<QuestionError> for CommandError {
+    fn from(error: QuestionError) -> Self {
+        match error {
+            QuestionError::Interrupted => CommandError::Interrupted,
+            QuestionError::Refused(text) => CommandError::Refused(text),
+        }
+    }
+}
+
+impl Session {
+    fn both(&self) -> Result<(Arc<Prepared>, Arc<Solved>), CommandError> {
+        self.need_answer()?;
+        match (&self.now.prepared, &self.solved) {
+            (Some(prepared), Some(solved)) => Ok((Arc::clone(prepared), Arc::clone(solved))),
+            _ => Err(CommandError::Refused("not solved yet: `solve`".into())),
+        }
+    }
+
+    /// Runs a long question beside the session.
+    fn ask<T: Send + 'static>(
+        &self,
+        io: &Output<'_>,
+        question: impl FnOnce(&Prepared, &Solved, &dyn Watch) -> Result<T, QuestionError>
+        + Send
+        + 'static,
+    ) -> Result<T, CommandError> {
+        let (prepared, solved) = self.both()?;
+        let result = worker::run(io.watch, move |watch| question(&prepared, &solved, watch))?;
+        Ok(result?)
+    }
+
+    /// What only contact holds, in sentences.
+    pub(super) fn loose(&self) -> Vec<String> {
+        self.now
+            .prepared
+            .as_ref()
+            .map_or_else(Vec::new, |prepared| prepared.loose_sentences())
+    }
+
+    /// How far the final scheme holds; empty at a pivot on the way.
+    pub(super) fn margins(&self, id: &str) -> Vec<Margin> {
+        let (Some(prepared), Some(solved), None) =
+            (&self.now.prepared, &self.solved, self.position)
+        else {
+            return Vec::new();
+        };
+        let pair = solved.answer.pairs.iter().position(|pair| pair.id == id);
+        pair.map_or_else(Vec::new, |pair| {
+            solved.margins(prepared, &self.now.scenario, &self.now.values, pair)
+        })
+    }
+
+    /// Work of the loads on the mode, and the motion of the certificate.
+    pub(super) fn write_ray_details(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
+            return Ok(());
+        };
+        let (Some(ray), Some(system)) = (&solved.ray, prepared.system()) else {
+            return Ok(());
+        };
+        view::ray::write_details(out, ray, system, style)
+    }
+
+    pub(super) fn report_ties(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (prepared, solved) = self.both()?;
+        let report = solved
+            .ties(&prepared)
+            .ok_or_else(|| CommandError::Refused("ties: the last vertex is singular".into()))?;
+        io.report(
+            || json!(report),
+            |out, style| view::ties::write(out, &report, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn report_tableau(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (prepared, solved) = self.both()?;
+        let dictionary = solved
+            .dictionary_at(&prepared, self.shown_step())
+            .map_err(|error| CommandError::Refused(format!("tableau: {error}")))?;
+        io.report(
+            || json!(dictionary),
+            |out, style| view::tableau::write(out, &dictionary, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn compare(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let values = self.now.values.clone();
+        let comparison = self.ask(io, move |prepared, _, watch| {
+            Ok(prepared.compare(&values, watch)?)
+        })?;
+        io.report(
+            || json!(comparison),
+            |out, style| view::compare::write(out, &comparison, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn enumerate(
+        &mut self,
+        answer: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let values = self.now.values.clone();
+        let mut all: AllAnswers = self.ask(io, move |prepared, _, watch| {
+            prepared.all_answers(&values, watch)
+        })?;
+        if let Some(number) = answer {
+            let count = all.answers.len();
+            if number == 0 || number > count {
+                return Err(CommandError::Refused(match count {
+                    0 => "enumerate: there is no answer to show".to_owned(),
+                    1 => format!("enumerate: there is no answer {number}; expected 1"),
+                    _ => format!("enumerate: there is no answer {number}; expected 1 … {count}"),
+                }));
+            }
+            let chosen = all.answers.swap_remove(number - 1);
+            self.take_answer(Some(Arc::new(chosen)));
+            return self.report_pairs(&[], io);
+        }
+        io.report(
+            || {
+                let answers: Vec<Value> = all
+                    .answers
+                    .iter()
+                    .zip(all.exact.iter().zip(&all.continuum))
+                    .map(|(solved, (exact, continuum))| {
+                        json!({
+                            "pairs": solved.answer.pairs,
+                            "solution": solved.answer.solution,
+                            "exact": exact,
+                            "continuum": continuum,
+                        })
+                    })
+                    .collect();
+                json!({
+                    "answers": answers,
+                    "visited": all.visited,
+                    "cut": all.cut,
+                    "total": all.total,
+                    "undecided": all.undecided,
+                })
+            },
+            |out, style| view::enumerate::write(out, &all, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn critical(&self, friction: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let values = self.now.values.clone();
+        let name = friction.to_owned();
+        let found = self.ask(io, move |prepared, _, watch| {
+            prepared.critical_friction(&values, &name, watch)
+        })?;
+        let pairs = self.pairs();
+        let ids: Vec<&str> = pairs.iter().map(|pair| pair.id.as_str()).collect();
+        io.report(
+            || {
+                let scheme = found
+                    .scheme
+                    .as_ref()
+                    .map(|scheme| view::critical::scheme_words(&ids, scheme));
+                json!({
+                    "parameter": friction,
+                    "value": found.value,
+                    "scheme": scheme,
+                    "exact": found.coverage == Coverage::Exact,
+                    "examined": found.examined,
+                    "singular": found.singular,
+                })
+            },
+            |out, style| view::critical::write(out, friction, &found, &ids, style),
+        )?;
+        Ok(())
+    }
+
+    pub(super) fn check_exactly(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let check = self.ask(io, |prepared, solved, watch| {
+            prepared.check_exactly(solved, watch)
+        })?;
+        let names = match &self.now.scenario.source {
+            Source::Lcp(lcp) => lcp.names.clone(),
+            _ => Vec::new(),
+        };
+        io.report(
+            || {
+                let (role, lines) = view::exact::sentences(&check, &names);
+                json!({"proved": role == view::style::Role::Good, "finding": lines})
+            },
+            |out, style| view::exact::write(out, &check, &names, style),
+        )?;
+        Ok(())
+    }
+}

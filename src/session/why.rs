@@ -1,0 +1,101 @@
+//! `why PAIR`: its state from its numbers, and the pivots that turned it.
+
+use serde_json::json;
+
+use crate::answer::record::State;
+use crate::view;
+use crate::view::number::{short, with_unit};
+
+use super::selection::no_pair;
+use super::{CommandError, Output, Session};
+
+impl Session {
+    /// `why PAIR`: its state from its numbers, and the pivots that turned it.
+    pub(super) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let pairs = self.pairs();
+        let pair = pairs
+            .iter()
+            .find(|pair| pair.id == id)
+            .ok_or_else(|| no_pair(id, &pairs))?;
+        let units = &self.now.scenario.units;
+        let force = |value: f64| with_unit(&short(value), units.force.as_deref());
+        let length = |value: f64| with_unit(&short(value), units.length.as_deref());
+        let state = view::pairs::state_words(pair);
+        let cause = match (pair.state, pair.law) {
+            (State::Open, _) => format!(
+                "nothing presses it together: x_n = {} and it is open by {}",
+                force(pair.x_n),
+                length(pair.z_n)
+            ),
+            (State::Closed, _) => format!(
+                "it is pressed together with x_n = {}, and without friction x_t = 0",
+                force(pair.x_n)
+            ),
+            (State::Stick, _)
+                if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() =>
+            {
+                format!(
+                    "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
+                    force(pair.x_t.abs()),
+                    force(pair.bound)
+                )
+            }
+            (State::Stick, _) => format!(
+                "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
+                force(pair.x_t.abs()),
+                force(pair.bound),
+                force(pair.reserve_plus),
+                force(pair.reserve_minus)
+            ),
+            (State::SlipPlus, _) => format!(
+                "its reserve x+ is used up: x_t = {} stands at the bound -{}, and it has slipped {} along +t",
+                force(pair.x_t),
+                force(pair.bound),
+                length(pair.z_t)
+            ),
+            (State::SlipMinus, _) => format!(
+                "its reserve x- is used up: x_t = {} stands at the bound {}, and it has slipped {} along -t",
+                force(pair.x_t),
+                force(pair.bound),
+                length(-pair.z_t)
+            ),
+        };
+        let shown = self.shown_step();
+        let margins = self.margins(id);
+        let turned: Vec<_> = answer
+            .pivots
+            .iter()
+            .filter(|pivot| shown.is_none_or(|shown| pivot.step <= shown))
+            .filter(|pivot| {
+                pivot
+                    .turned
+                    .as_ref()
+                    .is_some_and(|turned| turned.pair == id)
+            })
+            .collect();
+        io.report(
+            || json!({"pair": pair, "cause": cause, "pivots": turned, "margins": margins}),
+            |out, style| {
+                let label = format!("{id} {state}: ");
+                for line in style.hanging(&style.text(&label), &style.text(&cause)) {
+                    writeln!(out, "{line}")?;
+                }
+                if turned.is_empty() {
+                    writeln!(out, "no pivot turned it: it is as in the main system")?;
+                }
+                for pivot in &turned {
+                    let label = format!("  pivot {}: ", pivot.step);
+                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
+                        writeln!(out, "{line}")?;
+                    }
+                }
+                if !margins.is_empty() {
+                    writeln!(out, "How far the working scheme holds:")?;
+                }
+                view::why::write(out, id, &margins, style)
+            },
+        )?;
+        Ok(())
+    }
+}

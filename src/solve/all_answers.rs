@@ -1,0 +1,492 @@
+//! Every answer of a small problem as a solved state; critical friction; the exact check of an answer.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use super::judge::EXACT_PAIRS;
+use super::numbers::{contact_numbers, factors};
+use super::plain_answers::{MOST_ROWS, PlainCheck, all_plain_answers, check_plain_exactly};
+use super::prepared::{Geometry, Prepared};
+use super::solved::{SolveError, Solved, Trace, empty_answer};
+use crate::answer::check::{TOLERANCE, check_plain};
+use crate::answer::pairs::{joint_state, pair_states};
+use crate::answer::record::{Answer, OutcomeKind, PlainSolution, State};
+use crate::contact::complementarity::{Couple, contact_lcp};
+use crate::contact::critical::{CriticalFriction, critical_friction};
+use crate::contact::enumerate::{EnumeratedAnswer, enumerate};
+use crate::contact::exact_check::{ExactCheck, Finding, exact_check};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::scheme_word::{PairScheme, Tangential};
+use crate::contact::system::ContactSystem;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::{Outcome, Point, Run};
+use crate::lcp::vertex::Basis;
+use crate::model::pair::Law;
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::{Covering, Rules};
+use crate::watch::Watch;
+
+/// The word for an answer found by going through all working schemes.
+pub const ENUMERATION: &str = "enumeration";
+/// Blocks drawn by `critical` where all of them are too many.
+const SAMPLES: u64 = 20_000;
+/// Figures of a failed check up to which an exact proof is tried.
+const EXCUSABLE: f64 = 1e-4;
+/// Seed of the drawing.
+const SEED: u64 = 1;
+
+/// All answers of a problem.
+#[derive(Clone, Debug)]
+pub struct AllAnswers {
+    /// Each as a solved state without pivots.
+    pub answers: Vec<Solved>,
+    /// For each: whether it was proved in exact arithmetic.
+    pub exact: Vec<bool>,
+    /// For each: whether others may lie next to it.
+    pub continuum: Vec<bool>,
+    /// Schemes (of a bare LCP: bases) that were solved.
+    pub visited: u64,
+    /// Partial schemes that were cut off.
+    pub cut: u64,
+    /// All schemes there are.
+    pub total: u64,
+    /// Schemes that could not be decided.
+    pub undecided: u64,
+}
+
+/// Why a question has no answer.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum QuestionError {
+    /// Says what does not fit.
+    #[error("{0}")]
+    Refused(String),
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<SolveError> for QuestionError {
+    fn from(error: SolveError) -> Self {
+        if error.is_interrupted() {
+            QuestionError::Interrupted
+        } else {
+            QuestionError::Refused(error.to_string())
+        }
+    }
+}
+
+fn go_on(watch: &dyn Watch) -> ControlFlow<()> {
+    if watch.stop() {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    }
+}
+
+/// What the exact check says, of a contact problem or a bare LCP.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Exactly {
+    /// Of a working scheme.
+    Contact(ExactCheck),
+    /// Of a basis.
+    Plain(PlainCheck),
+}
+
+impl Prepared {
+    /// Every answer for these values.
+    ///
+    /// # Errors
+    /// Too many pairs or rows; stopped.
+    pub fn all_answers(
+        &self,
+        values: &ParameterValues,
+        watch: &dyn Watch,
+    ) -> Result<AllAnswers, QuestionError> {
+        let system = match &self.geometry {
+            Geometry::Plain { lcp, q, .. } => {
+                let mut lcp = lcp.clone();
+                for (entry, number) in lcp.q.iter_mut().zip(q) {
+                    *entry = number.value(values);
+                }
+                return all_of_plain(&lcp.into(), watch);
+            }
+            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => system,
+        };
+        let factors = factors(self, values);
+        let numbers = contact_numbers(system, &factors, values);
+        let found = enumerate(system, &numbers, &mut |visited| {
+            if visited.is_multiple_of(256) {
+                watch.progress(&format!("working scheme {visited}"), 0.0);
+            }
+            go_on(watch)
+        })
+        .map_err(|error| QuestionError::Refused(error.to_string()))?;
+        if !found.complete {
+            return Err(QuestionError::Interrupted);
+        }
+        let answers = found
+            .answers
+            .iter()
+            .map(|candidate| self.enumerated_answer(system, &numbers, &factors, candidate))
+            .collect::<Result<_, _>>()?;
+        Ok(AllAnswers {
+            answers,
+            exact: found.answers.iter().map(|answer| answer.exact).collect(),
+            continuum: found
+                .answers
+                .iter()
+                .map(|answer| answer.continuum)
+                .collect(),
+            visited: found.visited,
+            cut: found.cut,
+            total: found.total,
+            undecided: found.undecided,
+        })
+    }
+
+    /// An enumerated answer as a solved state, freshly checked.
+    pub(super) fn enumerated_answer(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        candidate: &EnumeratedAnswer,
+    ) -> Result<Solved, SolveError> {
+        let contact = contact_lcp(system, numbers, Covering::default())?;
+        let mut z = vec![0.0; contact.rows.len()];
+        for (value, row) in z.iter_mut().zip(&contact.rows) {
+            let tangential = system.pairs[row.pair].tangential;
+            let slip = tangential.map_or(0.0, |joint| candidate.state.z[joint]);
+            // What the scheme holds is zero, not the rounding of a linear program.
+            let scheme = candidate.schemes.first().map(|scheme| scheme[row.pair]);
+            let free = |plus: bool| {
+                scheme.is_none_or(|scheme| match scheme.tangential {
+                    // Without cohesion an open pair slips either way.
+                    _ if scheme == PairScheme::OPEN => true,
+                    Tangential::Stick => false,
+                    Tangential::SlipPlus => plus,
+                    Tangential::SlipMinus => !plus,
+                })
+            };
+            *value = match row.couple {
+                Couple::Normal if scheme.is_some_and(|scheme| !scheme.open) => 0.0,
+                Couple::Normal => candidate.state.z[row.pair].max(0.0),
+                Couple::Plus if free(true) => slip.max(0.0),
+                Couple::Minus if free(false) => (-slip).max(0.0),
+                Couple::Plus | Couple::Minus => 0.0,
+            } / contact.length_unit;
+        }
+        let point = Point {
+            w: vec![0.0; z.len()],
+            z,
+            p: 0.0,
+        };
+        let state = joint_state(system, numbers, &contact, &point);
+        let run = Run {
+            outcome: Outcome::Normal { marginal: false },
+            pivots: Vec::new(),
+            point,
+        };
+        let default = Rules::default();
+        let words = [
+            default.covering.to_string(),
+            default.tie_break.to_string(),
+            ENUMERATION.to_owned(),
+        ];
+        let mut answer = empty_answer(&run, words, self.size(system, &contact));
+        answer.pairs = pair_states(system, numbers, &contact, &state);
+        self.add_released_slips(&mut answer.pairs, numbers, factors, &state);
+        self.complete(&mut answer, system, numbers, factors, &state);
+        Ok(Solved {
+            answer,
+            trace: Trace::Contact {
+                contact,
+                numbers: numbers.clone(),
+                factors: factors.to_vec(),
+                pivots: run.pivots,
+                last: run.point,
+            },
+            ray: None,
+            cycled: false,
+            told: String::new(),
+        })
+    }
+
+    /// The value of a friction parameter above which more than one answer is possible for some load.
+    ///
+    /// # Errors
+    /// No contact pairs; no Coulomb pair has this friction; stopped.
+    pub fn critical_friction(
+        &self,
+        values: &ParameterValues,
+        parameter: &str,
+        watch: &dyn Watch,
+    ) -> Result<CriticalFriction, QuestionError> {
+        let refused = |text: String| Err(QuestionError::Refused(text));
+        let Some(system) = self.system() else {
+            return refused("a bare LCP has no friction".to_owned());
+        };
+        let has = system.pairs.iter().any(|pair| match &pair.law {
+            Law::Coulomb { friction, .. } => friction.parameter() == Some(parameter),
+            _ => false,
+        });
+        if !has {
+            let mut names: Vec<String> = Vec::new();
+            for pair in &system.pairs {
+                if let Law::Coulomb { friction, .. } = &pair.law
+                    && let Some(name) = friction.parameter()
+                    && !names.iter().any(|known| known == name)
+                {
+                    names.push(name.to_owned());
+                }
+            }
+            return refused(if names.is_empty() {
+                "no pair has a friction that is a parameter".to_owned()
+            } else {
+                format!(
+                    "`{parameter}` is not the friction of any pair; expected {}",
+                    names.join(" or ")
+                )
+            });
+        }
+        let factors = factors(self, values);
+        let friction = |value: f64| {
+            let mut values = values.clone();
+            values.insert(parameter.to_owned(), value);
+            contact_numbers(system, &factors, &values).friction
+        };
+        let found = critical_friction(system, &friction, SAMPLES, SEED, &mut |examined| {
+            if examined.is_multiple_of(1024) {
+                watch.progress(&format!("block {examined}"), 0.0);
+            }
+            go_on(watch)
+        });
+        if found.complete {
+            Ok(found)
+        } else {
+            Err(QuestionError::Interrupted)
+        }
+    }
+
+    /// An answer that failed its check in f64 is one nevertheless if its working scheme holds in exact arithmetic: with
+    /// great stiffness contrasts no f64 z has residuals at the tolerance. Equilibrium with K is never excused.
+    pub(super) fn prove_after_all(&self, solved: &mut Solved, watch: &dyn Watch) {
+        let small = solved.answer.pairs.len() <= EXACT_PAIRS;
+        let check = solved.answer.check;
+        // Only figures of the size of rounding are worth the proof.
+        let near = check.min_w >= -EXCUSABLE
+            && check.min_z >= -EXCUSABLE
+            && check.complementarity <= EXCUSABLE
+            && check
+                .equilibrium
+                .is_none_or(|residual| residual <= TOLERANCE);
+        if !small || !near {
+            return;
+        }
+        let proved = matches!(
+            self.check_exactly(solved, watch),
+            Ok(Exactly::Contact(ExactCheck {
+                finding: Finding::Proved { .. },
+                ..
+            }))
+        );
+        if !proved {
+            return;
+        }
+        let answer = &mut solved.answer;
+        answer.outcome = OutcomeKind::Normal;
+        answer.failure = None;
+        answer.check.passed = true;
+        if let Some(last) = answer.attempts.last_mut() {
+            last.outcome = OutcomeKind::Normal;
+        }
+        answer.notes.push(
+            "the figures of the check are those of f64 rounding under great stiffness contrasts; the working scheme was \
+             proved in exact arithmetic"
+                .to_owned(),
+        );
+    }
+
+    /// The final scheme of an answer in exact arithmetic from the f64 data.
+    ///
+    /// # Errors
+    /// There is no answer, the bare LCP is too large, or it was stopped.
+    pub fn check_exactly(
+        &self,
+        solved: &Solved,
+        watch: &dyn Watch,
+    ) -> Result<Exactly, QuestionError> {
+        let no_answer =
+            !solved.answer.is_answer() && solved.answer.outcome != OutcomeKind::CheckFailed;
+        if no_answer {
+            return Err(QuestionError::Refused(
+                "nothing to check: there is no answer".to_owned(),
+            ));
+        }
+        match (&solved.trace, self.system()) {
+            (Trace::Plain { lcp, pivots }, _) => {
+                let basis = match &solved.answer.solution {
+                    Some(solution) if solved.answer.engine == ENUMERATION => solution
+                        .z
+                        .iter()
+                        .enumerate()
+                        .filter(|(_, z)| **z > 0.0)
+                        .map(|(i, _)| i)
+                        .collect(),
+                    _ => Basis::after(pivots).z,
+                };
+                check_plain_exactly(lcp, &basis)
+                    .map(Exactly::Plain)
+                    .ok_or_else(|| {
+                        QuestionError::Refused(format!(
+                            "{} rows are too many for the exact check of a bare LCP",
+                            lcp.size()
+                        ))
+                    })
+            }
+            (Trace::Contact { numbers, .. }, Some(system)) => {
+                let scheme = final_scheme(solved);
+                let check = exact_check(system, numbers, &scheme, &mut |share| {
+                    watch.progress("exact check", share);
+                    go_on(watch)
+                });
+                if watch.stop() {
+                    return Err(QuestionError::Interrupted);
+                }
+                Ok(Exactly::Contact(check))
+            }
+            (Trace::Contact { .. }, None) => Err(QuestionError::Refused(
+                "nothing to check: there are no contact pairs".to_owned(),
+            )),
+        }
+    }
+}
+
+/// The working scheme at the end: from the last basis, or from the states where there are no pivots.
+pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
+    let mut schemes: Vec<PairScheme> = solved
+        .answer
+        .pairs
+        .iter()
+        .map(|pair| match (pair.state, pair.held) {
+            (State::Open, None) => PairScheme::OPEN,
+            (State::Open, Some(held)) => PairScheme {
+                open: true,
+                tangential: match held {
+                    State::SlipPlus => Tangential::SlipPlus,
+                    State::SlipMinus => Tangential::SlipMinus,
+                    _ => Tangential::Stick,
+                },
+            },
+            (State::SlipPlus, _) => PairScheme::SLIP_PLUS,
+            (State::SlipMinus, _) => PairScheme::SLIP_MINUS,
+            (State::Stick | State::Closed, _) => PairScheme::STICK,
+        })
+        .collect();
+    let Trace::Contact {
+        contact,
+        numbers,
+        pivots,
+        ..
+    } = &solved.trace
+    else {
+        return schemes;
+    };
+    if pivots.is_empty() {
+        return schemes;
+    }
+    schemes.fill(PairScheme::STICK);
+    for row in Basis::after(pivots).z {
+        let meaning = contact.rows[row];
+        let scheme = &mut schemes[meaning.pair];
+        match meaning.couple {
+            Couple::Normal => scheme.open = true,
+            Couple::Plus => scheme.tangential = Tangential::SlipPlus,
+            Couple::Minus => scheme.tangential = Tangential::SlipMinus,
+        }
+    }
+    for (i, scheme) in schemes.iter_mut().enumerate() {
+        if scheme.open && numbers.cohesion[i] == 0.0 {
+            *scheme = PairScheme::OPEN;
+        }
+    }
+    schemes
+}
+
+fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
+    if lcp.size() > MOST_ROWS {
+        return Err(QuestionError::Refused(format!(
+            "{} rows are too many to enumerate: at most {MOST_ROWS}",
+            lcp.size()
+        )));
+    }
+    let found = all_plain_answers(lcp, watch).ok_or(QuestionError::Interrupted)?;
+    let run = Run {
+        outcome: Outcome::Trivial,
+        pivots: Vec::new(),
+        point: Point::default(),
+    };
+    let words = ["ones", "lexicographic", ENUMERATION].map(str::to_owned);
+    let like = empty_answer(
+        &run,
+        words,
+        crate::answer::record::Size {
+            lcp: lcp.size(),
+            ..Default::default()
+        },
+    );
+    let count = found.answers.len();
+    Ok(AllAnswers {
+        answers: found
+            .answers
+            .iter()
+            .map(|z| plain_answer(lcp, z, &like))
+            .collect(),
+        exact: vec![true; count],
+        continuum: vec![false; count],
+        visited: found.visited,
+        cut: 0,
+        total: found.visited,
+        undecided: found.singular,
+    })
+}
+
+/// An enumerated answer of a bare LCP as a solved state, freshly checked; rules and size as `like`.
+pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], like: &Answer) -> Solved {
+    let w = &*lcp.matrix * nalgebra::DVector::from_column_slice(z) + &lcp.q;
+    let point = Point {
+        w: w.iter().copied().collect(),
+        z: z.to_vec(),
+        p: 0.0,
+    };
+    let check = check_plain(lcp, &point);
+    let run = Run {
+        outcome: Outcome::Normal { marginal: false },
+        pivots: Vec::new(),
+        point,
+    };
+    let words = [
+        like.covering.clone(),
+        like.tie_break.clone(),
+        ENUMERATION.to_owned(),
+    ];
+    let mut answer = empty_answer(&run, words, like.size);
+    answer.check = check;
+    answer.solution = Some(PlainSolution {
+        z: run.point.z,
+        w: run.point.w,
+    });
+    if !answer.check.passed {
+        answer.outcome = OutcomeKind::CheckFailed;
+    }
+    Solved {
+        answer,
+        trace: Trace::Plain {
+            lcp: Arc::clone(lcp),
+            pivots: Vec::new(),
+        },
+        ray: None,
+        cycled: false,
+        told: String::new(),
+    }
+}

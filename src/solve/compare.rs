@@ -1,0 +1,210 @@
+//! Every covering × tie-break × engine on the same numbers: which find an answer, and whether it is the same one.
+
+use serde::Serialize;
+
+use super::numbers::{contact_numbers, factors};
+use super::prepared::{Geometry, Prepared};
+use super::solved::{SolveError, Solved, attempt_plain};
+use crate::answer::record::{Answer, OutcomeKind, RayClass};
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::{Covering, Engine, Rules, TieBreak};
+use crate::watch::Watch;
+
+/// Contact pairs (or a third of the rows) up to which the tableau takes part.
+const TABLEAU_PAIRS: usize = 80;
+/// Contact pairs up to which exact arithmetic takes part.
+const EXACT_PAIRS: usize = 12;
+/// Relative difference up to which two answers are the same.
+const SAME: f64 = 1e-7;
+
+/// One combination and its end.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Compared {
+    /// Covering.
+    pub covering: String,
+    /// Tie-break.
+    pub tie_break: String,
+    /// Engine.
+    pub engine: String,
+    /// How it ended; `None` where the covering does not fit the numbers.
+    pub outcome: Option<OutcomeKind>,
+    /// Class of its ray.
+    pub class: Option<RayClass>,
+    /// Whether it came back to a basis.
+    pub cycled: bool,
+    /// Number of pivots.
+    pub pivots: usize,
+    /// p at the end.
+    pub p: f64,
+    /// Which of the different answers it found, from 0.
+    pub answer: Option<usize>,
+}
+
+/// The table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Its rows.
+    pub rows: Vec<Compared>,
+    /// How many different answers were found.
+    pub answers: usize,
+}
+
+impl Prepared {
+    /// Runs all combinations once, without retries. Engines that are too slow for the size are left out.
+    ///
+    /// # Errors
+    /// Stopped from outside.
+    pub fn compare(
+        &self,
+        values: &ParameterValues,
+        watch: &dyn Watch,
+    ) -> Result<Comparison, SolveError> {
+        let factors = factors(self, values);
+        let pairs = match &self.geometry {
+            Geometry::Plain { lcp, .. } => lcp.size().div_ceil(3),
+            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
+                system.pairs.len()
+            }
+        };
+        let coverings: &[Covering] = match &self.geometry {
+            Geometry::Plain { .. } => &[Covering::Cohesive],
+            _ => &Covering::ALL,
+        };
+        let ties: &[TieBreak] = match &self.geometry {
+            // The natural order of a bare LCP is its lexicographic one.
+            Geometry::Plain { .. } => &[
+                TieBreak::Lexicographic,
+                TieBreak::FirstRow,
+                TieBreak::Random(1),
+            ],
+            _ => &[
+                TieBreak::Lexicographic,
+                TieBreak::Natural,
+                TieBreak::FirstRow,
+                TieBreak::Random(1),
+            ],
+        };
+        let mut engines = vec![Engine::Scheme];
+        if pairs <= TABLEAU_PAIRS {
+            engines.push(Engine::Tableau);
+        }
+        if pairs <= EXACT_PAIRS {
+            engines.push(Engine::Exact);
+        }
+        let mut found: Vec<Answer> = Vec::new();
+        let mut rows = Vec::new();
+        let all = coverings.len() * ties.len() * engines.len();
+        for &covering in coverings {
+            for &tie_break in ties {
+                for &engine in &engines {
+                    watch.progress("comparing rules", rows.len() as f64 / all as f64);
+                    let rules = Rules {
+                        covering,
+                        tie_break,
+                        engine,
+                    };
+                    let solved = self.attempt(values, &factors, rules, watch);
+                    rows.push(row(rules, solved, &mut found)?);
+                }
+            }
+        }
+        Ok(Comparison {
+            rows,
+            answers: found.len(),
+        })
+    }
+
+    fn attempt(
+        &self,
+        values: &ParameterValues,
+        factors: &[f64],
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        match &self.geometry {
+            Geometry::Plain {
+                lcp,
+                q,
+                names,
+                covering_given,
+            } => {
+                let mut lcp = lcp.clone();
+                for (entry, number) in lcp.q.iter_mut().zip(q) {
+                    *entry = number.value(values);
+                }
+                attempt_plain(&lcp.into(), names, *covering_given, rules, watch)
+            }
+            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
+                let numbers = contact_numbers(system, factors, values);
+                self.attempt_contact(system, &numbers, factors, rules, watch)
+            }
+        }
+    }
+}
+
+fn row(
+    rules: Rules,
+    solved: Result<Solved, SolveError>,
+    found: &mut Vec<Answer>,
+) -> Result<Compared, SolveError> {
+    let mut row = Compared {
+        covering: rules.covering.to_string(),
+        tie_break: rules.tie_break.to_string(),
+        engine: rules.engine.to_string(),
+        outcome: None,
+        class: None,
+        cycled: false,
+        pivots: 0,
+        p: 0.0,
+        answer: None,
+    };
+    let solved = match solved {
+        Ok(solved) => solved,
+        Err(SolveError::Covering(_)) => return Ok(row),
+        Err(other) => return Err(other),
+    };
+    let answer = solved.answer;
+    row.covering.clone_from(&answer.covering);
+    row.outcome = Some(answer.outcome);
+    row.class = answer.ray.as_ref().map(|ray| ray.class);
+    row.cycled = solved.cycled;
+    row.pivots = answer.pivots.len();
+    row.p = answer.p;
+    if answer.is_answer() {
+        let known = found.iter().position(|other| same(other, &answer));
+        row.answer = Some(known.unwrap_or_else(|| {
+            found.push(answer);
+            found.len() - 1
+        }));
+    }
+    Ok(row)
+}
+
+/// Whether two answers have the same states (a pair on a limit may be told either way) and the same values.
+pub fn same(a: &Answer, b: &Answer) -> bool {
+    fn near(a: impl Iterator<Item = f64>, b: impl Iterator<Item = f64>) -> bool {
+        let pairs: Vec<(f64, f64)> = a.zip(b).collect();
+        let size = pairs
+            .iter()
+            .fold(0.0, |s: f64, (a, b)| s.max(a.abs()).max(b.abs()));
+        pairs.iter().all(|(a, b)| (a - b).abs() <= SAME * size)
+    }
+    match (&a.solution, &b.solution) {
+        (Some(a), Some(b)) => near(a.z.iter().copied(), b.z.iter().copied()),
+        (None, None) => {
+            let read = |answer: &'_ Answer, get: fn(&crate::answer::record::PairState) -> f64| {
+                answer
+                    .pairs
+                    .iter()
+                    .map(get)
+                    .collect::<Vec<f64>>()
+                    .into_iter()
+            };
+            // Forces and displacements, each by their own size. z_τ of an open pair counts too: it follows.
+            let forces = |x: &Answer| read(x, |p| p.x_n).chain(read(x, |p| p.x_t));
+            let moves = |x: &Answer| read(x, |p| p.z_n).chain(read(x, |p| p.z_t));
+            a.pairs.len() == b.pairs.len() && near(forces(a), forces(b)) && near(moves(a), moves(b))
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,155 @@
+//! Questions to a solved state: its ties, its dictionary, how far its scheme holds, what is loose.
+
+use super::numbers::contact_numbers;
+use super::prepared::{Geometry, Prepared};
+use super::solved::{Solved, Trace};
+use crate::explain::loose::{LoosePart, loose_pairs, loose_parts};
+use crate::explain::margin::{FinalScheme, Margin, friction_margin, load_margin};
+use crate::explain::tableau::{Dictionary, NoDictionary, dictionary};
+use crate::explain::ties::{TieReport, ties};
+use crate::explain::vertex::Naming;
+use crate::lcp::vertex::{Basis, vertex};
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::TieBreak;
+use crate::model::scenario::Scenario;
+
+impl Solved {
+    fn naming<'a>(&'a self, prepared: &'a Prepared) -> Option<Naming<'a>> {
+        match (&self.trace, &prepared.geometry) {
+            (Trace::Contact { contact, .. }, _) => {
+                Some(Naming::Contact(contact, prepared.system()?))
+            }
+            (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) => {
+                Some(Naming::Plain(lcp, names))
+            }
+            (Trace::Plain { .. }, _) => None,
+        }
+    }
+
+    fn trace_pivots(&self) -> &[crate::lcp::trace::Pivot] {
+        match &self.trace {
+            Trace::Contact { pivots, .. } | Trace::Plain { pivots, .. } => pivots,
+        }
+    }
+
+    /// Ties and degenerate vertices of the run.
+    pub fn ties(&self, prepared: &Prepared) -> Option<TieReport> {
+        let naming = self.naming(prepared)?;
+        let pivots = self.trace_pivots();
+        let last = match &self.trace {
+            Trace::Contact { last, .. } => last.clone(),
+            Trace::Plain { lcp, .. } => vertex(lcp, &Basis::after(pivots))?,
+        };
+        let rule: TieBreak = self.answer.tie_break.parse().ok()?;
+        Some(ties(&naming, pivots, &last, rule))
+    }
+
+    /// The dictionary after pivot `step`; `None` as step: before the entry of p.
+    ///
+    /// # Errors
+    /// Too large, singular.
+    pub fn dictionary_at(
+        &self,
+        prepared: &Prepared,
+        step: Option<usize>,
+    ) -> Result<Dictionary, NoDictionary> {
+        let naming = self.naming(prepared).ok_or(NoDictionary::Singular)?;
+        dictionary(&naming, self.trace_pivots(), step)
+    }
+
+    /// How far the final scheme holds, in every load factor and friction parameter; empty without an answer that came
+    /// from pivots.
+    pub fn margins(
+        &self,
+        prepared: &Prepared,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        pair: usize,
+    ) -> Vec<Margin> {
+        let (
+            Trace::Contact {
+                contact,
+                numbers,
+                factors,
+                pivots,
+                last,
+            },
+            Some(system),
+        ) = (&self.trace, prepared.system())
+        else {
+            return Vec::new();
+        };
+        let basis = Basis::after(pivots);
+        if !self.answer.is_answer() || basis.p || self.answer.marginal {
+            return Vec::new();
+        }
+        if self.answer.engine == super::all_answers::ENUMERATION {
+            return Vec::new();
+        }
+        let Some(fresh) = vertex(&contact.lcp, &basis) else {
+            return Vec::new();
+        };
+        // A trivial answer has no vertex of its own in the trace.
+        let point = if pivots.is_empty() { &fresh } else { last };
+        let scheme = FinalScheme {
+            system,
+            contact,
+            numbers,
+            basis: &basis,
+            point,
+        };
+        let mut margins: Vec<Margin> = prepared
+            .cases
+            .iter()
+            .zip(factors)
+            .zip(&system.loads)
+            .filter_map(|(((name, _), factor), load)| {
+                load_margin(&scheme, pair, name, *factor, &load.vector)
+            })
+            .collect();
+        let mut names: Vec<&str> = Vec::new();
+        for pair in &system.pairs {
+            if let crate::model::pair::Law::Coulomb { friction, .. } = &pair.law
+                && let Some(name) = friction.parameter()
+                && !names.contains(&name)
+            {
+                names.push(name);
+            }
+        }
+        for name in names {
+            let present = values.get(name).copied().unwrap_or_default();
+            let slider = scenario
+                .parameters
+                .get(name)
+                .and_then(|parameter| parameter.max);
+            let end = (2.0 * present).max(slider.unwrap_or(1.0)).max(present);
+            let at = |value: f64| {
+                let mut values = values.clone();
+                values.insert(name.to_owned(), value);
+                contact_numbers(system, factors, &values)
+            };
+            margins.extend(friction_margin(&scheme, pair, name, present, end, &at));
+        }
+        margins
+    }
+}
+
+impl Prepared {
+    /// Parts that only contact holds, each with its motions in words.
+    pub fn loose_parts(&self) -> Vec<LoosePart> {
+        match &self.geometry {
+            Geometry::Structure {
+                main, structure, ..
+            } => loose_parts(structure, main),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The same in sentences; for a contact system without a structure its motions pair by pair.
+    pub fn loose_sentences(&self) -> Vec<String> {
+        match &self.geometry {
+            Geometry::Contact { system, .. } => loose_pairs(system),
+            _ => self.loose_parts().iter().map(LoosePart::sentence).collect(),
+        }
+    }
+}

@@ -1,0 +1,353 @@
+//! The dense tableau in f64 and in exact rationals, run on the same LCP and answered in the same units as the
+//! working-scheme engine.
+
+use std::sync::Arc;
+
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+
+use super::attempt::{polish, watched};
+use crate::contact::complementarity::{ContactLcp, Couple};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::explain::kernel::clean;
+use crate::lcp::exact::Exact;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::{Outcome, Point, RayDirection, Run};
+use crate::lcp::problem::{Lcp, Scale};
+use crate::lcp::ratio_test::TieRule;
+use crate::lcp::tableau::Tableau;
+use crate::lcp::variable::Variable;
+use crate::model::pair::Law;
+use crate::model::rules::Covering;
+use crate::watch::Watch;
+
+/// Most contact pairs that the exact engine takes.
+pub const EXACT_PAIRS: usize = 60;
+/// Most rows of a bare LCP that the exact engine takes.
+pub const EXACT_ROWS: usize = 3 * EXACT_PAIRS;
+
+/// Every row of a mirrored LCP written out.
+pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
+    let n = lcp.whole_size;
+    // Primary row and sign of every column.
+    let mut column = vec![(0, 1.0); n];
+    for i in 0..lcp.size() {
+        column[lcp.whole[i]] = (i, 1.0);
+        if let Some(mirror) = &lcp.mirrors[i] {
+            column[mirror.whole] = (i, -1.0);
+        }
+    }
+    let spread = |row: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        column.iter().map(|&(j, sign)| sign * row(j)).collect()
+    };
+    let mut whole = Lcp {
+        matrix: vec![Vec::new(); n],
+        q: vec![0.0; n],
+        covering: vec![0.0; n],
+        scale: Scale {
+            row: vec![0.0; n],
+            column: column.iter().map(|&(j, _)| lcp.scale.column[j]).collect(),
+        },
+    };
+    for i in 0..lcp.size() {
+        let k = lcp.whole[i];
+        whole.matrix[k] = spread(&|j| lcp.matrix[(i, j)]);
+        whole.q[k] = lcp.q[i];
+        whole.covering[k] = lcp.covering[i];
+        whole.scale.row[k] = lcp.scale.row[i];
+        let Some(mirror) = &lcp.mirrors[i] else {
+            continue;
+        };
+        let k = mirror.whole;
+        let normal = |j: usize| mirror.normal.map_or(0.0, |n| lcp.matrix[(n, j)]);
+        whole.matrix[k] = spread(&|j| 2.0 * mirror.friction * normal(j) - lcp.matrix[(i, j)]);
+        (whole.q[k], whole.covering[k]) = lcp.mirror_start(i, mirror);
+        whole.scale.row[k] = lcp.scale.row[i];
+    }
+    whole
+}
+
+/// Runs the dense tableau in f64.
+pub fn run_tableau(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> Run {
+    let mut engine = Tableau::<f64>::new(&written_out(lcp), rule);
+    let mut run = watched(&mut engine, "tableau", watch);
+    polish(lcp, &mut run);
+    run
+}
+
+/// Runs the tableau of a bare LCP in exact rationals.
+pub fn run_exact_plain(lcp: &MirroredLcp, rule: TieRule, watch: &dyn Watch) -> Run {
+    let whole = written_out(lcp);
+    let exact = |values: &[f64]| values.iter().map(|v| rational(*v)).collect();
+    let problem = Lcp {
+        matrix: whole.matrix.iter().map(|row| exact(row)).collect(),
+        q: exact(&whole.q),
+        covering: exact(&whole.covering),
+        scale: whole.scale,
+    };
+    rounded(run_exact(problem, rule, watch), 1.0, 1.0)
+}
+
+/// Runs the tableau of a contact problem in exact rationals; M is formed in rationals from R, RF, f, c, g, and R is
+/// first freed of its rounded kernel, so that a motion that costs nothing costs exactly nothing.
+pub fn run_exact_contact(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    contact: &ContactLcp,
+    covering: Covering,
+    rule: TieRule,
+    watch: &dyn Watch,
+) -> Run {
+    let problem = exact_lcp(system, numbers, contact, covering);
+    rounded(
+        run_exact(problem, rule, watch),
+        contact.force_unit,
+        contact.length_unit,
+    )
+}
+
+fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run<BigRational> {
+    watched(&mut Exact::new(problem, rule), "exact arithmetic", watch)
+}
+
+fn rational(value: f64) -> BigRational {
+    <BigRational as crate::lcp::scalar::Scalar>::from_f64(value)
+}
+
+/// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ.
+pub fn exact_stiffness(system: &ContactSystem) -> Vec<Vec<BigRational>> {
+    let k = system.joint_count();
+    let r: Vec<Vec<BigRational>> = (0..k)
+        .map(|i| (0..k).map(|j| rational(system.stiffness[(i, j)])).collect())
+        .collect();
+    let free = system.kernel.ncols();
+    if free == 0 {
+        return r;
+    }
+    // Entries of Z that are rounding noise would only blur motions that are exactly simple.
+    let z: Vec<Vec<BigRational>> = clean(&system.kernel)
+        .row_iter()
+        .map(|row| row.iter().map(|v| rational(*v)).collect())
+        .collect();
+    let dot = |a: &dyn Fn(usize) -> BigRational, b: &dyn Fn(usize) -> BigRational| {
+        let mut sum = BigRational::zero();
+        for i in 0..k {
+            sum += a(i) * b(i);
+        }
+        sum
+    };
+    let gram: Vec<Vec<BigRational>> = (0..free)
+        .map(|a| {
+            (0..free)
+                .map(|b| dot(&|i| z[i][a].clone(), &|i| z[i][b].clone()))
+                .collect()
+        })
+        .collect();
+    let Some(inverse) = inverse(gram) else {
+        return r; // dependent columns: an orthonormal basis never is
+    };
+    // Q = Z (ZᵀZ)⁻¹, P = 1 − Q Zᵀ.
+    let projector: Vec<Vec<BigRational>> = (0..k)
+        .map(|i| {
+            let q: Vec<BigRational> = (0..free)
+                .map(|b| (0..free).map(|a| &z[i][a] * &inverse[a][b]).sum())
+                .collect();
+            (0..k)
+                .map(|j| {
+                    let inside: BigRational = (0..free).map(|b| &q[b] * &z[j][b]).sum();
+                    if i == j {
+                        BigRational::one() - inside
+                    } else {
+                        -inside
+                    }
+                })
+                .collect()
+        })
+        .collect();
+    let times = |a: &[Vec<BigRational>], b: &[Vec<BigRational>]| -> Vec<Vec<BigRational>> {
+        a.iter()
+            .map(|row| {
+                (0..k)
+                    .map(|j| {
+                        row.iter()
+                            .zip(b)
+                            .filter(|(x, row)| !x.is_zero() && !row[j].is_zero())
+                            .map(|(x, row)| x * &row[j])
+                            .sum()
+                    })
+                    .collect()
+            })
+            .collect()
+    };
+    times(&projector, &times(&r, &projector))
+}
+
+/// Inverse by Gauss–Jordan; `None` where singular.
+fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
+    let n = a.len();
+    for (i, row) in a.iter_mut().enumerate() {
+        row.extend((0..n).map(|j| {
+            if i == j {
+                BigRational::one()
+            } else {
+                BigRational::zero()
+            }
+        }));
+    }
+    for c in 0..n {
+        let pivot = (c..n).find(|&r| !a[r][c].is_zero())?;
+        a.swap(c, pivot);
+        let factor = a[c][c].recip();
+        a[c].iter_mut().for_each(|v| *v *= &factor);
+        let row = a[c].clone();
+        for (r, other) in a.iter_mut().enumerate() {
+            if r != c && !other[c].is_zero() {
+                let factor = other[c].clone();
+                for (v, p) in other.iter_mut().zip(&row) {
+                    *v -= &factor * p;
+                }
+            }
+        }
+    }
+    Some(a.into_iter().map(|row| row[n..].to_vec()).collect())
+}
+
+fn exact_lcp(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    contact: &ContactLcp,
+    covering: Covering,
+) -> Lcp<BigRational> {
+    let stiffness = exact_stiffness(system);
+    let k = system.joint_count();
+    let constants: Vec<BigRational> = (0..k)
+        .map(|i| {
+            let gaps: BigRational = (0..system.pairs.len())
+                .filter(|&p| numbers.gap[p] != 0.0)
+                .map(|p| &stiffness[i][p] * rational(numbers.gap[p]))
+                .sum();
+            rational(numbers.load[i]) - gaps
+        })
+        .collect();
+    // Each row of the LCP as Σ factor·λ_joint + fixed, and the joint and sign of its z.
+    let rows: Vec<(Vec<(usize, BigRational)>, BigRational, usize, bool)> = contact
+        .rows
+        .iter()
+        .map(|row| {
+            let pair = row.pair;
+            let sign = match row.couple {
+                Couple::Normal => {
+                    return (
+                        vec![(pair, BigRational::one())],
+                        BigRational::zero(),
+                        pair,
+                        false,
+                    );
+                }
+                Couple::Plus => BigRational::one(),
+                Couple::Minus => -BigRational::one(),
+            };
+            // Invariant: a pair with rows x⁺, x⁻ has a tangential joint.
+            let joint = system.pairs[pair].tangential.unwrap_or(pair);
+            let mut terms = vec![(joint, sign)];
+            let fixed = match system.pairs[pair].law {
+                Law::Bound { .. } => numbers.bound[pair],
+                _ => {
+                    terms.push((pair, rational(numbers.friction[pair])));
+                    numbers.cohesion[pair]
+                }
+            };
+            (terms, rational(fixed), joint, row.couple == Couple::Minus)
+        })
+        .collect();
+    let matrix = rows
+        .iter()
+        .map(|(terms, ..)| {
+            rows.iter()
+                .map(|(_, _, joint, negative)| {
+                    let value: BigRational = terms
+                        .iter()
+                        .map(|(i, factor)| factor * &stiffness[*i][*joint])
+                        .sum();
+                    if *negative { -value } else { value }
+                })
+                .collect()
+        })
+        .collect();
+    let q = rows
+        .iter()
+        .map(|(terms, fixed, ..)| {
+            let sum: BigRational = terms.iter().map(|(i, f)| f * &constants[*i]).sum();
+            sum + fixed
+        })
+        .collect();
+    let cover = contact
+        .rows
+        .iter()
+        .map(|row| {
+            let bound = matches!(system.pairs[row.pair].law, Law::Bound { .. });
+            if row.couple == Couple::Normal || bound {
+                return BigRational::one();
+            }
+            let f = rational(numbers.friction[row.pair]);
+            match covering {
+                Covering::Cohesive => BigRational::one() + f,
+                Covering::Ones => BigRational::one(),
+                Covering::Weight => f,
+            }
+        })
+        .collect();
+    Lcp {
+        matrix,
+        q,
+        covering: cover,
+        // Exact arithmetic compares with zero itself.
+        scale: Scale {
+            row: vec![1.0; rows.len()],
+            column: vec![1.0; rows.len()],
+        },
+    }
+}
+
+/// An exact run in f64, forces divided by `force` and displacements by `length` (powers of two).
+fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
+    let all = |values: &[BigRational], unit: f64| -> Vec<f64> {
+        values.iter().map(|v| nearest(v) / unit).collect()
+    };
+    let mut pivots = run.pivots;
+    for pivot in &mut pivots {
+        pivot.p_before /= force;
+        pivot.p_after /= force;
+        pivot.ratio /= match pivot.entering {
+            Variable::Z(_) => length,
+            _ => force,
+        };
+    }
+    Run {
+        outcome: match run.outcome {
+            Outcome::Ray(ray) => Outcome::Ray(RayDirection {
+                entering: ray.entering,
+                z: all(&ray.z, length),
+                w: all(&ray.w, force),
+                p: nearest(&ray.p) / force,
+            }),
+            Outcome::Trivial => Outcome::Trivial,
+            Outcome::Normal { marginal } => Outcome::Normal { marginal },
+            Outcome::PivotLimit => Outcome::PivotLimit,
+            Outcome::Cycle => Outcome::Cycle,
+            Outcome::Breakdown(why) => Outcome::Breakdown(why),
+            Outcome::Interrupted => Outcome::Interrupted,
+        },
+        point: Point {
+            z: all(&run.point.z, length),
+            w: all(&run.point.w, force),
+            p: nearest(&run.point.p) / force,
+        },
+        pivots,
+    }
+}
+
+fn nearest(value: &BigRational) -> f64 {
+    crate::lcp::scalar::Scalar::to_f64(value)
+}

@@ -1,0 +1,111 @@
+//! The exact check.
+
+use std::io::{self, Write};
+
+use super::number::short;
+use super::style::{Role, Style};
+use crate::contact::exact_check::{ExactSign, Finding};
+use crate::solve::all_answers::Exactly;
+
+fn signs(signs: &[ExactSign]) -> String {
+    let words: Vec<String> = signs
+        .iter()
+        .map(|sign| {
+            format!(
+                "{}[{}] = {}",
+                sign.quantity.name(),
+                sign.id,
+                short(sign.value)
+            )
+        })
+        .collect();
+    words.join(", ")
+}
+
+/// The finding in sentences, and whether it is good.
+pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
+    match check {
+        Exactly::Contact(check) => match &check.finding {
+            Finding::Proved { zeros } => {
+                let mut lines = vec![format!(
+                    "proved: {} equations solved and {} signs told in exact arithmetic, all hold",
+                    check.released, check.signs
+                )];
+                if !zeros.is_empty() {
+                    let ids: Vec<String> = zeros
+                        .iter()
+                        .map(|sign| format!("{}[{}]", sign.quantity.name(), sign.id))
+                        .collect();
+                    lines.push(format!("exactly on a limit: {}", ids.join(", ")));
+                }
+                (Role::Good, lines)
+            }
+            Finding::Refuted { violations } => (
+                Role::Bad,
+                vec![
+                    format!("refuted in exact arithmetic: {}", signs(violations)),
+                    "values of the size of rounding mean that the data stand at a limit which f64 cannot store exactly"
+                        .to_owned(),
+                ],
+            ),
+            Finding::Singular { rank, consistent } => (
+                Role::Warning,
+                vec![format!(
+                    "not decided: the {} equations of the working scheme have rank {rank} and {}",
+                    check.released,
+                    if *consistent { "many solutions" } else { "no solution" }
+                )],
+            ),
+            Finding::Interrupted => (Role::Warning, vec!["interrupted".to_owned()]),
+            Finding::Failed => (
+                Role::Warning,
+                vec!["not decided: the exact solver gave up".to_owned()],
+            ),
+        },
+        Exactly::Plain(check) => {
+            let name = |letter: char, row: usize| {
+                format!("{letter}[{}]", names.get(row).map_or("?", String::as_str))
+            };
+            if !check.unique {
+                return (
+                    Role::Warning,
+                    vec!["not decided: the equations of the basis have no single solution".to_owned()],
+                );
+            }
+            if check.violations.is_empty() {
+                let mut lines = vec!["proved: the basis solved in exact arithmetic, all signs hold".to_owned()];
+                if !check.zeros.is_empty() {
+                    let zeros: Vec<String> =
+                        check.zeros.iter().map(|(letter, row)| name(*letter, *row)).collect();
+                    lines.push(format!("exactly zero: {}", zeros.join(", ")));
+                }
+                return (Role::Good, lines);
+            }
+            let bad: Vec<String> = check
+                .violations
+                .iter()
+                .map(|(letter, row, value)| format!("{} = {}", name(*letter, *row), short(*value)))
+                .collect();
+            (
+                Role::Bad,
+                vec![format!("refuted in exact arithmetic: {}", bad.join(", "))],
+            )
+        }
+    }
+}
+
+/// Writes the finding.
+pub fn write(
+    out: &mut dyn Write,
+    check: &Exactly,
+    names: &[String],
+    style: &Style,
+) -> io::Result<()> {
+    let (role, lines) = sentences(check, names);
+    for text in lines {
+        for line in style.wrap(&style.text(&text), style.width) {
+            writeln!(out, "{}", style.paint(role, &line))?;
+        }
+    }
+    Ok(())
+}

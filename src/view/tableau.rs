@@ -1,0 +1,48 @@
+//! The dictionary of a small problem.
+
+use std::io::{self, Write};
+
+use super::number::{denoised, engineering};
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::explain::tableau::Dictionary;
+
+/// Writes basic = value + Σ rate·nonbasic row by row, and what comes next.
+pub fn write(out: &mut dyn Write, dictionary: &Dictionary, style: &Style) -> io::Result<()> {
+    let at = match dictionary.step {
+        None => "before the entry of p".to_owned(),
+        Some(step) => format!("after pivot {step}"),
+    };
+    writeln!(
+        out,
+        "{}",
+        style.text(&format!(
+            "dictionary {at}: basic = value + rates · nonbasic"
+        ))
+    )?;
+    let mut columns = vec![Column::words("basic"), Column::numbers("value", None)];
+    // Columns that find no room are named beneath the table, the last ones first.
+    columns.extend(dictionary.nonbasic.iter().enumerate().map(|(k, name)| {
+        Column::numbers(name, None).droppable(u8::try_from(k + 1).unwrap_or(u8::MAX))
+    }));
+    let mut table = Table::new(columns);
+    for ((name, value), rates) in dictionary
+        .basic
+        .iter()
+        .zip(&dictionary.values)
+        .zip(&dictionary.rates)
+    {
+        let mut cells = vec![
+            Cell::from(name.as_str()),
+            Cell::from(engineering(denoised(*value, 1.0))),
+        ];
+        cells.extend(rates.iter().map(|rate| Cell::from(engineering(*rate))));
+        table.rows.push(Row::new(cells));
+    }
+    table.write(out, style)?;
+    let next = match (&dictionary.entering, &dictionary.leaving) {
+        (Some(entering), Some(leaving)) => format!("next: {entering} enters, {leaving} leaves"),
+        _ => "the run ends here".to_owned(),
+    };
+    writeln!(out, "{}", style.paint(Role::Muted, &style.text(&next)))
+}

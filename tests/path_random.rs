@@ -1,0 +1,154 @@
+//! Random contact systems with a positive definite R and little friction, where the answer is unique: a load path
+//! must pass through the answers that cold runs find, and warm starts must agree with cold ones.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use stickslip::contact::complementarity::contact_lcp;
+use stickslip::contact::load_path::{order, path_lcp};
+use stickslip::contact::numbers::ContactNumbers;
+use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
+use stickslip::lcp::driver::run;
+use stickslip::lcp::lemke::SchemeEngine;
+use stickslip::lcp::outcome::Outcome;
+use stickslip::lcp::parametric::{End, Parametric, Reach};
+use stickslip::lcp::vertex::Basis;
+use stickslip::model::pair::Law;
+use stickslip::model::parameter::Number;
+use stickslip::model::rules::{Covering, TieBreak};
+use stickslip::solve::warm::follow_load;
+use stickslip::watch::Quiet;
+
+/// R = A Aᵀ / n + I; with `ties` the entries of A and the loads are small integers.
+fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
+    let n = 2 * m;
+    let number = |rng: &mut ChaCha8Rng, ties: bool| {
+        if ties {
+            f64::from(rng.random_range(-1..=1))
+        } else {
+            rng.random_range(-1.0..1.0)
+        }
+    };
+    let a = DMatrix::from_fn(n, n, |_, _| number(rng, ties));
+    let stiffness = &a * a.transpose() / n as f64 + DMatrix::identity(n, n);
+    let load = DVector::from_fn(n, |_, _| number(rng, ties));
+    let law = Law::Coulomb {
+        friction: Number::Value(0.0),
+        cohesion: Number::Value(0.0),
+        gap: Number::Value(0.0),
+    };
+    let pairs = (0..m)
+        .map(|i| ContactPair {
+            id: format!("c{}", i + 1),
+            law: law.clone(),
+            position: None,
+            tangential: Some(m + i),
+        })
+        .collect();
+    let numbers = ContactNumbers {
+        friction: vec![
+            if ties {
+                0.25
+            } else {
+                rng.random_range(0.0..0.4)
+            };
+            m
+        ],
+        cohesion: vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m],
+        gap: vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m],
+        bound: vec![0.0; m],
+        load: load.clone(),
+    };
+    let system = ContactSystem {
+        pairs,
+        stiffness,
+        loads: vec![JointLoad {
+            name: "load".into(),
+            vector: load,
+        }],
+        kernel: DMatrix::zeros(n, 0),
+    };
+    (system, numbers)
+}
+
+fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64>) {
+    let contact = contact_lcp(system, numbers, Covering::Cohesive).expect("covers all");
+    let rule = contact.tie_rule(TieBreak::Lexicographic);
+    let mut engine = SchemeEngine::new(Arc::clone(&contact.lcp), rule);
+    let run = run(&mut engine, 20_000, &mut |_| ControlFlow::Continue(()));
+    assert!(matches!(
+        run.outcome,
+        Outcome::Trivial | Outcome::Normal { .. }
+    ));
+    let z = contact.joint_displacements(system, &run.point.z) * contact.length_unit;
+    (Basis::after(&run.pivots), z)
+}
+
+#[test]
+fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    for k in 0..400 {
+        let m = 1 + k % 14;
+        let ties = k % 3 == 0;
+        let (system, mut numbers) = random_system(&mut rng, m, ties);
+        if k % 5 == 0 {
+            // Start from nothing: everything degenerate where there are no gaps.
+            numbers.load.fill(0.0);
+        }
+        let (mut basis, _) = cold(&system, &numbers);
+        let mut kept = None;
+        for step in 0..4 {
+            let mut next = numbers.clone();
+            next.load = DVector::from_fn(2 * m, |_, _| {
+                if ties {
+                    f64::from(rng.random_range(-2..=2))
+                } else {
+                    rng.random_range(-1.0..1.0)
+                }
+            });
+            let increment = &next.load - &numbers.load;
+            let contact = path_lcp(&system, &numbers, &increment);
+            let mut engine = Parametric::new(Arc::clone(&contact.lcp), &basis, order(&contact))
+                .expect("regular");
+            let reach = Reach {
+                target: 1.0,
+                through: false,
+                pivots: 10_000,
+            };
+            let path = engine.follow(reach, &mut |_| ControlFlow::Continue(()));
+            assert_eq!(path.end, End::Target, "problem {k}.{step}, m = {m}");
+            let z_of = |z: &[f64]| contact.joint_displacements(&system, z) * contact.length_unit;
+            for knot in path.knots.iter().skip(1) {
+                let mut there = numbers.clone();
+                there.load += knot.t * &increment;
+                let (_, z) = cold(&system, &there);
+                let error = (z_of(&knot.point.z) - &z).amax();
+                // z_τ of pairs that just touch without force may be anything.
+                assert!(
+                    error <= 1e-9,
+                    "problem {k}.{step} at t = {}: {error:e}",
+                    knot.t
+                );
+            }
+            let warm = follow_load(
+                &system,
+                &numbers,
+                &basis,
+                &next,
+                Covering::Cohesive,
+                &mut kept,
+                &Quiet,
+            )
+            .expect("a way");
+            let (_, z) = cold(&system, &next);
+            let found =
+                warm.contact.joint_displacements(&system, &warm.point.z) * warm.contact.length_unit;
+            assert!((&found - &z).amax() <= 1e-11, "problem {k}.{step}");
+            basis = warm.basis;
+            numbers = next;
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Every embedded structure balances by hand, at many values of its parameters, and its pairs obey their laws.
+
+use stickslip::model::embedded;
+use stickslip::model::rules::{Covering, Rules};
+use stickslip::model::scenario::Source;
+
+use crate::common::balance::{imbalance, incompatibility, nodal_imbalance};
+use crate::common::laws::violation;
+use crate::common::*;
+
+/// Checks an answer by hand where there is one.
+#[track_caller]
+pub fn check(case: &Case, set: &[(&str, f64)], rules: Rules) -> bool {
+    let answer = case.solve_under(set, rules);
+    let mut values = case.scenario.parameter_values();
+    for (name, value) in set {
+        values[*name] = *value;
+    }
+    if !answer.is_answer() {
+        assert!(
+            answer.ray.is_some(),
+            "{set:?} {rules:?}: {:?}",
+            answer.failure
+        );
+        return false;
+    }
+    is_answer(&answer);
+    let off = imbalance(&case.scenario, &values, &answer);
+    assert!(off < 1e-9, "{set:?} {rules:?}: out of balance by {off:e}");
+    let off = nodal_imbalance(&case.scenario, &values, &answer);
+    assert!(
+        off < 1e-9,
+        "{set:?} {rules:?}: a node out of balance by {off:e}"
+    );
+    let off = incompatibility(&case.scenario, &values, &answer);
+    assert!(
+        off < 1e-9,
+        "{set:?} {rules:?}: displacements and pairs differ by {off:e}"
+    );
+    let wrong = violation(&case.scenario, &values, &answer);
+    assert!(
+        wrong < 1e-9,
+        "{set:?} {rules:?}: laws violated by {wrong:e}"
+    );
+    true
+}
+
+#[test]
+fn embedded_structures_balance() {
+    for name in embedded::names() {
+        let case = Case::embedded(name);
+        if !matches!(case.scenario.source, Source::Structure(_)) {
+            continue;
+        }
+        let parameters: Vec<(String, f64, f64)> = case
+            .scenario
+            .parameters
+            .iter()
+            .map(|(name, p)| (name.clone(), p.min.unwrap(), p.max.unwrap()))
+            .collect();
+        let mut answers = 0;
+        for rule in Covering::ALL {
+            answers += usize::from(check(&case, &[], covering(rule)));
+        }
+        for (name, min, max) in &parameters {
+            for k in 0..=6 {
+                let value = min + (max - min) * f64::from(k) / 6.0;
+                answers += usize::from(check(&case, &[(name, value)], Rules::default()));
+            }
+        }
+        assert!(answers >= 5, "{name}: only {answers} answers");
+    }
+}
+
+#[test]
+fn every_rule_that_answers_answers_right() {
+    for name in [
+        "beam",
+        "block",
+        "frame-rotated",
+        "plates-hinged",
+        "slope",
+        "klarbring",
+        "gap",
+    ] {
+        let case = Case::embedded(name);
+        for rules in all_rules() {
+            check(&case, &[], rules);
+        }
+    }
+}
+
+#[test]
+fn the_checks_by_hand_can_fail() {
+    let case = Case::embedded("frame-rotated");
+    let values = case.scenario.parameter_values();
+    let answer = case.solve(&[]);
+    let judge = |answer: &stickslip::answer::record::Answer| {
+        [
+            imbalance(&case.scenario, &values, answer),
+            nodal_imbalance(&case.scenario, &values, answer),
+            incompatibility(&case.scenario, &values, answer),
+            violation(&case.scenario, &values, answer),
+        ]
+        .map(|off| off > 1e-6)
+    };
+    assert_eq!(judge(&answer), [false; 4]);
+    let mut wrong = answer.clone();
+    wrong.pairs[1].x_n *= 1.0001;
+    assert_eq!(judge(&wrong), [true, true, false, true]);
+    let mut wrong = answer.clone();
+    wrong.pairs[2].z_t *= 1.0001;
+    assert_eq!(judge(&wrong), [false, false, true, false]);
+    let mut wrong = answer.clone();
+    wrong.members.as_mut().unwrap()[3].end.q += 0.01;
+    assert_eq!(judge(&wrong), [false, true, false, false]);
+    let mut wrong = answer.clone();
+    wrong.reactions.as_mut().unwrap()[0].m += 0.1;
+    assert_eq!(judge(&wrong), [true, true, false, false]);
+    let mut wrong = answer.clone();
+    wrong.pairs[0].x_t *= -1.0;
+    assert_eq!(judge(&wrong), [true, true, false, true]);
+}

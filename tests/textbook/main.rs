@@ -1,0 +1,19 @@
+//! Problems with known answers, one file each: a sketch, the formula, the figures.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod balance;
+mod beam;
+mod block;
+mod cantilever_gap;
+mod edge_cases;
+mod foundation;
+mod frame;
+mod greco;
+mod klarbring;
+mod plates;
+mod random_structures;
+mod slope;
+mod structures;
+mod unit_square;

@@ -1,0 +1,160 @@
+//! Two plates 8 × 4, the upper one free on the lower one (Popov & Lovtsov 2020, Example 3).
+//!
+//! ```text
+//!         ▼ ▼ ▼ ▼ q = 100 ▼ ▼ ▼
+//!      ┌──────────────────────────┐
+//!  T ─▶│                          │ 4
+//!  T ─▶│           upper          │
+//!      ├●─●─●─●─●─●─●─●─●─●─●─●─●─┤     17 pairs, distance 0.5
+//!      │           lower          │ 4
+//!      └──────────────────────────┘
+//!      ▓▓▓▓▓▓▓▓▓▓▓▓ 8 ▓▓▓▓▓▓▓▓▓▓▓▓▓
+//! ```
+//!
+//! Sliding: 4 T = 8 f q, T = 200 f, p = (4 T − 800 f)/(17 d_τ). Overturning about the right end of the joint (f > 2):
+//! 4 T·2 = 800·4, T = 400; the lever arms of the pairs sum to 68, so p = (8 T − 3200)/68.
+
+use stickslip::answer::record::OutcomeKind;
+use stickslip::model::rules::Covering;
+
+use crate::common::*;
+
+const COVERINGS: [Covering; 2] = [Covering::Cohesive, Covering::Weight];
+
+fn d_t(covering: Covering, f: f64) -> f64 {
+    match covering {
+        Covering::Cohesive => 1.0 + f,
+        Covering::Ones => 1.0,
+        Covering::Weight => f,
+    }
+}
+
+#[test]
+fn sliding_is_told_apart_at_one_part_in_1e9() {
+    let case = Case::embedded("plates-free");
+    for f in [0.3, 0.5, 0.75, 1.0, 1.5] {
+        let limit = 200.0 * f;
+        for rule in COVERINGS {
+            for below in [0.5, 0.9, 1.0 - 1e-6, 1.0 - 1e-9] {
+                let answer = case.solve_under(&[("f", f), ("T", limit * below)], covering(rule));
+                assert!(
+                    answer.ray.is_none(),
+                    "f = {f}, ×{below}, {rule}: {:?}",
+                    answer.ray
+                );
+                is_answer(&answer);
+            }
+            for (beyond, tolerance) in [
+                (1.0 + 1e-9, 1e-5),
+                (1.0 + 1e-6, 1e-7),
+                (1.01, 1e-9),
+                (1.1, 1e-9),
+            ] {
+                let push = limit * beyond;
+                let answer = case.solve_under(&[("f", f), ("T", push)], covering(rule));
+                let ray = mechanism(&answer);
+                let expected = (4.0 * push - 800.0 * f) / (17.0 * d_t(rule, f));
+                close(
+                    &format!("p, f = {f}, ×{beyond}, {rule}"),
+                    ray.p,
+                    expected,
+                    tolerance,
+                );
+                for pair in &ray.direction {
+                    near("z̄_τ", pair.z_t, 1.0, 1e-9, 1.0);
+                    near("z̄_n", pair.z_n, 0.0, 1e-9, 1.0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn overturning_is_told_apart_at_one_part_in_1e9() {
+    let case = Case::embedded("plates-free");
+    for f in [2.2, 2.5, 3.0] {
+        for rule in COVERINGS {
+            for below in [0.9, 1.0 - 1e-6, 1.0 - 1e-9] {
+                let answer = case.solve_under(&[("f", f), ("T", 400.0 * below)], covering(rule));
+                assert_eq!(
+                    answer.outcome,
+                    OutcomeKind::Normal,
+                    "f = {f}, ×{below}, {rule}"
+                );
+                is_answer(&answer);
+            }
+            for (beyond, tolerance) in [(1.0 + 1e-9, 1e-5), (1.0 + 1e-6, 1e-7), (1.01, 1e-9)] {
+                let push = 400.0 * beyond;
+                let answer = case.solve_under(&[("f", f), ("T", push)], covering(rule));
+                let ray = mechanism(&answer);
+                let expected = (8.0 * push - 3200.0) / 68.0;
+                close(
+                    &format!("p, f = {f}, ×{beyond}, {rule}"),
+                    ray.p,
+                    expected,
+                    tolerance,
+                );
+                for (i, pair) in ray.direction.iter().enumerate() {
+                    near("z̄_n", pair.z_n, (16 - i) as f64 / 16.0, 1e-9, 1.0);
+                    near("z̄_τ", pair.z_t, 0.0, 1e-9, 1.0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn printed_figures() {
+    let case = Case::embedded("plates-free");
+    for (push, rule, figure, unit) in [
+        (60.00006, Covering::Weight, 4.7059e-5, 1e-9),
+        (60.00006, Covering::Cohesive, 1.0860e-5, 1e-9),
+        (100.0, Covering::Weight, 31.37255, 1e-5),
+        (100.0, Covering::Cohesive, 7.23982, 1e-5),
+    ] {
+        let answer = case.solve_under(&[("f", 0.3), ("T", push)], covering(rule));
+        printed("p", mechanism(&answer).p, figure, unit);
+    }
+    let slide = Case::embedded("plates-slide").solve(&[]);
+    printed("p", mechanism(&slide).p, 1.0860e-5, 1e-9);
+}
+
+#[test]
+fn exactly_at_the_limits() {
+    let case = Case::embedded("plates-free");
+    for (f, push) in [(0.3, 60.0), (0.75, 150.0), (1.5, 300.0)] {
+        let answer = case.solve(&[("f", f), ("T", push)]);
+        assert_eq!(
+            answer.outcome,
+            OutcomeKind::Normal,
+            "f = {f}: {:?}",
+            answer.ray
+        );
+        is_answer(&answer);
+    }
+    for f in [2.2, 2.5, 3.0] {
+        let answer = case.solve(&[("f", f), ("T", 400.0)]);
+        assert_eq!(
+            answer.outcome,
+            OutcomeKind::Normal,
+            "f = {f}: {:?}",
+            answer.ray
+        );
+        is_answer(&answer);
+    }
+}
+
+#[test]
+fn sizes() {
+    let hinged = Case::embedded("plates-hinged").solve(&[]);
+    is_answer(&hinged);
+    assert_eq!(hinged.size.unknowns, Some(612));
+    assert_eq!(hinged.size.free, Some(576));
+    assert_eq!(hinged.size.pairs, 16);
+    assert_eq!(hinged.size.lcp, 48);
+    let free = Case::embedded("plates-free").solve(&[]);
+    is_answer(&free);
+    assert_eq!(free.size.unknowns, Some(612));
+    assert_eq!(free.size.pairs, 17);
+    assert_eq!(free.size.lcp, 51);
+}

@@ -1,0 +1,842 @@
+//! The language of commands, driven without a terminal: every command and its help, scripts, recordings, journals,
+//! and ten thousand lines of noise.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+
+use rand::{Rng, SeedableRng};
+use stickslip::model::embedded;
+use stickslip::session::help::{GROUPS, help, overview};
+use stickslip::session::journal::Journal;
+use stickslip::session::{CommandError, Format, Next, Output, Session, script};
+use stickslip::view::style::Style;
+use stickslip::watch::{Quiet, Watch};
+
+fn session(name: &str) -> Session {
+    Session::new(embedded::load(name).unwrap(), &Quiet).unwrap()
+}
+
+/// What a line shows and how it ends.
+fn line(session: &mut Session, text: &str) -> (String, Result<Next, CommandError>) {
+    let mut out = Vec::new();
+    let result = session.execute(text, &mut Output::text(&mut out, Style::default(), &Quiet));
+    (String::from_utf8(out).unwrap(), result)
+}
+
+fn shown(session: &mut Session, text: &str) -> String {
+    let (shown, result) = line(session, text);
+    result.unwrap_or_else(|error| panic!("{text}: {error}"));
+    shown
+}
+
+fn refused(session: &mut Session, text: &str) -> String {
+    match line(session, text).1 {
+        Ok(_) => panic!("{text} was accepted"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// All of a session that a failed command must leave as it was: commands that lead to it, its answer, the pivot
+/// shown, the depths of undo and redo, whether it solves at once.
+type State = (
+    Vec<String>,
+    Option<usize>,
+    Option<usize>,
+    (usize, usize),
+    bool,
+);
+
+fn state(session: &Session) -> State {
+    (
+        session.as_commands(),
+        session.solved().map(|solved| Arc::as_ptr(&solved) as usize),
+        session.position(),
+        session.undo_depths(),
+        session.auto(),
+    )
+}
+
+/// Runs a script; what it shows, its failures, its status.
+fn replay(text: &str, format: Format, keep_going: bool) -> (String, Vec<String>, u8) {
+    let mut session = session("beam");
+    let mut out = Vec::new();
+    let mut failures = Vec::new();
+    let mut io = Output::new(&mut out, Style::default(), format, &Quiet);
+    let ended = script::run(
+        &mut session,
+        "test",
+        text,
+        keep_going,
+        &mut io,
+        &mut |error| {
+            failures.push(error.to_string());
+        },
+    )
+    .unwrap();
+    (String::from_utf8(out).unwrap(), failures, ended.status)
+}
+
+#[test]
+fn help_of_everything() {
+    let mut all = overview(&Style::default());
+    for (_, names) in GROUPS {
+        for name in *names {
+            all.push_str(&format!("\n──── help {name}\n{}", help(name, 80).unwrap()));
+        }
+    }
+    assert!(all.lines().all(|line| line.chars().count() <= 80));
+    insta::assert_snapshot!("help", all);
+}
+
+#[test]
+fn every_command_on_the_beam() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = session("beam");
+    let mut transcript = String::new();
+    for text in [
+        "scenarios",
+        "params",
+        "set F2 150",
+        "diff",
+        "undo",
+        "redo",
+        "reset",
+        "load beam-ray",
+        "ray",
+        "undo",
+        "solve",
+        "pairs",
+        "pairs c5..c6 sort z_t",
+        "displacements",
+        "members",
+        "reactions",
+        "pivots 1..2",
+        "step first",
+        "step",
+        "pairs c6",
+        "why c6",
+        "step back 1",
+        "step to 3",
+        "step last",
+        "why c1",
+        "plot slip",
+        "plot force --width 60 --height 8",
+        "plot gap",
+        "plot pressure",
+        "plot p",
+        "plot structure",
+        "plot slip --at first,2,last",
+        "set F2 500",
+        "set auto off",
+        "set F2 90",
+        "set auto on",
+        "set covering weight",
+        "reset covering",
+        "echo so far",
+        "expect outcome normal",
+        "bogus",
+        "expect error unknown",
+        "load klarbring",
+        "pairs",
+        "load murty6",
+        "pairs",
+        "load frame",
+        "plot moment",
+        "members",
+        "history",
+    ] {
+        transcript.push_str(&format!("> {text}\n"));
+        match line(&mut session, text) {
+            (shown, Ok(_)) => transcript.push_str(&shown),
+            (_, Err(error)) => transcript.push_str(&format!("! {error}\n")),
+        }
+    }
+    // rounding of the last digits is not what this test is about
+    let steady: Vec<&str> = transcript
+        .lines()
+        .filter(|line| !line.contains("min w"))
+        .collect();
+    insta::assert_snapshot!("commands", steady.join("\n"));
+    for (what, ending) in [
+        ("pairs", "csv"),
+        ("pivots", "json"),
+        ("displacements", "csv"),
+        ("result", "json"),
+    ] {
+        let file = folder.path().join(format!("{what}.{ending}"));
+        shown(&mut session, &format!("export {what} {}", file.display()));
+        assert!(fs::metadata(&file).unwrap().len() > 20);
+    }
+}
+
+#[test]
+fn numbers_of_the_closed_form_appear() {
+    let mut session = session("beam");
+    // r = 30, F2 = 150: end slip 300 L/EA, L/EA = 1e-5
+    shown(&mut session, "set f 0.3; set F2 150");
+    let slips: Vec<f64> = session.pairs().iter().map(|pair| pair.z_t).collect();
+    for (found, expected) in slips.iter().rev().zip([300.0, 180.0, 90.0, 30.0, 0.0, 0.0]) {
+        assert!((found - expected * 1e-5).abs() < 1e-12, "{slips:?}");
+    }
+    // at pivot 1 only the pulled end slips, under p > 0
+    shown(&mut session, "step to 1");
+    assert!(session.p().unwrap() > 0.0);
+    assert!(session.pairs()[5].z_t > 0.0 && session.pairs()[4].z_t == 0.0);
+    shown(&mut session, "step last");
+    assert_eq!(session.p(), Some(0.0));
+}
+
+#[test]
+fn all_forms_of_set() {
+    let mut session = session("beam");
+    let mut after = |text: &str| {
+        shown(&mut session, text);
+        session.values()["F2"]
+    };
+    assert_eq!(after("set F2 100"), 100.0);
+    assert_eq!(after("set F2 = 120"), 120.0);
+    assert_eq!(after("set F2 += 10"), 130.0);
+    assert_eq!(after("set F2 -= 30"), 100.0);
+    assert_eq!(after("set F2 *= 2"), 200.0);
+    assert_eq!(after("set F2 /= 2"), 100.0);
+    assert_eq!(after("set F2 110%"), 110.0);
+    assert_eq!(after("set F2 100; set F2 +10%"), 110.0);
+    assert_eq!(after("set F2 100; set F2 -10%"), 90.0);
+    assert_eq!(after("set F2=75"), 75.0);
+    assert!(shown(&mut session, "set F2 1000").contains("outside"));
+    for (text, part) in [
+        ("set F3 1", "did you mean"),
+        ("set F2", "set F2 VALUE"),
+        ("set F2 many", "expected a number"),
+        ("set f -0.1", "must not be negative"),
+        ("set F2 1e999", "number"),
+        ("set F2 /= 0", "finite"),
+        ("set covering wait", "cohesive, ones or weight"),
+        ("set auto maybe", "on or off"),
+    ] {
+        let before = state(&session);
+        let error = refused(&mut session, text);
+        assert!(error.contains(part), "{text}: {error}");
+        assert_eq!(state(&session), before, "{text}");
+    }
+}
+
+#[test]
+fn a_refused_rule_leaves_the_session_as_it_was() {
+    let mut session = session("beam");
+    // without friction the covering `weight` has d_τ = 0
+    shown(&mut session, "set f 0");
+    let before = state(&session);
+    refused(&mut session, "set covering weight");
+    assert_eq!(state(&session), before);
+    shown(&mut session, "load murty6");
+    assert!(refused(&mut session, "set covering ones").contains("LCP"));
+}
+
+#[test]
+fn undo_and_redo_go_all_the_way() {
+    let mut session = session("beam");
+    let first = session.answer().unwrap().clone();
+    for k in 1..=200 {
+        shown(&mut session, &format!("set F2 {k}"));
+    }
+    shown(&mut session, "load frame; set f 0.2");
+    let last = session.answer().unwrap().pairs.clone();
+    for _ in 0..202 {
+        shown(&mut session, "undo");
+    }
+    assert_eq!(session.answer().unwrap().pairs, first.pairs);
+    assert!(refused(&mut session, "undo").contains("nothing to undo"));
+    for _ in 0..202 {
+        shown(&mut session, "redo");
+    }
+    assert_eq!(session.answer().unwrap().pairs, last);
+    assert!(refused(&mut session, "redo").contains("nothing to redo"));
+    shown(&mut session, "undo; set f 0.25");
+    assert!(refused(&mut session, "redo").contains("nothing to redo"));
+}
+
+#[test]
+fn a_saved_scenario_has_the_same_answer_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["beam", "frame-rotated", "block", "plates-free", "klarbring"] {
+        let file = folder.path().join(format!("{name}.json"));
+        let mut one = session(name);
+        shown(&mut one, "set f *= 1.1; set tie-break natural");
+        shown(&mut one, &format!("save {}", file.display()));
+        let mut two = session("gap");
+        shown(&mut two, &format!("load {}", file.display()));
+        assert_eq!(two.rules(), one.rules());
+        assert_eq!(
+            two.answer().unwrap().pairs,
+            one.answer().unwrap().pairs,
+            "{name}"
+        );
+        assert_eq!(
+            two.answer().unwrap().pivots,
+            one.answer().unwrap().pivots,
+            "{name}"
+        );
+        assert!(shown(&mut two, "diff").contains("nothing differs"));
+    }
+    let mut embedded = session("beam");
+    assert!(refused(&mut embedded, "save").contains("save FILE"));
+    assert!(refused(&mut embedded, "save /nowhere/at/all.json").contains("cannot"));
+}
+
+#[test]
+fn collected_changes_are_solved_once() {
+    let mut session = session("beam");
+    shown(&mut session, "set auto off; set f 0; set covering weight");
+    assert!(session.answer().is_none());
+    assert!(refused(&mut session, "pairs").contains("solve"));
+    // solved only now, and refused only now
+    assert!(line(&mut session, "solve").1.is_err());
+    shown(&mut session, "set f 0.3; solve");
+    assert!(session.answer().is_some());
+    assert!(!session.auto());
+}
+
+#[test]
+fn statuses_of_scripts() {
+    for (text, keep_going, status, told) in [
+        ("status", false, 0, 0),
+        ("load beam-ray", false, 0, 0), // a ray in a script is a result
+        ("expect outcome ray", false, 1, 1),
+        ("bogus", false, 2, 1),
+        ("set f 1; load nowhere.json\nstatus", false, 2, 1),
+        ("bogus\nexpect error \"unknown command\"", false, 0, 0),
+        ("bogus; expect error unknown; status", false, 0, 0),
+        ("bogus\nstatus\nexpect error unknown", false, 2, 1),
+        ("expect error unknown", false, 1, 1),
+        ("bogus\nexpect outcome ray\nbogus", true, 2, 3),
+        ("expect outcome ray\nbogus", true, 1, 2),
+        ("quit\nbogus", false, 0, 0),
+        ("load cycling; set tie-break first-row", false, 4, 0),
+        (
+            "load cycling; set tie-break first-row\nexpect outcome pivot-limit",
+            false,
+            0,
+            0,
+        ),
+    ] {
+        let (_, failures, found) = replay(text, Format::Text, keep_going);
+        assert_eq!(
+            (found, failures.len()),
+            (status, told),
+            "{text}: {failures:?}"
+        );
+    }
+}
+
+#[test]
+fn a_failed_expectation_says_where_and_what() {
+    let (_, failures, _) = replay(
+        "\nset f 0.3\nset F2 181; expect p < 0.1",
+        Format::Text,
+        false,
+    );
+    assert_eq!(failures.len(), 1);
+    assert!(
+        failures[0].starts_with("test:3: expected p < 0.1, found 0.12820512"),
+        "{}",
+        failures[0]
+    );
+    let (_, failures, _) = replay("expect state c9 stick", Format::Text, false);
+    assert!(
+        failures[0].contains("no pair `c9`: the pairs are c1, c2"),
+        "{}",
+        failures[0]
+    );
+}
+
+#[test]
+fn json_lines_are_one_object_per_command() {
+    let text = "status # first\n\npairs c1; bogus\nexpect error unknown\nplot slip\nset F2 181";
+    let (out, _, status) = replay(text, Format::JsonLines, false);
+    assert_eq!(status, 0);
+    let objects: Vec<serde_json::Value> = out
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let lines: Vec<u64> = objects
+        .iter()
+        .map(|o| o["line"].as_u64().unwrap())
+        .collect();
+    assert_eq!(lines, [1, 3, 3, 4, 5, 6]);
+    assert_eq!(objects[0]["report"]["outcome"], "normal");
+    assert_eq!(objects[1]["report"][0]["id"], "c1");
+    assert_eq!(objects[2]["ok"], false);
+    assert_eq!(objects[2]["status"], 2);
+    assert_eq!(objects[5]["report"]["parameters"]["F2"], 181.0);
+}
+
+#[test]
+fn the_scripts_that_come_along_hold_and_repeat_to_the_byte() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/scripts");
+    let mut count = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        for format in [Format::Text, Format::JsonLines] {
+            let (first, failures, status) = replay(&text, format, false);
+            assert_eq!((status, &failures), (0, &Vec::new()), "{}", path.display());
+            assert_eq!(replay(&text, format, false).0, first, "{}", path.display());
+        }
+        count += 1;
+    }
+    assert!(count >= 4);
+}
+
+#[test]
+fn scripts_within_scripts() {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("inner.stick");
+    let outer = folder.path().join("outer.stick");
+    fs::write(&inner, "set F2 100\nexpect outcome ray\n").unwrap();
+    fs::write(&outer, format!("# calls\nsource {}\n", inner.display())).unwrap();
+    let mut session = session("beam");
+    let error = refused(&mut session, &format!("source {}", outer.display()));
+    assert!(
+        error.contains("outer.stick:2") && error.contains("inner.stick:2"),
+        "{error}"
+    );
+    assert_eq!(session.values()["F2"], 100.0);
+    let own = folder.path().join("own.stick");
+    fs::write(&own, format!("source {}", own.display())).unwrap();
+    assert!(
+        refused(&mut session, &format!("source {}", own.display()))
+            .contains("scripts within scripts")
+    );
+    shown(&mut session, "status");
+}
+
+#[test]
+fn a_recording_reproduces_the_session() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("session.stick");
+    let mut one = session("beam");
+    shown(&mut one, "set f 0.37; set F2 150; step to 1");
+    shown(&mut one, &format!("record {}", file.display()));
+    for text in [
+        "pairs",
+        "step last",
+        "set F2 += 10",
+        "set f +10% # more of it",
+        "bogus \"it's; #\"",
+        "set covering weight; undo; redo",
+        "expect outcome ray",
+        "plot slip",
+        "load frame; set f 0.2",
+    ] {
+        let _ = line(&mut one, text);
+    }
+    shown(&mut one, "record off");
+    shown(&mut one, "set f 0.9");
+    let script = fs::read_to_string(&file).unwrap();
+    assert!(script.contains("# expect outcome ray"), "{script}");
+    let mut two = session("gap");
+    let mut out = Vec::new();
+    let mut io = Output::text(&mut out, Style::default(), &Quiet);
+    let ended = script::run(
+        &mut two,
+        "recording",
+        &script,
+        false,
+        &mut io,
+        &mut |error| panic!("{error}\n{script}"),
+    );
+    assert_eq!(ended.unwrap().status, 0);
+    shown(&mut one, "undo");
+    assert_eq!(two.as_commands(), one.as_commands());
+    assert_eq!(two.answer().unwrap().pairs, one.answer().unwrap().pairs);
+    // what the recording shows as comments is what the replay shows
+    let shown_again = String::from_utf8(out).unwrap();
+    let answers: Vec<&str> = script
+        .lines()
+        .filter_map(|line| line.strip_prefix("#   "))
+        .collect();
+    assert!(
+        answers
+            .iter()
+            .filter(|line| !line.starts_with("expected"))
+            .all(|line| shown_again.contains(line.trim_end()))
+    );
+    assert!(refused(&mut one, &format!("record {}", file.display())).contains("exists"));
+}
+
+#[test]
+fn a_journal_brings_everything_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = Path::new("/somewhere");
+    let mut one = session("beam");
+    one.keep_journal(Journal::new(folder.path(), place));
+    shown(
+        &mut one,
+        "set f 0.37; set F2 += 10; set F2 *= 1.5; undo; set tie-break natural",
+    );
+    shown(&mut one, "load frame; set f 110%");
+    let (commands, pairs, depths) = (one.as_commands(), one.pairs(), one.undo_depths());
+    drop(one); // a crash, as far as the journal can tell
+    let mut two = session("beam");
+    two.keep_journal(Journal::new(folder.path(), place));
+    assert!(two.left_over().is_some());
+    shown(&mut two, "restore");
+    assert_eq!((two.as_commands(), two.pairs()), (commands, pairs));
+    assert_eq!(two.undo_depths().0, depths.0 + 1); // and the `load` it began with
+    assert!(refused(&mut two, "restore").contains("nothing to restore"));
+    shown(&mut two, "undo; undo");
+    drop(two);
+    // the second crash loses nothing either
+    let mut three = session("gap");
+    three.keep_journal(Journal::new(folder.path(), place));
+    shown(&mut three, "restore");
+    assert_eq!(three.scenario().name, "beam");
+    three.close().unwrap();
+    let mut four = session("gap");
+    four.keep_journal(Journal::new(folder.path(), place));
+    assert!(four.left_over().is_none());
+}
+
+struct Stopped;
+impl Watch for Stopped {
+    fn stop(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn an_interrupted_command_changes_nothing() {
+    let mut session = session("beam");
+    shown(&mut session, "set F2 100; step first");
+    for text in ["set F2 150", "load frame", "undo", "solve", "reset"] {
+        let before = state(&session);
+        let mut out = Vec::new();
+        let result = session.execute(
+            text,
+            &mut Output::text(&mut out, Style::default(), &Stopped),
+        );
+        assert!(
+            matches!(&result, Err(error) if error.is_interrupted() && error.status() == 130),
+            "{result:?}"
+        );
+        assert_eq!(state(&session), before, "{text}");
+    }
+}
+
+/// Words of the language, of the scenarios, and of none.
+const WORDS: &[&str] = &[
+    "load",
+    "scenarios",
+    "params",
+    "set",
+    "reset",
+    "undo",
+    "redo",
+    "diff",
+    "solve",
+    "status",
+    "pairs",
+    "displacements",
+    "members",
+    "reactions",
+    "check",
+    "pivots",
+    "step",
+    "why",
+    "ray",
+    "plot",
+    "expect",
+    "echo",
+    "help",
+    "history",
+    "export",
+    "save",
+    "source",
+    "record",
+    "restore",
+    "beam",
+    "beam-ray",
+    "frame",
+    "klarbring",
+    "gap",
+    "murty6",
+    "painleve",
+    "f",
+    "F2",
+    "F",
+    "q",
+    "H",
+    "auto",
+    "on",
+    "off",
+    "covering",
+    "weight",
+    "ones",
+    "cohesive",
+    "tie-break",
+    "natural",
+    "random:3",
+    "lexicographic",
+    "engine",
+    "scheme",
+    "0.3",
+    "120",
+    "-5",
+    "+10%",
+    "110%",
+    "+=",
+    "-=",
+    "*=",
+    "/=",
+    "=",
+    "1e308",
+    "1e-308",
+    "nan",
+    "inf",
+    "0",
+    "c1",
+    "c6",
+    "c1..c6",
+    "sort",
+    "z_t",
+    "first",
+    "last",
+    "back",
+    "to",
+    "2",
+    "99999999999999999999",
+    "..",
+    "1..",
+    "slip",
+    "force",
+    "structure",
+    "p",
+    "moment",
+    "--at",
+    "--width",
+    "40",
+    "--height",
+    "first,last",
+    "--help",
+    "-h",
+    "--",
+    "AB",
+    "A",
+    "outcome",
+    "normal",
+    "ray",
+    "state",
+    "stick",
+    "x_n",
+    "±",
+    "+-",
+    "<",
+    ">=",
+    "error",
+    "\"a b\"",
+    "'",
+    "\"",
+    "\\",
+    "#",
+    ";",
+    "ü",
+    "€",
+    "\u{0}",
+    "\u{1b}[31m",
+    "\u{200b}",
+    "out.csv",
+    "out.json",
+    "discard",
+    "set f",
+    "pairs c1 sort",
+    "expect p",
+];
+
+#[test]
+fn ten_thousand_random_lines_neither_panic_nor_change_the_session_wrongly() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(2020);
+    let mut session = session("beam");
+    let mut failed = 0;
+    for _ in 0..10_000 {
+        let text: String = if random.random_bool(0.1) {
+            let length = random.random_range(0..60);
+            let bytes: Vec<u8> = (0..length).map(|_| random.random()).collect();
+            String::from_utf8_lossy(&bytes).into_owned()
+        } else {
+            let count = random.random_range(0..6);
+            let words: Vec<&str> = (0..count)
+                .map(|_| WORDS[random.random_range(0..WORDS.len())])
+                .collect();
+            words.join(if random.random_bool(0.05) { "" } else { " " })
+        };
+        for command in stickslip::session::words::commands(&text) {
+            // nothing outside the folder of this test is written
+            let writes = stickslip::session::words::split(command).is_ok_and(|words| {
+                words.first().is_some_and(|word| {
+                    [
+                        "save", "sa", "sav", "export", "exp", "expo", "expor", "record", "rec",
+                        "reco", "recor",
+                    ]
+                    .contains(&word.as_str())
+                })
+            });
+            let command = if writes {
+                let file = folder.path().join("x.csv");
+                format!("export pairs {}", file.display())
+            } else {
+                command.to_owned()
+            };
+            let before = state(&session);
+            let (_, result) = line(&mut session, &command);
+            if result.is_err() {
+                failed += 1;
+                assert_eq!(state(&session), before, "{command:?}");
+            }
+        }
+        assert!(session.values().values().all(|value| value.is_finite()));
+    }
+    assert!(failed > 1000, "{failed}");
+    // the session still works
+    shown(
+        &mut session,
+        "set auto on; load beam; set f 0.3; set F2 150; expect z_t c6 = 0.003 ± 1e-12",
+    );
+}
+
+// ---- the program itself ----
+
+fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
+    command.env_remove("NO_COLOR").env("TERM", "xterm");
+    command
+}
+
+fn piped(arguments: &[&str], input: &[u8]) -> (Vec<u8>, String, i32) {
+    let mut child = program()
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let input = input.to_vec();
+    let writer = std::thread::spawn(move || {
+        let _ = stdin.write_all(&input);
+    });
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    (output.stdout, error, output.status.code().unwrap())
+}
+
+#[test]
+fn exit_statuses_of_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let bad = folder.path().join("bad.json");
+    fs::write(&bad, "{").unwrap();
+    let bad = bad.display().to_string();
+    for (arguments, input, status) in [
+        (&["solve"][..], "", 0),
+        (&["solve", "beam", "--set", "F2=10"], "", 0),
+        (&["solve", "beam-ray"], "", 3),
+        (&["solve", "painleve"], "", 3),
+        (&["solve", "beam", "--set", "nothing=1"], "", 2),
+        (&["solve", "beam", "--covering", "none"], "", 2),
+        (&["solve", "nowhere"], "", 2),
+        (
+            &["solve", "greco", "--covering", "ones", "--set", "f=2"],
+            "",
+            4,
+        ),
+        (&["solve", "cycling", "--tie-break", "first-row"], "", 4),
+        (&["check", "beam", "frame"], "", 0),
+        (&["check", "beam", &bad], "", 2),
+        (&["scenarios"], "", 0),
+        (&["completions", "bash"], "", 0),
+        (&["--help"], "", 0),
+        (&["--version"], "", 0),
+        (&["--bogus"], "", 2),
+        (&[&bad], "", 2),
+        (&[], "status\n", 0),
+        (&["beam-ray"], "status\n", 0),
+        (&[], "bogus\nstatus\n", 2),
+        (&[], "bogus\nexpect error unknown\n", 0),
+        (&[], "expect outcome ray\n", 1),
+        (&[], "expect outcome normal\nquit\nbogus\n", 0),
+        (&["replay", "-"], "expect outcome normal", 0),
+        (&["replay", "-"], "expect outcome ray", 1),
+        (&["replay", "-"], "bogus", 2),
+        (&["replay", "nowhere.stick"], "", 2),
+    ] {
+        let (_, error, found) = piped(arguments, input.as_bytes());
+        assert_eq!(found, status, "{arguments:?} {input:?}: {error}");
+        assert_eq!(error.is_empty(), !error.contains(':'), "{error}");
+    }
+}
+
+#[test]
+fn a_pipe_gets_results_only() {
+    let (out, error, status) = piped(
+        &["--width", "60"],
+        b"status\npairs\n\xff\xfe\nset F2 150\r\nplot slip\n",
+    );
+    let out = String::from_utf8(out).unwrap();
+    assert!(!out.contains('\u{1b}') && !out.contains("> "), "{out}");
+    assert!(out.starts_with("beam"));
+    assert!(
+        out.lines()
+            .all(|line| line.trim_end().chars().count() <= 60),
+        "{out}"
+    );
+    assert!(error.contains("unknown command"), "{error}");
+    assert_eq!(status, 2);
+    let (out, ..) = piped(
+        &["--ascii"],
+        b"status; pairs; plot slip; plot structure; pivots",
+    );
+    assert!(out.is_ascii());
+    let (out, ..) = piped(&["--color", "always"], b"pairs");
+    assert!(out.contains(&0x1b));
+}
+
+#[test]
+fn replays_repeat_to_the_byte_in_other_processes() {
+    let scripts: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/scripts");
+    let script = scripts.join("plates.stick").display().to_string();
+    for format in ["text", "json"] {
+        let first = piped(&["replay", &script, "--format", format], b"");
+        assert_eq!(first.2, 0);
+        assert_eq!(piped(&["replay", &script, "--format", format], b""), first);
+    }
+    let (out, _, _) = piped(&["solve", "frame", "--format", "json"], b"");
+    assert_eq!(piped(&["solve", "frame", "--format", "json"], b"").0, out);
+    let result: serde_json::Value = serde_json::from_slice(&out).unwrap();
+    assert_eq!(result["format"], "stickslip-result/1");
+}
+
+#[test]
+fn a_closed_pipe_is_success() {
+    let mut child = program()
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let mut stdin = child.stdin.take().unwrap();
+    let _ = stdin.write_all("pairs\n".repeat(50).as_bytes());
+    drop(stdin);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(
+        output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
