@@ -81,6 +81,8 @@ impl Session {
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
             Command::Help { command } => show_help(command.as_deref(), io)?,
             Command::History => self.report_history(io)?,
+            Command::Tui => return Ok(Next::FullScreen { tour: false }),
+            Command::Tour => return Ok(Next::FullScreen { tour: true }),
             Command::Quit => return Ok(Next::Quit),
         }
         Ok(Next::Continue)

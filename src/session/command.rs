@@ -265,6 +265,10 @@ pub enum Command {
         of: Vec<String>,
     },
 
+    /// Go to the full screen, with this session; `q` there comes back
+    #[command(after_help = "Example:\n  tui")]
+    Tui,
+
     /// Run the commands of a script
     #[command(after_help = "Example:\n  source scenarios/scripts/beam.stick")]
     Source {
@@ -344,6 +348,9 @@ pub enum Command {
         #[arg(value_name = "COMMAND")]
         command: Option<String>,
     },
+    /// Take the guided tour: six steps in the full screen, from sticking to the ray
+    #[command(after_help = "Example:\n  tour")]
+    Tour,
     /// List the commands given so far
     #[command(after_help = "Example:\n  history")]
     History,

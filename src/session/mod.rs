@@ -21,6 +21,7 @@ mod restore;
 pub mod save;
 pub mod script;
 mod selection;
+mod side;
 pub mod values;
 mod why;
 pub mod words;
@@ -30,18 +31,21 @@ use std::sync::Arc;
 
 use serde_json::json;
 
+pub use crate::answer::record as results;
 pub use crate::answer::record::Answer;
 use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
 use crate::path::record::PathRecord;
-use crate::solve::{self, PrepareError, Prepared, Solved};
+pub use crate::solve::Solved;
+use crate::solve::{self, PrepareError, Prepared};
 use crate::watch::Watch;
 
 pub use apply::write_scenarios;
 pub use error::CommandError;
 pub use output::{Format, Output};
+pub use side::{AllAnswers, OneAnswer};
 
 use journal::{Journal, LeftOver};
 use record::Recorder;
@@ -54,6 +58,11 @@ pub enum Next {
     Continue,
     /// The end.
     Quit,
+    /// The full screen, with the same session.
+    FullScreen {
+        /// Whether it begins with the tour.
+        tour: bool,
+    },
 }
 
 /// What the user has chosen: all that `undo` brings back.
@@ -202,6 +211,11 @@ impl Session {
     /// The answer before the last change.
     pub fn previous_answer(&self) -> Option<&Answer> {
         self.previous.as_deref().map(|solved| &solved.answer)
+    }
+
+    /// The solved state before the last change, shared.
+    pub fn previous(&self) -> Option<Arc<Solved>> {
+        self.previous.clone()
     }
 
     /// The pivot chosen by `step`; `None` at the end.
