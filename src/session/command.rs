@@ -359,6 +359,32 @@ pub enum Command {
     Quit,
 }
 
+impl Command {
+    /// Whether it looks at the pivots or the final scheme of the run, which a warm start does not have.
+    pub(super) fn needs_pivots(&self) -> bool {
+        match self {
+            Command::Check { how } => how.is_some(),
+            Command::Plot { picture, at, .. } => {
+                matches!(picture, Picture::P | Picture::Path | Picture::Mode) || !at.is_empty()
+            }
+            Command::Pivots { .. }
+            | Command::Step { .. }
+            | Command::Why { .. }
+            | Command::Ties
+            | Command::Tableau
+            | Command::Compare
+            | Command::Enumerate { .. }
+            | Command::Ray
+            | Command::Trace { .. }
+            | Command::Limit { .. }
+            | Command::Sensitivity { .. }
+            | Command::Export { .. }
+            | Command::Expect { .. } => true,
+            _ => false,
+        }
+    }
+}
+
 /// What `plot` draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Picture {

@@ -448,8 +448,17 @@ impl Setup {
         }
     }
 
-    /// Solves, preparing the geometry if that was not done yet.
+    /// Solves cold, preparing the geometry if that was not done yet.
     fn solve(&mut self, watch: &dyn Watch) -> Result<Arc<Solved>, CommandError> {
+        self.solve_from(None, watch)
+    }
+
+    /// Solves, from the `last` answer of the same geometry where there is one and that pays.
+    fn solve_from(
+        &mut self,
+        last: Option<Arc<Solved>>,
+        watch: &dyn Watch,
+    ) -> Result<Arc<Solved>, CommandError> {
         let scenario = Arc::clone(&self.scenario);
         let prepared = self.prepared.clone();
         let (values, rules) = (self.values.clone(), self.rules);
@@ -463,15 +472,17 @@ impl Setup {
                     },
                 )?),
             };
-            let solved = prepared
-                .solve(&scenario, &values, rules, watch)
-                .map_err(|error| {
-                    if error.is_interrupted() {
-                        CommandError::Interrupted
-                    } else {
-                        CommandError::Solve(error.to_string())
-                    }
-                })?;
+            let solved = match last {
+                Some(last) => prepared.solve_from(&last, &scenario, &values, rules, watch),
+                None => prepared.solve(&scenario, &values, rules, watch),
+            };
+            let solved = solved.map_err(|error| {
+                if error.is_interrupted() {
+                    CommandError::Interrupted
+                } else {
+                    CommandError::Solve(error.to_string())
+                }
+            })?;
             Ok::<_, CommandError>((prepared, Arc::new(solved)))
         })??;
         self.prepared = Some(prepared);
