@@ -76,6 +76,10 @@ impl SolveError {
 
 /// The numbers behind an answer: what is needed to look at any pivot of its run.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one for each solved state, never in lists"
+)]
 pub enum Trace {
     /// Of a contact problem.
     Contact {
