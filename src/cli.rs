@@ -10,6 +10,7 @@ use crate::model::embedded;
 use crate::model::load::load_named_or_file;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
+use crate::model::schema;
 use crate::path::grid::{Axis, Grid, Shard};
 use crate::path::sweep::{Format as RowFormat, Sweep};
 use crate::path::sweep_file::{self, SweepFileError, run_to_file};
@@ -106,6 +107,9 @@ enum Command {
     },
     /// List the embedded scenarios
     Scenarios,
+    /// Print the JSON Schema of the scenario format
+    #[command(after_help = "Example:\n  stickslip schema > stickslip.schema.json")]
+    Schema,
     /// Print the completions of a shell
     Completions {
         /// The shell
@@ -331,6 +335,12 @@ fn run(cli: Cli) -> Result<u8, Failure> {
         Some(Command::Check { scenarios }) => check(&scenarios, &style, &mut out),
         Some(Command::Scenarios) => {
             crate::session::write_scenarios(&mut out, &style)?;
+            Ok(0)
+        }
+        Some(Command::Schema) => {
+            let text =
+                serde_json::to_string_pretty(&schema::schema()).map_err(io::Error::other)?;
+            writeln!(out, "{text}")?;
             Ok(0)
         }
         Some(Command::Completions { shell }) => {
