@@ -61,9 +61,11 @@ fn obeys(
         "anyOf" => ways().any(|way| fits(root, way, value)),
         "not" => !fits(root, with, value),
         "required" => ways().all(|key| value.get(key.as_str().expect("a key")).is_some()),
-        "properties" => with.as_object().expect("properties").iter().all(|(key, of)| {
-            value.get(key).is_none_or(|value| fits(root, of, value))
-        }),
+        "properties" => with
+            .as_object()
+            .expect("properties")
+            .iter()
+            .all(|(key, of)| value.get(key).is_none_or(|value| fits(root, of, value))),
         "additionalProperties" => value.as_object().is_none_or(|object| {
             let known = rules.get("properties").and_then(Value::as_object);
             object
@@ -123,7 +125,10 @@ fn what_the_decoder_refuses_does_not_fit() {
             value[key] = with.clone();
         }
         assert!(!fits(&schema, &schema, &value), "{change}");
-        assert!(load_text("t", &value.to_string(), None).is_err(), "{change}");
+        assert!(
+            load_text("t", &value.to_string(), None).is_err(),
+            "{change}"
+        );
     }
 }
 
@@ -180,9 +185,7 @@ fn schema_and_decoder_know_the_same_keys() {
     let schema = schema();
     let unknown = json!({ "zzz": 0 });
     let load = |kind: &str| json!({ "loads": { "w": { "items": [{ kind: { "zzz": 0 } }] } } });
-    let system = |stiffness: Value| {
-        json!({ "contact_system": { "pairs": ["c"], "loads": {}, "stiffness": stiffness } })
-    };
+    let system = |stiffness: Value| json!({ "contact_system": { "pairs": ["c"], "loads": {}, "stiffness": stiffness } });
     let mut places = vec![
         json!({ "zzz": 0, "nodes": {} }),
         json!({ "units": unknown, "nodes": {} }),
@@ -210,6 +213,9 @@ fn schema_and_decoder_know_the_same_keys() {
     }
     let kinds = decoder_keys(&json!({ "loads": { "w": { "items": [unknown] } } }));
     for kind in kinds {
-        assert!(schema_keys(&schema, &schema, &load(&kind)).is_some(), "{kind}");
+        assert!(
+            schema_keys(&schema, &schema, &load(&kind)).is_some(),
+            "{kind}"
+        );
     }
 }
