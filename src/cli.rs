@@ -95,6 +95,12 @@ enum Command {
         #[arg(required = true, value_name = "SCENARIO")]
         scenarios: Vec<String>,
     },
+    /// Show a scenario in the full screen: vary it and watch
+    Tui {
+        /// A file, or an embedded scenario
+        #[arg(default_value = embedded::DEFAULT)]
+        scenario: String,
+    },
     /// List the embedded scenarios
     Scenarios,
     /// Print the completions of a shell
@@ -210,9 +216,11 @@ pub enum Next {
     Exit(u8),
     /// The command line that stays.
     Repl(Box<Start>),
+    /// The full screen.
+    Tui(Box<Start>),
 }
 
-/// What the REPL starts from.
+/// What the REPL and the full screen start from.
 pub struct Start {
     /// The scenario, loaded and solved.
     pub session: Session,
@@ -220,14 +228,13 @@ pub struct Start {
     pub style: Style,
     /// The handlers, installed.
     pub signals: Signals,
-    errors: Style,
+    /// Style of stderr.
+    pub errors: Style,
 }
 
-impl Start {
-    /// The exit status of the REPL; tells on stderr why it could not go on.
-    pub fn finish(&self, ended: io::Result<u8>) -> u8 {
-        status(ended.map_err(Failure::Output), &self.errors)
-    }
+/// The exit status of a face; tells on stderr, in the style `errors`, why it could not go on.
+pub fn finish(ended: io::Result<u8>, errors: &Style) -> u8 {
+    status(ended.map_err(Failure::Output), errors)
 }
 
 /// Runs what the arguments of the process ask for, up to the REPL.
@@ -237,13 +244,14 @@ pub fn main() -> Next {
         Err(error) => return Next::Exit(usage(&error)),
     };
     let errors = cli.look.style(&io::stderr());
-    if cli.command.is_none() {
-        match start(&cli, errors) {
-            Ok(start) => return Next::Repl(Box::new(start)),
-            Err(failure) => return Next::Exit(status(Err(failure), &errors)),
+    let started = match &cli.command {
+        None => start(&cli, &cli.scenario, errors).map(|start| Next::Repl(Box::new(start))),
+        Some(Command::Tui { scenario }) => {
+            start_screen(&cli, scenario, errors).map(|start| Next::Tui(Box::new(start)))
         }
-    }
-    Next::Exit(status(run(cli), &errors))
+        Some(_) => return Next::Exit(status(run(cli), &errors)),
+    };
+    started.unwrap_or_else(|failure| Next::Exit(status(Err(failure), &errors)))
 }
 
 /// Help and version go to stdout and are no error.
@@ -255,11 +263,23 @@ fn usage(error: &clap::Error) -> u8 {
     }
 }
 
-fn start(cli: &Cli, errors: Style) -> Result<Start, Failure> {
+fn start_screen(cli: &Cli, scenario: &str, errors: Style) -> Result<Start, Failure> {
+    if !io::stdin().is_terminal() || !io::stdout().is_terminal() || is_dumb() {
+        return Err(Failure::Status(
+            2,
+            "the full screen needs a terminal that understands cursor codes; `stickslip solve` and `stickslip replay` \
+             work without"
+                .to_owned(),
+        ));
+    }
+    start(cli, scenario, errors)
+}
+
+fn start(cli: &Cli, scenario: &str, errors: Style) -> Result<Start, Failure> {
     let style = cli.look.style(&io::stdout());
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
-    let scenario = load(&cli.scenario)?;
+    let scenario = load(scenario)?;
     let session = Session::new(scenario, &watch);
     watch.clear();
     Ok(Start {
@@ -300,7 +320,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
     let style = cli.look.style(&io::stdout());
     let mut out = io::stdout();
     match cli.command {
-        None => Ok(0), // the REPL: `main` starts it
+        None | Some(Command::Tui { .. }) => Ok(0), // `main` starts those
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
         Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),

@@ -13,5 +13,6 @@ pub mod repl;
 pub mod session;
 pub mod signals;
 pub mod solve;
+pub mod tui;
 pub mod view;
 pub mod watch;

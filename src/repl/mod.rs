@@ -8,7 +8,7 @@ mod terminal;
 use std::io::{self, IsTerminal, Write};
 
 use crate::session::journal::{self, Journal};
-use crate::session::{CommandError, Session};
+use crate::session::{CommandError, Next, Session};
 use crate::view::status;
 use crate::view::style::Style;
 
@@ -17,30 +17,58 @@ use crate::signals::{Signals, is_dumb};
 /// How a face ended: what `main` does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ended {
-    /// Exit status.
+    /// Exit status, if it ends here.
     pub status: u8,
+    /// The end, or the full screen.
+    pub next: Next,
 }
 
-/// Runs the REPL on stdin and stdout until `quit` or the end of the input.
-///
-/// # Errors
-/// The results cannot be written (a closed pipe is no error) or the terminal fails.
-pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result<Ended> {
-    let terminal = io::stdin().is_terminal() && io::stdout().is_terminal();
-    if !terminal {
-        return plain::run(session, style, signals, false);
+impl Ended {
+    /// The program ends with this status.
+    pub fn with(status: u8) -> Self {
+        Ended {
+            status,
+            next: Next::Quit,
+        }
     }
+}
+
+/// Keeps a journal of the session in the user's state directory, so that nothing is lost without `quit`.
+pub fn keep_journal(session: &mut Session) {
     if let (Some(state), Ok(here)) = (journal::state_directory(), std::env::current_dir()) {
         session.keep_journal(Journal::new(&state, &here));
     }
-    greet(session, &style, &mut io::stdout().lock())?;
+}
+
+/// Whether both ends are a terminal, so that a journal is kept and the full screen can be shown.
+pub fn is_interactive() -> bool {
+    io::stdin().is_terminal() && io::stdout().is_terminal()
+}
+
+/// Runs the REPL on stdin and stdout until `quit`, the end of the input, or `tui`. `again` says that the session
+/// comes back from the full screen: nothing is said about it then.
+///
+/// # Errors
+/// The results cannot be written (a closed pipe is no error) or the terminal fails.
+pub fn run(
+    session: &mut Session,
+    style: Style,
+    signals: &Signals,
+    again: bool,
+) -> io::Result<Ended> {
+    if !is_interactive() {
+        return plain::run(session, style, signals, false);
+    }
+    if !again {
+        greet(session, &style, &mut io::stdout().lock())?;
+    }
     let ended = if is_dumb() {
         plain::run(session, style, signals, true)
     } else {
         terminal::run(session, style, signals)
     }?;
     // after a signal the journal stays: nobody said `quit`, the next start offers it
-    if !signals.must_end() {
+    if !signals.must_end() && ended.next == Next::Quit {
         session.close()?;
     }
     Ok(ended)

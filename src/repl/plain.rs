@@ -5,7 +5,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 use crate::session::script::expects_error;
-use crate::session::{Next, Output, Session, words};
+use crate::session::{CommandError, Next, Output, Session, words};
 use crate::view::style::Style;
 
 use super::{Ended, show_error};
@@ -40,13 +40,11 @@ pub fn run(
         }
         let input = lines.recv_timeout(LOOK);
         if signals.must_end() {
-            return Ok(Ended {
-                status: signals.status(),
-            });
+            return Ok(Ended::with(signals.status()));
         }
         if signals.take_interrupt() {
             if !prompt {
-                return Ok(Ended { status: 130 });
+                return Ok(Ended::with(130));
             }
             writeln!(stdout)?;
             waiting = false;
@@ -83,7 +81,14 @@ pub fn run(
         match result {
             Ok(Next::Continue) => {}
             Ok(Next::Quit) => break,
-            Err(error) if error.is_broken_pipe() => return Ok(Ended { status: 0 }),
+            Ok(Next::FullScreen { .. }) => {
+                let error = CommandError::Refused(
+                    "the full screen needs a terminal that understands cursor codes".into(),
+                );
+                let _ = writeln!(io::stderr(), "{}", show_error(&error, &error_style(style)));
+                pending = error.status();
+            }
+            Err(error) if error.is_broken_pipe() => return Ok(Ended::with(0)),
             Err(error) if error.is_output() => return Err(io::Error::other(error.to_string())),
             Err(error) => {
                 // a stderr that is closed is no reason to stop
@@ -91,9 +96,7 @@ pub fn run(
                 if error.is_interrupted() {
                     signals.take_interrupt();
                     if signals.must_end() || !prompt {
-                        return Ok(Ended {
-                            status: signals.status(),
-                        });
+                        return Ok(Ended::with(signals.status()));
                     }
                 }
                 pending = error.status();
@@ -101,13 +104,13 @@ pub fn run(
         }
     }
     if prompt {
-        return Ok(Ended { status: 0 });
+        return Ok(Ended::with(0));
     }
     let status = [status, pending, session.trouble_status()]
         .into_iter()
         .find(|status| *status != 0)
         .unwrap_or(0);
-    Ok(Ended { status })
+    Ok(Ended::with(status))
 }
 
 /// No colour on a stderr that is no terminal.

@@ -45,9 +45,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
     let prompt_colour = style.paint(Role::Accent, prompt_text);
     loop {
         if signals.must_end() {
-            return Ok(Ended {
-                status: signals.status(),
-            });
+            return Ok(Ended::with(signals.status()));
         }
         let line = match waiting.pop_front() {
             Some(line) => line,
@@ -72,15 +70,13 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
                     Err(ReadlineError::Interrupted) => continue,
                     Err(ReadlineError::Signal(_)) => continue,
                     Err(ReadlineError::Eof) if io::stdin().is_terminal() => {
-                        return Ok(Ended { status: 0 });
+                        return Ok(Ended::with(0));
                     }
                     // a terminal that hung up reads as an end or an error: the signal may come a moment later
                     Err(_) => {
                         std::thread::sleep(std::time::Duration::from_millis(200));
                         signals.note_hangup();
-                        return Ok(Ended {
-                            status: signals.status(),
-                        });
+                        return Ok(Ended::with(signals.status()));
                     }
                 }
             }
@@ -102,13 +98,12 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
         waiting.extend(typed.into_iter().map(ToOwned::to_owned));
         match result {
             Ok(Next::Continue) => {}
-            Ok(Next::Quit) => return Ok(Ended { status: 0 }),
+            Ok(Next::Quit) => return Ok(Ended::with(0)),
+            Ok(next) => return Ok(Ended { status: 0, next }),
             Err(error) if error.is_output() => {
                 if signals.must_end() || !io::stdin().is_terminal() {
                     signals.note_hangup();
-                    return Ok(Ended {
-                        status: signals.status(),
-                    });
+                    return Ok(Ended::with(signals.status()));
                 }
                 return Err(io::Error::other(error.to_string()));
             }

@@ -265,6 +265,10 @@ pub enum Command {
         of: Vec<String>,
     },
 
+    /// Go to the full screen, with this session; `q` there comes back
+    #[command(after_help = "Example:\n  tui")]
+    Tui,
+
     /// Run the commands of a script
     #[command(after_help = "Example:\n  source scenarios/scripts/beam.stick")]
     Source {
@@ -344,12 +348,41 @@ pub enum Command {
         #[arg(value_name = "COMMAND")]
         command: Option<String>,
     },
+    /// Take the guided tour: six steps in the full screen, from sticking to the ray
+    #[command(after_help = "Example:\n  tour")]
+    Tour,
     /// List the commands given so far
     #[command(after_help = "Example:\n  history")]
     History,
     /// Leave
     #[command(visible_alias = "exit", after_help = "Example:\n  quit")]
     Quit,
+}
+
+impl Command {
+    /// Whether it looks at the pivots or the final scheme of the run, which a warm start does not have.
+    pub(super) fn needs_pivots(&self) -> bool {
+        match self {
+            Command::Check { how } => how.is_some(),
+            Command::Plot { picture, at, .. } => {
+                matches!(picture, Picture::P | Picture::Path | Picture::Mode) || !at.is_empty()
+            }
+            Command::Pivots { .. }
+            | Command::Step { .. }
+            | Command::Why { .. }
+            | Command::Ties
+            | Command::Tableau
+            | Command::Compare
+            | Command::Enumerate { .. }
+            | Command::Ray
+            | Command::Trace { .. }
+            | Command::Limit { .. }
+            | Command::Sensitivity { .. }
+            | Command::Export { .. }
+            | Command::Expect { .. } => true,
+            _ => false,
+        }
+    }
 }
 
 /// What `plot` draws.

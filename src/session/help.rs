@@ -38,12 +38,12 @@ pub const GROUPS: &[(&str, &[&str])] = &[
         "paths",
         &["sweep", "trace", "limit", "sensitivity", "stages"],
     ),
-    ("pictures", &["plot"]),
+    ("pictures", &["plot", "tui"]),
     (
         "scripts",
         &["source", "record", "expect", "export", "echo", "restore"],
     ),
-    ("help", &["help", "history", "quit"]),
+    ("help", &["help", "tour", "history", "quit"]),
 ];
 
 /// The overview of all commands, by group.

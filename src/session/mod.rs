@@ -21,6 +21,7 @@ mod restore;
 pub mod save;
 pub mod script;
 mod selection;
+mod side;
 pub mod values;
 mod why;
 pub mod words;
@@ -30,18 +31,21 @@ use std::sync::Arc;
 
 use serde_json::json;
 
+pub use crate::answer::record as results;
 pub use crate::answer::record::Answer;
 use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
 use crate::path::record::PathRecord;
-use crate::solve::{self, PrepareError, Prepared, Solved};
+pub use crate::solve::Solved;
+use crate::solve::{self, PrepareError, Prepared};
 use crate::watch::Watch;
 
 pub use apply::write_scenarios;
 pub use error::CommandError;
 pub use output::{Format, Output};
+pub use side::{AllAnswers, OneAnswer};
 
 use journal::{Journal, LeftOver};
 use record::Recorder;
@@ -54,6 +58,11 @@ pub enum Next {
     Continue,
     /// The end.
     Quit,
+    /// The full screen, with the same session.
+    FullScreen {
+        /// Whether it begins with the tour.
+        tour: bool,
+    },
 }
 
 /// What the user has chosen: all that `undo` brings back.
@@ -202,6 +211,11 @@ impl Session {
     /// The answer before the last change.
     pub fn previous_answer(&self) -> Option<&Answer> {
         self.previous.as_deref().map(|solved| &solved.answer)
+    }
+
+    /// The solved state before the last change, shared.
+    pub fn previous(&self) -> Option<Arc<Solved>> {
+        self.previous.clone()
     }
 
     /// The pivot chosen by `step`; `None` at the end.
@@ -434,8 +448,17 @@ impl Setup {
         }
     }
 
-    /// Solves, preparing the geometry if that was not done yet.
+    /// Solves cold, preparing the geometry if that was not done yet.
     fn solve(&mut self, watch: &dyn Watch) -> Result<Arc<Solved>, CommandError> {
+        self.solve_from(None, watch)
+    }
+
+    /// Solves, from the `last` answer of the same geometry where there is one and that pays.
+    fn solve_from(
+        &mut self,
+        last: Option<Arc<Solved>>,
+        watch: &dyn Watch,
+    ) -> Result<Arc<Solved>, CommandError> {
         let scenario = Arc::clone(&self.scenario);
         let prepared = self.prepared.clone();
         let (values, rules) = (self.values.clone(), self.rules);
@@ -449,15 +472,17 @@ impl Setup {
                     },
                 )?),
             };
-            let solved = prepared
-                .solve(&scenario, &values, rules, watch)
-                .map_err(|error| {
-                    if error.is_interrupted() {
-                        CommandError::Interrupted
-                    } else {
-                        CommandError::Solve(error.to_string())
-                    }
-                })?;
+            let solved = match last {
+                Some(last) => prepared.solve_from(&last, &scenario, &values, rules, watch),
+                None => prepared.solve(&scenario, &values, rules, watch),
+            };
+            let solved = solved.map_err(|error| {
+                if error.is_interrupted() {
+                    CommandError::Interrupted
+                } else {
+                    CommandError::Solve(error.to_string())
+                }
+            })?;
             Ok::<_, CommandError>((prepared, Arc::new(solved)))
         })??;
         self.prepared = Some(prepared);

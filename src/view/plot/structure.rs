@@ -39,7 +39,7 @@ pub struct Picture<'a> {
 }
 
 /// Plates are drawn with their grid as long as its lines are this many dots apart.
-const GRID_PITCH: f64 = 6.0;
+pub const GRID_PITCH: f64 = 6.0;
 /// Straight pieces of a bent frame element.
 const PIECES: usize = 8;
 
@@ -225,7 +225,7 @@ pub fn pair_sign(state: State, tangent: [f64; 2], ascii: bool) -> char {
 }
 
 /// Sign of a support: all components held, two of them, one.
-fn support_sign(held: usize, ascii: bool) -> (char, &'static str) {
+pub fn support_sign(held: usize, ascii: bool) -> (char, &'static str) {
     match (held, ascii) {
         (3.., false) => ('▣', "clamped"),
         (3.., true) => ('C', "clamped"),
@@ -296,7 +296,7 @@ const COMPONENT: f64 = 0.05;
 
 /// Signs of the components of a load and the steps from its node to their places, in dots: a force down or up stands
 /// before its node, one sideways behind it.
-fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
+pub fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
     let signs = if ascii {
         ['V', 'U', '{', '}']
     } else {
@@ -463,7 +463,7 @@ fn draw(
 }
 
 /// Smallest distance of two grid lines in dots.
-fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
+pub fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
     structure
         .plates
         .iter()
@@ -479,7 +479,7 @@ fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
 }
 
 /// Nodes with supports and how many components each holds.
-fn supported(structure: &Structure) -> Vec<(usize, usize)> {
+pub fn supported(structure: &Structure) -> Vec<(usize, usize)> {
     let mut held: Vec<(usize, usize)> = Vec::new();
     let mut place: HashMap<usize, usize> = HashMap::new();
     for support in &structure.supports {

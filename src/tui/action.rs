@@ -1,0 +1,252 @@
+//! What can happen to the screen, and what it asks for in return.
+
+use std::sync::Arc;
+
+use crate::session::{AllAnswers, Next};
+
+use super::app::Pane;
+use super::shown::Shown;
+
+/// What a key can be bound to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Do {
+    /// Back to where the full screen was started from.
+    Leave,
+    /// End the program.
+    Exit,
+    /// Go to the command line.
+    ToRepl,
+    /// Show the keys.
+    Help,
+    /// Open the command line.
+    Command,
+    /// Focus the next pane.
+    NextPane,
+    /// Focus the pane before.
+    PreviousPane,
+    /// Focus this pane.
+    Focus(Pane),
+    /// Give the focused pane the whole screen, or take it away.
+    Maximize,
+    /// Up in the focused pane.
+    Up,
+    /// Down in the focused pane.
+    Down,
+    /// A page up.
+    PageUp,
+    /// A page down.
+    PageDown,
+    /// One pivot on.
+    StepOn,
+    /// One pivot back.
+    StepBack,
+    /// The first pivot.
+    StepFirst,
+    /// The end of the run.
+    StepLast,
+    /// Run through the pivots, or stop.
+    Play,
+    /// Change the selected parameter by tenths of its step.
+    Vary(i8),
+    /// Type a value.
+    TypeValue,
+    /// The selected parameter back to the file's value.
+    Reset,
+    /// Take back.
+    Undo,
+    /// Do again.
+    Redo,
+    /// The next plot.
+    NextPlot,
+    /// The plot before.
+    PreviousPlot,
+    /// All answers side by side.
+    Answers,
+    /// Let the ray's mode move.
+    Mode,
+    /// Show or hide the answer before.
+    Before,
+    /// Show or hide the line that explains each pane.
+    Explain,
+    /// Stop what is computed or shown.
+    Stop,
+    /// Draw everything anew.
+    Redraw,
+    /// Stop the program until `fg`.
+    Suspend,
+    /// Take the mouse or leave it to the terminal.
+    Mouse,
+    /// Enlarge the structure.
+    ZoomIn,
+    /// Shrink it.
+    ZoomOut,
+    /// The whole structure.
+    Fit,
+    /// Move the picture: left, right, up, down.
+    Pan(i8, i8),
+    /// Displacements larger.
+    DeformMore,
+    /// Displacements smaller.
+    DeformLess,
+    /// Displacements at the automatic scale.
+    DeformAuto,
+    /// Sort the pairs by the next key.
+    Sort,
+    /// Turn the order round.
+    SortReverse,
+    /// The next step of the tour.
+    TourNext,
+    /// The step before.
+    TourBack,
+    /// End the tour.
+    TourEnd,
+    /// Close what lies over the panes.
+    Close,
+    /// Top of what lies over the panes.
+    Top,
+    /// Its end.
+    Bottom,
+    /// Take the line.
+    Accept,
+    /// Drop the line.
+    Cancel,
+    /// Complete the word.
+    Complete,
+    /// The line before in the history.
+    HistoryBack,
+    /// The line after.
+    HistoryOn,
+    /// Cursor left.
+    CursorLeft,
+    /// Cursor right.
+    CursorRight,
+    /// Cursor to the start.
+    CursorHome,
+    /// Cursor to the end.
+    CursorEnd,
+    /// Delete before the cursor.
+    Backspace,
+    /// Delete at the cursor.
+    Delete,
+    /// Delete to the start of the line.
+    DeleteToStart,
+    /// Delete the word before the cursor.
+    DeleteWord,
+}
+
+/// What the mouse did, at a character of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mouse {
+    /// The left button went down.
+    Press(u16, u16),
+    /// It moved while held.
+    Drag(u16, u16),
+    /// The wheel turned up.
+    WheelUp(u16, u16),
+    /// The wheel turned down.
+    WheelDown(u16, u16),
+}
+
+/// Work for the thread of the session.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Job {
+    /// A slider moved.
+    Set {
+        /// The parameter.
+        name: String,
+        /// Its new value.
+        value: f64,
+    },
+    /// Show this pivot.
+    Step(usize),
+    /// A command line.
+    Line {
+        /// As typed.
+        text: String,
+        /// Whether its output is shown.
+        shows: bool,
+    },
+    /// All answers.
+    Answers,
+}
+
+/// How a job ended.
+#[derive(Clone)]
+pub struct Done {
+    /// The job.
+    pub job: Job,
+    /// The session after it.
+    pub shown: Arc<Shown>,
+    /// What it printed, with colour codes.
+    pub output: String,
+    /// Why it failed.
+    pub error: Option<String>,
+    /// Whether it was stopped.
+    pub interrupted: bool,
+    /// What follows.
+    pub next: Next,
+    /// All answers, if they were asked for.
+    pub answers: Option<AllAnswers>,
+}
+
+impl std::fmt::Debug for Done {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Done")
+            .field("job", &self.job)
+            .field("error", &self.error)
+            .field("next", &self.next)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What happens to the screen.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// A bound key.
+    Do(Do),
+    /// A character for the open line.
+    Type(char),
+    /// A pasted text.
+    Paste(String),
+    /// The mouse.
+    Mouse(Mouse),
+    /// The terminal has this many columns and rows.
+    Resize(u16, u16),
+    /// The next picture of a motion.
+    Tick,
+    /// A job tells how far it is.
+    Progress {
+        /// What is done.
+        what: String,
+        /// The part that is ready, 0 … 1.
+        fraction: f64,
+    },
+    /// A job ended.
+    Done(Box<Done>),
+}
+
+/// Where the full screen goes when it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leave {
+    /// The program ends.
+    Quit,
+    /// The command line.
+    Repl,
+}
+
+/// What the screen asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Work; only one at a time.
+    Run(Job),
+    /// The running job shall stop.
+    Stop,
+    /// The end.
+    Leave(Leave),
+    /// Stop the program until `fg`.
+    Suspend,
+    /// Draw everything anew.
+    Redraw,
+    /// Take or leave the mouse.
+    Mouse(bool),
+}

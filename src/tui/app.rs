@@ -1,0 +1,439 @@
+//! The state of the screen. Nothing here draws, waits or computes.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
+
+use indexmap::IndexMap;
+use ratatui::text::Line;
+
+use crate::model::parameter::Parameter;
+use crate::session::AllAnswers;
+use crate::session::results::PairState;
+use crate::view::style::Role;
+
+use super::action::{Job, Leave};
+use super::entry::Entry;
+use super::keymap::Keymap;
+use super::shown::Shown;
+use super::theme::Look;
+
+/// A pane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pane {
+    /// The structure, deformed, with the states of its pairs.
+    Structure,
+    /// The parameters as sliders.
+    Parameters,
+    /// The table of the pairs.
+    Pairs,
+    /// The pivots.
+    Pivots,
+    /// Curves over the contact zone and over the pivots.
+    Plot,
+    /// Outcome, check, rules.
+    Answer,
+}
+
+impl Pane {
+    /// All panes, in the order of their numbers.
+    pub const ALL: [Pane; 6] = [
+        Pane::Structure,
+        Pane::Parameters,
+        Pane::Pairs,
+        Pane::Pivots,
+        Pane::Plot,
+        Pane::Answer,
+    ];
+
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Pane::Structure => "Structure",
+            Pane::Parameters => "Parameters",
+            Pane::Pairs => "Pairs",
+            Pane::Pivots => "Pivots",
+            Pane::Plot => "Plots",
+            Pane::Answer => "Answer",
+        }
+    }
+
+    /// What it is for, in a line; `plain` says that there is a bare LCP and no contact.
+    pub fn explanation(self, plain: bool) -> &'static str {
+        match (self, plain) {
+            (Pane::Structure, false) => "what sticks, slips, opens",
+            (Pane::Structure, true) => "",
+            (Pane::Parameters, _) => "+ and - vary it at once",
+            (Pane::Pairs, false) => "forces and motion of each contact pair",
+            (Pane::Pairs, true) => "z and w at the pivot shown",
+            (Pane::Pivots, false) => "each turns one joint",
+            (Pane::Pivots, true) => "each swaps two variables",
+            (Pane::Plot, false) => "along the contact; p: the next plot",
+            (Pane::Plot, true) => "p falls to 0, or ends in a ray",
+            (Pane::Answer, _) => "how the run ended, and its check",
+        }
+    }
+
+    /// Its place in [`Pane::ALL`].
+    pub fn index(self) -> usize {
+        Pane::ALL
+            .iter()
+            .position(|pane| *pane == self)
+            .unwrap_or_default()
+    }
+}
+
+/// What is plotted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plot {
+    /// z_τ.
+    Slip,
+    /// x_τ within its bounds.
+    Force,
+    /// x_n.
+    Pressure,
+    /// z_n.
+    Gap,
+    /// p over the pivots.
+    P,
+    /// Direction of the ray.
+    Ray,
+}
+
+/// Order of the pairs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SortKey {
+    /// As in the file.
+    File,
+    /// By state.
+    State,
+    /// By |z_τ|.
+    Slip,
+    /// By x_n.
+    Pressure,
+    /// By the smaller reserve.
+    Reserve,
+    /// By z_n.
+    Gap,
+}
+
+impl SortKey {
+    /// In the order in which they follow each other.
+    pub const ALL: [SortKey; 6] = [
+        SortKey::File,
+        SortKey::State,
+        SortKey::Slip,
+        SortKey::Pressure,
+        SortKey::Reserve,
+        SortKey::Gap,
+    ];
+
+    /// In words.
+    pub fn word(self) -> &'static str {
+        match self {
+            SortKey::File => "as in the file",
+            SortKey::State => "by state",
+            SortKey::Slip => "by slip",
+            SortKey::Pressure => "by x_n",
+            SortKey::Reserve => "by reserve",
+            SortKey::Gap => "by opening",
+        }
+    }
+}
+
+/// The part of the structure in view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewport {
+    /// 1 shows all of it.
+    pub zoom: f64,
+    /// Centre of the view from the centre of the structure, in its larger side.
+    pub centre: (f64, f64),
+}
+
+impl Default for Viewport {
+    fn default() -> Self {
+        Viewport {
+            zoom: 1.0,
+            centre: (0.0, 0.0),
+        }
+    }
+}
+
+/// What is typed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Input {
+    /// Nothing: keys are commands.
+    #[default]
+    None,
+    /// A command behind `:`.
+    Command(Entry),
+    /// A value of this parameter.
+    Value {
+        /// The parameter.
+        name: String,
+        /// The text.
+        entry: Entry,
+    },
+}
+
+/// What lies over the panes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Overlay {
+    /// Nothing.
+    #[default]
+    None,
+    /// The keys.
+    Help {
+        /// First line shown.
+        scroll: usize,
+    },
+    /// Output of a command.
+    Output {
+        /// The command.
+        title: String,
+        /// Its output.
+        lines: Vec<Line<'static>>,
+        /// First line shown.
+        scroll: usize,
+    },
+    /// All answers side by side.
+    Answers {
+        /// The answers.
+        answers: AllAnswers,
+        /// First line shown.
+        scroll: usize,
+    },
+}
+
+/// A line at the bottom, until the next key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Message {
+    /// What it says.
+    pub text: String,
+    /// Good or bad.
+    pub role: Role,
+}
+
+/// Time between two pivots while they run.
+const PLAY: Duration = Duration::from_millis(700);
+/// Time between two pictures of a moving mode.
+const MOVE: Duration = Duration::from_millis(120);
+/// Pictures of one period of the mode.
+pub const PERIOD: u32 = 24;
+
+/// Everything the screen knows.
+pub struct State {
+    /// The session.
+    pub shown: Arc<Shown>,
+    /// Colours and characters.
+    pub look: Look,
+    /// The keys.
+    pub keys: Arc<Keymap>,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    /// Where `q` goes.
+    pub home: Leave,
+    /// The pane that has the focus.
+    pub focus: Pane,
+    /// The pane shown where there is room for one of several.
+    pub tab: Pane,
+    /// Whether the focused pane has the whole screen.
+    pub maximized: bool,
+    /// The selected parameter.
+    pub parameter: usize,
+    /// The selected pair, in the order of the file.
+    pub pair: usize,
+    /// The plot.
+    pub plot: Plot,
+    /// First line of the answer pane.
+    pub answer_scroll: usize,
+    /// Order of the pairs.
+    pub sort: SortKey,
+    /// Largest first.
+    pub descending: bool,
+    /// The part of the structure in view.
+    pub view: Viewport,
+    /// Scale of the displacements; `None` is automatic.
+    pub magnification: Option<f64>,
+    /// Whether the answer before is shown too.
+    pub ghost: bool,
+    /// Whether each pane explains itself.
+    pub explains: bool,
+    /// Whether the mode of the ray moves.
+    pub moving: bool,
+    /// Its picture, 0 … PERIOD − 1.
+    pub phase: u32,
+    /// Whether the pivots run.
+    pub playing: bool,
+    /// Values asked for and not answered yet.
+    pub wanted: IndexMap<String, f64>,
+    /// The pivot asked for and not shown yet.
+    pub wanted_step: Option<usize>,
+    /// The job at work.
+    pub running: Option<Job>,
+    /// Jobs that wait for it.
+    pub waiting: VecDeque<Job>,
+    /// How far it is.
+    pub progress: Option<(String, f64)>,
+    /// A line at the bottom.
+    pub message: Option<Message>,
+    /// What is typed.
+    pub input: Input,
+    /// Lines typed before.
+    pub history: Vec<String>,
+    /// What lies over the panes.
+    pub overlay: Overlay,
+    /// Step of the tour.
+    pub tour: Option<usize>,
+    /// Whether the mouse is taken.
+    pub mouse: bool,
+    /// The parameter whose slider the mouse holds.
+    pub held: Option<usize>,
+}
+
+impl State {
+    /// A screen on this session.
+    pub fn new(
+        shown: Arc<Shown>,
+        look: Look,
+        keys: Arc<Keymap>,
+        size: (u16, u16),
+        home: Leave,
+    ) -> Self {
+        let mut state = State {
+            shown,
+            look,
+            keys,
+            size,
+            home,
+            focus: Pane::Parameters,
+            tab: Pane::Structure,
+            maximized: false,
+            parameter: 0,
+            pair: 0,
+            plot: Plot::Slip,
+            answer_scroll: 0,
+            sort: SortKey::File,
+            descending: false,
+            view: Viewport::default(),
+            magnification: None,
+            ghost: true,
+            explains: true,
+            moving: false,
+            phase: PERIOD / 4,
+            playing: false,
+            wanted: IndexMap::new(),
+            wanted_step: None,
+            running: None,
+            waiting: VecDeque::new(),
+            progress: None,
+            message: None,
+            input: Input::None,
+            history: Vec::new(),
+            overlay: Overlay::None,
+            tour: None,
+            mouse: true,
+            held: None,
+        };
+        state.new_scenario();
+        state
+    }
+
+    /// Forgets what belongs to another scenario.
+    pub fn new_scenario(&mut self) {
+        self.parameter = 0;
+        self.pair = 0;
+        self.answer_scroll = 0;
+        self.view = Viewport::default();
+        self.magnification = None;
+        self.moving = false;
+        self.phase = PERIOD / 4;
+        self.playing = false;
+        self.wanted.clear();
+        self.sort = SortKey::File;
+        self.descending = false;
+        self.held = None;
+        if self.shown.values.is_empty() && self.focus == Pane::Parameters {
+            self.focus = Pane::Pivots;
+        }
+        self.plot = self.plots()[0];
+    }
+
+    /// How long until the next [`super::action::Action::Tick`]; `None` while nothing moves.
+    pub fn tick(&self) -> Option<Duration> {
+        if self.playing {
+            Some(PLAY)
+        } else if self.moving && self.shown.at_ray() {
+            Some(MOVE)
+        } else {
+            None
+        }
+    }
+
+    /// The plots that make sense now; never empty.
+    pub fn plots(&self) -> Vec<Plot> {
+        if self.shown.pairs.is_empty() {
+            return vec![Plot::P];
+        }
+        let mut plots = vec![Plot::Slip, Plot::Force, Plot::Pressure, Plot::Gap, Plot::P];
+        if self.shown.at_ray() {
+            plots.insert(0, Plot::Ray);
+        }
+        plots
+    }
+
+    /// Name and description of the selected parameter.
+    pub fn selected_parameter(&self) -> Option<(&str, &Parameter)> {
+        let (name, parameter) = self.shown.scenario.parameters.get_index(self.parameter)?;
+        Some((name, parameter))
+    }
+
+    /// The value of a parameter as asked for.
+    pub fn value(&self, name: &str) -> f64 {
+        self.wanted
+            .get(name)
+            .or_else(|| self.shown.values.get(name))
+            .copied()
+            .unwrap_or_default()
+    }
+
+    /// The pivot shown or asked for.
+    pub fn step(&self) -> Option<usize> {
+        let last = self.shown.last_step()?;
+        self.wanted_step
+            .or(self.shown.step())
+            .map(|step| step.min(last))
+    }
+
+    /// Indices of the pairs in the chosen order.
+    pub fn order(&self) -> Vec<usize> {
+        let pairs = &self.shown.pairs;
+        let mut order: Vec<usize> = (0..pairs.len()).collect();
+        let reserve = |pair: &PairState| pair.reserve_plus.min(pair.reserve_minus);
+        let number = |pair: &PairState| match self.sort {
+            SortKey::File => 0.0,
+            SortKey::State => f64::from(pair.state as u8),
+            SortKey::Slip => pair.z_t.abs(),
+            SortKey::Pressure => pair.x_n,
+            SortKey::Reserve => reserve(pair),
+            SortKey::Gap => pair.z_n,
+        };
+        order.sort_by(|a, b| {
+            number(&pairs[*a])
+                .total_cmp(&number(&pairs[*b]))
+                .then(a.cmp(b))
+        });
+        if self.descending {
+            order.reverse();
+        }
+        order
+    }
+
+    /// Something to say until the next key.
+    pub fn say(&mut self, role: Role, text: impl Into<String>) {
+        self.message = Some(Message {
+            text: text.into(),
+            role,
+        });
+    }
+}

@@ -1,0 +1,202 @@
+//! Where everything stands on a screen of this size: the same for drawing and for the mouse.
+
+use ratatui::layout::Rect;
+
+use super::app::{Pane, State};
+use super::tour;
+
+/// No pane makes sense below this.
+pub const SMALLEST: (u16, u16) = (40, 12);
+/// From here on several panes at once.
+const SEVERAL: (u16, u16) = (76, 20);
+/// From here on all panes at once.
+const ALL: (u16, u16) = (120, 36);
+
+/// The screen divided.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Places {
+    /// First line: scenario and outcome.
+    pub title: Rect,
+    /// The panes shown.
+    pub panes: Vec<(Pane, Rect)>,
+    /// The pane that shares its place with others, and those: their names stand in its border.
+    pub tabs: Option<(Rect, Vec<Pane>)>,
+    /// Sentence of the pivot, or the step of the tour.
+    pub sentence: Rect,
+    /// About the selected row.
+    pub about: Rect,
+    /// Last line: hints, message or what is typed.
+    pub bottom: Rect,
+}
+
+/// Panes that share the large place of a middling screen.
+pub const SHARED: [Pane; 4] = [Pane::Structure, Pane::Plot, Pane::Pairs, Pane::Answer];
+
+/// Divides the screen; `None` if it is too small.
+pub fn places(state: &State) -> Option<Places> {
+    let (width, height) = state.size;
+    if width < SMALLEST.0 || height < SMALLEST.1 {
+        return None;
+    }
+    let mut left = height;
+    let mut take = |rows: u16| {
+        left -= rows;
+        Rect::new(0, left, width, rows)
+    };
+    let bottom = take(1);
+    let roomy = height >= SEVERAL.1;
+    let about = take(u16::from(roomy));
+    let sentence = match (state.tour, roomy) {
+        (Some(at), true) => {
+            let lines =
+                tour::lines(state, at, usize::from(width)).map_or(2, |(lines, _)| lines.len());
+            // at most 6
+            take(lines.clamp(2, 6) as u16)
+        }
+        (Some(_), false) => take(4),
+        (None, _) => take(2),
+    };
+    let body = Rect::new(0, 1, width, left - 1);
+    let mut places = Places {
+        title: Rect::new(0, 0, width, 1),
+        sentence,
+        about,
+        bottom,
+        ..Places::default()
+    };
+    if state.maximized || width < SEVERAL.0 || height < SEVERAL.1 {
+        places.panes.push((state.focus, body));
+        places.tabs = Some((body, Pane::ALL.to_vec()));
+    } else if width < ALL.0 || height < ALL.1 {
+        middle(state, body, &mut places);
+    } else {
+        wide(state, body, &mut places);
+    }
+    Some(places)
+}
+
+/// Rows of the parameters with their border, the line about the marked one included.
+fn parameter_rows(state: &State) -> u16 {
+    let count = state.shown.values.len().clamp(1, 12);
+    // at most 12
+    count as u16 + 2
+}
+
+fn cut_rows(area: Rect, rows: u16) -> (Rect, Rect) {
+    let rows = rows.min(area.height);
+    (
+        Rect::new(area.x, area.y, area.width, rows),
+        Rect::new(area.x, area.y + rows, area.width, area.height - rows),
+    )
+}
+
+fn cut_columns(area: Rect, columns: u16) -> (Rect, Rect) {
+    let columns = columns.min(area.width);
+    (
+        Rect::new(area.x, area.y, columns, area.height),
+        Rect::new(area.x + columns, area.y, area.width - columns, area.height),
+    )
+}
+
+fn middle(state: &State, body: Rect, places: &mut Places) {
+    let (left, right) = cut_columns(body, body.width - (body.width * 2 / 5).clamp(30, 44));
+    let (parameters, pivots) = cut_rows(right, parameter_rows(state).min(right.height / 2));
+    if state.shown.structure().is_some_and(is_flat) {
+        // a beam needs few rows: there is room for what happens along it
+        let (structure, rest) = cut_rows(left, 8);
+        let front = match state.tab {
+            Pane::Structure => Pane::Plot,
+            tab => tab,
+        };
+        places.panes = vec![(front, rest), (Pane::Structure, structure)];
+        places.tabs = Some((rest, SHARED[1..].to_vec()));
+    } else {
+        places.panes = vec![(state.tab, left)];
+        places.tabs = Some((left, SHARED.to_vec()));
+    }
+    places.panes.push((Pane::Parameters, parameters));
+    places.panes.push((Pane::Pivots, pivots));
+}
+
+fn wide(state: &State, body: Rect, places: &mut Places) {
+    let (left, right) = cut_columns(body, body.width - (body.width / 2).clamp(56, 90));
+    let rows = match state.shown.structure() {
+        Some(structure) if !is_flat(structure) => left.height / 2,
+        Some(_) => left.height / 4,
+        None if state.shown.pairs.is_empty() => 5,
+        None => 9,
+    };
+    let (structure, plot) = cut_rows(left, rows.max(5));
+    let pivot_rows = state.shown.answer().map_or(0, |answer| answer.pivots.len());
+    let (parameters, rest) = cut_rows(right, parameter_rows(state).min(right.height / 3));
+    let (rest, answer) = cut_rows(rest, rest.height - 9.min(rest.height / 4));
+    // the pivots take what they need, at most half; the pairs have more to show
+    let needed = u16::try_from(pivot_rows)
+        .unwrap_or(u16::MAX)
+        .saturating_add(3);
+    let (pivots, pairs) = cut_rows(rest, needed.clamp(6, rest.height / 2));
+    places.panes = vec![
+        (Pane::Structure, structure),
+        (Pane::Plot, plot),
+        (Pane::Parameters, parameters),
+        (Pane::Pivots, pivots),
+        (Pane::Pairs, pairs),
+        (Pane::Answer, answer),
+    ];
+}
+
+/// Whether a structure is so low that it needs few rows.
+fn is_flat(structure: &crate::model::structure::Structure) -> bool {
+    let side = |axis: usize| {
+        let (low, high) =
+            crate::view::plot::chart::range(structure.nodes.iter().map(|node| node.position[axis]));
+        high - low
+    };
+    side(1) < 0.12 * side(0)
+}
+
+/// The pane at a place of the screen.
+pub fn pane_at(places: &Places, x: u16, y: u16) -> Option<(Pane, Rect)> {
+    places
+        .panes
+        .iter()
+        .copied()
+        .find(|(_, area)| area.contains((x, y).into()))
+}
+
+/// Names of tabs in a border with the columns they take: (start, pane, name).
+pub fn tab_names(area: Rect, panes: &[Pane], front: Pane) -> Vec<(u16, Pane, String)> {
+    let named: Vec<(Pane, String)> = panes
+        .iter()
+        .map(|pane| (*pane, format!("{} {}", pane.index() + 1, pane.title())))
+        .collect();
+    let length =
+        |names: &[(Pane, String)]| names.iter().map(|(_, n)| n.len() + 3).sum::<usize>() + 2;
+    let names = if length(&named) <= usize::from(area.width) {
+        named
+    } else {
+        panes
+            .iter()
+            .map(|pane| {
+                let number = (pane.index() + 1).to_string();
+                let name = if *pane == front {
+                    format!("{number} {}", pane.title())
+                } else {
+                    number
+                };
+                (*pane, name)
+            })
+            .collect()
+    };
+    let mut x = area.x + 1;
+    let mut tabs = Vec::new();
+    for (pane, name) in names {
+        let start = x;
+        // names are ASCII and short
+        x += name.len() as u16 + 3;
+        if x <= area.right() {
+            tabs.push((start, pane, name));
+        }
+    }
+    tabs
+}

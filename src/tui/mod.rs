@@ -1,0 +1,28 @@
+//! The full screen: one session in panes, solved again as it is varied.
+//!
+//! event → [`action::Action`] → [`update::update`] (pure: state and action → state and effects) → [`draw::draw`].
+//! Only [`runtime`] and [`terminal`] know threads, clocks and the terminal; the session lives on the thread of
+//! [`worker`], so that the screen answers while it computes. The keys are one table, [`keymap::BINDINGS`].
+
+pub mod action;
+pub mod app;
+pub mod config;
+pub mod draw;
+pub mod entry;
+pub mod keymap;
+pub mod layout;
+pub mod overlay;
+pub mod panes;
+pub mod runtime;
+pub mod shown;
+pub mod terminal;
+pub mod theme;
+pub mod tour;
+pub mod update;
+pub mod vary;
+pub mod worker;
+
+#[cfg(test)]
+mod tests;
+
+pub use runtime::{Ended, Start, run};

@@ -1,0 +1,58 @@
+//! How the run ended, its check, the rules, the values.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use crate::tui::app::{Pane, State};
+use crate::tui::layout;
+use crate::view::status;
+use crate::view::style::Role;
+
+fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
+    let shown = &state.shown;
+    match shown.answer() {
+        Some(answer) => {
+            let mut lines = super::report(state.look, width, |out, style| {
+                status::write(out, answer, &shown.scenario, &shown.values, style)
+            });
+            // the title of the scenario stands at the top of the screen
+            if !lines.is_empty() {
+                lines.remove(0);
+            }
+            if let Some(description) = &shown.scenario.description {
+                lines.push(Line::default());
+                for line in state.look.report(width).wrap(description, width) {
+                    lines.push(Line::styled(line, state.look.role(Role::Muted)));
+                }
+            }
+            lines
+        }
+        None => vec![Line::raw("not solved yet: `:solve`, or `:set auto on`")],
+    }
+}
+
+/// The last line that may stand at the top.
+pub fn last_line(state: &State) -> usize {
+    let area = layout::places(state).and_then(|places| {
+        places
+            .panes
+            .iter()
+            .find(|(pane, _)| *pane == Pane::Answer)
+            .map(|(_, area)| super::inside(*area))
+    });
+    area.map_or(0, |area| {
+        lines(state, usize::from(area.width))
+            .len()
+            .saturating_sub(usize::from(area.height))
+    })
+}
+
+/// Draws the pane.
+pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
+    let lines = lines(state, usize::from(area.width));
+    let from = state
+        .answer_scroll
+        .min(lines.len().saturating_sub(usize::from(area.height)));
+    super::put_lines(&lines[from..], area, buffer);
+}

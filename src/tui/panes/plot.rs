@@ -1,0 +1,130 @@
+//! Curves along the contact zone and over the pivots: as many, one below the other, as there is room for.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use crate::session::results::PairState;
+use crate::tui::app::{Plot, State};
+use crate::view::plot::trace;
+use crate::view::plot::zone::{self, Quantity};
+use crate::view::style::Role;
+
+/// Rows a plot needs to be read.
+const ROWS: u16 = 12;
+/// Rows around the drawing itself: title, axis, names, values, legend.
+const AROUND: u16 = 5;
+
+/// Draws the pane.
+pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
+    let look = state.look;
+    if state.shown.answer().is_none() {
+        super::put_text(look, "not solved yet", look.role(Role::Muted), area, buffer);
+        return;
+    }
+    let plots = state.plots();
+    let from = plots
+        .iter()
+        .position(|plot| *plot == state.plot)
+        .unwrap_or_default();
+    let count = (area.height / ROWS).clamp(1, plots.len() as u16);
+    let height = area.height / count;
+    for i in 0..count {
+        let plot = plots[(from + usize::from(i)) % plots.len()];
+        let rest = area.height - i * height;
+        let part = Rect::new(
+            area.x,
+            area.y + i * height,
+            area.width,
+            if i + 1 == count { rest } else { height },
+        );
+        super::put_lines(&lines(state, plot, part), part, buffer);
+    }
+}
+
+fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
+    let shown = &state.shown;
+    let units = &shown.scenario.units;
+    let width = usize::from(area.width);
+    let quantity = match plot {
+        Plot::Slip => Quantity::Slip,
+        Plot::Force => Quantity::Force,
+        Plot::Pressure => Quantity::Pressure,
+        Plot::Gap => Quantity::Gap,
+        Plot::P => return pivots(state, area),
+        Plot::Ray => return ray(state, area),
+    };
+    let now_label = match shown.position {
+        Some(step) => format!("pivot {step}"),
+        None if shown.at_ray() => {
+            let p = shown.p.map(crate::view::number::short).unwrap_or_default();
+            format!("last vertex, p = {p}")
+        }
+        None => String::new(),
+    };
+    let before: Option<&[PairState]> = shown
+        .before()
+        .filter(|_| state.ghost && shown.has_before())
+        .map(|answer| answer.pairs.as_slice())
+        .filter(|pairs| *pairs != shown.pairs.as_slice());
+    let states: Vec<(&str, &[PairState])> = match before {
+        Some(before) => vec![("now", shown.pairs.as_slice()), ("before", before)],
+        None => vec![(now_label.as_str(), shown.pairs.as_slice())],
+    };
+    fitting(area, |height| {
+        super::report(state.look, width, |out, style| {
+            zone::write(out, quantity, &states, units, height, style)
+        })
+    })
+}
+
+fn pivots(state: &State, area: Rect) -> Vec<Line<'static>> {
+    let shown = &state.shown;
+    let Some(answer) = shown.answer() else {
+        return Vec::new();
+    };
+    if answer.pivots.is_empty() {
+        return vec![
+            Line::styled("p over the pivots", state.look.role(Role::Title)),
+            Line::raw("no pivots: the main system is the answer"),
+        ];
+    }
+    fitting(area, |height| {
+        super::report(state.look, usize::from(area.width), |out, style| {
+            trace::write(
+                out,
+                &answer.pivots,
+                shown.position,
+                &shown.scenario.units,
+                height,
+                style,
+            )
+        })
+    })
+}
+
+fn ray(state: &State, area: Rect) -> Vec<Line<'static>> {
+    let shown = &state.shown;
+    let Some(ray) = shown.answer().and_then(|answer| answer.ray.as_ref()) else {
+        return Vec::new();
+    };
+    fitting(area, |height| {
+        super::report(state.look, usize::from(area.width), |out, style| {
+            zone::mode(out, ray, &shown.pairs, &shown.scenario.units, height, style)
+        })
+    })
+}
+
+/// A chart as high as the area: drawn once more where its legend took more lines than thought.
+fn fitting(area: Rect, draw: impl Fn(usize) -> Vec<Line<'static>>) -> Vec<Line<'static>> {
+    let room = usize::from(area.height);
+    let height = usize::from(area.height.saturating_sub(AROUND)).max(3);
+    let lines = draw(height);
+    if lines.len() == room || height == 3 {
+        return lines;
+    }
+    let better = (height + room).saturating_sub(lines.len()).max(3);
+    // a chart of zeros stays low however much room there is
+    let again = draw(better);
+    if again.len() <= room { again } else { lines }
+}

@@ -1,0 +1,321 @@
+//! The loop: keys, signals, results and time come in; frames and jobs go out. It sleeps while nothing happens.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use crossterm::event::{self, Event, MouseButton, MouseEventKind};
+
+use crate::session::Session;
+use crate::view::style::{Role, Style};
+
+use super::action::{Action, Effect, Leave, Mouse};
+use super::app::State;
+use super::config;
+use super::keymap;
+use super::overlay;
+use super::shown::Shown;
+use super::terminal::{Asked, Screen, Signals};
+use super::theme::Look;
+use super::update::{begin_tour, update};
+use super::worker::Worker;
+
+/// Between two looks at the signals while no key comes.
+const LOOK: Duration = Duration::from_millis(100);
+/// Results that come within this time after a key share its frame.
+const TOGETHER: Duration = Duration::from_millis(12);
+
+/// How the screen begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// Whether with the tour.
+    pub tour: bool,
+    /// Where `q` goes.
+    pub home: Leave,
+}
+
+/// How the screen ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ended {
+    /// Where it goes on.
+    pub leave: Leave,
+    /// Exit status, if it ends here; that of a signal if one ended it.
+    pub status: u8,
+}
+
+/// What comes in.
+enum Incoming {
+    Terminal(Event),
+    Signal(Asked),
+    Action(Action),
+    Failed(io::Error),
+}
+
+/// Shows the session until it is left; gives it back.
+///
+/// # Errors
+/// There is no terminal, or it fails; the session is lost then.
+pub fn run(session: Session, style: Style, start: Start) -> io::Result<(Session, Ended)> {
+    let config = config::load();
+    let look = Look {
+        color: style.color,
+        ascii: style.ascii,
+    };
+    let (signals, _handlers) = Signals::install()?;
+    let (sender, incoming) = mpsc::channel();
+    let shown = Arc::new(Shown::of(&session));
+    let screen = Screen::take(config.mouse)?;
+    // crossterm looks at NO_COLOR itself; whether there is colour was decided before
+    crossterm::style::force_color_output(true);
+    let mut state = State::new(
+        shown,
+        look,
+        Arc::new(config.keys),
+        screen.size()?,
+        start.home,
+    );
+    state.mouse = config.mouse;
+    state.explains = config.explain;
+    if let Some(problem) = config.problems.first() {
+        state.say(Role::Warning, problem.clone());
+    }
+    let results = Mutex::new(sender.clone());
+    let worker = Worker::start(session, move |action| {
+        // after the end nobody listens
+        let _ = results
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .send(Incoming::Action(action));
+    })?;
+    let reader = Reader::start(sender, signals)?;
+    let mut loop_ = Loop {
+        state,
+        screen,
+        worker,
+        reader,
+        incoming,
+    };
+    let ended = loop_.run(start.tour);
+    let Loop {
+        screen,
+        worker,
+        reader,
+        ..
+    } = loop_;
+    reader.end();
+    drop(screen);
+    let session = worker.end()?;
+    Ok((session, ended?))
+}
+
+/// Reads the terminal on a thread of its own, until told to stop.
+struct Reader {
+    rests: Arc<Rest>,
+    thread: JoinHandle<()>,
+}
+
+/// What the reader shall do.
+#[derive(Default)]
+struct Rest {
+    end: AtomicBool,
+    /// While the program is stopped nobody may read.
+    pause: Mutex<()>,
+}
+
+impl Reader {
+    fn start(sender: Sender<Incoming>, signals: Signals) -> io::Result<Reader> {
+        let rests = Arc::new(Rest::default());
+        let theirs = Arc::clone(&rests);
+        let read = move || {
+            while !theirs.end.load(Ordering::SeqCst) {
+                if let Some(asked) = signals.asked()
+                    && sender.send(Incoming::Signal(asked)).is_err()
+                {
+                    return;
+                }
+                let found = {
+                    let _reading = theirs.pause.lock().unwrap_or_else(PoisonError::into_inner);
+                    match event::poll(LOOK) {
+                        Ok(true) => Some(event::read()),
+                        Ok(false) => None,
+                        Err(error) => Some(Err(error)),
+                    }
+                };
+                let incoming = match found {
+                    None => continue,
+                    Some(Ok(event)) => Incoming::Terminal(event),
+                    Some(Err(error)) if error.kind() == io::ErrorKind::Interrupted => continue,
+                    Some(Err(error)) => {
+                        // a terminal that is gone fails first; its signal comes a moment later
+                        thread::sleep(LOOK);
+                        let incoming = match signals.asked() {
+                            Some(asked) => Incoming::Signal(asked),
+                            None => Incoming::Failed(error),
+                        };
+                        let _ = sender.send(incoming);
+                        return;
+                    }
+                };
+                if sender.send(incoming).is_err() {
+                    return;
+                }
+            }
+        };
+        let thread = thread::Builder::new().name("keys".to_owned()).spawn(read)?;
+        Ok(Reader { rests, thread })
+    }
+
+    fn end(self) {
+        self.rests.end.store(true, Ordering::SeqCst);
+        // it reads for a tenth of a second more at most
+        let _ = self.thread.join();
+    }
+}
+
+struct Loop {
+    state: State,
+    screen: Screen,
+    worker: Worker,
+    reader: Reader,
+    incoming: Receiver<Incoming>,
+}
+
+impl Loop {
+    fn run(&mut self, tour: bool) -> io::Result<Ended> {
+        if tour {
+            let effects = begin_tour(&mut self.state, 0);
+            if let Some(ended) = self.carry_out(effects)? {
+                return Ok(ended);
+            }
+        }
+        self.screen.draw(&self.state)?;
+        let mut last_tick = Instant::now();
+        loop {
+            let first = match self.state.tick() {
+                None => self
+                    .incoming
+                    .recv()
+                    .map_err(|_| RecvTimeoutError::Disconnected),
+                Some(tick) => {
+                    let due = (last_tick + tick).saturating_duration_since(Instant::now());
+                    self.incoming.recv_timeout(due)
+                }
+            };
+            let mut changed = false;
+            let mut next = match first {
+                Ok(incoming) => Some(incoming),
+                Err(RecvTimeoutError::Timeout) => {
+                    last_tick = Instant::now();
+                    Some(Incoming::Action(Action::Tick))
+                }
+                // the reader is gone: nothing can come any more
+                Err(RecvTimeoutError::Disconnected) => return Ok(end(143)),
+            };
+            // all that has come is taken before one frame is drawn
+            while let Some(incoming) = next {
+                if self.state.tick().is_none() {
+                    last_tick = Instant::now();
+                }
+                let (ended, drew) = self.take(incoming)?;
+                if let Some(ended) = ended {
+                    return Ok(ended);
+                }
+                changed |= drew;
+                next = if self.state.running.is_some() && self.state.progress.is_none() {
+                    self.incoming.recv_timeout(TOGETHER).ok()
+                } else {
+                    self.incoming.try_recv().ok()
+                };
+            }
+            if changed {
+                self.screen.draw(&self.state)?;
+            }
+        }
+    }
+
+    /// Takes one event; says whether the screen may have changed.
+    fn take(&mut self, incoming: Incoming) -> io::Result<(Option<Ended>, bool)> {
+        let action = match incoming {
+            Incoming::Action(action) => Some(action),
+            Incoming::Terminal(event) => self.translate(event),
+            Incoming::Signal(Asked::End(status)) => return Ok((Some(end(status)), false)),
+            Incoming::Signal(Asked::Suspend) => {
+                self.suspend()?;
+                return Ok((None, true));
+            }
+            Incoming::Signal(Asked::Redraw) => {
+                self.redraw()?;
+                return Ok((None, true));
+            }
+            Incoming::Failed(error) => return Err(error),
+        };
+        let Some(action) = action else {
+            return Ok((None, false));
+        };
+        let effects = update(&mut self.state, action);
+        Ok((self.carry_out(effects)?, true))
+    }
+
+    fn translate(&self, event: Event) -> Option<Action> {
+        match event {
+            Event::Key(key) => keymap::action(&self.state, &key),
+            Event::Paste(text) => Some(Action::Paste(text)),
+            Event::Resize(width, height) => Some(Action::Resize(width, height)),
+            Event::Mouse(mouse) => {
+                let (x, y) = (mouse.column, mouse.row);
+                let mouse = match mouse.kind {
+                    MouseEventKind::Down(MouseButton::Left) => Mouse::Press(x, y),
+                    MouseEventKind::Drag(MouseButton::Left) => Mouse::Drag(x, y),
+                    MouseEventKind::ScrollUp => Mouse::WheelUp(x, y),
+                    MouseEventKind::ScrollDown => Mouse::WheelDown(x, y),
+                    _ => return None,
+                };
+                Some(Action::Mouse(mouse))
+            }
+            Event::FocusGained | Event::FocusLost => None,
+        }
+    }
+
+    fn carry_out(&mut self, effects: Vec<Effect>) -> io::Result<Option<Ended>> {
+        for effect in effects {
+            match effect {
+                Effect::Run(job) => {
+                    let width = overlay::text_width(&self.state);
+                    self.worker.order(job, self.state.look.report(width));
+                }
+                Effect::Stop => self.worker.stop(),
+                Effect::Leave(leave) => {
+                    return Ok(Some(Ended { leave, status: 0 }));
+                }
+                Effect::Suspend => self.suspend()?,
+                Effect::Redraw => self.redraw()?,
+                Effect::Mouse(mouse) => self.screen.set_mouse(mouse)?,
+            }
+        }
+        Ok(None)
+    }
+
+    fn suspend(&mut self) -> io::Result<()> {
+        let rests = Arc::clone(&self.reader.rests);
+        let _nobody_reads = rests.pause.lock().unwrap_or_else(PoisonError::into_inner);
+        self.screen.suspend()?;
+        self.state.size = self.screen.size()?;
+        Ok(())
+    }
+
+    fn redraw(&mut self) -> io::Result<()> {
+        self.state.size = self.screen.size()?;
+        self.screen.clear()
+    }
+}
+
+/// Ended by a signal.
+fn end(status: u8) -> Ended {
+    Ended {
+        leave: Leave::Quit,
+        status,
+    }
+}

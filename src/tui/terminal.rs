@@ -1,0 +1,230 @@
+//! The terminal: taken at the start, given back as it was on every way out.
+
+use std::io::{self, BufWriter, Stdout, Write};
+use std::panic;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+
+use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
+use crossterm::terminal::{
+    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
+    disable_raw_mode, enable_raw_mode,
+};
+use crossterm::{cursor, execute, queue};
+use ratatui::Terminal;
+use ratatui::backend::CrosstermBackend;
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
+use signal_hook::low_level;
+
+use super::app::State;
+use super::draw;
+
+/// Presses, drags and the wheel; not every move of the mouse, which would only cost bytes.
+const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
+const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
+
+/// A frame leaves in one piece.
+const FRAME: usize = 1 << 16;
+
+type Hook = Box<dyn Fn(&panic::PanicHookInfo<'_>) + Sync + Send + 'static>;
+
+/// The terminal while it belongs to the panes.
+pub struct Screen {
+    terminal: Terminal<CrosstermBackend<BufWriter<Stdout>>>,
+    mouse: bool,
+    hook: Option<Arc<Hook>>,
+}
+
+fn take(mouse: bool) -> io::Result<()> {
+    enable_raw_mode()?;
+    let mut out = io::stdout();
+    execute!(
+        out,
+        EnterAlternateScreen,
+        EnableBracketedPaste,
+        cursor::Hide
+    )?;
+    if mouse {
+        out.write_all(MOUSE_ON)?;
+    }
+    out.flush()
+}
+
+/// Gives the terminal back. May be called more than once; what fails because the terminal is gone is passed over.
+pub fn restore() {
+    let mut out = io::stdout();
+    let _ = out.write_all(MOUSE_OFF);
+    let _ = execute!(
+        out,
+        EndSynchronizedUpdate,
+        DisableBracketedPaste,
+        LeaveAlternateScreen,
+        cursor::Show
+    );
+    let _ = disable_raw_mode();
+}
+
+impl Screen {
+    /// Takes the terminal. A panic of this thread gives it back before its message is printed; those of other
+    /// threads are reported by the session and not printed over the panes.
+    ///
+    /// # Errors
+    /// There is no terminal.
+    pub fn take(mouse: bool) -> io::Result<Screen> {
+        let before: Arc<Hook> = Arc::new(panic::take_hook());
+        let theirs = Arc::clone(&before);
+        let mine = thread::current().id();
+        panic::set_hook(Box::new(move |info| {
+            if thread::current().id() == mine {
+                restore();
+                theirs(info);
+            }
+        }));
+        // from here on dropping the screen gives everything back
+        let mut screen = Screen {
+            terminal: Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(
+                FRAME,
+                io::stdout(),
+            )))?,
+            mouse,
+            hook: Some(before),
+        };
+        take(mouse)?;
+        screen.terminal.clear()?;
+        Ok(screen)
+    }
+
+    /// Columns and rows.
+    ///
+    /// # Errors
+    /// The terminal does not say.
+    pub fn size(&self) -> io::Result<(u16, u16)> {
+        let size = self.terminal.size()?;
+        Ok((size.width, size.height))
+    }
+
+    /// Sends what changed since the last frame.
+    ///
+    /// # Errors
+    /// The terminal does not take it.
+    pub fn draw(&mut self, state: &State) -> io::Result<()> {
+        queue!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
+        self.terminal.draw(|frame| draw::draw(state, frame))?;
+        execute!(self.terminal.backend_mut(), EndSynchronizedUpdate)
+    }
+
+    /// The next frame is sent whole.
+    ///
+    /// # Errors
+    /// The terminal does not take it.
+    pub fn clear(&mut self) -> io::Result<()> {
+        self.terminal.clear()
+    }
+
+    /// Takes or leaves the mouse.
+    ///
+    /// # Errors
+    /// The terminal does not take it.
+    pub fn set_mouse(&mut self, mouse: bool) -> io::Result<()> {
+        self.mouse = mouse;
+        let out = self.terminal.backend_mut();
+        out.write_all(if mouse { MOUSE_ON } else { MOUSE_OFF })?;
+        Write::flush(out)
+    }
+
+    /// Gives the terminal back and stops the program; goes on after `fg`.
+    ///
+    /// # Errors
+    /// The terminal does not come back.
+    pub fn suspend(&mut self) -> io::Result<()> {
+        restore();
+        low_level::emulate_default_handler(SIGTSTP)?;
+        take(self.mouse)?;
+        self.clear()
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        restore();
+        if !thread::panicking()
+            && let Some(hook) = self.hook.take()
+        {
+            // ours goes first, so that theirs is the only one left to share
+            drop(panic::take_hook());
+            if let Ok(hook) = Arc::try_unwrap(hook) {
+                panic::set_hook(hook);
+            }
+        }
+    }
+}
+
+/// Signals as flags, looked at by the thread that reads the keys.
+#[derive(Clone, Debug, Default)]
+pub struct Signals {
+    terminate: Arc<AtomicBool>,
+    hangup: Arc<AtomicBool>,
+    stop: Arc<AtomicBool>,
+    resumed: Arc<AtomicBool>,
+}
+
+/// What a signal asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// To end, with this exit status.
+    End(u8),
+    /// To stop until `fg`.
+    Suspend,
+    /// To draw everything anew: the program was stopped and goes on.
+    Redraw,
+}
+
+/// The handlers of a screen, taken away with it.
+pub struct Handlers(Vec<signal_hook::SigId>);
+
+impl Drop for Handlers {
+    fn drop(&mut self) {
+        for id in self.0.drain(..) {
+            low_level::unregister(id);
+        }
+    }
+}
+
+impl Signals {
+    /// Installs the handlers.
+    ///
+    /// # Errors
+    /// The system refuses.
+    pub fn install() -> io::Result<(Signals, Handlers)> {
+        let signals = Signals::default();
+        let mut handlers = Handlers(Vec::new());
+        for (signal, flag) in [
+            (SIGTERM, &signals.terminate),
+            (SIGINT, &signals.terminate),
+            (SIGHUP, &signals.hangup),
+            (SIGTSTP, &signals.stop),
+            (SIGCONT, &signals.resumed),
+        ] {
+            handlers
+                .0
+                .push(signal_hook::flag::register(signal, Arc::clone(flag))?);
+        }
+        Ok((signals, handlers))
+    }
+
+    /// What was asked for since the last look.
+    pub fn asked(&self) -> Option<Asked> {
+        if self.hangup.load(Ordering::SeqCst) {
+            Some(Asked::End(129))
+        } else if self.terminate.load(Ordering::SeqCst) {
+            Some(Asked::End(143))
+        } else if self.stop.swap(false, Ordering::SeqCst) {
+            Some(Asked::Suspend)
+        } else if self.resumed.swap(false, Ordering::SeqCst) {
+            Some(Asked::Redraw)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! The session on a thread of its own: jobs go in, results come out.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{self, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use std::{io, thread};
+
+use crate::session::{CommandError, Next, Output, Session};
+use crate::view::style::Style;
+use crate::watch::Watch;
+
+use super::action::{Action, Done, Job};
+use super::shown::Shown;
+
+/// Shorter work shows no progress.
+const PATIENCE: Duration = Duration::from_millis(400);
+/// Between two looks at the progress.
+const PACE: Duration = Duration::from_millis(250);
+
+/// Does one job. The session is as it was if it fails.
+pub fn perform(session: &mut Session, job: Job, style: Style, watch: &dyn Watch) -> Done {
+    let mut output = Vec::new();
+    let mut answers = None;
+    let result = match &job {
+        Job::Set { name, value } => run(
+            session,
+            &format!("set {name} {value}"),
+            &mut output,
+            style,
+            watch,
+        ),
+        Job::Step(step) => run(
+            session,
+            &format!("step to {step}"),
+            &mut output,
+            style,
+            watch,
+        ),
+        Job::Line { text, .. } => run(session, text, &mut output, style, watch),
+        Job::Answers => session.all_answers(watch).map(|found| {
+            answers = Some(found);
+            Next::Continue
+        }),
+    };
+    let (next, error, interrupted) = match result {
+        Ok(next) => (next, None, false),
+        Err(error) => {
+            let interrupted = error.is_interrupted();
+            (Next::Continue, Some(error.to_string()), interrupted)
+        }
+    };
+    Done {
+        job,
+        shown: Arc::new(Shown::of(session)),
+        output: String::from_utf8_lossy(&output).into_owned(),
+        error,
+        interrupted,
+        next,
+        answers,
+    }
+}
+
+fn run(
+    session: &mut Session,
+    line: &str,
+    output: &mut Vec<u8>,
+    style: Style,
+    watch: &dyn Watch,
+) -> Result<Next, CommandError> {
+    session.execute(line, &mut Output::text(output, style, watch))
+}
+
+/// Job number, job, look of its output.
+type Order = (u64, Job, Style);
+
+/// The thread of the session.
+pub struct Worker {
+    orders: Sender<Order>,
+    thread: JoinHandle<Session>,
+    given: u64,
+    stopped: Arc<AtomicU64>,
+}
+
+impl Worker {
+    /// Starts the thread; it reports by `send`.
+    ///
+    /// # Errors
+    /// The system has no thread; the session is lost then, which ends the program.
+    pub fn start(
+        mut session: Session,
+        send: impl Fn(Action) + Send + Sync + 'static,
+    ) -> io::Result<Worker> {
+        let (orders, incoming) = mpsc::channel::<Order>();
+        let stopped = Arc::new(AtomicU64::new(0));
+        let asked = Arc::clone(&stopped);
+        let work = move || {
+            while let Ok((number, job, style)) = incoming.recv() {
+                let watch = Desk {
+                    number,
+                    stopped: &asked,
+                    send: &send,
+                    since: Mutex::new((Instant::now(), None)),
+                };
+                let kept = job.clone();
+                let done = catch_unwind(AssertUnwindSafe(|| {
+                    perform(&mut session, job, style, &watch)
+                }));
+                let done = done.unwrap_or_else(|_| Done {
+                    job: kept,
+                    shown: Arc::new(Shown::of(&session)),
+                    output: String::new(),
+                    error: Some("an error of this program: the command was not carried out; please report it".into()),
+                    interrupted: false,
+                    next: Next::Continue,
+                    answers: None,
+                });
+                send(Action::Done(Box::new(done)));
+            }
+            session
+        };
+        let thread = thread::Builder::new()
+            .name("session".to_owned())
+            .spawn(work)?;
+        Ok(Worker {
+            orders,
+            thread,
+            given: 0,
+            stopped,
+        })
+    }
+
+    /// Gives a job.
+    pub fn order(&mut self, job: Job, style: Style) {
+        self.given += 1;
+        // the thread lives as long as its orders can come
+        let _ = self.orders.send((self.given, job, style));
+    }
+
+    /// The jobs given so far shall stop.
+    pub fn stop(&self) {
+        self.stopped.store(self.given, Ordering::Relaxed);
+    }
+
+    /// Stops what is at work and gives the session back.
+    ///
+    /// # Errors
+    /// The thread is gone, and the session with it.
+    pub fn end(self) -> io::Result<Session> {
+        self.stop();
+        drop(self.orders);
+        self.thread.join().map_err(|_| {
+            io::Error::other("the thread of the session ended by an error of this program")
+        })
+    }
+}
+
+/// What the computation sees of the screen.
+struct Desk<'a> {
+    number: u64,
+    stopped: &'a AtomicU64,
+    send: &'a (dyn Fn(Action) + Sync),
+    /// When it began, and when progress was last told.
+    since: Mutex<(Instant, Option<Instant>)>,
+}
+
+impl Watch for Desk<'_> {
+    fn progress(&self, what: &str, fraction: f64) {
+        let mut since = self.since.lock().unwrap_or_else(PoisonError::into_inner);
+        let due = since.1.is_none_or(|last| last.elapsed() >= PACE);
+        if since.0.elapsed() < PATIENCE || !due {
+            return;
+        }
+        since.1 = Some(Instant::now());
+        (self.send)(Action::Progress {
+            what: what.to_owned(),
+            fraction,
+        });
+    }
+
+    fn stop(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed) >= self.number
+    }
+}
