@@ -1,6 +1,7 @@
 //! The full screen in a pseudo-terminal: what a terminal sees of it, how many bytes it gets, and how it is left.
 
 use std::io::{Read, Write};
+use std::num::NonZeroU16;
 use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -55,7 +56,7 @@ impl Screen {
         let mut reader = pair.master.try_clone_reader().unwrap();
         let writer = pair.master.take_writer().unwrap();
         let seen = Arc::new(Mutex::new(Seen {
-            parser: vt100::Parser::new(height, width, 0),
+            parser: vt100::Parser::new(size(height), size(width), 0),
             bytes: 0,
         }));
         let theirs = Arc::clone(&seen);
@@ -124,7 +125,7 @@ impl Screen {
             .unwrap()
             .parser
             .screen_mut()
-            .set_size(height, width);
+            .set_size(size(height), size(width));
         self.master
             .resize(PtySize {
                 rows: height,
@@ -172,6 +173,10 @@ impl Drop for Screen {
     fn drop(&mut self) {
         let _ = self.child.kill();
     }
+}
+
+fn size(count: u16) -> NonZeroU16 {
+    NonZeroU16::new(count).unwrap()
 }
 
 fn termios(master: &dyn MasterPty) -> String {
