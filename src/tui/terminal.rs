@@ -8,8 +8,8 @@ use std::thread;
 
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{
-    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
-    disable_raw_mode, enable_raw_mode,
+    BeginSynchronizedUpdate, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen,
+    LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{cursor, execute, queue};
 use ratatui::Terminal;
@@ -91,7 +91,7 @@ impl Screen {
             hook: Some(before),
         };
         take(mouse)?;
-        screen.terminal.clear()?;
+        screen.clear()?;
         Ok(screen)
     }
 
@@ -119,7 +119,11 @@ impl Screen {
     /// # Errors
     /// The terminal does not take it.
     pub fn clear(&mut self) -> io::Result<()> {
-        self.terminal.clear()
+        // ratatui's own `clear` asks the terminal where its cursor is, and some never answer
+        queue!(self.terminal.backend_mut(), Clear(ClearType::All))?;
+        // after a frame the other buffer holds it: swapping empties that, so that all cells are sent again
+        self.terminal.swap_buffers();
+        Ok(())
     }
 
     /// Takes or leaves the mouse.
