@@ -214,7 +214,7 @@ fn start_vary_step_ray_resize_quit() {
     screen.resize(40, 12);
     screen.wait("2 Parameters");
     screen.resize(30, 8);
-    screen.wait("the panes need");
+    screen.wait("panes need 40 x 12");
     screen.resize(80, 24);
     screen.wait("ray: mechanism");
     screen.send("?");
@@ -409,6 +409,8 @@ fn a_panic_leaves_the_terminal_as_it_was() {
         "--nocapture",
     ]);
     command.env("STICKSLIP_TEST_PANIC", "1");
+    // the message must not be scrolled away
+    command.env("RUST_BACKTRACE", "0");
     let mut screen = Screen::spawn(command, 80, 24);
     screen.until("the alternate screen", vt100::Screen::alternate_screen);
     assert_eq!(screen.exit(), 101);

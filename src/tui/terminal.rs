@@ -36,7 +36,11 @@ pub struct Screen {
     hook: Option<Arc<Hook>>,
 }
 
+/// Whether the terminal is ours: leaving the alternate screen twice would put the cursor over what was printed since.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
 fn take(mouse: bool) -> io::Result<()> {
+    TAKEN.store(true, Ordering::SeqCst);
     enable_raw_mode()?;
     let mut out = io::stdout();
     execute!(
@@ -51,8 +55,11 @@ fn take(mouse: bool) -> io::Result<()> {
     out.flush()
 }
 
-/// Gives the terminal back. May be called more than once; what fails because the terminal is gone is passed over.
+/// Gives the terminal back, if it was taken. What fails because the terminal is gone is passed over.
 pub fn restore() {
+    if !TAKEN.swap(false, Ordering::SeqCst) {
+        return;
+    }
     let mut out = io::stdout();
     let _ = out.write_all(MOUSE_OFF);
     let _ = execute!(
