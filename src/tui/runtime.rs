@@ -122,7 +122,9 @@ struct Reader {
 struct Rest {
     end: AtomicBool,
     /// While the program is stopped nobody may read.
-    pause: Mutex<()>,
+    pause: AtomicBool,
+    /// Held by the one who reads.
+    reading: Mutex<()>,
 }
 
 impl Reader {
@@ -136,8 +138,15 @@ impl Reader {
                 {
                     return;
                 }
+                if theirs.pause.load(Ordering::SeqCst) {
+                    thread::sleep(TOGETHER);
+                    continue;
+                }
                 let found = {
-                    let _reading = theirs.pause.lock().unwrap_or_else(PoisonError::into_inner);
+                    let _reading = theirs
+                        .reading
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner);
                     match event::poll(LOOK) {
                         Ok(true) => Some(event::read()),
                         Ok(false) => None,
@@ -300,8 +309,13 @@ impl Loop {
 
     fn suspend(&mut self) -> io::Result<()> {
         let rests = Arc::clone(&self.reader.rests);
-        let _nobody_reads = rests.pause.lock().unwrap_or_else(PoisonError::into_inner);
-        self.screen.suspend()?;
+        rests.pause.store(true, Ordering::SeqCst);
+        let suspended = {
+            let _nobody_reads = rests.reading.lock().unwrap_or_else(PoisonError::into_inner);
+            self.screen.suspend()
+        };
+        rests.pause.store(false, Ordering::SeqCst);
+        suspended?;
         self.state.size = self.screen.size()?;
         Ok(())
     }

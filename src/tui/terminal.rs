@@ -8,8 +8,8 @@ use std::thread;
 
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{
-    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
-    disable_raw_mode, enable_raw_mode,
+    BeginSynchronizedUpdate, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen,
+    LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{cursor, execute, queue};
 use ratatui::Terminal;
@@ -36,7 +36,11 @@ pub struct Screen {
     hook: Option<Arc<Hook>>,
 }
 
+/// Whether the terminal is ours: leaving the alternate screen twice would put the cursor over what was printed since.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
 fn take(mouse: bool) -> io::Result<()> {
+    TAKEN.store(true, Ordering::SeqCst);
     enable_raw_mode()?;
     let mut out = io::stdout();
     execute!(
@@ -51,8 +55,11 @@ fn take(mouse: bool) -> io::Result<()> {
     out.flush()
 }
 
-/// Gives the terminal back. May be called more than once; what fails because the terminal is gone is passed over.
+/// Gives the terminal back, if it was taken. What fails because the terminal is gone is passed over.
 pub fn restore() {
+    if !TAKEN.swap(false, Ordering::SeqCst) {
+        return;
+    }
     let mut out = io::stdout();
     let _ = out.write_all(MOUSE_OFF);
     let _ = execute!(
@@ -91,7 +98,7 @@ impl Screen {
             hook: Some(before),
         };
         take(mouse)?;
-        screen.terminal.clear()?;
+        screen.clear()?;
         Ok(screen)
     }
 
@@ -119,7 +126,11 @@ impl Screen {
     /// # Errors
     /// The terminal does not take it.
     pub fn clear(&mut self) -> io::Result<()> {
-        self.terminal.clear()
+        // ratatui's own `clear` asks the terminal where its cursor is, and some never answer
+        queue!(self.terminal.backend_mut(), Clear(ClearType::All))?;
+        // after a frame the other buffer holds it: swapping empties that, so that all cells are sent again
+        self.terminal.swap_buffers();
+        Ok(())
     }
 
     /// Takes or leaves the mouse.
