@@ -10,7 +10,7 @@ use crate::model::embedded;
 use crate::model::load::load_named_or_file;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
-use crate::session::{Answer, exit_status, script};
+use crate::session::{Answer, exit_status, paths, script};
 use crate::session::{CommandError, Format, Output, Session};
 use crate::signals::{Signals, TerminalWatch, is_dumb};
 use crate::view;
@@ -69,6 +69,26 @@ enum Command {
     Solve(Solve),
     /// Run a script of REPL commands; `-` reads it from stdin
     Replay(Replay),
+    /// Solve at every point of a grid, on all cores
+    ///
+    /// Rows come in the order of the grid (the last parameter runs fastest) and are the same bytes whatever the number
+    /// of threads or shards. Ctrl-C keeps the rows that are done; --resume goes on from there.
+    #[command(
+        after_help = "Examples:\n  stickslip sweep beam --vary f=0:1:0.05 --out beam.csv\n  \
+                      stickslip sweep beam --vary f=0:1:0.05 --vary F2=0:400:10 --shard $K/$N --out part-$K.csv --resume\n  \
+                      stickslip merge part-*.csv > beam.csv"
+    )]
+    Sweep(SweepArguments),
+    /// Join the shards of a sweep into what one run would have written, checking that none is missing
+    #[command(after_help = "Example:\n  stickslip merge part-*.csv --out beam.csv")]
+    Merge {
+        /// The files of all shards, in any order
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// File to write; otherwise stdout
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Find every problem in scenario files, solving nothing
     Check {
         /// Files, or embedded scenarios
@@ -125,6 +145,46 @@ struct Replay {
     /// Go on after a command that fails
     #[arg(long)]
     keep_going: bool,
+}
+
+#[derive(Args, Debug)]
+struct SweepArguments {
+    /// A file, or an embedded scenario
+    #[arg(default_value = embedded::DEFAULT)]
+    scenario: String,
+    /// A parameter and its values: NAME=FROM:TO:STEP (TO included), NAME=FROM..TO/COUNT or NAME=VALUE; up to three
+    #[arg(long = "vary", value_name = "NAME=RANGE", required = true)]
+    axes: Vec<String>,
+    /// Change a parameter that is not varied, as `solve` does
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    settings: Vec<String>,
+    /// Covering vector: cohesive, ones or weight
+    #[arg(long)]
+    covering: Option<Covering>,
+    /// Tie-break: lexicographic, natural, first-row or random:SEED
+    #[arg(long)]
+    tie_break: Option<TieBreak>,
+    /// Engine: scheme, tableau or exact
+    #[arg(long)]
+    engine: Option<Engine>,
+    /// Only part K of N, for batch systems
+    #[arg(long, value_name = "K/N")]
+    shard: Option<paths::Shard>,
+    /// File to write; otherwise stdout
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Continue the file if it is there
+    #[arg(long, requires = "out")]
+    resume: bool,
+    /// CSV, or JSON lines; otherwise by the ending of FILE, or CSV
+    #[arg(long, value_enum)]
+    format: Option<Rows>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Rows {
+    Csv,
+    Json,
 }
 
 /// What ends the program early.
@@ -263,6 +323,8 @@ fn run(cli: Cli) -> Result<u8, Failure> {
         None | Some(Command::Tui { .. }) => Ok(0), // `main` starts those
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
+        Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),
+        Some(Command::Merge { files, out: to }) => merge(&files, to.as_deref(), &mut out),
         Some(Command::Check { scenarios }) => check(&scenarios, &style, &mut out),
         Some(Command::Scenarios) => {
             crate::session::write_scenarios(&mut out, &style)?;
@@ -339,6 +401,48 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     }
     out.flush()?;
     Ok(exit_status(answer))
+}
+
+fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
+    let scenario = load(&arguments.scenario)?;
+    let settings: Vec<Vec<String>> = arguments
+        .settings
+        .iter()
+        .map(|setting| vec![setting.clone()])
+        .chain(rule("covering", arguments.covering))
+        .chain(rule("tie-break", arguments.tie_break))
+        .chain(rule("engine", arguments.engine))
+        .collect();
+    let session = Session::with_settings(scenario, &settings, &watch);
+    watch.clear();
+    let session = session?;
+    let request = paths::SweepRequest {
+        axes: &arguments.axes,
+        shard: arguments.shard,
+        format: arguments.format.map(|rows| match rows {
+            Rows::Csv => paths::Format::Csv,
+            Rows::Json => paths::Format::Json,
+        }),
+        out: arguments.out.as_deref(),
+        resume: arguments.resume,
+    };
+    let done = session.sweep_into(&request, out, &watch);
+    watch.clear();
+    let done = done?;
+    if let Some(path) = &arguments.out {
+        writeln!(out, "{}", style.text(&paths::done_sentence(&done, path)))?;
+    }
+    Ok(if done.is_complete() { 0 } else { 130 })
+}
+
+fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<u8, Failure> {
+    let rows = paths::merge(files, to, out)?;
+    if let Some(path) = to {
+        writeln!(out, "{rows} rows written to {}", path.display())?;
+    }
+    Ok(0)
 }
 
 /// `set` words of a rule given as an option.

@@ -288,6 +288,19 @@ pub struct Timings {
     pub total: f64,
 }
 
+/// From where an answer was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Start {
+    /// From z = 0 by the pivots of the answer.
+    #[default]
+    Cold,
+    /// From the last answer, followed along the change.
+    Warm {
+        /// Changes of the working scheme on the way.
+        changes: usize,
+    },
+}
+
 /// Everything about one solved state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
@@ -325,6 +338,8 @@ pub struct Answer {
     pub size: Size,
     /// Times.
     pub timings: Timings,
+    /// From where it was found.
+    pub start: Start,
     /// Remarks for the user that are no errors (cohesion in an open pair, several answers …).
     pub notes: Vec<String>,
     /// Why there is no answer, where `outcome` is no ray and no answer.

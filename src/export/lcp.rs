@@ -6,8 +6,26 @@ use serde_json::{Value, json};
 
 use crate::lcp::problem::Lcp;
 
+/// A variable's name as an id of the format: `x+[joint[0]]` becomes `x_plus_joint_0`.
+fn id(name: &str) -> String {
+    let spelled = name.replace('+', "_plus").replace("x-", "x_minus");
+    let plain: String = spelled
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() || c == '-' {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    let words: Vec<&str> = plain.split('_').filter(|word| !word.is_empty()).collect();
+    words.join("_")
+}
+
 /// The LCP as a `stickslip/1` scenario with the source `lcp`: it loads and solves as it is.
 pub fn scenario(lcp: &Lcp<f64>, names: &[String], title: &str) -> Value {
+    let names: Vec<String> = names.iter().map(|name| id(name)).collect();
     json!({
         "format": "stickslip/1",
         "title": title,
@@ -50,7 +68,7 @@ mod tests {
             q: vec![-1.0, 0.1],
             covering: vec![1.0, 1.7],
         };
-        let names = ["x_n[c1]", "x+[c1]"].map(str::to_owned);
+        let names = ["x_n[c1]", "x-[joint[0]]"].map(str::to_owned);
         let text = scenario(&lcp, &names, "two rows").to_string();
         let loaded = load_text("two", &text, None).expect("a scenario");
         let Source::Lcp(given) = loaded.source else {
@@ -58,7 +76,7 @@ mod tests {
         };
         assert_eq!(given.matrix, lcp.matrix);
         assert_eq!(given.covering, Some(lcp.covering));
-        assert_eq!(given.names, names);
+        assert_eq!(given.names, ["x_n_c1", "x_minus_joint_0"]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub mod atomic;
 pub mod csv;
 pub mod json;
 pub mod lcp;
+pub mod path;
 
 #[cfg(test)]
 mod tests;

@@ -181,6 +181,12 @@ impl Dictionary {
         entry
     }
 
+    /// Column c of T; all of it where nothing waits (after [`Dictionary::flush`]).
+    pub(crate) fn stored_column(&self, c: usize) -> &[f64] {
+        debug_assert_eq!(self.pending, 0);
+        &self.t[c * self.size..(c + 1) * self.size]
+    }
+
     /// Column c of T + U Vᵀ.
     pub(crate) fn fetch_column(&self, c: usize, into: &mut Vec<f64>) {
         into.clear();

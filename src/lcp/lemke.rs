@@ -15,6 +15,7 @@ use super::dictionary::{Dictionary, Local, Place};
 use super::driver::{Engine, Step};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Outcome, Point, RayDirection};
+use super::parametric::Parametric;
 use super::ratio_test::{TieRule, choose};
 use super::stand::{Candidate, NOISE, Sizes, Stand};
 use super::trace::Pivot;
@@ -80,6 +81,19 @@ impl SchemeEngine {
     /// How often the dictionary was built afresh from the data.
     pub fn refreshes(&self) -> usize {
         self.stand.refreshes
+    }
+
+    /// After a normal or trivial end: the dictionary, standing on the answer, ready to follow changes of the load.
+    /// `None` after any other end and under rules that a path does not use.
+    pub fn into_parametric(self) -> Option<Parametric> {
+        let on_answer = matches!(
+            self.ended,
+            Some(Outcome::Trivial | Outcome::Normal { marginal: false })
+        );
+        match self.rule {
+            TieRule::Lexicographic(order) if on_answer => Parametric::standing(self.stand, order),
+            _ => None,
+        }
     }
 
     fn end(&mut self, outcome: Outcome) -> Step<f64> {

@@ -20,6 +20,9 @@ use super::stand::{Candidate, NOISE, SUSPICIOUS, Sizes, Stand};
 use super::variable::Variable;
 use super::vertex::{Basis, direction, vertex};
 
+/// A scheme holds at another friction while nothing falls below −this multiple of the largest of its kind.
+const HOLDS: f64 = 1e-12;
+
 /// How far a path goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
@@ -132,6 +135,26 @@ impl Parametric {
         })
     }
 
+    /// Stands where a run of Lemke's algorithm ended; `None` while p is basic.
+    pub(crate) fn standing(stand: Stand, order: Vec<usize>) -> Option<Parametric> {
+        stand.column_of(Local::P)?;
+        let scheme = stand
+            .dictionary
+            .row
+            .iter()
+            .filter_map(|&local| match stand.variable(local, false) {
+                Variable::Z(k) => Some(k),
+                _ => None,
+            })
+            .collect();
+        Some(Parametric {
+            stand,
+            rule: TieRule::Lexicographic(order),
+            scheme,
+            driver: Local::P,
+        })
+    }
+
     /// Takes the next load increment after a path that ended at its target: only q, d and the constants of the
     /// mirrors may differ from the LCP so far. `false` where the dictionary cannot be carried over.
     pub fn reload(&mut self, lcp: Arc<MirroredLcp>) -> bool {
@@ -158,6 +181,106 @@ impl Parametric {
     /// All variables where it stands, as the kept dictionary holds them.
     pub fn point(&self) -> Point {
         self.stand.point()
+    }
+
+    /// The answer of the same scheme after a change of friction, f_i + `change`_i, per primary row; `extra` is what
+    /// the constants b_i of the LCP held so far exceed those of the problem by, halved (extra cohesion). The
+    /// dictionary stays that of the old friction: a slipping row's new w = 0 means w = extra − change·w_n in it,
+    /// a small system in the w_n of the slipping rows that is solved by iteration. `None` where the iteration does
+    /// not settle or the scheme does not hold.
+    pub fn at_friction(&mut self, change: &[f64], extra: &[f64]) -> Option<Point> {
+        self.stand.dictionary.flush();
+        let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
+        let normal_row = |i: usize| {
+            let n = lcp.mirrors[i].as_ref()?.normal?;
+            match d.place(Local::W(n)) {
+                Place::Row(r) => Some(r),
+                Place::Column(_) => None,
+            }
+        };
+        // Slipping rows: their own column, and the row of their w_n (none in an open pair).
+        let slipping: Vec<(usize, usize, Option<usize>)> = (0..lcp.size())
+            .filter(|&i| change[i] != 0.0 || extra[i] != 0.0)
+            .filter_map(|i| match d.place(Local::W(i)) {
+                Place::Column(c) => Some((i, c, normal_row(i))),
+                Place::Row(_) => None,
+            })
+            .collect();
+        let held = |i: usize, w_n: f64| extra[i] - change[i] * w_n;
+        let start: Vec<f64> = slipping
+            .iter()
+            .map(|&(_, _, row)| row.map_or(0.0, |r| d.value[r]))
+            .collect();
+        let mut normals = start.clone();
+        let size = start.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let mut settled = slipping.is_empty();
+        for _ in 0..60 {
+            let mut next = start.clone();
+            for (&(j, c, _), w_n) in slipping.iter().zip(&normals) {
+                let imposed = held(j, *w_n);
+                if imposed != 0.0 {
+                    let column = d.stored_column(c);
+                    for (next, (_, _, row)) in next.iter_mut().zip(&slipping) {
+                        if let Some(r) = row {
+                            *next += column[*r] * imposed;
+                        }
+                    }
+                }
+            }
+            let moved = next
+                .iter()
+                .zip(&normals)
+                .fold(0.0, |a: f64, (next, now)| a.max((next - now).abs()));
+            normals = next;
+            if moved <= 4.0 * f64::EPSILON * size {
+                settled = true;
+                break;
+            }
+        }
+        if !settled {
+            return None;
+        }
+        let mut value = d.value.clone();
+        for (&(j, c, _), w_n) in slipping.iter().zip(&normals) {
+            let imposed = held(j, *w_n);
+            if imposed != 0.0 {
+                for (value, entry) in value.iter_mut().zip(d.stored_column(c)) {
+                    *value += entry * imposed;
+                }
+            }
+        }
+        let n = lcp.whole_size;
+        let mut point = Point {
+            z: vec![0.0; n],
+            w: vec![0.0; n],
+            p: 0.0,
+        };
+        for (r, &local) in d.row.iter().enumerate() {
+            match self.stand.variable(local, false) {
+                Variable::Z(k) => point.z[k] = value[r],
+                Variable::W(k) => point.w[k] = value[r],
+                Variable::P => return None,
+            }
+        }
+        for i in 0..lcp.size() {
+            let Some(mirror) = &lcp.mirrors[i] else {
+                continue;
+            };
+            let w_n = normal_row(i).map_or(0.0, |r| value[r]);
+            let own = match d.place(Local::W(i)) {
+                Place::Row(r) => value[r] - extra[i] + change[i] * w_n,
+                Place::Column(_) => 0.0,
+            };
+            let sum = 2.0 * (mirror.friction + change[i]) * w_n + mirror.constant - 2.0 * extra[i];
+            for (hidden, w) in [(false, own), (true, sum - own)] {
+                if let Variable::W(k) = self.stand.variable(Local::W(i), hidden) {
+                    point.w[k] = w;
+                }
+            }
+        }
+        let largest = |all: &[f64]| all.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let above = |all: &[f64], size: f64| all.iter().all(|one| *one >= -HOLDS * size);
+        (above(&point.z, largest(&point.z)) && above(&point.w, largest(&point.w))).then_some(point)
     }
 
     fn fetch(&mut self) -> Option<usize> {

@@ -6,6 +6,7 @@ pub mod grid;
 pub mod limit;
 pub mod load;
 mod rate;
+pub mod record;
 pub mod sensitivity;
 pub mod stages;
 pub mod start;

@@ -184,6 +184,19 @@ pub fn follow_factors(
 }
 
 impl History {
+    /// How the history ended, in a sentence.
+    pub fn end_sentence(&self) -> String {
+        match &self.end {
+            HistoryEnd::Complete => "all stages were followed".to_owned(),
+            HistoryEnd::Limit { stage, t, collapse } => format!(
+                "stage {} cannot be completed: at {:.6} of it the limit load is reached ({})",
+                stage + 1,
+                t,
+                collapse.mode
+            ),
+        }
+    }
+
     /// The pairs at place t of a stage; z_t is the total slip. `None` beyond the end.
     pub fn pairs_at(&self, stage: usize, t: f64) -> Option<Vec<PairState>> {
         let moments = &self.stages.get(stage)?.moments;

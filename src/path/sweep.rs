@@ -14,7 +14,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::solve::Prepared;
-use crate::watch::{Quiet, Watch};
+use crate::watch::Watch;
 
 /// Points that are solved before they are written.
 const CHUNK: usize = 256;
@@ -102,6 +102,15 @@ impl Hash {
             self.0 = (self.0 ^ u128::from(*byte))
                 .wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
         }
+    }
+}
+
+/// Passes on the wish to stop, not the progress of a single point.
+struct StopOnly<'a>(&'a dyn Watch);
+
+impl Watch for StopOnly<'_> {
+    fn stop(&self) -> bool {
+        self.0.stop()
     }
 }
 
@@ -203,7 +212,13 @@ impl Sweep<'_> {
             let end = (next + CHUNK).min(points.end);
             let rows: Vec<Option<Row>> = (next..end)
                 .into_par_iter()
-                .map(|index| (!watch.stop()).then(|| self.row(index)))
+                .map(|index| {
+                    if watch.stop() {
+                        None
+                    } else {
+                        self.row(index, watch)
+                    }
+                })
                 .collect();
             for row in rows.iter().map_while(Option::as_ref) {
                 out.write_all(row.line.as_bytes())?;
@@ -251,7 +266,8 @@ impl Sweep<'_> {
         }
     }
 
-    fn row(&self, index: usize) -> Row {
+    /// `None` where `watch` asked to stop.
+    fn row(&self, index: usize, watch: &dyn Watch) -> Option<Row> {
         let point = self.grid.point(index);
         let mut values = self.values.clone();
         for (axis, value) in self.grid.axes.iter().zip(&point) {
@@ -259,9 +275,10 @@ impl Sweep<'_> {
         }
         let solved = self
             .prepared
-            .solve(self.scenario, &values, self.rules, &Quiet);
+            .solve(self.scenario, &values, self.rules, &StopOnly(watch));
         let (fields, is_answer) = match solved {
             Ok(solved) => (fields(&solved.answer), solved.answer.is_answer()),
+            Err(error) if error.is_interrupted() => return None,
             Err(error) => {
                 let mut fields = vec![Value::Null; self.columns().len() - point.len()];
                 fields[0] = json!("refused");
@@ -284,7 +301,7 @@ impl Sweep<'_> {
                 format!("{}{}\n", self.key(index), text.trim_start_matches('{'))
             }
         };
-        Row { line, is_answer }
+        Some(Row { line, is_answer })
     }
 }
 

@@ -52,6 +52,9 @@ pub enum SweepFileError {
         /// Which, from 1.
         row: usize,
     },
+    /// The result of a merge cannot be written.
+    #[error("cannot write the result: {0}")]
+    Output(std::io::Error),
     /// Shards that do not make a whole.
     #[error("{0}")]
     Shards(String),
@@ -296,7 +299,7 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
             let columns: Vec<String> = columns.trim_end().split(',').map(str::to_owned).collect();
             let text = preamble(&whole, format, &columns);
             out.write_all(text.as_bytes())
-                .map_err(io(Path::new("output")))?;
+                .map_err(SweepFileError::Output)?;
         }
         let expected = header.shard.points(header.points).len();
         let mut found = 0;
@@ -308,7 +311,7 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
             }
             found += 1;
             out.write_all(line.as_bytes())
-                .map_err(io(Path::new("output")))?;
+                .map_err(SweepFileError::Output)?;
         }
         if found != expected || !line.is_empty() {
             return Err(SweepFileError::Shards(format!(
@@ -319,6 +322,6 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
         }
         rows += found;
     }
-    out.flush().map_err(io(Path::new("output")))?;
+    out.flush().map_err(SweepFileError::Output)?;
     Ok(rows)
 }

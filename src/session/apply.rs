@@ -6,16 +6,20 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use crate::answer::record::Start;
 use crate::model::embedded;
 use crate::model::load::load_named_or_file;
+use crate::solve::resume::same_answer;
 use crate::view::number::short;
 use crate::view::status;
 use crate::view::style::Role;
 
-use super::command::Command;
+use super::command::{Command, Export};
 use super::expect::{self, Facts};
 use super::values::{self, Setting};
-use super::{Change, CommandError, Next, Output, Session, Setup, help, journal, save, script};
+use super::{
+    Change, CommandError, Format, Next, Output, Session, Setup, help, journal, save, script,
+};
 
 impl Session {
     /// One command. The arms that only show something are in `reports`.
@@ -25,6 +29,9 @@ impl Session {
         text: &str,
         io: &mut Output<'_>,
     ) -> Result<Next, CommandError> {
+        if command.needs_pivots() {
+            self.ensure_pivots(io)?;
+        }
         match command {
             Command::Load { scenario } => self.load(&scenario, text, io)?,
             Command::Scenarios => scenarios(io)?,
@@ -57,11 +64,25 @@ impl Session {
                 at,
                 width,
                 height,
-                bar,
-            } => self.plot(picture, &at, width, height, bar.as_deref(), io)?,
+                of,
+            } => self.plot(picture, &at, width, height, &of, io)?,
+            Command::Trace { name, to, through } => self.trace(&name, &to, through, io)?,
+            Command::Limit { name } => self.limit(&name, io)?,
+            Command::Sensitivity { parameter } => self.sensitivity(parameter.as_deref(), io)?,
+            Command::Stages { stage } => self.stages(stage, io)?,
+            Command::Sweep {
+                words,
+                out,
+                resume,
+                shard,
+            } => self.sweep(&words, out.as_deref(), resume, shard, io)?,
             Command::Source { file } => return script::source(self, &file, io),
             Command::Record { file } => self.record(&file, io)?,
             Command::Expect { words } => self.expect(&words, io)?,
+            Command::Export {
+                what: Export::Path,
+                file,
+            } => self.export_path(&file, io)?,
             Command::Export { what, file } => self.export(what, &file, io)?,
             Command::Echo { words } => io.say(&words.join(" "))?,
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
@@ -89,7 +110,7 @@ impl Session {
     ) -> Result<(), CommandError> {
         let before = self.now.clone();
         let news = !before.same_choice(&next);
-        self.enter(next, io)?;
+        self.enter(next, true, io)?;
         if news {
             self.undo.push(Change {
                 command: text.to_owned(),
@@ -101,10 +122,20 @@ impl Session {
         self.say_what_changed(notes, io)
     }
 
-    /// Makes `next` the present setup, with its answer.
-    fn enter(&mut self, mut next: Setup, io: &mut Output<'_>) -> Result<(), CommandError> {
+    /// Makes `next` the present setup, with its answer; `warm`: found from the present one where that pays.
+    fn enter(
+        &mut self,
+        mut next: Setup,
+        warm: bool,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let solved = if self.auto && !self.deferred {
-            Some(next.solve(io.watch)?)
+            let same_geometry = match (&self.now.prepared, &next.prepared) {
+                (Some(now), Some(next)) => Arc::ptr_eq(now, next),
+                _ => false,
+            };
+            let last = self.solved.clone().filter(|_| warm && same_geometry);
+            Some(next.solve_from(last, io.watch)?)
         } else {
             None
         };
@@ -113,7 +144,27 @@ impl Session {
         self.take_answer(solved);
         if !same_scenario {
             self.previous = None;
+            self.path = None;
         }
+        Ok(())
+    }
+
+    /// An answer found by a warm start has no pivots of its own: the cold run that has them takes its place.
+    fn ensure_pivots(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let Some(warm) = self.solved.clone() else {
+            return Ok(());
+        };
+        if warm.answer.start == Start::Cold {
+            return Ok(());
+        }
+        let cold = self.now.clone().solve(io.watch)?;
+        if !same_answer(&warm.answer, &cold.answer) && io.format == Format::Text {
+            let note = "the cold run ends in another answer than the one followed so far: there are several; the \
+                        one with these pivots is shown from here on";
+            let note = io.style.paint(Role::Warning, note);
+            writeln!(io.out, "{note}")?;
+        }
+        self.solved = Some(cold);
         Ok(())
     }
 
@@ -259,7 +310,7 @@ impl Session {
             return Err(CommandError::Refused("nothing to undo".into()));
         };
         let before = self.now.clone();
-        self.enter(change.setup, io)?;
+        self.enter(change.setup, false, io)?;
         self.undo.pop();
         let note = format!("undone: {}", change.command);
         self.redo.push(Change {
@@ -275,7 +326,7 @@ impl Session {
             return Err(CommandError::Refused("nothing to redo".into()));
         };
         let before = self.now.clone();
-        self.enter(change.setup, io)?;
+        self.enter(change.setup, false, io)?;
         self.redo.pop();
         let note = format!("done again: {}", change.command);
         self.undo.push(Change {

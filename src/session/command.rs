@@ -9,6 +9,8 @@ use std::path::PathBuf;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use thiserror::Error;
 
+use crate::path::grid::Shard;
+
 use super::words::{self, OpenQuote};
 
 /// One command with its arguments.
@@ -174,8 +176,77 @@ pub enum Command {
     #[command(after_help = "Example:\n  load beam-ray; ray")]
     Ray,
 
-    /// Draw a picture of the present state
-    #[command(after_help = "Example:\n  plot slip\n  plot force\n  plot structure")]
+    /// Follow the answer over a load or a friction coefficient: every breakpoint, exactly
+    ///
+    /// NAME is a load case, the parameter of one, or a friction parameter. A load is followed from its present factor
+    /// upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction up to the
+    /// target, or else to the end of the slider. `plot path` and `export path` show the way afterwards.
+    #[command(
+        after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through"
+    )]
+    Trace {
+        /// What to follow
+        #[arg(value_name = "TRACED")]
+        name: String,
+        /// `to` and the value to reach
+        #[arg(value_name = "to VALUE", num_args = 0..=2, allow_negative_numbers = true)]
+        to: Vec<String>,
+        /// Follow the path through turning points, where the load has to fall
+        #[arg(long)]
+        through: bool,
+    },
+    /// Find the limit of a load: its factor, the safety, how the structure collapses
+    #[command(after_help = "Example:\n  limit pull\n  limit F2")]
+    Limit {
+        /// Load case, or the parameter of one
+        #[arg(value_name = "LOAD")]
+        name: String,
+    },
+    /// Show what one more unit of a parameter does to forces and slips
+    #[command(after_help = "Example:\n  sensitivity\n  sensitivity f")]
+    Sensitivity {
+        /// Parameter; all of them if none is named
+        #[arg(value_name = "NAME")]
+        parameter: Option<String>,
+    },
+    /// Follow the load history of the scenario, with memory
+    ///
+    /// Each stage is followed breakpoint by breakpoint from where the one before ended; slips stay. With STAGE the
+    /// way through that stage and the pairs at its end are shown. `plot path` draws the loops.
+    #[command(after_help = "Example:\n  stages\n  stages 2\n  stages; plot path slip c6")]
+    Stages {
+        /// Number of a stage
+        #[arg(value_name = "STAGE")]
+        stage: Option<usize>,
+    },
+    /// Solve at every point of a grid of up to three parameters
+    ///
+    /// A range is A..B, with the number of points N after it (11 if left out). With `--out` the rows go to a .csv or
+    /// .json file as they come; Ctrl-C keeps what is done and `--resume` goes on from there.
+    #[command(
+        after_help = "Example:\n  sweep f 0..1 21\n  sweep f 0..1 F2 0..400 41 --out beam.csv"
+    )]
+    Sweep {
+        /// PARAMETER A..B [N], up to three times
+        #[arg(value_name = "SWEPT", required = true, allow_negative_numbers = true)]
+        words: Vec<String>,
+        /// File for the rows: .csv, or .json for one object a line
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+        /// Continue the file
+        #[arg(long, requires = "out")]
+        resume: bool,
+        /// Only part K of N
+        #[arg(long, value_name = "K/N")]
+        shard: Option<Shard>,
+    },
+
+    /// Draw a picture of the present state, or of the last path
+    ///
+    /// `plot path [slip|force|gap|pressure] [PAIRS]` draws what the last `trace` or `stages` followed.
+    #[command(
+        after_help = "Example:\n  plot slip\n  plot force\n  plot structure\n  trace F2; plot path force c6 c5"
+    )]
     Plot {
         /// What to draw
         #[arg(value_name = "PICTURE")]
@@ -189,9 +260,9 @@ pub enum Command {
         /// Lines of the picture
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(5..=500))]
         height: Option<u16>,
-        /// Bar, for moment, shear and axial
-        #[arg(value_name = "BAR")]
-        bar: Option<String>,
+        /// Bar, for moment, shear and axial; quantity and pairs, for path
+        #[arg(value_name = "OF")]
+        of: Vec<String>,
     },
 
     /// Go to the full screen, with this session; `q` there comes back
@@ -288,6 +359,32 @@ pub enum Command {
     Quit,
 }
 
+impl Command {
+    /// Whether it looks at the pivots or the final scheme of the run, which a warm start does not have.
+    pub(super) fn needs_pivots(&self) -> bool {
+        match self {
+            Command::Check { how } => how.is_some(),
+            Command::Plot { picture, at, .. } => {
+                matches!(picture, Picture::P | Picture::Path | Picture::Mode) || !at.is_empty()
+            }
+            Command::Pivots { .. }
+            | Command::Step { .. }
+            | Command::Why { .. }
+            | Command::Ties
+            | Command::Tableau
+            | Command::Compare
+            | Command::Enumerate { .. }
+            | Command::Ray
+            | Command::Trace { .. }
+            | Command::Limit { .. }
+            | Command::Sensitivity { .. }
+            | Command::Export { .. }
+            | Command::Expect { .. } => true,
+            _ => false,
+        }
+    }
+}
+
 /// What `plot` draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Picture {
@@ -311,6 +408,8 @@ pub enum Picture {
     Shear,
     /// Normal force along a bar
     Axial,
+    /// Slip or force over the load, friction or history that was followed last
+    Path,
 }
 
 /// The word of `check exact`.
@@ -335,6 +434,8 @@ pub enum Export {
     Reactions,
     /// The whole result as `solve --format json` prints it
     Result,
+    /// What the last `trace` or `stages` followed
+    Path,
 }
 
 /// The word of `restore discard`.

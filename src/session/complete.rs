@@ -28,6 +28,8 @@ pub struct Vocabulary {
     pub nodes: Vec<String>,
     /// Bar ids.
     pub bars: Vec<String>,
+    /// Load cases.
+    pub cases: Vec<String>,
 }
 
 /// One way to go on.
@@ -74,6 +76,17 @@ impl Session {
             pairs,
             nodes,
             bars,
+            cases: match &self.scenario().source {
+                Source::Structure(structure) => structure
+                    .load_cases
+                    .iter()
+                    .map(|case| case.name.clone())
+                    .collect(),
+                Source::ContactSystem(system) => {
+                    system.loads.iter().map(|load| load.name.clone()).collect()
+                }
+                Source::Lcp(_) => Vec::new(),
+            },
         }
     }
 }
@@ -387,6 +400,30 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             },
             _ => Vec::new(),
         },
+        "TRACED" | "LOAD" => {
+            let mut all = parameters();
+            all.extend(
+                vocabulary
+                    .cases
+                    .iter()
+                    .map(|case| candidate(case, "load case")),
+            );
+            all
+        }
+        "to VALUE" => match given {
+            [_] => fixed(&["to"]),
+            _ => Vec::new(),
+        },
+        "NAME" | "SWEPT" => parameters(),
+        "OF" => match given.first().map(String::as_str) {
+            Some("path") => {
+                let mut all = plain(&vocabulary.pairs);
+                all.extend(fixed(&["slip", "force", "gap", "pressure"]));
+                all
+            }
+            Some("moment" | "shear" | "axial") => plain(&vocabulary.bars),
+            _ => Vec::new(),
+        },
         "PAIR" => plain(&vocabulary.pairs),
         "PAIRS" => match given.last().map(String::as_str) {
             Some("sort") => fixed(SORT_KEYS),
@@ -456,6 +493,7 @@ mod tests {
             pairs: vec!["c1".into(), "c2".into(), "joint[0]".into()],
             nodes: vec!["A".into(), "B".into()],
             bars: vec!["AB".into()],
+            cases: vec!["pull".into()],
         }
     }
 
@@ -481,7 +519,10 @@ mod tests {
         assert_eq!(at_end("plot sl"), ["slip"]);
         assert_eq!(at_end("plot slip --w"), ["--width"]);
         assert_eq!(at_end("plot slip --at f"), ["first", "first,last"]);
-        assert_eq!(at_end("help se"), ["set"]);
+        assert_eq!(at_end("help se"), ["sensitivity", "set"]);
+        assert_eq!(at_end("trace p"), ["pull"]);
+        assert_eq!(at_end("trace pull t"), ["to"]);
+        assert_eq!(at_end("plot path fo"), ["force"]);
         assert_eq!(at_end("load beam-r"), ["beam-ray"]);
         assert_eq!(at_end("set f 0.3; wh"), ["why"]);
         assert_eq!(at_end("reset co"), ["covering"]);

@@ -28,7 +28,7 @@ impl Session {
             Export::Displacements => shown.displacements.is_none(),
             Export::Members => shown.members.is_none(),
             Export::Reactions => shown.reactions.is_none(),
-            Export::Pairs | Export::Pivots | Export::Result => false,
+            Export::Pairs | Export::Pivots | Export::Result | Export::Path => false,
         };
         if missing {
             let word = match what {

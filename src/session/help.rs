@@ -34,6 +34,10 @@ pub const GROUPS: &[(&str, &[&str])] = &[
     ),
     ("pivots", &["pivots", "step", "why", "ties", "tableau"]),
     ("trouble", &["ray", "compare", "enumerate", "critical"]),
+    (
+        "paths",
+        &["sweep", "trace", "limit", "sensitivity", "stages"],
+    ),
     ("pictures", &["plot", "tui"]),
     (
         "scripts",

@@ -12,6 +12,7 @@ mod exports;
 pub mod help;
 pub mod journal;
 mod output;
+pub mod paths;
 mod plots;
 mod questions;
 mod record;
@@ -36,6 +37,7 @@ use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolut
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
+use crate::path::record::PathRecord;
 pub use crate::solve::Solved;
 use crate::solve::{self, PrepareError, Prepared};
 use crate::watch::Watch;
@@ -105,6 +107,8 @@ pub struct Session {
     trouble: Option<OutcomeKind>,
     /// Depth of nested scripts.
     depth: usize,
+    /// What the last `trace` or `stages` followed.
+    path: Option<Arc<PathRecord>>,
 }
 
 impl Session {
@@ -158,6 +162,7 @@ impl Session {
             last_error: None,
             trouble: None,
             depth: 0,
+            path: None,
         };
         session.take_answer(Some(solved));
         Ok(session)
@@ -260,6 +265,11 @@ impl Session {
             Some(step) => solved.plain_at(step),
             None => solved.answer.solution.clone(),
         }
+    }
+
+    /// What the last `trace` or `stages` followed.
+    pub fn path(&self) -> Option<Arc<PathRecord>> {
+        self.path.clone()
     }
 
     /// The commands given so far.
@@ -438,8 +448,17 @@ impl Setup {
         }
     }
 
-    /// Solves, preparing the geometry if that was not done yet.
+    /// Solves cold, preparing the geometry if that was not done yet.
     fn solve(&mut self, watch: &dyn Watch) -> Result<Arc<Solved>, CommandError> {
+        self.solve_from(None, watch)
+    }
+
+    /// Solves, from the `last` answer of the same geometry where there is one and that pays.
+    fn solve_from(
+        &mut self,
+        last: Option<Arc<Solved>>,
+        watch: &dyn Watch,
+    ) -> Result<Arc<Solved>, CommandError> {
         let scenario = Arc::clone(&self.scenario);
         let prepared = self.prepared.clone();
         let (values, rules) = (self.values.clone(), self.rules);
@@ -453,15 +472,17 @@ impl Setup {
                     },
                 )?),
             };
-            let solved = prepared
-                .solve(&scenario, &values, rules, watch)
-                .map_err(|error| {
-                    if error.is_interrupted() {
-                        CommandError::Interrupted
-                    } else {
-                        CommandError::Solve(error.to_string())
-                    }
-                })?;
+            let solved = match last {
+                Some(last) => prepared.solve_from(&last, &scenario, &values, rules, watch),
+                None => prepared.solve(&scenario, &values, rules, watch),
+            };
+            let solved = solved.map_err(|error| {
+                if error.is_interrupted() {
+                    CommandError::Interrupted
+                } else {
+                    CommandError::Solve(error.to_string())
+                }
+            })?;
             Ok::<_, CommandError>((prepared, Arc::new(solved)))
         })??;
         self.prepared = Some(prepared);

@@ -18,14 +18,14 @@ const HEIGHT: usize = 14;
 const STRUCTURE_HEIGHT: usize = 20;
 
 impl Session {
-    /// `plot PICTURE [BAR] [--at PIVOTS] [--width N] [--height N]`.
+    /// `plot PICTURE [OF] [--at PIVOTS] [--width N] [--height N]`.
     pub(super) fn plot(
         &self,
         picture: Picture,
         at: &[String],
         width: Option<u16>,
         height: Option<u16>,
-        bar: Option<&str>,
+        of: &[String],
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let saved = io.style;
@@ -33,10 +33,15 @@ impl Session {
             io.style.width = usize::from(width);
         }
         let height = height.map(usize::from);
-        let is_diagram = matches!(picture, Picture::Moment | Picture::Shear | Picture::Axial);
-        let result = if let Some(bar) = bar.filter(|_| !is_diagram) {
+        let most = match picture {
+            Picture::Moment | Picture::Shear | Picture::Axial => 1,
+            Picture::Path => usize::MAX,
+            _ => 0,
+        };
+        let bar = of.first().map(String::as_str);
+        let result = if let Some(word) = of.get(most) {
             Err(CommandError::Refused(format!(
-                "plot: `{bar}` makes no sense here; a bar belongs to moment, shear and axial"
+                "plot: `{word}` makes no sense here; a bar belongs to moment, shear and axial, pairs to path"
             )))
         } else {
             match picture {
@@ -48,6 +53,7 @@ impl Session {
                     "plot: `--at` belongs to slip, force, gap and pressure; use `step` for the others".into(),
                 )),
                 Picture::P => self.plot_p(height, io),
+                Picture::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
                 Picture::Structure => self.plot_structure(height, io),
                 Picture::Mode => self.plot_mode(height, io),
                 Picture::Moment => self.plot_diagram(Force::Moment, bar, height, io),

@@ -208,6 +208,7 @@ impl Prepared {
             },
             ray: None,
             cycled: false,
+            kept: None,
             told: String::new(),
         })
     }
@@ -487,6 +488,7 @@ pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], like: &Answer) -> 
         },
         ray: None,
         cycled: false,
+        kept: None,
         told: String::new(),
     }
 }

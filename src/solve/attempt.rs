@@ -8,6 +8,7 @@ use crate::lcp::driver::{Engine, run};
 use crate::lcp::lemke::SchemeEngine;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
+use crate::lcp::parametric::Parametric;
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::trace::Pivot;
 use crate::lcp::vertex::{Basis, direction, vertex};
@@ -19,10 +20,19 @@ pub const PIVOT_LIMIT: usize = 200_000;
 /// Runs the working-scheme engine; the last vertex and a ray are computed afresh from the data where the equations
 /// of the last basis allow it.
 pub fn run_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> Run {
+    keep_scheme(lcp, rule, watch).0
+}
+
+/// As [`run_scheme`], with the dictionary of the answer, ready to be followed along a change of the load.
+pub(super) fn keep_scheme(
+    lcp: &Arc<MirroredLcp>,
+    rule: TieRule,
+    watch: &dyn Watch,
+) -> (Run, Option<Parametric>) {
     let mut engine = SchemeEngine::new(Arc::clone(lcp), rule);
     let mut run = watched(&mut engine, "Lemke", watch);
     polish(lcp, &mut run);
-    run
+    (run, engine.into_parametric())
 }
 
 /// Steps an engine to its end; `watch` hears of its progress and may stop it.

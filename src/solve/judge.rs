@@ -213,6 +213,9 @@ fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
     Some(a.into_iter().map(|row| row[n..].to_vec()).collect())
 }
 
+/// A row of the LCP: Σ factor·λ_joint as (joint, factor), what is added, and the joint of its z (negated or not).
+type ExactRow = (Vec<(usize, BigRational)>, BigRational, usize, bool);
+
 fn exact_lcp(
     system: &ContactSystem,
     numbers: &ContactNumbers,
@@ -231,7 +234,7 @@ fn exact_lcp(
         })
         .collect();
     // Each row of the LCP as Σ factor·λ_joint + fixed, and the joint and sign of its z.
-    let rows: Vec<(Vec<(usize, BigRational)>, BigRational, usize, bool)> = contact
+    let rows: Vec<ExactRow> = contact
         .rows
         .iter()
         .map(|row| {

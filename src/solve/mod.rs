@@ -8,6 +8,7 @@ pub mod judge;
 pub mod numbers;
 pub mod plain_answers;
 pub mod prepared;
+pub mod resume;
 pub mod retry;
 pub mod solved;
 pub mod warm;

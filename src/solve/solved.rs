@@ -1,19 +1,21 @@
 //! One solved state, and every working scheme on the way to it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use nalgebra::DVector;
 
-use super::attempt::{kind, run_scheme};
+use super::attempt::{keep_scheme, kind, run_scheme};
 use super::judge::{EXACT_PAIRS, EXACT_ROWS, run_exact_contact, run_exact_plain, run_tableau};
 use super::prepared::{Geometry, Prepared};
+use super::resume::Seat;
 use super::retry::solve_plain_judged;
+use super::warm::Kept;
 use crate::answer::check::{check_contact, check_plain};
 use crate::answer::pairs::{JointState, joint_state, pair_states};
 use crate::answer::record::{
     Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState,
-    PlainSolution, Reaction, Size, Timings, Verdict,
+    PlainSolution, Reaction, Size, Start, Timings, Verdict,
 };
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
@@ -74,6 +76,10 @@ impl SolveError {
 
 /// The numbers behind an answer: what is needed to look at any pivot of its run.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one for each solved state, never in lists"
+)]
 pub enum Trace {
     /// Of a contact problem.
     Contact {
@@ -110,6 +116,8 @@ pub struct Solved {
     pub(super) told: String,
     /// Whether the run came back to a basis it had met.
     pub cycled: bool,
+    /// The dictionary of the answer, for the next change; contact problems under the default engine only.
+    pub(super) kept: Option<Seat>,
 }
 
 impl Prepared {
@@ -176,8 +184,13 @@ impl Prepared {
         let start = Instant::now();
         let contact = contact_lcp(system, numbers, rules.covering)?;
         let rule = contact.tie_rule(rules.tie_break);
+        let mut engine = None;
         let mut run = match rules.engine {
-            Engine::Scheme => run_scheme(&contact.lcp, rule, watch),
+            Engine::Scheme => {
+                let (run, kept) = keep_scheme(&contact.lcp, rule, watch);
+                engine = kept;
+                run
+            }
             Engine::Tableau => run_tableau(&contact.lcp, rule, watch),
             Engine::Exact => {
                 if system.pairs.len() > EXACT_PAIRS {
@@ -223,6 +236,10 @@ impl Prepared {
         if answer.is_answer() {
             self.complete(&mut answer, system, numbers, factors, &state);
         }
+        let kept = engine
+            .filter(|_| answer.is_answer())
+            .map(|engine| Kept::new(engine, contact.clone(), numbers.clone()))
+            .map(|kept| Arc::new(Mutex::new(Some(kept))));
         let refused = answer.outcome == OutcomeKind::CheckFailed;
         let cycled = run.outcome == Outcome::Cycle;
         let trace = Trace::Contact {
@@ -237,6 +254,7 @@ impl Prepared {
             trace,
             ray,
             cycled,
+            kept,
             told: String::new(),
         };
         if refused {
@@ -442,6 +460,7 @@ pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer 
         solution: None,
         size,
         timings: Timings::default(),
+        start: Start::Cold,
         notes: Vec::new(),
         failure,
     }
@@ -517,6 +536,7 @@ pub(super) fn attempt_plain(
         ray: None,
         cycled,
         told: String::new(),
+        kept: None,
     })
 }
 

@@ -1,104 +1,207 @@
-//! Warm start after a change of loads: the last answer followed along the change in a kept dictionary.
+//! Warm start: the last answer followed along a change of its numbers in a kept dictionary (theory §5).
+//!
+//! Loads, gaps, cohesions and bounds only move q: the answer is followed along the change, pivot by pivot. Friction
+//! is in the matrix: the dictionary stays that of the friction it was built for, and the difference of the bounds,
+//! Δf x_n, stands in as an extra cohesion until the scheme holds, then the scheme is solved for the new friction.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crate::contact::complementarity::{ContactLcp, contact_lcp};
-use crate::contact::load_path::{is_answer, order, path_lcp};
+use crate::contact::complementarity::{ContactLcp, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
+use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
-use crate::lcp::vertex::{Basis, vertex};
-use crate::model::rules::Covering;
+use crate::model::pair::Law;
 use crate::watch::Watch;
 
 /// A path with more pivots than this is no shorter than a cold run.
 const PIVOTS: usize = 2_000;
+/// Friction that moves further than this from that of the dictionary is solved cold.
+const FRICTION_REACH: f64 = 0.25;
+/// So often the extra cohesion is set anew before the cold start takes over.
+const ROUNDS: usize = 8;
 
-/// The dictionary of an answer, kept for the next change of loads.
+/// The dictionary of an answer, kept for the next change.
 #[derive(Clone, Debug)]
 pub struct Kept {
     engine: Parametric,
-    /// The numbers it stands at.
+    /// The LCP the dictionary was built for: matrix, units, rows.
+    contact: ContactLcp,
+    /// Where it stands now: load, gap, cohesion, bound; its friction is that of the matrix.
     numbers: ContactNumbers,
+    /// Extra cohesion per pair that stands in for a change of friction.
+    extra: Vec<f64>,
 }
 
 /// An answer found from the last one.
 #[derive(Clone, Debug)]
-pub struct WarmAnswer {
-    /// The LCP of the new numbers, under the covering asked for.
-    pub contact: ContactLcp,
-    /// The final scheme.
-    pub basis: Basis,
-    /// Its vertex, computed afresh from the data; dimensionless, in the units of `contact`.
+pub struct WarmPoint {
+    /// All variables, dimensionless in the units of the kept LCP.
     pub point: Point,
+    /// User's length = dimensionless × this.
+    pub length_unit: f64,
     /// Pivots on the way.
     pub pivots: usize,
 }
 
-/// Whether only the loads differ.
-fn same_laws(a: &ContactNumbers, b: &ContactNumbers) -> bool {
-    a.friction == b.friction && a.cohesion == b.cohesion && a.gap == b.gap && a.bound == b.bound
-}
+impl Kept {
+    /// Keeps the dictionary of an answer just found.
+    pub fn new(engine: Parametric, contact: ContactLcp, numbers: ContactNumbers) -> Kept {
+        let extra = vec![0.0; numbers.friction.len()];
+        Kept {
+            engine,
+            contact,
+            numbers,
+            extra,
+        }
+    }
 
-/// Follows the answer `basis` of the numbers `from` to those of `to`, which differ in the load only.
-///
-/// `kept` holds the dictionary from one call to the next; it is used where it stands at `from`, built where it does
-/// not, and dropped where the path fails. `None`: solve cold (the laws differ, the path turns or ends in a limit
-/// before the target, the vertex at its end does not pass as an answer, or `watch` asked to stop). The caller runs
-/// the fresh check on what it makes of the answer.
-pub fn follow_load(
-    system: &ContactSystem,
-    from: &ContactNumbers,
-    basis: &Basis,
-    to: &ContactNumbers,
-    covering: Covering,
-    kept: &mut Option<Kept>,
-    watch: &dyn Watch,
-) -> Option<WarmAnswer> {
-    let last = kept.take();
-    if !same_laws(from, to) {
-        return None;
+    /// The LCP whose matrix can be shared by others of the same friction.
+    pub fn contact(&self) -> &ContactLcp {
+        &self.contact
     }
-    let increment = &to.load - &from.load;
-    let path = path_lcp(system, from, &increment);
-    let mut engine = match last {
-        Some(kept) if kept.numbers == *from && kept.engine.basis() == *basis => {
-            let mut engine = kept.engine;
-            engine.reload(Arc::clone(&path.lcp)).then_some(engine)?
+
+    /// q per primary row and b per mirrored row for the given numbers, with the friction of the matrix.
+    fn right_side(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        extra: &[f64],
+    ) -> (Vec<f64>, Vec<f64>) {
+        let load = load_with_gaps(system, numbers);
+        let unit = self.contact.force_unit;
+        let size = self.contact.lcp.size();
+        let (mut q, mut constants) = (vec![0.0; size], vec![0.0; size]);
+        for (i, pair) in system.pairs.iter().enumerate() {
+            if let Some(row) = self.contact.normal_row[i] {
+                q[row] = load[i] / unit;
+            }
+            if let (Some(row), Some(joint)) = (self.contact.plus_row[i], pair.tangential) {
+                let given = match pair.law {
+                    Law::Bound { .. } => numbers.bound[i],
+                    _ => numbers.cohesion[i],
+                };
+                let constant = (given + extra[i]) / unit;
+                q[row] =
+                    load[joint] / unit + self.contact.friction[i] * (load[i] / unit) + constant;
+                constants[row] = 2.0 * constant;
+            }
         }
-        _ => Parametric::new(Arc::clone(&path.lcp), basis, order(&path))?,
-    };
-    let reach = Reach {
-        target: 1.0,
-        through: false,
-        pivots: PIVOTS,
-    };
-    let pivots = engine.walk(reach, &mut |_| {
-        if watch.stop() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    });
-    let (End::Target, pivots) = pivots else {
-        return None;
-    };
-    let basis = engine.basis();
-    let contact = contact_lcp(system, to, covering).ok()?;
-    if !is_answer(&contact.lcp, &basis) {
-        return None;
+        (q, constants)
     }
-    let point = vertex(&contact.lcp, &basis)?;
-    *kept = Some(Kept {
-        engine,
-        numbers: to.clone(),
-    });
-    Some(WarmAnswer {
-        contact,
-        basis,
-        point,
-        pivots,
-    })
+
+    /// Follows the answer to other numbers and extra cohesions; `None` where the path does not get there.
+    fn walk(
+        &mut self,
+        system: &ContactSystem,
+        to: &ContactNumbers,
+        extra: &[f64],
+        watch: &dyn Watch,
+    ) -> Option<usize> {
+        let (from_q, from_b) = self.right_side(system, &self.numbers, &self.extra);
+        let (to_q, to_b) = self.right_side(system, to, extra);
+        let mut lcp = MirroredLcp::clone(&self.contact.lcp);
+        for row in 0..lcp.size() {
+            lcp.q[row] = from_q[row];
+            lcp.covering[row] = to_q[row] - from_q[row];
+            if let Some(mirror) = &mut lcp.mirrors[row] {
+                mirror.constant = from_b[row];
+                mirror.covering = to_b[row] - from_b[row];
+            }
+        }
+        if !self.engine.reload(Arc::new(lcp)) {
+            return None;
+        }
+        let reach = Reach {
+            target: 1.0,
+            through: false,
+            pivots: PIVOTS,
+        };
+        let (end, pivots) = self.engine.walk(reach, &mut |_| {
+            if watch.stop() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        if end != End::Target {
+            return None;
+        }
+        self.numbers = to.clone();
+        self.extra = extra.to_vec();
+        Some(pivots)
+    }
+
+    /// Values per pair on the primary rows of x⁺, divided by `unit`.
+    fn per_row(&self, per_pair: &[f64], unit: f64) -> Vec<f64> {
+        let mut rows = vec![0.0; self.contact.lcp.size()];
+        for (value, row) in per_pair.iter().zip(&self.contact.plus_row) {
+            if let Some(row) = row {
+                rows[*row] = value / unit;
+            }
+        }
+        rows
+    }
+
+    /// The answer for other numbers of the same system. `None`: solve cold (friction moved too far, the path turns or
+    /// ends before the target, no scheme held, or `watch` asked to stop); what was kept is of no use then. The caller
+    /// runs the fresh check on what it makes of the answer.
+    pub fn follow(
+        &mut self,
+        system: &ContactSystem,
+        to: &ContactNumbers,
+        watch: &dyn Watch,
+    ) -> Option<WarmPoint> {
+        let length_unit = self.contact.length_unit;
+        let change: Vec<f64> = to
+            .friction
+            .iter()
+            .zip(&self.contact.friction)
+            .map(|(to, from)| to - from)
+            .collect();
+        if change
+            .iter()
+            .zip(&to.friction)
+            .any(|(change, f)| change.abs() > FRICTION_REACH * f)
+        {
+            return None;
+        }
+        if change.iter().all(|change| *change == 0.0) {
+            let none = vec![0.0; change.len()];
+            let pivots = self.walk(system, to, &none, watch)?;
+            return Some(WarmPoint {
+                point: self.engine.point(),
+                length_unit,
+                pivots,
+            });
+        }
+        let change_rows = self.per_row(&change, 1.0);
+        let mut extra = self.extra.clone();
+        let mut pivots = 0;
+        for _ in 0..ROUNDS {
+            pivots += self.walk(system, to, &extra, watch)?;
+            let unit = self.contact.force_unit;
+            let extra_rows = self.per_row(&extra, unit);
+            if let Some(point) = self.engine.at_friction(&change_rows, &extra_rows) {
+                return Some(WarmPoint {
+                    point,
+                    length_unit,
+                    pivots,
+                });
+            }
+            let point = self.engine.point();
+            let next: Vec<f64> = change
+                .iter()
+                .zip(&self.contact.normal_row)
+                .map(|(change, row)| row.map_or(0.0, |row| change * point.w[row].max(0.0) * unit))
+                .collect();
+            if next == extra {
+                return None;
+            }
+            extra = next;
+        }
+        None
+    }
 }

@@ -189,6 +189,7 @@ mod tests {
             pairs: vec!["c1".into(), "c2".into()],
             nodes: Vec::new(),
             bars: Vec::new(),
+            cases: Vec::new(),
         }
     }
 

@@ -162,6 +162,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         },
         pairs,
         timings: Timings::default(),
+        start: crate::answer::record::Start::Cold,
         notes: Vec::new(),
         failure: None,
     }

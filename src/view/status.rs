@@ -7,7 +7,7 @@ use unicode_width::UnicodeWidthStr;
 use super::number::{residual, short, with_unit};
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
-use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, State, Verdict};
+use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, Start, State, Verdict};
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::{Scenario, Source, Units};
 
@@ -42,8 +42,14 @@ pub fn verdict_word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// `5 pivots`, `1 pivot`, `no pivot`.
+/// `5 pivots`, `1 pivot`, `no pivot`; `warm start, 2 changes` where the last answer was followed.
 pub fn pivot_count(answer: &Answer) -> String {
+    if let Start::Warm { changes } = answer.start {
+        return match changes {
+            1 => "warm start, 1 change".into(),
+            changes => format!("warm start, {changes} changes"),
+        };
+    }
     match answer.pivots.len() {
         0 => "no pivot".into(),
         1 => "1 pivot".into(),

@@ -19,7 +19,7 @@ use stickslip::lcp::vertex::Basis;
 use stickslip::model::pair::Law;
 use stickslip::model::parameter::Number;
 use stickslip::model::rules::{Covering, TieBreak};
-use stickslip::solve::warm::follow_load;
+use stickslip::solve::warm::Kept;
 use stickslip::watch::Quiet;
 
 /// R = A Aᵀ / n + I; with `ties` the entries of A and the loads are small integers.
@@ -74,7 +74,7 @@ fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, 
     (system, numbers)
 }
 
-fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64>) {
+fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64>, Kept) {
     let contact = contact_lcp(system, numbers, Covering::Cohesive).expect("covers all");
     let rule = contact.tie_rule(TieBreak::Lexicographic);
     let mut engine = SchemeEngine::new(Arc::clone(&contact.lcp), rule);
@@ -84,7 +84,9 @@ fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64
         Outcome::Trivial | Outcome::Normal { .. }
     ));
     let z = contact.joint_displacements(system, &run.point.z) * contact.length_unit;
-    (Basis::after(&run.pivots), z)
+    let basis = Basis::after(&run.pivots);
+    let engine = engine.into_parametric().expect("stands on an answer");
+    (basis, z, Kept::new(engine, contact, numbers.clone()))
 }
 
 #[test]
@@ -98,8 +100,7 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
             // Start from nothing: everything degenerate where there are no gaps.
             numbers.load.fill(0.0);
         }
-        let (mut basis, _) = cold(&system, &numbers);
-        let mut kept = None;
+        let (mut basis, _, mut kept) = cold(&system, &numbers);
         for step in 0..4 {
             let mut next = numbers.clone();
             next.load = DVector::from_fn(2 * m, |_, _| {
@@ -124,7 +125,7 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
             for knot in path.knots.iter().skip(1) {
                 let mut there = numbers.clone();
                 there.load += knot.t * &increment;
-                let (_, z) = cold(&system, &there);
+                let (_, z, _) = cold(&system, &there);
                 let error = (z_of(&knot.point.z) - &z).amax();
                 // z_τ of pairs that just touch without force may be anything.
                 assert!(
@@ -133,22 +134,49 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
                     knot.t
                 );
             }
-            let warm = follow_load(
-                &system,
-                &numbers,
-                &basis,
-                &next,
-                Covering::Cohesive,
-                &mut kept,
-                &Quiet,
-            )
-            .expect("a way");
-            let (_, z) = cold(&system, &next);
-            let found =
-                warm.contact.joint_displacements(&system, &warm.point.z) * warm.contact.length_unit;
+            let warm = kept.follow(&system, &next, &Quiet).expect("a way");
+            let (_, z, _) = cold(&system, &next);
+            let found = contact.joint_displacements(&system, &warm.point.z) * warm.length_unit;
             assert!((&found - &z).amax() <= 1e-11, "problem {k}.{step}");
-            basis = warm.basis;
+            basis = engine.basis();
             numbers = next;
         }
     }
+}
+
+/// A change of friction by up to 10 %, alone and with a change of load, in a kept dictionary of the old friction.
+#[test]
+fn warm_starts_follow_friction_to_the_answers_of_cold_runs() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let (mut followed, mut all) = (0, 0);
+    for k in 0..400 {
+        let m = 1 + k % 14;
+        let (system, mut numbers) = random_system(&mut rng, m, k % 3 == 0);
+        let (_, _, mut kept) = cold(&system, &numbers);
+        for step in 0..6 {
+            let factor = rng.random_range(0.97..1.03);
+            for f in &mut numbers.friction {
+                *f *= factor;
+            }
+            if step % 2 == 1 {
+                for load in numbers.load.iter_mut() {
+                    *load += rng.random_range(-0.05..0.05);
+                }
+            }
+            let (_, z, fresh) = cold(&system, &numbers);
+            all += 1;
+            match kept.follow(&system, &numbers, &Quiet) {
+                Some(warm) => {
+                    followed += 1;
+                    let contact = fresh.contact();
+                    let found =
+                        contact.joint_displacements(&system, &warm.point.z) * warm.length_unit;
+                    assert!((&found - &z).amax() <= 1e-10, "problem {k}.{step}");
+                }
+                None => kept = fresh,
+            }
+        }
+    }
+    // Most small changes can be followed; the others are solved cold.
+    assert!(followed * 10 >= all * 9, "{followed} of {all}");
 }

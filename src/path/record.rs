@@ -1,0 +1,157 @@
+//! A followed path as data: for plots and files, whatever was followed.
+
+use serde::Serialize;
+
+use super::friction::FrictionPath;
+use super::load::LoadPath;
+use super::stages::History;
+use crate::answer::record::PairState;
+
+/// What was followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Followed {
+    /// A load case or load parameter.
+    Load,
+    /// A friction parameter.
+    Friction,
+    /// The stages of the scenario.
+    Stages,
+}
+
+/// A place on a path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PathPlace {
+    /// Stage, from 1; null where there are none.
+    pub stage: Option<usize>,
+    /// Value of what was followed; in a stage the part of it that is done, 0 … 1.
+    pub value: f64,
+    /// Factor of every load case; empty on a friction path.
+    pub factors: Vec<f64>,
+    /// What changes here, in words; empty where nothing does.
+    pub change: String,
+    /// The pairs.
+    pub pairs: Vec<PairState>,
+}
+
+/// A path: between places everything is affine in the load (on a friction path only nearly so).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PathRecord {
+    /// What was followed.
+    pub followed: Followed,
+    /// Its name; `stages` for stages.
+    pub name: String,
+    /// Names of the load cases; empty on a friction path.
+    pub cases: Vec<String>,
+    /// The places, in order.
+    pub places: Vec<PathPlace>,
+    /// How it ended, in a sentence.
+    pub end: String,
+}
+
+impl PathRecord {
+    /// Of a load path; `cases` are the names of all load cases.
+    pub fn of_load(path: &LoadPath, cases: &[String]) -> PathRecord {
+        let places = path
+            .factors
+            .iter()
+            .zip(&path.pairs)
+            .enumerate()
+            .map(|(knot, (&value, pairs))| PathPlace {
+                stage: None,
+                value,
+                factors: path.case_factors(value),
+                change: path
+                    .breakpoints
+                    .iter()
+                    .find(|breakpoint| breakpoint.knot == knot)
+                    .map_or(String::new(), |breakpoint| breakpoint.sentence.clone()),
+                pairs: pairs.clone(),
+            })
+            .collect();
+        PathRecord {
+            followed: Followed::Load,
+            name: path.parameter.name.clone(),
+            cases: cases.to_vec(),
+            places,
+            end: path.end_sentence(),
+        }
+    }
+
+    /// Of a friction path.
+    pub fn of_friction(path: &FrictionPath) -> PathRecord {
+        let mut last = None;
+        let places = path
+            .samples
+            .iter()
+            .map(|(value, pairs)| {
+                let at_break = path
+                    .breakpoints
+                    .iter()
+                    .find(|breakpoint| breakpoint.value == *value && last != Some(*value));
+                last = Some(*value);
+                PathPlace {
+                    stage: None,
+                    value: *value,
+                    factors: Vec::new(),
+                    change: at_break.map_or(String::new(), |at| at.sentence.clone()),
+                    pairs: pairs.clone(),
+                }
+            })
+            .collect();
+        PathRecord {
+            followed: Followed::Friction,
+            name: path.name.clone(),
+            cases: Vec::new(),
+            places,
+            end: path.end_sentence(),
+        }
+    }
+
+    /// Of a history.
+    pub fn of_history(history: &History) -> PathRecord {
+        let places = history
+            .stages
+            .iter()
+            .enumerate()
+            .flat_map(|(index, stage)| {
+                stage.moments.iter().map(move |moment| PathPlace {
+                    stage: Some(index + 1),
+                    value: moment.t,
+                    factors: moment.factors.clone(),
+                    change: moment.sentence.clone(),
+                    pairs: moment.pairs.clone(),
+                })
+            })
+            .collect();
+        PathRecord {
+            followed: Followed::Stages,
+            name: "stages".to_owned(),
+            cases: history.cases.clone(),
+            places,
+            end: history.end_sentence(),
+        }
+    }
+
+    /// Index of the case that a plot of a history has as abscissa: the one whose factor wanders farthest.
+    pub fn widest_case(&self) -> Option<usize> {
+        let way = |case: usize| -> f64 {
+            self.places
+                .windows(2)
+                .map(|ends| (ends[1].factors[case] - ends[0].factors[case]).abs())
+                .sum()
+        };
+        (0..self.cases.len()).max_by(|&a, &b| way(a).total_cmp(&way(b)).then(b.cmp(&a)))
+    }
+
+    /// Abscissas of the places: the value followed, or the factor of a case.
+    pub fn abscissas(&self, case: Option<usize>) -> Vec<f64> {
+        self.places
+            .iter()
+            .map(|place| match case {
+                Some(case) => place.factors.get(case).copied().unwrap_or(place.value),
+                None => place.value,
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,606 @@
+//! `trace`, `limit`, `sensitivity`, `stages`, `sweep`, and what `plot path` and `export path` show of them.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::export::{atomic, path as path_export};
+use crate::path::friction::{self, is_friction};
+use crate::path::grid::{Axis, Grid, GridError, POINTS};
+use crate::path::limit;
+use crate::path::load::{self, LoadReach};
+use crate::path::record::PathRecord;
+use crate::path::sensitivity::sensitivity;
+use crate::path::stages;
+use crate::path::start::PathError;
+use crate::path::sweep::Sweep;
+use crate::path::sweep_file::{self, SweepFileError, run_to_file};
+use crate::solve::{Prepared, Solved};
+use crate::view;
+use crate::view::plot::zone::Quantity;
+use crate::watch::Watch;
+
+use super::command::did_you_mean;
+use super::{CommandError, Output, Session, Setup, worker};
+
+pub use crate::path::grid::Shard;
+pub use crate::path::sweep::{Done, Format};
+
+/// A table with more rows than this belongs in a file.
+const ROWS: usize = 2_000;
+/// Friction without a target and without a slider ends here.
+const FRICTION: f64 = 10.0;
+
+impl From<PathError> for CommandError {
+    fn from(error: PathError) -> Self {
+        match error {
+            PathError::Interrupted => CommandError::Interrupted,
+            error => CommandError::Refused(error.to_string()),
+        }
+    }
+}
+
+impl From<GridError> for CommandError {
+    fn from(error: GridError) -> Self {
+        CommandError::Refused(error.to_string())
+    }
+}
+
+impl From<SweepFileError> for CommandError {
+    fn from(error: SweepFileError) -> Self {
+        match error {
+            SweepFileError::Output(error) => CommandError::Output(error),
+            error => CommandError::Refused(error.to_string()),
+        }
+    }
+}
+
+/// What every path starts from.
+struct Ground {
+    setup: Setup,
+    prepared: Arc<Prepared>,
+    solved: Arc<Solved>,
+}
+
+impl Session {
+    /// The present setup, solved.
+    fn ground(&self, io: &mut Output<'_>) -> Result<Ground, CommandError> {
+        let mut setup = self.now.clone();
+        let solved = match (&self.solved, &setup.prepared) {
+            (Some(solved), Some(_)) => Arc::clone(solved),
+            _ => setup.solve(io.watch)?,
+        };
+        let prepared = setup.prepared.clone().ok_or_else(|| {
+            CommandError::Internal("a solved scenario has no prepared geometry".to_owned())
+        })?;
+        Ok(Ground {
+            setup,
+            prepared,
+            solved,
+        })
+    }
+
+    fn case_names(prepared: &Prepared) -> Vec<String> {
+        prepared
+            .cases
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect()
+    }
+
+    /// `trace NAME [to V] [--through]`.
+    pub(super) fn trace(
+        &mut self,
+        name: &str,
+        to: &[String],
+        through: bool,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let to =
+            match to {
+                [] => None,
+                [word, value] if word == "to" => Some(value.parse::<f64>().map_err(|_| {
+                    CommandError::Refused(format!("trace: `{value}` is no number"))
+                })?),
+                _ => {
+                    return Err(CommandError::Refused(
+                        "trace: expected `trace NAME` or `trace NAME to VALUE`".into(),
+                    ));
+                }
+            };
+        let ground = self.ground(io)?;
+        let units = self.now.scenario.units.clone();
+        let (prepared, solved) = (Arc::clone(&ground.prepared), ground.solved);
+        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
+        let what = name.to_owned();
+        let is_load = prepared.cases.iter().any(|(case, _)| *case == what);
+        if is_friction(&prepared, name) && !is_load {
+            let to = to.unwrap_or_else(|| {
+                let slider = scenario.parameters.get(name).and_then(|p| p.max);
+                let present = values.get(name).copied().unwrap_or_default();
+                slider
+                    .filter(|max| *max > present)
+                    .unwrap_or(FRICTION.max(2.0 * present))
+            });
+            let path = worker::run(io.watch, move |watch| {
+                friction::trace(
+                    &prepared,
+                    &scenario,
+                    &values,
+                    Some(&solved),
+                    &what,
+                    to,
+                    watch,
+                )
+            })??;
+            let record = PathRecord::of_friction(&path);
+            io.report(
+                || {
+                    json!({
+                        "parameter": path.name,
+                        "intervals": path.intervals.iter().map(|interval| json!({
+                            "from": interval.from,
+                            "to": interval.to,
+                            "states": interval.pairs.iter().map(|pair| (pair.id.clone(), json!(pair.state)))
+                                .collect::<serde_json::Map<_, _>>(),
+                        })).collect::<Vec<_>>(),
+                        "breakpoints": path.breakpoints.iter().map(|at| json!({
+                            "value": at.value, "changes": at.changes, "jump": at.jump, "sentence": at.sentence,
+                        })).collect::<Vec<_>>(),
+                        "end": record.end,
+                    })
+                },
+                |out, style| view::path::write_friction(out, &path, &units, style),
+            )?;
+            self.path = Some(Arc::new(record));
+            return Ok(());
+        }
+        let geometry = Arc::clone(&prepared);
+        let path = worker::run(io.watch, move |watch| {
+            let reach = LoadReach { to, through };
+            load::trace(
+                &prepared,
+                &scenario,
+                &values,
+                Some(&solved),
+                &what,
+                reach,
+                watch,
+            )
+        })??;
+        let record = PathRecord::of_load(&path, &Self::case_names(&geometry));
+        io.report(
+            || {
+                json!({
+                    "load": path.parameter.name,
+                    "start": path.start,
+                    "from_zero": path.from_zero,
+                    "breakpoints": path.breakpoints.iter().map(|at| json!({
+                        "factor": at.factor, "changes": at.changes, "sentence": at.sentence,
+                        "at_constant_load": at.at_constant_load,
+                    })).collect::<Vec<_>>(),
+                    "limit": path.limit(),
+                    "last": path.factors.last(),
+                    "end": record.end,
+                })
+            },
+            |out, style| view::path::write_load(out, &path, &units, style),
+        )?;
+        self.path = Some(Arc::new(record));
+        Ok(())
+    }
+
+    /// `limit LOAD`.
+    pub(super) fn limit(&mut self, name: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let ground = self.ground(io)?;
+        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
+        let cases = Self::case_names(&ground.prepared);
+        let what = name.to_owned();
+        let found = worker::run(io.watch, move |watch| {
+            let Ground {
+                prepared, solved, ..
+            } = &ground;
+            limit::limit(prepared, &scenario, &values, Some(solved), &what, watch)
+        })??;
+        let unit = self
+            .now
+            .scenario
+            .parameters
+            .get(name)
+            .and_then(|parameter| parameter.unit.clone());
+        io.report(
+            || {
+                json!({
+                    "load": name,
+                    "limit": found.factor,
+                    "present": found.present,
+                    "safety": found.safety,
+                    "collapse": found.collapse,
+                    "confirmed": found.confirmed,
+                    "end": found.path.end_sentence(),
+                })
+            },
+            |out, style| view::path::write_limit(out, &found, unit.as_deref(), style),
+        )?;
+        self.path = Some(Arc::new(PathRecord::of_load(&found.path, &cases)));
+        Ok(())
+    }
+
+    /// `sensitivity [PARAMETER]`.
+    pub(super) fn sensitivity(
+        &mut self,
+        parameter: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        if let Some(name) = parameter
+            && !self.now.values.contains_key(name)
+        {
+            return Err(super::values::unknown_parameter(name, &self.now.scenario).into());
+        }
+        let ground = self.ground(io)?;
+        let found = sensitivity(
+            &ground.prepared,
+            &self.now.scenario,
+            &ground.solved,
+            &self.now.values,
+        )?;
+        io.report(
+            || json!(found),
+            |out, style| view::sensitivity::write(out, &found, parameter, style),
+        )?;
+        Ok(())
+    }
+
+    /// `stages [STAGE]`.
+    pub(super) fn stages(
+        &mut self,
+        stage: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let ground = self.ground(io)?;
+        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
+        let history = worker::run(io.watch, move |watch| {
+            stages::follow(&ground.prepared, &scenario, &values, watch)
+        })??;
+        let record = Arc::new(PathRecord::of_history(&history));
+        let index = match stage {
+            None => None,
+            Some(number) if (1..=history.stages.len()).contains(&number) => Some(number - 1),
+            Some(number) => {
+                return Err(CommandError::Refused(format!(
+                    "no stage {number}: there are stages 1 to {}",
+                    history.stages.len()
+                )));
+            }
+        };
+        let units = &self.now.scenario.units;
+        io.report(
+            || {
+                json!({
+                    "cases": history.cases,
+                    "stages": history.stages.iter().map(|stage| json!({
+                        "pivots": stage.pivots,
+                        "factors": stage.moments.last().map(|end| &end.factors),
+                        "slip_increment": stage.slip,
+                        "dissipated": stage.dissipated,
+                        "work": stage.energy.map(|energy| energy.work),
+                        "stored": stage.energy.map(|energy| energy.stored),
+                        "balance": stage.energy.map(|energy| energy.residual),
+                        "changes": stage.moments.iter().filter(|at| !at.changes.is_empty()).map(|at| json!({
+                            "done": at.t, "factors": at.factors, "changes": at.changes,
+                            "sentence": at.sentence, "jump": at.jump,
+                        })).collect::<Vec<_>>(),
+                        "pairs": stage.moments.last().map(|end| &end.pairs),
+                    })).collect::<Vec<_>>(),
+                    "end": record.end,
+                })
+            },
+            |out, style| match index {
+                None => view::stages::write(out, &history, units, style),
+                Some(index) => view::stages::write_stage(out, &history, index, units, style),
+            },
+        )?;
+        self.path = Some(record);
+        Ok(())
+    }
+
+    /// `sweep P A..B [N] … [--out FILE [--resume]] [--shard K/N]`.
+    pub(super) fn sweep(
+        &mut self,
+        words: &[String],
+        out: Option<&Path>,
+        resume: bool,
+        shard: Option<Shard>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let axes = axes(words)?;
+        let grid = Grid::new(&self.now.scenario, axes)?;
+        let ground = self.ground(io)?;
+        let sweep = Sweep {
+            prepared: &ground.prepared,
+            scenario: &self.now.scenario,
+            values: &self.now.values,
+            rules: ground.setup.rules,
+            grid: &grid,
+            shard: shard.unwrap_or(Shard::WHOLE),
+            format: match out {
+                Some(path) => format_of(path)?,
+                None => Format::Json,
+            },
+        };
+        if let Some(path) = out {
+            let done = run_to_file(&sweep, path, resume, io.watch)?;
+            return Ok(io.say(&done_sentence(&done, path))?);
+        }
+        let points = sweep.shard.points(grid.len()).len();
+        if points > ROWS {
+            return Err(CommandError::Refused(format!(
+                "{points} rows are too many to show: `--out FILE` writes them to a file"
+            )));
+        }
+        let mut text = Vec::new();
+        let done = sweep.run(0, &mut text, io.watch)?;
+        let columns = sweep.columns();
+        let rows: Vec<Vec<Value>> = text
+            .split(|byte| *byte == b'\n')
+            .filter(|line| !line.is_empty())
+            .map(|line| {
+                let row: serde_json::Map<String, Value> =
+                    serde_json::from_slice(line).unwrap_or_default();
+                columns
+                    .iter()
+                    .map(|name| row.get(name).cloned().unwrap_or_default())
+                    .collect()
+            })
+            .collect();
+        io.report(
+            || json!({"columns": columns, "rows": rows, "complete": done.is_complete()}),
+            |out, style| {
+                view::sweep::write(out, &columns, &rows, grid.axes.len(), style)?;
+                if !done.is_complete() {
+                    writeln!(
+                        out,
+                        "stopped after {} of {} points",
+                        done.written, done.total
+                    )?;
+                }
+                Ok(())
+            },
+        )?;
+        Ok(())
+    }
+
+    /// `plot path [QUANTITY] [PAIRS]`.
+    pub(super) fn plot_path(
+        &self,
+        of: &[String],
+        height: usize,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let path = self.need_path()?;
+        let (quantity, names) = match of.split_first() {
+            Some((word, rest)) if word == "slip" => (Quantity::Slip, rest),
+            Some((word, rest)) if word == "force" => (Quantity::Force, rest),
+            Some((word, rest)) if word == "gap" => (Quantity::Gap, rest),
+            Some((word, rest)) if word == "pressure" => (Quantity::Pressure, rest),
+            _ => (Quantity::Slip, of),
+        };
+        let ids: Vec<&str> = path
+            .places
+            .first()
+            .map(|place| place.pairs.iter().map(|pair| pair.id.as_str()).collect())
+            .unwrap_or_default();
+        let mut pairs = Vec::new();
+        for name in names {
+            let pair = ids.iter().position(|id| id == name).ok_or_else(|| {
+                CommandError::Refused(format!(
+                    "plot: no pair {name}{}",
+                    did_you_mean(name, ids.iter().copied())
+                ))
+            })?;
+            pairs.push(pair);
+        }
+        if pairs.is_empty() {
+            pairs = busiest(path, &ids);
+        }
+        let units = &self.now.scenario.units;
+        io.report(
+            || json!(path),
+            |out, style| view::plot::path::write(out, path, quantity, &pairs, units, height, style),
+        )?;
+        Ok(())
+    }
+
+    /// `export path FILE`.
+    pub(super) fn export_path(&self, file: &Path, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let path = self.need_path()?;
+        let written = match format_of(file)? {
+            Format::Csv => atomic::write(file, |out| path_export::csv(out, path)),
+            Format::Json => atomic::write(file, |out| {
+                let text = serde_json::to_string_pretty(path).map_err(std::io::Error::other)?;
+                writeln!(out, "{text}")
+            }),
+        };
+        written.map_err(|error| CommandError::Refused(error.to_string()))?;
+        Ok(io.say(&format!("wrote {}", file.display()))?)
+    }
+
+    fn need_path(&self) -> Result<&PathRecord, CommandError> {
+        self.path.as_deref().ok_or_else(|| {
+            CommandError::Refused(
+                "no path was followed yet: `trace CASE`, `trace FRICTION`, `limit CASE` or `stages`".into(),
+            )
+        })
+    }
+}
+
+/// A sweep as the shell asks for it.
+pub struct SweepRequest<'a> {
+    /// `NAME=FROM:TO:STEP`, `NAME=FROM..TO/COUNT` or `NAME=VALUE`, up to three.
+    pub axes: &'a [String],
+    /// Part of it.
+    pub shard: Option<Shard>,
+    /// CSV or JSON lines; otherwise by the ending of `out`, or CSV.
+    pub format: Option<Format>,
+    /// File; otherwise the stream.
+    pub out: Option<&'a Path>,
+    /// Continue the file.
+    pub resume: bool,
+}
+
+impl Session {
+    /// Sweeps over the present values into a file, or else into `stream`.
+    ///
+    /// # Errors
+    /// A grid that cannot be, a file that cannot be written or belongs to another sweep.
+    pub fn sweep_into(
+        &self,
+        request: &SweepRequest<'_>,
+        stream: &mut dyn Write,
+        watch: &dyn Watch,
+    ) -> Result<Done, CommandError> {
+        let axes = request
+            .axes
+            .iter()
+            .map(|axis| Axis::parse(axis))
+            .collect::<Result<_, _>>()?;
+        let grid = Grid::new(&self.now.scenario, axes)?;
+        let mut setup = self.now.clone();
+        if setup.prepared.is_none() {
+            setup.solve(watch)?;
+        }
+        let prepared = setup.prepared.ok_or_else(|| {
+            CommandError::Internal("a solved scenario has no prepared geometry".to_owned())
+        })?;
+        let sweep = Sweep {
+            prepared: &prepared,
+            scenario: &self.now.scenario,
+            values: &self.now.values,
+            rules: self.now.rules,
+            grid: &grid,
+            shard: request.shard.unwrap_or(Shard::WHOLE),
+            format: match (request.format, request.out) {
+                (Some(format), _) => format,
+                (None, Some(path)) => format_of(path)?,
+                (None, None) => Format::Csv,
+            },
+        };
+        match request.out {
+            Some(path) => Ok(run_to_file(&sweep, path, request.resume, watch)?),
+            None => {
+                stream.write_all(sweep.preamble().as_bytes())?;
+                Ok(sweep.run(0, stream, watch)?)
+            }
+        }
+    }
+}
+
+/// Joins the shards of a sweep into `out`, or into the file `to`; the number of rows.
+///
+/// # Errors
+/// Shards that do not make a whole; a place that cannot be written.
+pub fn merge(
+    files: &[PathBuf],
+    to: Option<&Path>,
+    out: &mut dyn Write,
+) -> Result<usize, CommandError> {
+    let Some(path) = to else {
+        let mut buffer = std::io::BufWriter::new(out);
+        return Ok(sweep_file::merge(files, &mut buffer)?);
+    };
+    let mut rows = Ok(0);
+    let written = atomic::write(path, |file| {
+        rows = sweep_file::merge(files, file);
+        match &rows {
+            Ok(_) => Ok(()),
+            Err(error) => Err(std::io::Error::other(error.to_string())),
+        }
+    });
+    let rows = rows?;
+    written.map_err(|error| CommandError::Refused(error.to_string()))?;
+    Ok(rows)
+}
+
+/// The pairs that slip most on a path, at most four: what a plot shows if none is named.
+fn busiest(path: &PathRecord, ids: &[&str]) -> Vec<usize> {
+    let most = |pair: usize| {
+        view::number::largest(
+            path.places
+                .iter()
+                .filter_map(|place| place.pairs.get(pair).map(|pair| pair.z_t)),
+        )
+    };
+    let mut pairs: Vec<usize> = (0..ids.len()).collect();
+    pairs.sort_by(|&a, &b| most(b).total_cmp(&most(a)).then(a.cmp(&b)));
+    pairs.truncate(4);
+    pairs
+}
+
+/// CSV or JSON by the ending of a file.
+///
+/// # Errors
+/// Another ending.
+pub fn format_of(path: &Path) -> Result<Format, CommandError> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("csv") => Ok(Format::Csv),
+        Some("json" | "jsonl") => Ok(Format::Json),
+        _ => Err(CommandError::Refused(format!(
+            "{} must end in .csv or .json",
+            path.display()
+        ))),
+    }
+}
+
+/// What a sweep into a file did.
+pub fn done_sentence(done: &Done, path: &Path) -> String {
+    let found = match done.found {
+        0 => String::new(),
+        found => format!(", {found} were there already"),
+    };
+    let rest = if done.is_complete() {
+        "complete".to_owned()
+    } else {
+        let left = done.total - done.found - done.written;
+        format!("stopped, {left} are left: the same command with --resume goes on")
+    };
+    format!(
+        "{} rows written to {}{found}; {rest}",
+        done.written,
+        path.display()
+    )
+}
+
+/// Reads `P A..B [N]` up to three times.
+fn axes(words: &[String]) -> Result<Vec<Axis>, CommandError> {
+    let form = || {
+        CommandError::Refused(
+            "sweep: expected PARAMETER A..B [N], e.g. `sweep f 0..1 21 F2 0..400`".to_owned(),
+        )
+    };
+    let mut axes = Vec::new();
+    let mut rest = words;
+    while let Some((name, after)) = rest.split_first() {
+        let (range, after) = after.split_first().ok_or_else(form)?;
+        let (from, to) = range.split_once("..").ok_or_else(form)?;
+        let number = |word: &str| {
+            word.parse::<f64>()
+                .ok()
+                .filter(|value| value.is_finite())
+                .ok_or_else(|| CommandError::Refused(format!("sweep: `{word}` is no number")))
+        };
+        let (count, after) = match after.split_first() {
+            Some((word, after)) if word.parse::<f64>().is_ok() => {
+                let count = word.parse::<usize>().map_err(|_| {
+                    CommandError::Refused(format!("sweep: `{word}` is no number of points"))
+                })?;
+                (count, after)
+            }
+            _ => (POINTS, after),
+        };
+        axes.push(Axis::counted(name, number(from)?, number(to)?, count)?);
+        rest = after;
+    }
+    Ok(axes)
+}

@@ -1,0 +1,205 @@
+//! Load paths, friction paths and limits in words.
+
+use std::io::{self, Write};
+
+use super::length_unit;
+use super::number::{in_column, largest, short, with_unit};
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::answer::record::{PairState, RayClass, Verdict};
+use crate::model::scenario::Units;
+use crate::path::friction::{FrictionEnd, FrictionPath};
+use crate::path::limit::Limit;
+use crate::path::load::{LoadEnd, LoadPath};
+
+/// A breakpoint with the digits it has been found to: ten, without trailing zeros.
+pub fn exact(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return short(value);
+    }
+    let exponent = value.abs().log10().floor();
+    if !(-5.0..10.0).contains(&exponent) {
+        return format!("{value:.9e}");
+    }
+    // Between 0 and 14 by the range above.
+    let decimals = (9.0 - exponent) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+fn max_slip(pairs: &[PairState]) -> f64 {
+    largest(pairs.iter().map(|pair| pair.z_t))
+}
+
+fn sentences(out: &mut dyn Write, text: &str, role: Role, style: &Style) -> io::Result<()> {
+    for line in style.wrap(&style.text(text), style.width) {
+        writeln!(out, "{}", style.paint(role, &line))?;
+    }
+    Ok(())
+}
+
+fn breakpoints(
+    out: &mut dyn Write,
+    name: &str,
+    rows: &[(f64, String, Option<f64>)],
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let mut table = Table::new(vec![
+        Column::numbers(name, None),
+        Column::numbers("max slip", length_unit(units)).droppable(1),
+        Column::words("change"),
+    ]);
+    let slips = largest(rows.iter().filter_map(|(_, _, slip)| *slip));
+    for (value, sentence, slip) in rows {
+        table.rows.push(Row::new(vec![
+            Cell::from(exact(*value)),
+            Cell::from(slip.map_or(String::new(), |slip| in_column(slip, slips))),
+            Cell::from(style.text(sentence)),
+        ]));
+    }
+    table.write(out, style)
+}
+
+/// Writes the breakpoints of a load path and how it ended.
+pub fn write_load(
+    out: &mut dyn Write,
+    path: &LoadPath,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let name = &path.parameter.name;
+    if path.from_zero {
+        let text =
+            format!("there is no answer at the present load: the path starts from {name} = 0");
+        sentences(out, &text, Role::Muted, style)?;
+    }
+    if path.breakpoints.is_empty() {
+        let text = format!("no breakpoints from {name} = {}", exact(path.start));
+        sentences(out, &text, Role::Plain, style)?;
+    } else {
+        let rows: Vec<_> = path
+            .breakpoints
+            .iter()
+            .map(|breakpoint| {
+                let mut sentence = breakpoint.sentence.clone();
+                if breakpoint.at_constant_load {
+                    sentence.push_str(" (after moving at constant load)");
+                }
+                let slip = max_slip(&path.pairs[breakpoint.knot]);
+                (breakpoint.factor, sentence, Some(slip))
+            })
+            .collect();
+        breakpoints(out, name, &rows, units, style)?;
+    }
+    let role = match path.end {
+        LoadEnd::Target | LoadEnd::Unbounded => Role::Muted,
+        _ => Role::Warning,
+    };
+    sentences(out, &path.end_sentence(), role, style)
+}
+
+/// Writes the breakpoints of a friction path, its intervals and how it ended.
+pub fn write_friction(
+    out: &mut dyn Write,
+    path: &FrictionPath,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    if path.breakpoints.is_empty()
+        && let Some(only) = path.intervals.first()
+    {
+        let text = format!(
+            "one scheme from {} = {} to {}: nothing changes",
+            path.name,
+            exact(only.from),
+            exact(only.to)
+        );
+        sentences(out, &text, Role::Plain, style)?;
+    } else {
+        let rows: Vec<_> = path
+            .breakpoints
+            .iter()
+            .map(|breakpoint| {
+                let jump = if breakpoint.jump {
+                    " - a jump: there are several answers here, and the one followed ends"
+                } else {
+                    ""
+                };
+                let slip = path
+                    .samples
+                    .iter()
+                    .find(|(value, _)| *value == breakpoint.value)
+                    .map(|(_, pairs)| max_slip(pairs));
+                (
+                    breakpoint.value,
+                    format!("{}{jump}", breakpoint.sentence),
+                    slip,
+                )
+            })
+            .collect();
+        breakpoints(out, &path.name, &rows, units, style)?;
+    }
+    let role = match path.end {
+        FrictionEnd::Target => Role::Muted,
+        FrictionEnd::NoAnswer => Role::Warning,
+    };
+    sentences(out, &path.end_sentence(), role, style)
+}
+
+/// Writes the limit load, the safety and the collapse.
+pub fn write_limit(
+    out: &mut dyn Write,
+    limit: &Limit,
+    unit: Option<&str>,
+    style: &Style,
+) -> io::Result<()> {
+    let name = &limit.path.parameter.name;
+    let Some(factor) = limit.factor else {
+        let text = format!("no limit was found: {}", limit.path.end_sentence());
+        return sentences(out, &text, Role::Plain, style);
+    };
+    let safety = match limit.safety {
+        Some(safety) => format!(
+            ", {} times the present {}",
+            exact(safety),
+            with_unit(&short(limit.present), unit)
+        ),
+        None => format!(" (present {})", with_unit(&short(limit.present), unit)),
+    };
+    let text = format!(
+        "limit load: {name} = {}{safety}",
+        with_unit(&exact(factor), unit)
+    );
+    sentences(out, &text, Role::Title, style)?;
+    if let Some(collapse) = &limit.collapse {
+        let class = match collapse.class {
+            RayClass::Mechanism => "mechanism",
+            RayClass::NoEquilibrium => "no equilibrium",
+            RayClass::Artefact => "artefact",
+            RayClass::Fault => "fault",
+        };
+        let verdict = match collapse.verdict {
+            Some(Verdict::Certified) => ", certified",
+            Some(Verdict::Proved) => ", proved",
+            Some(Verdict::Undecided) => ", undecided",
+            None => "",
+        };
+        sentences(
+            out,
+            &format!("collapse ({class}{verdict}): {}", collapse.mode),
+            Role::Warning,
+            style,
+        )?;
+    }
+    let confirmed = if limit.confirmed {
+        "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001"
+    } else {
+        "not confirmed: a run of its own at 0.999999 or 1.000001 of it says otherwise (there may be several answers)"
+    };
+    sentences(out, confirmed, Role::Muted, style)
+}

@@ -1,0 +1,118 @@
+//! Slip or force of chosen pairs over the load or friction, breakpoints marked; hysteresis loops of a history.
+
+use std::io::{self, Write};
+
+use super::Series;
+use super::chart::{Chart, Curve, Line};
+use super::zone::Quantity;
+use crate::answer::record::PairState;
+use crate::model::scenario::Units;
+use crate::path::record::{Followed, PathRecord};
+use crate::view::number::{denoised, largest};
+use crate::view::style::Style;
+use crate::view::{force_unit, length_unit};
+
+fn read(quantity: Quantity, pair: &PairState) -> f64 {
+    match quantity {
+        Quantity::Slip => pair.z_t,
+        Quantity::Gap => pair.z_n,
+        Quantity::Force => pair.x_t,
+        Quantity::Pressure => pair.x_n,
+    }
+}
+
+/// The curve of one pair and its breakpoints; `case` is the load case of the abscissa of a history.
+pub fn series(
+    path: &PathRecord,
+    quantity: Quantity,
+    pair: usize,
+    case: Option<usize>,
+) -> [Series; 2] {
+    let abscissas = path.abscissas(case);
+    let scale = largest(
+        path.places
+            .iter()
+            .flat_map(|place| place.pairs.iter().map(|pair| read(quantity, pair))),
+    );
+    let points: Vec<(f64, f64)> = abscissas
+        .iter()
+        .zip(&path.places)
+        .filter_map(|(x, place)| {
+            let state = place.pairs.get(pair)?;
+            Some((*x, denoised(read(quantity, state), scale)))
+        })
+        .collect();
+    let marked = points
+        .iter()
+        .zip(&path.places)
+        .filter(|(_, place)| !place.change.is_empty())
+        .map(|(point, _)| *point)
+        .collect();
+    let label = path
+        .places
+        .first()
+        .and_then(|place| place.pairs.get(pair))
+        .map_or(String::new(), |pair| pair.id.clone());
+    [
+        Series {
+            label: label.clone(),
+            points,
+        },
+        Series {
+            label,
+            points: marked,
+        },
+    ]
+}
+
+/// Draws a quantity of the pairs (indices) over what was followed.
+pub fn write(
+    out: &mut dyn Write,
+    path: &PathRecord,
+    quantity: Quantity,
+    pairs: &[usize],
+    units: &Units,
+    height: usize,
+    style: &Style,
+) -> io::Result<()> {
+    let case = match path.followed {
+        Followed::Stages => path.widest_case(),
+        _ => None,
+    };
+    let over = match case {
+        Some(case) => format!("the factor of {}", path.cases[case]),
+        None => path.name.clone(),
+    };
+    let (what, unit) = match quantity {
+        Quantity::Slip => ("slip z_τ", length_unit(units)),
+        Quantity::Gap => ("gap z_n", length_unit(units)),
+        Quantity::Force => ("force x_τ", force_unit(units)),
+        Quantity::Pressure => ("force x_n", force_unit(units)),
+    };
+    let mut curves = Vec::new();
+    for (number, &pair) in pairs.iter().enumerate() {
+        let [mut curve, marked] = series(path, quantity, pair, case);
+        // One entry of the legend for both.
+        curve.label.clear();
+        curves.push(Curve {
+            series: curve,
+            number,
+            line: Line::Plain,
+        });
+        curves.push(Curve {
+            series: marked,
+            number,
+            line: Line::Points,
+        });
+    }
+    let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+    Chart {
+        title: format!("{what} over {over}, breakpoints marked{unit}"),
+        curves,
+        values: true,
+        abscissa: over,
+        height,
+        ..Chart::default()
+    }
+    .write(out, style)
+}

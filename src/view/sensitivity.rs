@@ -1,0 +1,65 @@
+//! Tables of derivatives: what one more unit of a parameter does to the pairs.
+
+use std::io::{self, Write};
+
+use super::number::{in_column, largest};
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::path::sensitivity::Sensitivity;
+
+/// Writes the derivatives with respect to `parameter`, or to all of them.
+pub fn write(
+    out: &mut dyn Write,
+    sensitivity: &Sensitivity,
+    parameter: Option<&str>,
+    style: &Style,
+) -> io::Result<()> {
+    let chosen = sensitivity
+        .parameters
+        .iter()
+        .filter(|rate| parameter.is_none_or(|name| rate.parameter == name));
+    for (k, rate) in chosen.enumerate() {
+        if k > 0 {
+            writeln!(out)?;
+        }
+        let title = format!("per unit of {}", rate.parameter);
+        writeln!(
+            out,
+            "{}",
+            style.paint(Role::Title, &style.fit(&title, style.width))
+        )?;
+        let forces = largest(rate.pairs.iter().flat_map(|pair| [pair.x_n, pair.x_t]));
+        let lengths = largest(rate.pairs.iter().flat_map(|pair| [pair.z_n, pair.z_t]));
+        if forces == 0.0 && lengths == 0.0 {
+            writeln!(out, "nothing: the pairs do not depend on it here")?;
+            continue;
+        }
+        let mut table = Table::new(vec![
+            Column::words("pair"),
+            Column::numbers("dx_n", None),
+            Column::numbers("dx_τ", None),
+            Column::numbers("dz_n", None).droppable(1),
+            Column::numbers("dz_τ", None),
+        ]);
+        for pair in &rate.pairs {
+            table.rows.push(Row::new(vec![
+                Cell::from(pair.pair.as_str()),
+                Cell::from(in_column(pair.x_n, forces)),
+                Cell::from(in_column(pair.x_t, forces)),
+                Cell::from(in_column(pair.z_n, lengths)),
+                Cell::from(in_column(pair.z_t, lengths)),
+            ]));
+        }
+        table.write(out, style)?;
+    }
+    if !sensitivity.on_limit.is_empty() {
+        let text = format!(
+            "exactly on a limit: {}; there these derivatives hold to one side only",
+            sensitivity.on_limit.join(", ")
+        );
+        for line in style.wrap(&style.text(&text), style.width) {
+            writeln!(out, "{}", style.paint(Role::Warning, &line))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,139 @@
+//! A load history in tables: the stages, and the way through one of them.
+
+use std::io::{self, Write};
+
+use super::number::{in_column, largest, residual, short};
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use super::{length_unit, moment_unit};
+use crate::model::scenario::Units;
+use crate::path::stages::{History, HistoryEnd};
+
+/// Writes a row per stage: its factors, pivots, changes, largest slip and slip increment, energy.
+pub fn write(
+    out: &mut dyn Write,
+    history: &History,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let mut columns = vec![Column::count("stage")];
+    columns.extend(history.cases.iter().map(|case| Column::numbers(case, None)));
+    columns.extend([
+        Column::count("pivots").droppable(4),
+        Column::count("changes").droppable(3),
+        Column::numbers("max slip", length_unit(units)),
+        Column::numbers("max Δslip", length_unit(units)).droppable(2),
+        Column::numbers("dissipated", moment_unit(units)).droppable(1),
+        Column::words("balance").droppable(5),
+    ]);
+    let mut table = Table::new(columns);
+    let ends = || {
+        history
+            .stages
+            .iter()
+            .filter_map(|stage| stage.moments.last())
+    };
+    let factors: Vec<f64> = (0..history.cases.len())
+        .map(|case| largest(ends().map(|end| end.factors[case])))
+        .collect();
+    let slips = largest(ends().flat_map(|end| end.pairs.iter().map(|pair| pair.z_t)));
+    let work = largest(history.stages.iter().map(|stage| stage.dissipated));
+    for (index, stage) in history.stages.iter().enumerate() {
+        let Some(end) = stage.moments.last() else {
+            continue;
+        };
+        let mut cells = vec![Cell::from((index + 1).to_string())];
+        cells.extend(
+            end.factors
+                .iter()
+                .zip(&factors)
+                .map(|(factor, scale)| Cell::from(in_column(*factor, *scale))),
+        );
+        let changes = stage
+            .moments
+            .iter()
+            .filter(|moment| !moment.changes.is_empty())
+            .count();
+        cells.extend([
+            Cell::from(stage.pivots.to_string()),
+            Cell::from(changes.to_string()),
+            Cell::from(in_column(
+                largest(end.pairs.iter().map(|pair| pair.z_t)),
+                slips,
+            )),
+            Cell::from(in_column(largest(stage.slip.iter().copied()), slips)),
+            Cell::from(in_column(stage.dissipated, work)),
+            Cell::from(
+                stage
+                    .energy
+                    .map_or(String::new(), |energy| residual(energy.residual)),
+            ),
+        ]);
+        table.rows.push(Row::new(cells));
+    }
+    table.write(out, style)?;
+    let role = match history.end {
+        HistoryEnd::Complete => Role::Muted,
+        HistoryEnd::Limit { .. } => Role::Warning,
+    };
+    for line in style.wrap(&style.text(&history.end_sentence()), style.width) {
+        writeln!(out, "{}", style.paint(role, &line))?;
+    }
+    for (index, stage) in history.stages.iter().enumerate() {
+        for moment in stage.moments.iter().filter(|moment| moment.jump) {
+            let text = format!(
+                "stage {}: the structure jumps at {} of it; its energy balance does not close there",
+                index + 1,
+                short(moment.t)
+            );
+            for line in style.wrap(&text, style.width) {
+                writeln!(out, "{}", style.paint(Role::Warning, &line))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Writes the way through stage `index` (from 0): its moments and what changes at each, then the pairs at its end.
+pub fn write_stage(
+    out: &mut dyn Write,
+    history: &History,
+    index: usize,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let Some(stage) = history.stages.get(index) else {
+        return writeln!(out, "no stage {}", index + 1);
+    };
+    let mut columns = vec![Column::numbers("done", None).droppable(1)];
+    columns.extend(history.cases.iter().map(|case| Column::numbers(case, None)));
+    columns.push(Column::words("change"));
+    let mut table = Table::new(columns);
+    for moment in &stage.moments {
+        let mut cells = vec![Cell::from(short(moment.t))];
+        cells.extend(
+            moment
+                .factors
+                .iter()
+                .map(|factor| Cell::from(super::path::exact(*factor))),
+        );
+        cells.push(Cell::from(style.text(&moment.sentence)));
+        table.rows.push(Row::new(cells));
+    }
+    table.write(out, style)?;
+    if let Some(energy) = stage.energy {
+        let text = format!(
+            "work {} = stored {} + dissipated {}, balance {}",
+            short(energy.work),
+            short(energy.stored),
+            short(stage.dissipated),
+            residual(energy.residual)
+        );
+        writeln!(out, "{}", style.fit(&text, style.width))?;
+    }
+    writeln!(out)?;
+    match stage.moments.last() {
+        Some(end) => super::pairs::write(out, &end.pairs, units, style),
+        None => Ok(()),
+    }
+}

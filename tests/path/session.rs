@@ -1,0 +1,152 @@
+//! The commands of the language that follow paths, through a session.
+
+use stickslip::model::embedded;
+use stickslip::session::{Output, Session};
+use stickslip::view::style::Style;
+use stickslip::watch::Quiet;
+
+fn run(scenario: &str, commands: &[&str]) -> Vec<Result<String, String>> {
+    let mut session =
+        Session::new(embedded::load(scenario).expect("embedded"), &Quiet).expect("sound");
+    let style = Style {
+        width: 100,
+        color: false,
+        ascii: false,
+    };
+    commands
+        .iter()
+        .map(|command| {
+            let mut text = Vec::new();
+            let mut io = Output::text(&mut text, style, &Quiet);
+            let result = session.execute(command, &mut io);
+            match result {
+                Ok(_) => Ok(String::from_utf8(text).expect("text")),
+                Err(error) => Err(error.to_string()),
+            }
+        })
+        .collect()
+}
+
+fn text(result: &Result<String, String>) -> &str {
+    result.as_deref().unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn the_beam_is_traced_and_its_limit_found() {
+    let folder = tempfile::tempdir().expect("a place");
+    let csv = folder.path().join("path.csv");
+    let export = format!("export path {}", csv.display());
+    let results = run(
+        "beam",
+        &[
+            "plot path",
+            "set F2 0",
+            "trace pull to 260",
+            "plot path force c6 c5",
+            &export,
+            "limit F2",
+            "trace f to 0.2",
+            "sensitivity f",
+            "stages",
+            "trace nothing",
+            "trace pull 5",
+        ],
+    );
+    assert!(
+        results[0]
+            .as_ref()
+            .is_err_and(|error| error.contains("no path"))
+    );
+    let trace = text(&results[2]);
+    for word in [
+        "50",
+        "100",
+        "150",
+        "200",
+        "250",
+        "pair c2 slips +",
+        "the target pull = 260",
+    ] {
+        assert!(trace.contains(word), "{trace}");
+    }
+    assert!(
+        text(&results[3]).contains("force x_τ over pull"),
+        "{}",
+        text(&results[3])
+    );
+    let written = std::fs::read_to_string(&csv).expect("written");
+    assert!(written.starts_with("stage,value,factor weight,factor pull,pair,state,"));
+    // Start, five breakpoints and the target, six pairs each.
+    assert_eq!(written.lines().count(), 1 + 7 * 6);
+    let limit = text(&results[5]);
+    assert!(limit.contains("limit load: F2 = 300 kN"), "{limit}");
+    assert!(
+        limit.contains("mechanism") && limit.contains("confirmed"),
+        "{limit}"
+    );
+    assert!(
+        text(&results[6]).contains("one scheme"),
+        "{}",
+        text(&results[6])
+    );
+    assert!(results[7].is_ok(), "{:?}", results[7]);
+    assert!(
+        results[8]
+            .as_ref()
+            .is_err_and(|error| error.contains("stages"))
+    );
+    assert!(
+        results[9]
+            .as_ref()
+            .is_err_and(|error| error.contains("load cases weight, pull"))
+    );
+    assert!(results[10].is_err());
+}
+
+#[test]
+fn sweeps_are_tables_or_files() {
+    let folder = tempfile::tempdir().expect("a place");
+    let csv = folder.path().join("sweep.csv");
+    let to_file = format!("sweep f 0..1 F2 0..400 5 --out {}", csv.display());
+    let results = run(
+        "beam",
+        &[
+            "sweep F2 100..400 4",
+            &to_file,
+            &to_file,
+            &format!("{to_file} --resume"),
+            "sweep g 0..1",
+            "sweep f 0..1 100 F2 0..1 100",
+        ],
+    );
+    let table = text(&results[0]);
+    assert!(
+        table.contains("normal") && table.contains("mechanism"),
+        "{table}"
+    );
+    assert!(
+        text(&results[1]).contains("55 rows written"),
+        "{:?}",
+        results[1]
+    );
+    assert!(
+        results[2]
+            .as_ref()
+            .is_err_and(|error| error.contains("--resume"))
+    );
+    assert!(
+        text(&results[3]).contains("55 were there already; complete"),
+        "{:?}",
+        results[3]
+    );
+    assert!(
+        results[4]
+            .as_ref()
+            .is_err_and(|error| error.contains("unknown parameter g"))
+    );
+    assert!(
+        results[5]
+            .as_ref()
+            .is_err_and(|error| error.contains("too many to show"))
+    );
+}
