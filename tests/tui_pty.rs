@@ -15,6 +15,8 @@ const PATIENCE: Duration = Duration::from_secs(30);
 struct Seen {
     parser: vt100::Parser,
     bytes: usize,
+    /// Whether no code of 256 colours was seen.
+    sixteen: bool,
 }
 
 struct Screen {
@@ -58,6 +60,7 @@ impl Screen {
         let seen = Arc::new(Mutex::new(Seen {
             parser: vt100::Parser::new(size(height), size(width), 0),
             bytes: 0,
+            sixteen: true,
         }));
         let theirs = Arc::clone(&seen);
         thread::spawn(move || {
@@ -66,6 +69,7 @@ impl Screen {
                 let mut seen = theirs.lock().unwrap();
                 seen.parser.process(&buffer[..count]);
                 seen.bytes += count;
+                seen.sixteen &= !buffer[..count].windows(4).any(|code| code == b"8;5;");
             }
         });
         Screen {
@@ -196,6 +200,8 @@ fn start_vary_step_ray_resize_quit() {
             .screen()
             .alternate_screen()
     );
+    // sixteen colours, in their own codes
+    assert!(screen.seen.lock().unwrap().sixteen);
     screen.send("\x1b[B\x1b[B[");
     screen.wait("F2 = 150 kN");
     screen.wait("pairs changed");

@@ -1,6 +1,6 @@
 //! The terminal: taken at the start, given back as it was on every way out.
 
-use std::io::{self, BufWriter, Stdout, Write};
+use std::io::{self, Stdout, Write};
 use std::panic;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,19 +19,17 @@ use signal_hook::low_level;
 
 use super::app::State;
 use super::draw;
+use super::frame::Frame;
 
 /// Presses, drags and the wheel; not every move of the mouse, which would only cost bytes.
 const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
 const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 
-/// A frame leaves in one piece.
-const FRAME: usize = 1 << 16;
-
 type Hook = Box<dyn Fn(&panic::PanicHookInfo<'_>) + Sync + Send + 'static>;
 
 /// The terminal while it belongs to the panes.
 pub struct Screen {
-    terminal: Terminal<CrosstermBackend<BufWriter<Stdout>>>,
+    terminal: Terminal<CrosstermBackend<Frame<Stdout>>>,
     mouse: bool,
     hook: Option<Arc<Hook>>,
 }
@@ -90,10 +88,7 @@ impl Screen {
         }));
         // from here on dropping the screen gives everything back
         let mut screen = Screen {
-            terminal: Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(
-                FRAME,
-                io::stdout(),
-            )))?,
+            terminal: Terminal::new(CrosstermBackend::new(Frame::new(io::stdout())))?,
             mouse,
             hook: Some(before),
         };
