@@ -5,15 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
-use crate::export::{atomic, json};
+use crate::export::json;
 use crate::model::embedded;
 use crate::model::load::load_named_or_file;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::model::schema;
-use crate::path::grid::{Axis, Grid, Shard};
-use crate::path::sweep::{Format as RowFormat, Sweep};
-use crate::path::sweep_file::{self, SweepFileError, run_to_file};
 use crate::session::{Answer, exit_status, paths, script};
 use crate::session::{CommandError, Format, Output, Session, diagnose};
 use crate::signals::{Signals, TerminalWatch, is_dumb};
@@ -190,7 +187,7 @@ struct SweepArguments {
     settings: Settings,
     /// Only part K of N, for batch systems
     #[arg(long, value_name = "K/N")]
-    shard: Option<Shard>,
+    shard: Option<paths::Shard>,
     /// File to write; otherwise stdout
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -422,78 +419,35 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
 }
 
 fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
-    let usage = |message: String| Failure::Status(2, message);
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
     let scenario = load(&arguments.scenario)?;
-    let axes: Vec<Axis> = arguments
-        .axes
-        .iter()
-        .map(|axis| Axis::parse(axis))
-        .collect::<Result<_, _>>()
-        .map_err(|error| usage(error.to_string()))?;
-    let grid = Grid::new(&scenario, axes).map_err(|error| usage(error.to_string()))?;
     let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
-    let Some(prepared) = session.prepared() else {
-        return Err(Failure::Status(4, "no prepared geometry".to_owned()));
+    let request = paths::SweepRequest {
+        axes: &arguments.axes,
+        shard: arguments.shard,
+        format: arguments.format.map(|rows| match rows {
+            Rows::Csv => paths::Format::Csv,
+            Rows::Json => paths::Format::Json,
+        }),
+        out: arguments.out.as_deref(),
+        resume: arguments.resume,
     };
-    let format = match (arguments.format, &arguments.out) {
-        (Some(Rows::Csv), _) | (None, None) => RowFormat::Csv,
-        (Some(Rows::Json), _) => RowFormat::Json,
-        (None, Some(path)) => paths::format_of(path)?,
-    };
-    let sweep = Sweep {
-        prepared: &prepared,
-        scenario: session.scenario(),
-        values: session.values(),
-        rules: session.rules(),
-        grid: &grid,
-        shard: arguments.shard.unwrap_or(Shard::WHOLE),
-        format,
-    };
-    let done = match &arguments.out {
-        Some(path) => {
-            let done = run_to_file(&sweep, path, arguments.resume, &watch);
-            watch.clear();
-            let done = done.map_err(|error| usage(error.to_string()))?;
-            writeln!(out, "{}", style.text(&paths::done_sentence(&done, path)))?;
-            done
-        }
-        None => {
-            out.write_all(sweep.preamble().as_bytes())?;
-            let done = sweep.run(0, out, &watch);
-            watch.clear();
-            done?
-        }
-    };
+    let done = session.sweep_into(&request, out, &watch);
+    watch.clear();
+    let done = done?;
+    if let Some(path) = &arguments.out {
+        writeln!(out, "{}", style.text(&paths::done_sentence(&done, path)))?;
+    }
     Ok(if done.is_complete() { 0 } else { 130 })
 }
 
 fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<u8, Failure> {
-    let failed = |error: SweepFileError| match error {
-        SweepFileError::Output(error) => Failure::Output(error),
-        error => Failure::Status(2, error.to_string()),
-    };
-    match to {
-        None => {
-            let mut buffer = io::BufWriter::new(out);
-            sweep_file::merge(files, &mut buffer).map_err(failed)?;
-        }
-        Some(path) => {
-            let mut rows = Ok(0);
-            let written = atomic::write(path, |file| {
-                rows = sweep_file::merge(files, file);
-                match &rows {
-                    Ok(_) => Ok(()),
-                    Err(error) => Err(io::Error::other(error.to_string())),
-                }
-            });
-            let rows = rows.map_err(failed)?;
-            written.map_err(|error| Failure::Status(2, error.to_string()))?;
-            writeln!(out, "{rows} rows written to {}", path.display())?;
-        }
+    let rows = paths::merge(files, to, out)?;
+    if let Some(path) = to {
+        writeln!(out, "{rows} rows written to {}", path.display())?;
     }
     Ok(0)
 }

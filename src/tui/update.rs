@@ -501,7 +501,7 @@ fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     if let Some(error) = done.error {
         if done.interrupted {
             // a slider that moved on stops its older solve: nothing to tell
-            if !(changed && !state.waiting.is_empty()) {
+            if !changed || state.waiting.is_empty() {
                 state.say(Role::Warning, "stopped: the session is as it was");
             }
         } else {
