@@ -5,7 +5,6 @@
 //! ```
 
 use std::f64::consts::{FRAC_2_PI, FRAC_2_SQRT_PI};
-
 use std::fmt::Write;
 
 use stickslip::answer::record::State;
