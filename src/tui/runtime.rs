@@ -187,7 +187,9 @@ impl Reader {
                 thread::sleep(LOOK);
             }
         };
-        thread::Builder::new().name("signals".to_owned()).spawn(look)?;
+        thread::Builder::new()
+            .name("signals".to_owned())
+            .spawn(look)?;
         Ok(())
     }
 
