@@ -10,8 +10,9 @@ use crate::model::embedded;
 use crate::model::load::load_named_or_file;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
+use crate::model::schema;
 use crate::session::{Answer, exit_status, paths, script};
-use crate::session::{CommandError, Format, Output, Session};
+use crate::session::{CommandError, Format, Output, Session, diagnose};
 use crate::signals::{Signals, TerminalWatch, is_dumb};
 use crate::view;
 use crate::view::style::{Role, Style};
@@ -90,6 +91,8 @@ enum Command {
         out: Option<PathBuf>,
     },
     /// Find every problem in scenario files, solving nothing
+    ///
+    /// Also names the parts that only contact holds, with their motions: where those are not wanted, a support is missing.
     Check {
         /// Files, or embedded scenarios
         #[arg(required = true, value_name = "SCENARIO")]
@@ -103,6 +106,9 @@ enum Command {
     },
     /// List the embedded scenarios
     Scenarios,
+    /// Print the JSON Schema of the scenario format
+    #[command(after_help = "Example:\n  stickslip schema > stickslip.schema.json")]
+    Schema,
     /// Print the completions of a shell
     Completions {
         /// The shell
@@ -110,14 +116,12 @@ enum Command {
     },
 }
 
+/// What is solved with other values and rules than those of the file.
 #[derive(Args, Debug)]
-struct Solve {
-    /// A file, or an embedded scenario
-    #[arg(default_value = embedded::DEFAULT)]
-    scenario: String,
+struct Settings {
     /// Change a parameter, as the REPL's `set` does: `--set f=0.3`, `--set F2=110%`
     #[arg(long = "set", value_name = "NAME=VALUE")]
-    settings: Vec<String>,
+    values: Vec<String>,
     /// Covering vector: cohesive, ones or weight
     #[arg(long)]
     covering: Option<Covering>,
@@ -127,6 +131,30 @@ struct Solve {
     /// Engine: scheme, tableau or exact
     #[arg(long)]
     engine: Option<Engine>,
+}
+
+impl Settings {
+    /// The words after a `set`, setting by setting.
+    fn words(&self) -> Vec<Vec<String>> {
+        let rule =
+            |name: &str, choice: Option<String>| choice.map(|choice| vec![name.to_owned(), choice]);
+        self.values
+            .iter()
+            .map(|setting| vec![setting.clone()])
+            .chain(rule("covering", self.covering.map(|c| c.to_string())))
+            .chain(rule("tie-break", self.tie_break.map(|t| t.to_string())))
+            .chain(rule("engine", self.engine.map(|e| e.to_string())))
+            .collect()
+    }
+}
+
+#[derive(Args, Debug)]
+struct Solve {
+    /// A file, or an embedded scenario
+    #[arg(default_value = embedded::DEFAULT)]
+    scenario: String,
+    #[command(flatten)]
+    settings: Settings,
     /// For people, or the JSON of the whole result
     #[arg(long, value_enum, default_value_t = Form::Text)]
     format: Form,
@@ -155,18 +183,8 @@ struct SweepArguments {
     /// A parameter and its values: NAME=FROM:TO:STEP (TO included), NAME=FROM..TO/COUNT or NAME=VALUE; up to three
     #[arg(long = "vary", value_name = "NAME=RANGE", required = true)]
     axes: Vec<String>,
-    /// Change a parameter that is not varied, as `solve` does
-    #[arg(long = "set", value_name = "NAME=VALUE")]
-    settings: Vec<String>,
-    /// Covering vector: cohesive, ones or weight
-    #[arg(long)]
-    covering: Option<Covering>,
-    /// Tie-break: lexicographic, natural, first-row or random:SEED
-    #[arg(long)]
-    tie_break: Option<TieBreak>,
-    /// Engine: scheme, tableau or exact
-    #[arg(long)]
-    engine: Option<Engine>,
+    #[command(flatten)]
+    settings: Settings,
     /// Only part K of N, for batch systems
     #[arg(long, value_name = "K/N")]
     shard: Option<paths::Shard>,
@@ -330,6 +348,11 @@ fn run(cli: Cli) -> Result<u8, Failure> {
             crate::session::write_scenarios(&mut out, &style)?;
             Ok(0)
         }
+        Some(Command::Schema) => {
+            let text = serde_json::to_string_pretty(&schema::schema()).map_err(io::Error::other)?;
+            writeln!(out, "{text}")?;
+            Ok(0)
+        }
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "stickslip", &mut script);
@@ -372,15 +395,7 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
     let scenario = load(&arguments.scenario)?;
-    let settings: Vec<Vec<String>> = arguments
-        .settings
-        .iter()
-        .map(|setting| vec![setting.clone()])
-        .chain(rule("covering", arguments.covering))
-        .chain(rule("tie-break", arguments.tie_break))
-        .chain(rule("engine", arguments.engine))
-        .collect();
-    let session = Session::with_settings(scenario, &settings, &watch);
+    let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
     let Some(answer) = session.answer() else {
@@ -407,15 +422,7 @@ fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Resu
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
     let scenario = load(&arguments.scenario)?;
-    let settings: Vec<Vec<String>> = arguments
-        .settings
-        .iter()
-        .map(|setting| vec![setting.clone()])
-        .chain(rule("covering", arguments.covering))
-        .chain(rule("tie-break", arguments.tie_break))
-        .chain(rule("engine", arguments.engine))
-        .collect();
-    let session = Session::with_settings(scenario, &settings, &watch);
+    let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
     let request = paths::SweepRequest {
@@ -443,11 +450,6 @@ fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<u8
         writeln!(out, "{rows} rows written to {}", path.display())?;
     }
     Ok(0)
-}
-
-/// `set` words of a rule given as an option.
-fn rule(name: &str, choice: Option<impl ToString>) -> Option<Vec<String>> {
-    choice.map(|choice| vec![name.to_owned(), choice.to_string()])
 }
 
 /// Status, pivots, pairs, ray: what one wants to see of an answer at once.
@@ -526,19 +528,31 @@ fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, F
 }
 
 fn check(names: &[String], style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
     let mut status = 0;
+    let mut problems = |text: &str| -> io::Result<()> {
+        status = 2;
+        text.lines()
+            .try_for_each(|line| writeln!(io::stderr(), "{}", style.text(line)))
+    };
     for name in names {
         match load_named_or_file(name) {
             Ok(scenario) => {
-                let line = format!("{name}: no problems found ({})", scenario.title);
-                writeln!(out, "{}", style.text(&line))?;
-            }
-            Err(problems) => {
-                status = 2;
-                for line in problems.to_string().lines() {
-                    writeln!(io::stderr(), "{}", style.text(line))?;
+                let title = scenario.title.clone();
+                let looked = diagnose(scenario, &watch);
+                watch.clear();
+                match looked {
+                    Ok(loose) => {
+                        let line = format!("{name}: no problems found ({title})");
+                        writeln!(out, "{}", style.text(&line))?;
+                        view::loose::write(out, &loose, style)?;
+                    }
+                    Err(error) if error.is_interrupted() => return Err(error.into()),
+                    Err(error) => problems(&error.to_string())?,
                 }
             }
+            Err(found) => problems(&found.to_string())?,
         }
     }
     out.flush()?;

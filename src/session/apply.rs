@@ -83,6 +83,10 @@ impl Session {
                 what: Export::Path,
                 file,
             } => self.export_path(&file, io)?,
+            Command::Export {
+                what: Export::Lcp,
+                file,
+            } => self.export_lcp(&file, io)?,
             Command::Export { what, file } => self.export(what, &file, io)?,
             Command::Echo { words } => io.say(&words.join(" "))?,
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,

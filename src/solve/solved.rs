@@ -237,11 +237,7 @@ impl Prepared {
             run.point = sharpen(system, numbers, &contact, &basis, point);
         }
         let seconds = start.elapsed().as_secs_f64();
-        let words = [
-            rules.covering.to_string(),
-            rules.tie_break.to_string(),
-            rules.engine.to_string(),
-        ];
+        let words = rules.words();
         let mut answer = empty_answer(&run, words, self.size(system, &contact));
         answer.timings.lemke = seconds;
         answer.p = run.point.p * contact.force_unit;

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::number::{residual, short, with_unit};
+use super::number::{in_full, residual, short, with_unit};
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
 use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, Start, State, Verdict};
@@ -344,7 +344,7 @@ pub fn write(
                     .parameters
                     .get(name)
                     .and_then(|p| p.unit.as_deref());
-                format!("{name} = {}", with_unit(&short(*value), unit))
+                format!("{name} = {}", with_unit(&in_full(*value), unit))
             })
             .collect();
         rows.push(("parameters", values.join(", ")));
