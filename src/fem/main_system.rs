@@ -23,6 +23,9 @@ use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 use crate::watch::Watch;
 
+/// A sparse matrix by columns: starts of the columns, rows, values.
+pub type SparseColumns = (Vec<u32>, Vec<u32>, Vec<f64>);
+
 /// An eigenvector of R is a mechanism if its u has ‖K u‖ below this share of the terms it sums, both in equations
 /// scaled to a unit diagonal (so that a soft part is no mechanism beside a stiff one).
 const NO_FORCE: f64 = 1e-12;
@@ -110,27 +113,33 @@ impl MainSystem {
         };
 
         let clock = Instant::now();
-        let mut touched = vec![false; elimination.masters()];
-        for &(row, _, _) in &main.c {
-            touched[row as usize] = true;
+        let mut last = vec![false; elimination.masters()];
+        for dof in 0..dofs.count() {
+            if elimination.joint_terms(dof).next().is_some() {
+                for (master, _) in elimination.free_terms(dof) {
+                    last[master] = true;
+                }
+            }
         }
         let factor =
-            Factor::new(&mut main.k_m, &touched, joints.len(), watch).map_err(|e| match e {
-                FactorError::Other(error) => error,
-                FactorError::Singular(v) => {
-                    let u = elimination.expand(&v, &vec![0.0; joints.len()]);
-                    kernel::mechanism(structure, &dofs.scatter(&u))
+            Factor::new(&mut main.k_m, &main.c, &last, joints.len(), watch).map_err(|error| {
+                match error {
+                    FactorError::Other(error) => error,
+                    FactorError::Singular(v) => {
+                        let u = elimination.expand(&v, &vec![0.0; joints.len()]);
+                        kernel::mechanism(structure, &dofs.scatter(&u))
+                    }
                 }
             })?;
         drop(main.k_m);
         seconds.factor = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        let trailing = factor.trailing(&main.c, joints.len(), watch)?;
-        let mut r = trailing.schur(&main.d);
+        watch.progress("condensing to the contact joints", 0.0);
+        let mut r = factor.schur(std::mem::take(&mut main.d));
         let loads: Vec<Vec<f64>> = f.iter().map(|f| on_masters(&elimination, f)).collect();
-        let condensed = factor.project(&trailing, &loads);
-        drop((trailing, loads));
+        let condensed = factor.project(&loads);
+        drop(loads);
         let rf = f.iter().zip(condensed.column_iter()).map(|(f, column)| {
             let mut rf = column - DVector::from_vec(on_joints(&elimination, f));
             balance(&mut rf, &rigid, &motions, f, &dofs);
@@ -156,6 +165,24 @@ impl MainSystem {
         system.seconds.condense = clock.elapsed().as_secs_f64();
         watch.progress("condensing to the contact joints", 1.0);
         Ok(system)
+    }
+
+    /// K_m by columns, lower triangle: starts of the columns, rows, values. For measuring other solvers on the same
+    /// matrix.
+    ///
+    /// # Errors
+    /// As [`MainSystem::new`] up to the assembly.
+    pub fn matrix(
+        structure: &Structure,
+        joints: &[Joint],
+        watch: &dyn Watch,
+    ) -> Result<SparseColumns, MainSystemError> {
+        let dofs = Dofs::new(structure);
+        let elimination =
+            Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
+        let k = assemble(structure, &dofs, &|| watch.stop())?;
+        let k_m = main_matrices(&k, &elimination).k_m;
+        Ok((k_m.column_start, k_m.rows, k_m.values))
     }
 
     /// Adds eigenvectors of R that cost no energy in K to the kernel.

@@ -12,7 +12,7 @@
 //! The joints reach this module as rows of B ([`crate::model::pair::Joint`]); it knows no contact law.
 //!
 //! Order of reading: `dof`, `elimination` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor` (sparse
-//! Cholesky), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, reactions).
+//! Cholesky with the joints, by `supernodes`), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, reactions).
 
 pub mod main_system;
 pub mod recovery;
@@ -30,6 +30,7 @@ mod kernel;
 mod loose;
 mod memory;
 mod sparse;
+mod supernodes;
 mod watch;
 
 #[cfg(test)]

@@ -153,8 +153,12 @@ impl Session {
         Ok(())
     }
 
-    /// An answer found by a warm start has no pivots of its own: the cold run that has them takes its place.
-    fn ensure_pivots(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+    /// An answer found by a warm start has no pivots of its own: the cold run that has them takes its place. Says so
+    /// where it ends in another answer.
+    ///
+    /// # Errors
+    /// As for a solve; the session then is as it was.
+    pub fn ensure_pivots(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let Some(warm) = self.solved.clone() else {
             return Ok(());
         };

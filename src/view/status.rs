@@ -299,6 +299,13 @@ pub fn write(
             answer.covering, answer.tie_break, answer.engine
         ),
     ));
+    if let Start::Warm { changes } = answer.start {
+        let times = if changes == 1 { "change" } else { "changes" };
+        rows.push((
+            "start",
+            format!("warm: followed from the last answer, {changes} {times} of the working scheme"),
+        ));
+    }
     if answer.is_answer() || answer.outcome == OutcomeKind::CheckFailed {
         let check = &answer.check;
         let mut figures = vec![

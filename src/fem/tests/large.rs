@@ -1,6 +1,4 @@
-//! The restricted condensation against plain block solves, and the reference sizes.
-
-use std::time::Instant;
+//! The restricted condensation against plain block solves.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,7 +6,6 @@ use super::builder::{Model, coulomb, two_plates};
 use crate::fem::assembly::{assemble, main_matrices};
 use crate::fem::dof::Dofs;
 use crate::fem::elimination::Elimination;
-use crate::fem::factor::plain_seconds;
 
 /// R = D − Cᵀ K_m⁻¹ C by dense Cholesky.
 fn plain(model: &Model) -> DMatrix<f64> {
@@ -65,52 +62,4 @@ fn elimination_satisfies_the_joints() {
     let u = dofs.scatter(&elimination.expand(&v, z.as_slice()));
     let found = crate::fem::kernel::mutual_displacements(&joints, &u);
     assert!((found - z).amax() < 1e-15);
-}
-
-fn peak_megabytes() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"));
-    let kilobytes = line.and_then(|line| line.split_whitespace().nth(1)?.parse::<f64>().ok());
-    kilobytes.unwrap_or(f64::NAN) / 1024.0
-}
-
-/// `cargo test --release --lib fem::tests::large -- --ignored --nocapture plates_of_reference`, one size by
-/// SIZE=400x200.
-#[test]
-#[ignore = "a measurement"]
-#[allow(clippy::print_stdout)]
-fn plates_of_reference() {
-    let size = std::env::var("SIZE").unwrap_or_else(|_| "160x80".into());
-    let (x, y) = size.split_once('x').unwrap();
-    let divisions = [x.parse().unwrap(), y.parse().unwrap()];
-    let model = two_plates([8.0, 4.0], divisions, 0);
-    let before = peak_megabytes();
-    let clock = Instant::now();
-    let system = model.solve();
-    let total = clock.elapsed().as_secs_f64();
-    let m = model.0.pairs.len();
-    println!(
-        "{size}: {:?}, m = {m}, {:?}, total {total:.3} s, factor {:.1}e6 entries, model {before:.0} MB, peak {:.0} MB",
-        system.size(),
-        system.timings(),
-        system.factor_entries() as f64 / 1e6,
-        peak_megabytes(),
-    );
-    let z = DVector::from_fn(2 * m, |i, _| 1e-6 * (i as f64).sin());
-    let clock = Instant::now();
-    let u = system.displacements(&[1.0, 60.0], &z);
-    println!("displacements {:.3} s", clock.elapsed().as_secs_f64());
-    let lambda = system.stiffness() * &z + &system.loads()[0] + &system.loads()[1] * 60.0;
-    let clock = Instant::now();
-    let residual = system.equilibrium_residual(&model.0, &u, &lambda, &[1.0, 60.0]);
-    println!(
-        "residual {residual:e} in {:.3} s",
-        clock.elapsed().as_secs_f64()
-    );
-    drop(system);
-    let dofs = Dofs::new(&model.0);
-    let elimination = Elimination::new(&model.0, &dofs, &model.joints()).unwrap();
-    let k = assemble(&model.0, &dofs, &|| false).unwrap();
-    let main = main_matrices(&k, &elimination);
-    println!("plain AMD factorization {:.3} s", plain_seconds(&main.k_m));
 }

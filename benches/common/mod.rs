@@ -1,0 +1,124 @@
+//! Contact problems for measurements, generated: two plates on one another, the lower one fixed along its base.
+
+use stickslip::contact::numbers::ContactNumbers;
+use stickslip::model::load::load_text;
+use stickslip::model::parameter::ParameterValues;
+use stickslip::model::scenario::Scenario;
+use stickslip::solve::numbers::{contact_numbers, factors};
+use stickslip::solve::{Prepared, prepare};
+use stickslip::watch::Quiet;
+
+/// What acts on the upper plate beside its weight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pull {
+    /// Forward and up on one side, springs on the same side: no symmetry, a few accidental ties.
+    OneSided,
+    /// Outward on both sides, springs on both sides: mirror images of each other slip and stop in ties.
+    Symmetric,
+}
+
+/// Two plates, 8 long and 4 high each unless `size` says otherwise.
+#[derive(Clone, Copy, Debug)]
+pub struct Plates {
+    /// Elements of each plate along and across the joint: `divisions[0] + 1` pairs.
+    pub divisions: [usize; 2],
+    /// Size of each plate.
+    pub size: [f64; 2],
+    /// f of all pairs, parameter `f`.
+    pub friction: f64,
+    /// Traction on the sides, parameter `T`.
+    pub traction: f64,
+    /// Where it acts.
+    pub pull: Pull,
+    /// Load cases in all, at least 2; those after `weight` and `pull` have the factor 0.
+    pub cases: usize,
+}
+
+impl Plates {
+    /// `pairs` pairs, plates of nearly square elements (at most 40 across), a pull that slides and lifts a part.
+    pub fn with_pairs(pairs: usize, friction: f64) -> Plates {
+        Plates {
+            divisions: [pairs - 1, (pairs / 8).clamp(4, 40)],
+            size: [8.0, 4.0],
+            friction,
+            traction: 60.0,
+            pull: Pull::OneSided,
+            cases: 2,
+        }
+    }
+
+    /// The scenario file.
+    pub fn text(&self) -> String {
+        let [nx, ny] = self.divisions;
+        let [width, height] = self.size;
+        let (f, t) = (self.friction, self.traction);
+        let (pull, springs) = match self.pull {
+            Pull::OneSided => (
+                r#"{"traction":{"edge":"upper.left","value":[1,0.7]}}"#,
+                r#"{"at":"upper.left","direction":[1,0],"stiffness":10}"#,
+            ),
+            Pull::Symmetric => (
+                r#"{"traction":{"edge":"upper.left","value":[-1,0]}},
+                   {"traction":{"edge":"upper.right","value":[1,0]}}"#,
+                r#"{"at":"upper.left","direction":[1,0],"stiffness":10},
+                   {"at":"upper.right","direction":[1,0],"stiffness":10}"#,
+            ),
+        };
+        let further: String = (2..self.cases)
+            .map(|case| {
+                format!(
+                    r#","c{case}":{{"factor":0,"items":[{{"traction":{{"edge":"upper.top","value":[{case},-1]}}}}]}}"#
+                )
+            })
+            .collect();
+        format!(
+            r#"{{"format":"stickslip/1","title":"Two plates","parameters":{{"f":{f},"T":{t}}},
+"materials":{{"m":{{"E":1e5,"nu":0.3}}}},
+"plates":[
+{{"id":"lower","origin":[0,0],"size":[{width},{height}],"divisions":[{nx},{ny}],"thickness":0.1,"material":"m","plane":"strain"}},
+{{"id":"upper","origin":[0,{height}],"size":[{width},{height}],"divisions":[{nx},{ny}],"thickness":0.1,"material":"m","plane":"strain"}}],
+"supports":[{{"at":"lower.bottom","fixed":["x","y"]}}],
+"springs":[{springs}],
+"contacts":[{{"id":"joint","edge":"upper.bottom","against":"lower.top","friction":"f"}}],
+"loads":{{"weight":{{"items":[{{"traction":{{"edge":"upper.top","value":[0,-100]}}}}]}},
+"pull":{{"factor":"T","items":[{pull}]}}{further}}}}}"#
+        )
+    }
+
+    /// The scenario, loaded.
+    pub fn scenario(&self) -> Scenario {
+        load_text("plates", &self.text(), None).expect("the generated scenario is sound")
+    }
+}
+
+/// A scenario with all that depends on its geometry alone.
+pub struct Ready {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// Factorized and condensed.
+    pub prepared: Prepared,
+}
+
+impl Ready {
+    /// Loads and condenses.
+    pub fn new(plates: &Plates) -> Ready {
+        let scenario = plates.scenario();
+        let prepared = prepare(&scenario, &Quiet).expect("two plates stand in the main system");
+        Ready { scenario, prepared }
+    }
+
+    /// The scenario's values with some of them changed.
+    pub fn values(&self, changes: &[(&str, f64)]) -> ParameterValues {
+        let mut values = self.scenario.parameter_values();
+        for (name, value) in changes {
+            values.insert((*name).to_owned(), *value);
+        }
+        values
+    }
+
+    /// The numbers of the contact laws and the load.
+    pub fn numbers(&self, values: &ParameterValues) -> ContactNumbers {
+        let system = self.prepared.system().expect("contact is condensed");
+        contact_numbers(system, &factors(&self.prepared, values), values)
+    }
+}

@@ -1,0 +1,264 @@
+//! Measurements as JSON lines, for `benches/against.py` and by hand; see `benches/README.md`.
+//!
+//! ```text
+//! measure engine PAIRS F T one-sided|symmetric [FOLDER]   exports M, q, d to FOLDER; a run per line read from stdin
+//! measure warm PAIRS F T REPETITIONS                      cold, load changed, friction changed
+//! measure condense NX NY WIDTH HEIGHT CASES [plain]       two plates; `plain`: also faer's own factorization
+//! ```
+
+#[path = "../benches/common/mod.rs"]
+mod common;
+
+use std::fs::File;
+use std::io::{BufRead, BufWriter, Write};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Instant;
+
+use faer::Side;
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use serde_json::{Value, json};
+
+use common::{Plates, Pull, Ready};
+use stickslip::contact::complementarity::contact_lcp;
+use stickslip::contact::whole::{WholeInput, whole_lcp};
+use stickslip::export::lcp::matrix_market;
+use stickslip::fem::MainSystem;
+use stickslip::lcp::driver::run;
+use stickslip::lcp::lemke::SchemeEngine;
+use stickslip::lcp::vertex::{Basis, vertex};
+use stickslip::model::pair::joints;
+use stickslip::model::rules::TieBreak;
+use stickslip::model::scenario::Source;
+use stickslip::solve::resume::same_answer;
+use stickslip::watch::Quiet;
+
+/// Seconds that `work` takes.
+fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let clock = Instant::now();
+    let result = work();
+    (clock.elapsed().as_secs_f64(), result)
+}
+
+fn median(mut seconds: Vec<f64>) -> f64 {
+    seconds.sort_by(f64::total_cmp);
+    seconds[seconds.len() / 2]
+}
+
+/// Largest resident memory of this process so far.
+fn peak_megabytes() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
+}
+
+type Failure = Box<dyn std::error::Error>;
+
+fn number<T: std::str::FromStr>(arguments: &[String], at: usize, name: &str) -> Result<T, Failure> {
+    let word = arguments
+        .get(at)
+        .ok_or_else(|| format!("{name} is missing"))?;
+    word.parse()
+        .map_err(|_| format!("{name}: `{word}` is no such number").into())
+}
+
+/// Engine runs on request, so that another program can time its own runs in between.
+fn engine(arguments: &[String]) -> Result<(), Failure> {
+    let symmetric = arguments.get(3).is_some_and(|word| word == "symmetric");
+    let ready = Ready::new(&Plates {
+        traction: number(arguments, 2, "T")?,
+        pull: if symmetric {
+            Pull::Symmetric
+        } else {
+            Pull::OneSided
+        },
+        ..Plates::with_pairs(number(arguments, 0, "PAIRS")?, number(arguments, 1, "F")?)
+    });
+    let system = ready.prepared.system().ok_or("no contact system")?;
+    let covering = ready.scenario.rules.covering;
+    let numbers = ready.numbers(&ready.values(&[]));
+    if let Some(folder) = arguments.get(4) {
+        let whole = whole_lcp::<f64>(&WholeInput {
+            system,
+            numbers: &numbers,
+            covering,
+        });
+        let column = |entries: &[f64]| entries.iter().map(|entry| vec![*entry]).collect::<Vec<_>>();
+        let folder = Path::new(folder);
+        for (name, rows) in [
+            ("M", &whole.matrix),
+            ("q", &column(&whole.q)),
+            ("d", &column(&whole.covering)),
+        ] {
+            let mut out = BufWriter::new(File::create(folder.join(format!("{name}.mtx")))?);
+            matrix_market(&mut out, rows, name)?;
+            out.flush()?;
+        }
+    }
+    let mut out = std::io::stdout();
+    writeln!(out, "{}", json!({ "pairs": system.pairs.len() }))?;
+    for line in std::io::stdin().lock().lines() {
+        line?;
+        let (form, contact) = timed(|| contact_lcp(system, &numbers, covering));
+        let contact = contact?;
+        let rule = contact.tie_rule(TieBreak::Lexicographic);
+        let (pivoting, (engine, mut result)) = timed(|| {
+            let mut engine = SchemeEngine::new(Arc::clone(&contact.lcp), rule);
+            let result = run(&mut engine, 1_000_000, &mut |_| ControlFlow::Continue(()));
+            (engine, result)
+        });
+        let (last, fresh) = timed(|| vertex(&contact.lcp, &Basis::after(&result.pivots)));
+        if let Some(point) = fresh {
+            result.point = point;
+        }
+        let refreshes = engine.refreshes();
+        let outcome = format!("{:?}", result.outcome);
+        let outcome = outcome.split([' ', '(']).next().unwrap_or_default();
+        writeln!(
+            out,
+            "{}",
+            json!({
+                "seconds": form + pivoting + last,
+                "form": form,
+                "pivoting": pivoting,
+                "vertex": last,
+                "outcome": outcome,
+                "pivots": result.pivots.len(),
+                "refreshes": refreshes,
+                "z": contact.in_units(&result.point).z,
+            })
+        )?;
+    }
+    Ok(())
+}
+
+/// Whole answers, check included: cold, and from the last one after a change of the load and of friction.
+fn warm(arguments: &[String]) -> Result<Value, Failure> {
+    let (pairs, friction): (usize, f64) =
+        (number(arguments, 0, "PAIRS")?, number(arguments, 1, "F")?);
+    let traction: f64 = number(arguments, 2, "T")?;
+    let repetitions: usize = number(arguments, 3, "REPETITIONS")?;
+    let ready = Ready::new(&Plates {
+        traction,
+        ..Plates::with_pairs(pairs, friction)
+    });
+    let rules = ready.scenario.rules;
+    let cold = |changes: &[(&str, f64)]| {
+        timed(|| {
+            ready
+                .prepared
+                .solve(&ready.scenario, &ready.values(changes), rules, &Quiet)
+        })
+    };
+    let mut colds = (Vec::new(), Vec::new());
+    let mut changed = serde_json::Map::new();
+    for (name, parameter, value) in [
+        ("load +2 %", "T", 1.02 * traction),
+        ("load +20 %", "T", 1.2 * traction),
+        ("f +1 %", "f", 1.01 * friction),
+        ("f +2 %", "f", 1.02 * friction),
+        ("f -2 %", "f", 0.98 * friction),
+    ] {
+        let there = [(parameter, value)];
+        let (mut whole, mut path) = (Vec::new(), Vec::new());
+        let (mut changes, mut same, mut failed) = (0, true, 0);
+        for _ in 0..repetitions {
+            let (seconds, last) = cold(&[]);
+            let last = last?;
+            colds.0.push(seconds);
+            colds.1.push(last.answer.timings.lemke);
+            let values = ready.values(&there);
+            let (seconds, followed) =
+                timed(|| ready.prepared.follow(&last, &values, rules, &Quiet));
+            let Some(followed) = followed else {
+                failed += 1;
+                continue;
+            };
+            whole.push(seconds);
+            path.push(followed.answer.timings.lemke);
+            if let stickslip::answer::record::Start::Warm { changes: made } = followed.answer.start
+            {
+                changes = made;
+            }
+            same &= same_answer(&followed.answer, &cold(&there).1?.answer);
+        }
+        let found = (!whole.is_empty()).then(|| {
+            json!({
+                "whole": median(whole), "path": median(path), "changes": changes, "same": same,
+            })
+        });
+        changed.insert(name.to_owned(), json!({ "failed": failed, "found": found }));
+    }
+    Ok(json!({
+        "pairs": pairs, "f": friction,
+        "cold_whole": median(colds.0), "cold_lemke": median(colds.1), "changed": changed,
+    }))
+}
+
+/// The main system of two plates: seconds of its parts, memory.
+fn condense(arguments: &[String]) -> Result<Value, Failure> {
+    let scenario = Plates {
+        divisions: [number(arguments, 0, "NX")?, number(arguments, 1, "NY")?],
+        size: [
+            number(arguments, 2, "WIDTH")?,
+            number(arguments, 3, "HEIGHT")?,
+        ],
+        cases: number(arguments, 4, "CASES")?,
+        ..Plates::with_pairs(2, 0.4)
+    }
+    .scenario();
+    let Source::Structure(structure) = &scenario.source else {
+        return Err("no structure".into());
+    };
+    let joints = joints(&structure.pairs);
+    let before = peak_megabytes();
+    let (total, main) = timed(|| MainSystem::new(structure, &joints, &Quiet));
+    let main = main?;
+    let seconds = main.timings();
+    let peak = peak_megabytes();
+    let mut result = json!({
+        "unknowns": main.size().all,
+        "pairs": structure.pairs.len(),
+        "cases": structure.load_cases.len(),
+        "assemble": seconds.assemble,
+        "factor": seconds.factor,
+        "condense": seconds.condense,
+        "total": total,
+        "entries": main.factor_entries(),
+        "model_megabytes": before,
+        "peak_megabytes": peak,
+    });
+    drop(main);
+    if arguments.get(5).is_some_and(|word| word == "plain") {
+        let (starts, rows, values) = MainSystem::matrix(structure, &joints, &Quiet)?;
+        let n = starts.len() - 1;
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
+        let matrix = SparseColMatRef::new(pattern, &values);
+        faer::set_global_parallelism(faer::Par::Seq);
+        let (plain, factor) = timed(|| matrix.sp_cholesky(Side::Lower));
+        factor.map_err(|error| format!("{error:?}"))?;
+        result["plain"] = json!(plain);
+        result["ratio"] = json!((seconds.factor + seconds.condense) / plain);
+    }
+    Ok(result)
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let rest = arguments.get(1..).unwrap_or_default();
+    let done = match arguments.first().map(String::as_str) {
+        Some("engine") => engine(rest),
+        Some("warm") => warm(rest).map(|result| println!("{result}")),
+        Some("condense") => condense(rest).map(|result| println!("{result}")),
+        _ => Err("expected engine, warm or condense; see the head of examples/measure.rs".into()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
