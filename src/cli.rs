@@ -5,16 +5,14 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
-use crate::export::{atomic, json};
+use crate::export::json;
 use crate::model::embedded;
 use crate::model::load::load_named_or_file;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
-use crate::path::grid::{Axis, Grid, Shard};
-use crate::path::sweep::{Format as RowFormat, Sweep};
-use crate::path::sweep_file::{self, SweepFileError, run_to_file};
+use crate::model::schema;
 use crate::session::{Answer, exit_status, paths, script};
-use crate::session::{CommandError, Format, Output, Session};
+use crate::session::{CommandError, Format, Output, Session, diagnose};
 use crate::signals::{Signals, TerminalWatch, is_dumb};
 use crate::view;
 use crate::view::style::{Role, Style};
@@ -93,6 +91,8 @@ enum Command {
         out: Option<PathBuf>,
     },
     /// Find every problem in scenario files, solving nothing
+    ///
+    /// Also names the parts that only contact holds, with their motions: where those are not wanted, a support is missing.
     Check {
         /// Files, or embedded scenarios
         #[arg(required = true, value_name = "SCENARIO")]
@@ -106,6 +106,9 @@ enum Command {
     },
     /// List the embedded scenarios
     Scenarios,
+    /// Print the JSON Schema of the scenario format
+    #[command(after_help = "Example:\n  stickslip schema > stickslip.schema.json")]
+    Schema,
     /// Print the completions of a shell
     Completions {
         /// The shell
@@ -113,14 +116,12 @@ enum Command {
     },
 }
 
+/// What is solved with other values and rules than those of the file.
 #[derive(Args, Debug)]
-struct Solve {
-    /// A file, or an embedded scenario
-    #[arg(default_value = embedded::DEFAULT)]
-    scenario: String,
+struct Settings {
     /// Change a parameter, as the REPL's `set` does: `--set f=0.3`, `--set F2=110%`
     #[arg(long = "set", value_name = "NAME=VALUE")]
-    settings: Vec<String>,
+    values: Vec<String>,
     /// Covering vector: cohesive, ones or weight
     #[arg(long)]
     covering: Option<Covering>,
@@ -130,6 +131,30 @@ struct Solve {
     /// Engine: scheme, tableau or exact
     #[arg(long)]
     engine: Option<Engine>,
+}
+
+impl Settings {
+    /// The words after a `set`, setting by setting.
+    fn words(&self) -> Vec<Vec<String>> {
+        let rule =
+            |name: &str, choice: Option<String>| choice.map(|choice| vec![name.to_owned(), choice]);
+        self.values
+            .iter()
+            .map(|setting| vec![setting.clone()])
+            .chain(rule("covering", self.covering.map(|c| c.to_string())))
+            .chain(rule("tie-break", self.tie_break.map(|t| t.to_string())))
+            .chain(rule("engine", self.engine.map(|e| e.to_string())))
+            .collect()
+    }
+}
+
+#[derive(Args, Debug)]
+struct Solve {
+    /// A file, or an embedded scenario
+    #[arg(default_value = embedded::DEFAULT)]
+    scenario: String,
+    #[command(flatten)]
+    settings: Settings,
     /// For people, or the JSON of the whole result
     #[arg(long, value_enum, default_value_t = Form::Text)]
     format: Form,
@@ -158,21 +183,11 @@ struct SweepArguments {
     /// A parameter and its values: NAME=FROM:TO:STEP (TO included), NAME=FROM..TO/COUNT or NAME=VALUE; up to three
     #[arg(long = "vary", value_name = "NAME=RANGE", required = true)]
     axes: Vec<String>,
-    /// Change a parameter that is not varied, as `solve` does
-    #[arg(long = "set", value_name = "NAME=VALUE")]
-    settings: Vec<String>,
-    /// Covering vector: cohesive, ones or weight
-    #[arg(long)]
-    covering: Option<Covering>,
-    /// Tie-break: lexicographic, natural, first-row or random:SEED
-    #[arg(long)]
-    tie_break: Option<TieBreak>,
-    /// Engine: scheme, tableau or exact
-    #[arg(long)]
-    engine: Option<Engine>,
+    #[command(flatten)]
+    settings: Settings,
     /// Only part K of N, for batch systems
     #[arg(long, value_name = "K/N")]
-    shard: Option<Shard>,
+    shard: Option<paths::Shard>,
     /// File to write; otherwise stdout
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -333,6 +348,11 @@ fn run(cli: Cli) -> Result<u8, Failure> {
             crate::session::write_scenarios(&mut out, &style)?;
             Ok(0)
         }
+        Some(Command::Schema) => {
+            let text = serde_json::to_string_pretty(&schema::schema()).map_err(io::Error::other)?;
+            writeln!(out, "{text}")?;
+            Ok(0)
+        }
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "stickslip", &mut script);
@@ -375,15 +395,7 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
     let scenario = load(&arguments.scenario)?;
-    let settings: Vec<Vec<String>> = arguments
-        .settings
-        .iter()
-        .map(|setting| vec![setting.clone()])
-        .chain(rule("covering", arguments.covering))
-        .chain(rule("tie-break", arguments.tie_break))
-        .chain(rule("engine", arguments.engine))
-        .collect();
-    let session = Session::with_settings(scenario, &settings, &watch);
+    let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
     let Some(answer) = session.answer() else {
@@ -407,93 +419,37 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
 }
 
 fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
-    let usage = |message: String| Failure::Status(2, message);
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
     let scenario = load(&arguments.scenario)?;
-    let axes: Vec<Axis> = arguments
-        .axes
-        .iter()
-        .map(|axis| Axis::parse(axis))
-        .collect::<Result<_, _>>()
-        .map_err(|error| usage(error.to_string()))?;
-    let grid = Grid::new(&scenario, axes).map_err(|error| usage(error.to_string()))?;
-    let settings: Vec<Vec<String>> = arguments
-        .settings
-        .iter()
-        .map(|setting| vec![setting.clone()])
-        .chain(rule("covering", arguments.covering))
-        .chain(rule("tie-break", arguments.tie_break))
-        .chain(rule("engine", arguments.engine))
-        .collect();
-    let session = Session::with_settings(scenario, &settings, &watch);
+    let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
-    let Some(prepared) = session.prepared() else {
-        return Err(Failure::Status(4, "no prepared geometry".to_owned()));
+    let request = paths::SweepRequest {
+        axes: &arguments.axes,
+        shard: arguments.shard,
+        format: arguments.format.map(|rows| match rows {
+            Rows::Csv => paths::Format::Csv,
+            Rows::Json => paths::Format::Json,
+        }),
+        out: arguments.out.as_deref(),
+        resume: arguments.resume,
     };
-    let format = match (arguments.format, &arguments.out) {
-        (Some(Rows::Csv), _) | (None, None) => RowFormat::Csv,
-        (Some(Rows::Json), _) => RowFormat::Json,
-        (None, Some(path)) => paths::format_of(path)?,
-    };
-    let sweep = Sweep {
-        prepared: &prepared,
-        scenario: session.scenario(),
-        values: session.values(),
-        rules: session.rules(),
-        grid: &grid,
-        shard: arguments.shard.unwrap_or(Shard::WHOLE),
-        format,
-    };
-    let done = match &arguments.out {
-        Some(path) => {
-            let done = run_to_file(&sweep, path, arguments.resume, &watch);
-            watch.clear();
-            let done = done.map_err(|error| usage(error.to_string()))?;
-            writeln!(out, "{}", style.text(&paths::done_sentence(&done, path)))?;
-            done
-        }
-        None => {
-            out.write_all(sweep.preamble().as_bytes())?;
-            let done = sweep.run(0, out, &watch);
-            watch.clear();
-            done?
-        }
-    };
+    let done = session.sweep_into(&request, out, &watch);
+    watch.clear();
+    let done = done?;
+    if let Some(path) = &arguments.out {
+        writeln!(out, "{}", style.text(&paths::done_sentence(&done, path)))?;
+    }
     Ok(if done.is_complete() { 0 } else { 130 })
 }
 
 fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<u8, Failure> {
-    let failed = |error: SweepFileError| match error {
-        SweepFileError::Output(error) => Failure::Output(error),
-        error => Failure::Status(2, error.to_string()),
-    };
-    match to {
-        None => {
-            let mut buffer = io::BufWriter::new(out);
-            sweep_file::merge(files, &mut buffer).map_err(failed)?;
-        }
-        Some(path) => {
-            let mut rows = Ok(0);
-            let written = atomic::write(path, |file| {
-                rows = sweep_file::merge(files, file);
-                match &rows {
-                    Ok(_) => Ok(()),
-                    Err(error) => Err(io::Error::other(error.to_string())),
-                }
-            });
-            let rows = rows.map_err(failed)?;
-            written.map_err(|error| Failure::Status(2, error.to_string()))?;
-            writeln!(out, "{rows} rows written to {}", path.display())?;
-        }
+    let rows = paths::merge(files, to, out)?;
+    if let Some(path) = to {
+        writeln!(out, "{rows} rows written to {}", path.display())?;
     }
     Ok(0)
-}
-
-/// `set` words of a rule given as an option.
-fn rule(name: &str, choice: Option<impl ToString>) -> Option<Vec<String>> {
-    choice.map(|choice| vec![name.to_owned(), choice.to_string()])
 }
 
 /// Status, pivots, pairs, ray: what one wants to see of an answer at once.
@@ -572,19 +528,31 @@ fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, F
 }
 
 fn check(names: &[String], style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let signals = Signals::install()?;
+    let watch = TerminalWatch::new(&signals);
     let mut status = 0;
+    let mut problems = |text: &str| -> io::Result<()> {
+        status = 2;
+        text.lines()
+            .try_for_each(|line| writeln!(io::stderr(), "{}", style.text(line)))
+    };
     for name in names {
         match load_named_or_file(name) {
             Ok(scenario) => {
-                let line = format!("{name}: no problems found ({})", scenario.title);
-                writeln!(out, "{}", style.text(&line))?;
-            }
-            Err(problems) => {
-                status = 2;
-                for line in problems.to_string().lines() {
-                    writeln!(io::stderr(), "{}", style.text(line))?;
+                let title = scenario.title.clone();
+                let looked = diagnose(scenario, &watch);
+                watch.clear();
+                match looked {
+                    Ok(loose) => {
+                        let line = format!("{name}: no problems found ({title})");
+                        writeln!(out, "{}", style.text(&line))?;
+                        view::loose::write(out, &loose, style)?;
+                    }
+                    Err(error) if error.is_interrupted() => return Err(error.into()),
+                    Err(error) => problems(&error.to_string())?,
                 }
             }
+            Err(found) => problems(&found.to_string())?,
         }
     }
     out.flush()?;

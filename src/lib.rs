@@ -1,4 +1,32 @@
 //! stickslip: what a structure with frictional contact really does.
+//!
+//! # The problem
+//!
+//! A linear elastic structure touches something else at m contact pairs. Each pair has a normal joint (force x_n > 0
+//! in compression, opening z_n) and a tangential joint (force x_τ, slip z_τ). With every joint on, the structure is
+//! the *main system*; its response to dislocations z of the joints and to the loads is
+//!
+//! ```text
+//!   λ = R (z − (g, 0)) + RF        R: CSM, 2m × 2m, symmetric, positive semidefinite
+//!                                  RF: CLV, 2m;  λ = (x_n, x_τ);  g: initial gaps, m
+//! ```
+//!
+//! Unilateral contact and Coulomb friction with r_f = f x_n + c, reserves x⁺ = r_f + x_τ, x⁻ = r_f − x_τ and
+//! z_τ = z⁺ − z⁻ make it a linear complementarity problem of 3m rows,
+//!
+//! ```text
+//!   w = M z + q,   w ≥ 0,  z ≥ 0,  wᵀ z = 0,      w = (x_n, x⁺, x⁻),  z = (z_n, z⁺, z⁻)
+//! ```
+//!
+//! which Lemke's algorithm solves: w = M z + q + d p with the artificial variable p, the *tightening weight*; every
+//! pivot turns one joint on or off, a change of the *working scheme*. (Popov & Lovtsov, Magazine of Civil Engineering
+//! 100(8), 2020, doi 10.18720/MCE.100.1.)
+//!
+//! # The way of the data
+//!
+//! scenario file → [`model`] → [`fem`] (R, RF) → [`contact`] (LCP) → [`lcp`] (pivots) → [`answer`] → [`explain`],
+//! [`solve`], [`path`] → [`view`], [`export`] → [`session`] → [`repl`], [`tui`], [`cli`]. A module imports only from
+//! those before it; only the last three read or write the terminal.
 
 pub mod answer;
 pub mod cli;

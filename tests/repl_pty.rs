@@ -400,13 +400,17 @@ fn killed_sessions_are_restored() {
             _ => {}
         }
         if end != "-KILL" {
-            // bracketed paste is turned off again
-            let bytes = bytes.lock().unwrap();
-            let text = String::from_utf8_lossy(&bytes.1);
-            assert!(
-                text.rfind("\u{1b}[?2004l") > text.rfind("\u{1b}[?2004h"),
-                "{end}"
-            );
+            // bracketed paste is turned off again; the last bytes may come after the end of the program
+            let is_off = || {
+                let bytes = bytes.lock().unwrap();
+                let text = String::from_utf8_lossy(&bytes.1);
+                text.rfind("\u{1b}[?2004l") > text.rfind("\u{1b}[?2004h")
+            };
+            let deadline = std::time::Instant::now() + Duration::from_secs(10);
+            while !is_off() {
+                assert!(std::time::Instant::now() < deadline, "{end}");
+                std::thread::sleep(Duration::from_millis(20));
+            }
         }
         let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
         terminal.wait("the offer", |screen| {

@@ -1,6 +1,7 @@
 //! The full screen in a pseudo-terminal: what a terminal sees of it, how many bytes it gets, and how it is left.
 
 use std::io::{Read, Write};
+use std::num::NonZeroU16;
 use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -14,6 +15,8 @@ const PATIENCE: Duration = Duration::from_secs(30);
 struct Seen {
     parser: vt100::Parser,
     bytes: usize,
+    /// Whether no code of 256 colours was seen.
+    sixteen: bool,
 }
 
 struct Screen {
@@ -55,8 +58,9 @@ impl Screen {
         let mut reader = pair.master.try_clone_reader().unwrap();
         let writer = pair.master.take_writer().unwrap();
         let seen = Arc::new(Mutex::new(Seen {
-            parser: vt100::Parser::new(height, width, 0),
+            parser: vt100::Parser::new(size(height), size(width), 0),
             bytes: 0,
+            sixteen: true,
         }));
         let theirs = Arc::clone(&seen);
         thread::spawn(move || {
@@ -65,6 +69,7 @@ impl Screen {
                 let mut seen = theirs.lock().unwrap();
                 seen.parser.process(&buffer[..count]);
                 seen.bytes += count;
+                seen.sixteen &= !buffer[..count].windows(4).any(|code| code == b"8;5;");
             }
         });
         Screen {
@@ -124,7 +129,7 @@ impl Screen {
             .unwrap()
             .parser
             .screen_mut()
-            .set_size(height, width);
+            .set_size(size(height), size(width));
         self.master
             .resize(PtySize {
                 rows: height,
@@ -174,6 +179,10 @@ impl Drop for Screen {
     }
 }
 
+fn size(count: u16) -> NonZeroU16 {
+    NonZeroU16::new(count).unwrap()
+}
+
 fn termios(master: &dyn MasterPty) -> String {
     format!("{:?}", master.get_termios())
 }
@@ -191,6 +200,8 @@ fn start_vary_step_ray_resize_quit() {
             .screen()
             .alternate_screen()
     );
+    // sixteen colours, in their own codes
+    assert!(screen.seen.lock().unwrap().sixteen);
     screen.send("\x1b[B\x1b[B[");
     screen.wait("F2 = 150 kN");
     screen.wait("pairs changed");
@@ -209,7 +220,7 @@ fn start_vary_step_ray_resize_quit() {
     screen.resize(40, 12);
     screen.wait("2 Parameters");
     screen.resize(30, 8);
-    screen.wait("the panes need");
+    screen.wait("panes need 40 x 12");
     screen.resize(80, 24);
     screen.wait("ray: mechanism");
     screen.send("?");
@@ -404,6 +415,8 @@ fn a_panic_leaves_the_terminal_as_it_was() {
         "--nocapture",
     ]);
     command.env("STICKSLIP_TEST_PANIC", "1");
+    // the message must not be scrolled away
+    command.env("RUST_BACKTRACE", "0");
     let mut screen = Screen::spawn(command, 80, 24);
     screen.until("the alternate screen", vt100::Screen::alternate_screen);
     assert_eq!(screen.exit(), 101);

@@ -3,14 +3,12 @@
 use nalgebra::DVector;
 
 use super::record::{PairState, State};
-use crate::contact::complementarity::{ContactLcp, load_with_gaps};
+use crate::contact::complementarity::{ContactLcp, Couple, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::outcome::Point;
+use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
-
-/// Displacements below this multiple of the largest are rounding.
-const NOISE: f64 = 256.0 * f64::EPSILON;
 
 /// A vertex over the joints, in the user's units, rounding noise removed.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +30,7 @@ pub fn joint_state(
 ) -> JointState {
     let scale = &contact.lcp.scale.column;
     let column = |row: usize| match contact.rows[row].couple {
-        crate::contact::complementarity::Couple::Minus => {
-            contact.plus_row[contact.rows[row].pair].map_or(1.0, |plus| scale[plus])
-        }
+        Couple::Minus => contact.plus_row[contact.rows[row].pair].map_or(1.0, |plus| scale[plus]),
         _ => scale[row],
     };
     let size: f64 = point

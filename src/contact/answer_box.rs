@@ -23,12 +23,15 @@ pub(crate) fn ellipsoid(
     constants: &[f64],
 ) -> Option<Boxes> {
     let k = joints.len();
+    if k == 0 {
+        return None; // no joints: nothing to box, and an empty matrix has no eigenvalues
+    }
     let r = DMatrix::from_fn(k, k, |i, j| {
         system.stiffness[(joints[i], joints[j])] / sizes.root[joints[i]] / sizes.root[joints[j]]
     });
     let q = DVector::from_iterator(k, joints.iter().map(|j| constants[*j] / sizes.root[*j]));
     let eigen = r.clone().symmetric_eigenvalues();
-    if k == 0 || eigen.min() <= 1e-9 * eigen.max() {
+    if eigen.min() <= 1e-9 * eigen.max() {
         return None;
     }
     let inverse = r.cholesky()?.inverse();

@@ -13,6 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
+use super::whole::{joint_constants, rows};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::Scale;
@@ -39,6 +40,18 @@ pub struct RowMeaning {
     pub pair: usize,
     /// Which couple of it.
     pub couple: Couple,
+}
+
+impl RowMeaning {
+    /// Name of the force (`letter` x) or displacement (z) of this row: `x_n[c1]`, `z+[c1]`.
+    pub fn name(self, letter: char, system: &ContactSystem) -> String {
+        let index = match self.couple {
+            Couple::Normal => "_n",
+            Couple::Plus => "+",
+            Couple::Minus => "-",
+        };
+        format!("{letter}{index}[{}]", system.pairs[self.pair].id)
+    }
 }
 
 /// A covering that cannot be used with these numbers.
@@ -87,14 +100,7 @@ fn power_of_two(value: f64) -> f64 {
 
 /// RF − R·(g, 0): the forces in the joints of the main system, gaps closed by force.
 pub fn load_with_gaps(system: &ContactSystem, numbers: &ContactNumbers) -> DVector<f64> {
-    if numbers.gap.iter().all(|gap| *gap == 0.0) {
-        return numbers.load.clone();
-    }
-    let mut gap = DVector::zeros(system.joint_count());
-    for (pair, value) in numbers.gap.iter().enumerate() {
-        gap[pair] = *value;
-    }
-    &numbers.load - &system.stiffness * gap
+    DVector::from_vec(joint_constants(system, numbers))
 }
 
 /// Writes the LCP of the system under the given numbers.
@@ -192,7 +198,7 @@ pub fn contact_lcp_like(
     let mut d = DVector::zeros(count);
     let mut row_scale = vec![0.0; count];
     let mut mirrors = vec![None; count];
-    let mut rows = Vec::with_capacity(count + tangentials.len());
+    let rows = rows(system);
     let (mut normal_row, mut plus_row, mut minus_row) = (
         vec![None; pairs.len()],
         vec![None; pairs.len()],
@@ -203,10 +209,6 @@ pub fn contact_lcp_like(
         d[row] = 1.0;
         row_scale[row] = column_scale[i];
         normal_row[i] = Some(row);
-        rows.push(RowMeaning {
-            pair: i,
-            couple: Couple::Normal,
-        });
     }
     for (k, &(i, joint)) in tangentials.iter().enumerate() {
         let row = normals.len() + k;
@@ -241,15 +243,7 @@ pub fn contact_lcp_like(
         });
         plus_row[i] = Some(row);
         minus_row[i] = Some(count + k);
-        rows.push(RowMeaning {
-            pair: i,
-            couple: Couple::Plus,
-        });
     }
-    rows.extend(tangentials.iter().map(|&(pair, _)| RowMeaning {
-        pair,
-        couple: Couple::Minus,
-    }));
     let lcp = MirroredLcp {
         matrix,
         q,
@@ -300,13 +294,7 @@ impl ContactLcp {
             Variable::W(row) => ('x', row),
             Variable::Z(row) => ('z', row),
         };
-        let meaning = self.rows[row];
-        let index = match meaning.couple {
-            Couple::Normal => "_n",
-            Couple::Plus => "+",
-            Couple::Minus => "-",
-        };
-        format!("{letter}{index}[{}]", system.pairs[meaning.pair].id)
+        self.rows[row].name(letter, system)
     }
 
     /// z over the joints (z_n, z_τ = z⁺ − z⁻) of a point or direction, dimensionless.

@@ -22,6 +22,9 @@ use super::whole::tangential_joint;
 pub const EXACT_PAIRS: usize = 8;
 /// Smallest over largest pivot (R scaled to unit diagonal) below which a block counts as singular.
 const SINGULAR: f64 = 1e-10;
+/// Entries of R, scaled to unit diagonal, up to which a coupling of two joints is rounding of the condensation: as a
+/// coupling it would mean a critical friction of 1e13 and more.
+const NO_COUPLING: f64 = 256.0 * f64::EPSILON;
 /// Imaginary part, relative, up to which an eigenvalue counts as real before its root is looked for.
 const REAL: f64 = 1e-5;
 
@@ -129,7 +132,14 @@ impl<'a> Search<'a> {
                 if root > 0.0 { root } else { 1.0 }
             })
             .collect();
-        let scaled = DMatrix::from_fn(k, k, |i, j| system.stiffness[(i, j)] / root[i] / root[j]);
+        let scaled = DMatrix::from_fn(k, k, |i, j| {
+            let entry = system.stiffness[(i, j)] / root[i] / root[j];
+            if entry.abs() <= NO_COUPLING {
+                0.0
+            } else {
+                entry
+            }
+        });
         let (at_0, at_1) = (friction(0.0), friction(1.0));
         let m = system.pair_count();
         let ratio = |pair: usize| match system.pairs[pair].law {

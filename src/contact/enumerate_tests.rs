@@ -5,9 +5,10 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::contact::complementarity::Couple;
 use crate::contact::critical::tests::unit_square;
 use crate::contact::whole::tests::{beam, beam_numbers, coulomb, plain, tangential_first};
-use crate::contact::whole::{RowKind, WholeInput, rows, whole_lcp};
+use crate::contact::whole::{WholeInput, rows, whole_lcp};
 use crate::lcp::driver::run;
 use crate::lcp::outcome::Outcome;
 use crate::lcp::scalar::Scalar;
@@ -122,10 +123,10 @@ fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64
     let mut z = DVector::zeros(system.joint_count());
     for (row, value) in rows(system).iter().zip(&run.point.z) {
         let value = value.to_f64();
-        match row.kind {
-            RowKind::Normal => z[row.pair] += value,
-            RowKind::Plus => z[tangential_joint(system, row.pair)] += value,
-            RowKind::Minus => z[tangential_joint(system, row.pair)] -= value,
+        match row.couple {
+            Couple::Normal => z[row.pair] += value,
+            Couple::Plus => z[tangential_joint(system, row.pair)] += value,
+            Couple::Minus => z[tangential_joint(system, row.pair)] -= value,
         }
     }
     Some(z)

@@ -17,6 +17,7 @@ use crate::lcp::scalar::Scalar;
 use crate::model::pair::Law;
 use crate::model::rules::Covering;
 
+use super::complementarity::{Couple, RowMeaning};
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
 
@@ -31,41 +32,21 @@ pub struct WholeInput<'a> {
     pub covering: Covering,
 }
 
-/// Quantity of a pair that a row of the LCP stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum RowKind {
-    /// x_n with z_n.
-    Normal,
-    /// x⁺ with z⁺.
-    Plus,
-    /// x⁻ with z⁻.
-    Minus,
-}
-
-/// A row of the LCP.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Row {
-    /// Index of the pair.
-    pub pair: usize,
-    /// Which of its quantities.
-    pub kind: RowKind,
-}
-
 /// The rows of the LCP in order.
-pub fn rows(system: &ContactSystem) -> Vec<Row> {
-    let of = |kind: RowKind, has: fn(&Law) -> bool| {
+pub fn rows(system: &ContactSystem) -> Vec<RowMeaning> {
+    let of = |couple: Couple, has: fn(&Law) -> bool| {
         system
             .pairs
             .iter()
             .enumerate()
             .filter(move |(_, pair)| has(&pair.law))
-            .map(move |(pair, _)| Row { pair, kind })
+            .map(move |(pair, _)| RowMeaning { pair, couple })
     };
     let normal: fn(&Law) -> bool = |law| !matches!(law, Law::Bound { .. });
     let tangential: fn(&Law) -> bool = |law| !matches!(law, Law::Frictionless { .. });
-    of(RowKind::Normal, normal)
-        .chain(of(RowKind::Plus, tangential))
-        .chain(of(RowKind::Minus, tangential))
+    of(Couple::Normal, normal)
+        .chain(of(Couple::Plus, tangential))
+        .chain(of(Couple::Minus, tangential))
         .collect()
 }
 
@@ -97,15 +78,15 @@ pub(crate) fn fixed_bound(system: &ContactSystem, numbers: &ContactNumbers, pair
 }
 
 /// The quantities of a row as a combination of joints: Σ factor·λ_joint + fixed.
-fn combination<T: Scalar>(input: &WholeInput, row: Row) -> (Vec<(usize, T)>, T) {
+fn combination<T: Scalar>(input: &WholeInput, row: RowMeaning) -> (Vec<(usize, T)>, T) {
     let WholeInput {
         system, numbers, ..
     } = *input;
     let pair = row.pair;
-    let side = match row.kind {
-        RowKind::Normal => return (vec![(pair, T::one())], T::zero()),
-        RowKind::Plus => T::one(),
-        RowKind::Minus => T::one().neg(),
+    let side = match row.couple {
+        Couple::Normal => return (vec![(pair, T::one())], T::zero()),
+        Couple::Plus => T::one(),
+        Couple::Minus => T::one().neg(),
     };
     let mut terms = vec![(tangential_joint(system, pair), side)];
     let f = T::from_f64(friction(system, numbers, pair));
@@ -115,15 +96,37 @@ fn combination<T: Scalar>(input: &WholeInput, row: Row) -> (Vec<(usize, T)>, T) 
     (terms, T::from_f64(fixed_bound(system, numbers, pair)))
 }
 
+/// R in another number type, exactly where that type can.
+fn stiffness_in<T: Scalar>(system: &ContactSystem) -> Vec<Vec<T>> {
+    let k = system.joint_count();
+    (0..k)
+        .map(|i| {
+            (0..k)
+                .map(|j| T::from_f64(system.stiffness[(i, j)]))
+                .collect()
+        })
+        .collect()
+}
+
 /// RF − R·(g, 0): the joint forces of the main system with all gaps closed by force.
 pub fn joint_constants<T: Scalar>(system: &ContactSystem, numbers: &ContactNumbers) -> Vec<T> {
+    let closed = |i: usize, k: usize| T::from_f64(system.stiffness[(i, k)]);
+    constants_with(system, numbers, &closed)
+}
+
+/// [`joint_constants`] with the entries of R from `stiffness`.
+fn constants_with<T: Scalar>(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    stiffness: &dyn Fn(usize, usize) -> T,
+) -> Vec<T> {
     (0..system.joint_count())
         .map(|i| {
             let mut sum = T::from_f64(numbers.load[i]);
             for (k, pair) in system.pairs.iter().enumerate() {
                 let gap = numbers.gap[k];
                 if gap != 0.0 && !matches!(pair.law, Law::Bound { .. }) {
-                    let force = T::from_f64(system.stiffness[(i, k)]).mul(&T::from_f64(gap));
+                    let force = stiffness(i, k).mul(&T::from_f64(gap));
                     sum = sum.sub(&force);
                 }
             }
@@ -134,6 +137,11 @@ pub fn joint_constants<T: Scalar>(system: &ContactSystem, numbers: &ContactNumbe
 
 /// Forms the LCP, see the [module documentation](self).
 pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
+    whole_lcp_of(input, &stiffness_in(input.system))
+}
+
+/// Forms the LCP with an R of its own, one row per joint, in place of that of the system.
+pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T> {
     let WholeInput {
         system,
         numbers,
@@ -142,18 +150,11 @@ pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
     let rows = rows(system);
     let combinations: Vec<(Vec<(usize, T)>, T)> =
         rows.iter().map(|row| combination(input, *row)).collect();
-    let joint = |row: &Row| match row.kind {
-        RowKind::Normal => row.pair,
-        RowKind::Plus | RowKind::Minus => tangential_joint(system, row.pair),
+    let joint = |row: &RowMeaning| match row.couple {
+        Couple::Normal => row.pair,
+        Couple::Plus | Couple::Minus => tangential_joint(system, row.pair),
     };
-    let constants = joint_constants::<T>(system, numbers);
-    let stiffness: Vec<Vec<T>> = (0..system.joint_count())
-        .map(|i| {
-            (0..system.joint_count())
-                .map(|j| T::from_f64(system.stiffness[(i, j)]))
-                .collect()
-        })
-        .collect();
+    let constants = constants_with(system, numbers, &|i, j| stiffness[i][j].clone());
 
     let matrix = combinations
         .iter()
@@ -166,9 +167,9 @@ pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
                 })
                 .collect();
             rows.iter()
-                .map(|column| match column.kind {
-                    RowKind::Normal | RowKind::Plus => responses[joint(column)].clone(),
-                    RowKind::Minus => responses[joint(column)].neg(),
+                .map(|column| match column.couple {
+                    Couple::Normal | Couple::Plus => responses[joint(column)].clone(),
+                    Couple::Minus => responses[joint(column)].neg(),
                 })
                 .collect()
         })
@@ -189,9 +190,9 @@ pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
     let scale = Scale {
         row: rows
             .iter()
-            .map(|row| match row.kind {
-                RowKind::Normal => root(row.pair),
-                RowKind::Plus | RowKind::Minus => {
+            .map(|row| match row.couple {
+                Couple::Normal => root(row.pair),
+                Couple::Plus | Couple::Minus => {
                     friction(system, numbers, row.pair) * root(row.pair) + root(joint(row))
                 }
             })
@@ -213,9 +214,9 @@ pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
 }
 
 /// d_n or d_τ of a row (theory §4, "Coverings").
-fn covering_entry<T: Scalar>(input: &WholeInput, row: Row, covering: Covering) -> T {
+fn covering_entry<T: Scalar>(input: &WholeInput, row: RowMeaning, covering: Covering) -> T {
     let law = &input.system.pairs[row.pair].law;
-    if row.kind == RowKind::Normal || !matches!(law, Law::Coulomb { .. }) {
+    if row.couple == Couple::Normal || !matches!(law, Law::Coulomb { .. }) {
         return T::one();
     }
     let f = T::from_f64(input.numbers.friction[row.pair]);

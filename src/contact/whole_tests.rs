@@ -52,7 +52,7 @@ pub(crate) fn plain(f: f64, load: &[f64]) -> ContactNumbers {
 /// Normals last: the default rule.
 pub(crate) fn tangential_first(system: &ContactSystem) -> TieRule {
     let rows = rows(system);
-    let normals = rows.iter().filter(|r| r.kind == RowKind::Normal).count();
+    let normals = rows.iter().filter(|r| r.couple == Couple::Normal).count();
     TieRule::Lexicographic((normals..rows.len()).chain(0..normals).collect())
 }
 
@@ -171,8 +171,8 @@ fn laws_mix() {
         numbers: &numbers,
         covering: Covering::Cohesive,
     });
-    let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.kind)).collect();
-    use RowKind::*;
+    let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();
+    use Couple::*;
     assert_eq!(
         kinds,
         [

@@ -17,10 +17,11 @@ use num_traits::{Signed, Zero};
 use super::kernel::{clean, releasable_kernel};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
+use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
 
 /// The power of the loads has to exceed this multiple of the terms that it sums.
-const MARGIN: f64 = 256.0 * f64::EPSILON;
+const MARGIN: f64 = NOISE;
 
 /// Solves with the tightest tolerance that still allows for the rounding of the data.
 fn run(problem: &Problem) -> Result<SolveOutcome, microlp::Error> {

@@ -17,6 +17,7 @@ use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::fem::MainSystem;
 use crate::lcp::outcome::RayDirection;
+use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
 use crate::model::rules::Covering;
 use crate::model::structure::Structure;
@@ -25,7 +26,7 @@ use crate::watch::Watch;
 /// z̄ whose part outside the kernel is below this share of it costs no energy.
 const NO_ENERGY: f64 = 1e-7;
 /// A power below this multiple of the terms it sums is rounding.
-const NO_POWER: f64 = 256.0 * f64::EPSILON;
+const NO_POWER: f64 = NOISE;
 /// Most working schemes that are gone through to prove that there is no answer.
 const MOST_SCHEMES: u64 = 50_000;
 

@@ -26,8 +26,21 @@ pub fn write(
 ) -> Result<(), WriteError> {
     replace(path, content).map_err(|source| WriteError {
         path: path.to_owned(),
-        source,
+        source: plain(source),
     })
+}
+
+/// The error without the name of the temporary file, which says nothing and differs from run to run.
+fn plain(error: io::Error) -> io::Error {
+    let system = error
+        .get_ref()
+        .and_then(std::error::Error::source)
+        .and_then(|inner| inner.downcast_ref::<io::Error>())
+        .and_then(io::Error::raw_os_error);
+    match system {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error,
+    }
 }
 
 fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
@@ -114,6 +127,8 @@ mod tests {
     #[test]
     fn a_missing_folder_is_an_error_that_names_the_file() {
         let error = write(Path::new("/no/such/folder/x.csv"), |_| Ok(())).expect_err("fails");
-        assert!(error.to_string().contains("/no/such/folder/x.csv"));
+        let text = error.to_string();
+        assert!(text.contains("/no/such/folder/x.csv"), "{text}");
+        assert!(!text.contains(".stickslip-"), "{text}");
     }
 }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::lcp::problem::Lcp;
 
-/// A variable's name as an id of the format: `x+[joint[0]]` becomes `x_plus_joint_0`.
+/// A variable's name as an id of the format: `x+[joint[0]]` becomes `x_plus_joint_0`, `1` becomes `w_1`.
 fn id(name: &str) -> String {
     let spelled = name.replace('+', "_plus").replace("x-", "x_minus");
     let plain: String = spelled
@@ -20,7 +20,12 @@ fn id(name: &str) -> String {
         })
         .collect();
     let words: Vec<&str> = plain.split('_').filter(|word| !word.is_empty()).collect();
-    words.join("_")
+    let id = words.join("_");
+    if id.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        id
+    } else {
+        format!("w_{id}")
+    }
 }
 
 /// The LCP as a `stickslip/1` scenario with the source `lcp`: it loads and solves as it is.

@@ -5,6 +5,12 @@ use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
+/// Lets faer compute on one thread, so that the bits of a result do not depend on the number of threads; parallel
+/// factorizations of the sizes met here are no faster (theory §5).
+pub(crate) fn compute_sequentially() {
+    faer::set_global_parallelism(Par::Seq);
+}
+
 /// target += left · rightᵀ; all column-major: rows × columns, rows × k, columns × k.
 pub(crate) fn add_product(
     target: &mut [f64],

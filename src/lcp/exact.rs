@@ -13,11 +13,11 @@ use num_traits::{Signed, Zero};
 use super::driver::{Engine, Step};
 use super::filtered::Filtered;
 use super::outcome::{Outcome, Point, RayDirection};
-use super::problem::Lcp;
+use super::problem::{Lcp, MARGINAL};
 use super::ratio_test::TieRule;
 use super::rational_solve::{Quotients, RationalSolution, clear_denominators, solve};
 use super::scalar::{BigInt, Scalar};
-use super::tableau::{MARGINAL, Tableau};
+use super::tableau::Tableau;
 use super::trace::Pivot;
 use super::variable::Variable;
 

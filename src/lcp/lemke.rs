@@ -16,13 +16,11 @@ use super::driver::{Engine, Step};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Outcome, Point, RayDirection};
 use super::parametric::Parametric;
+use super::problem::MARGINAL;
 use super::ratio_test::{TieRule, choose};
 use super::stand::{Candidate, NOISE, Sizes, Stand};
 use super::trace::Pivot;
 use super::variable::Variable;
-
-/// p at a ray below this multiple of the largest |q| is a normal end, flagged.
-pub const MARGINAL: f64 = 1e-12;
 
 /// The engine; see the module.
 #[derive(Clone, Debug)]

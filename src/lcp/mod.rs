@@ -18,3 +18,5 @@ pub mod tableau;
 pub mod trace;
 pub mod variable;
 pub mod vertex;
+
+pub(crate) use dense::compute_sequentially;

@@ -1,5 +1,10 @@
 //! The whole LCP written out: w = M z + q + d p, w ≥ 0, z ≥ 0, wᵀz = 0.
 
+/// A value or rate counts as zero below this multiple of its natural size (theory: 64 … 256 ε), see [`Scale`].
+pub const NOISE: f64 = 256.0 * f64::EPSILON;
+/// p at a ray at most this multiple of the largest |q| is a normal end, flagged marginal.
+pub const MARGINAL: f64 = 1e-12;
+
 /// Sizes against which rounding noise is judged: the response (M Δz)_i counts as zero when it is at most
 /// 256 ε · `row`_i · Σ_k `column`_k |Δz_k|.
 ///

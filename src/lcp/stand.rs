@@ -8,11 +8,10 @@ use nalgebra::DVector;
 use super::dictionary::{Dictionary, Local, Place};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
+pub(crate) use super::problem::NOISE;
 use super::ratio_test::TiedRow;
 use super::variable::Variable;
 
-/// A value or rate counts as zero below this multiple of its natural size (theory: 64 … 256 ε).
-pub(crate) const NOISE: f64 = 256.0 * f64::EPSILON;
 /// A rate below this multiple of its natural size is confirmed from the data before it decides anything.
 pub(crate) const SUSPICIOUS: f64 = 1e-7;
 /// Relative error of the dictionary against the data above which it is built afresh.

@@ -24,14 +24,12 @@ use rand_chacha::ChaCha8Rng;
 
 use super::driver::{Engine, Step};
 use super::outcome::{Outcome, Point, RayDirection};
-use super::problem::Lcp;
+use super::problem::{Lcp, MARGINAL};
 use super::ratio_test::TieRule;
 use super::scalar::Scalar;
 use super::trace::Pivot;
 use super::variable::Variable;
 
-/// p at a ray at most this times the largest |q| is a (marginal) normal answer.
-pub(crate) const MARGINAL: f64 = 1e-12;
 /// A basic variable below −(this × its noise) means that the f64 numbers no longer belong together.
 const BREAKDOWN: f64 = 1e7;
 

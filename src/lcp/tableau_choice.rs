@@ -5,12 +5,11 @@ use std::cmp::Ordering;
 use rand::Rng;
 
 use super::{Place, Tableau, Undecided};
+use crate::lcp::problem::NOISE;
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::scalar::Scalar;
 use crate::lcp::variable::Variable;
 
-/// Factor of the zero test, see [`Scale`](crate::lcp::problem::Scale).
-const NOISE: f64 = 256.0 * f64::EPSILON;
 /// Relative difference below which two f64 entries of B⁻¹ / pivot count as equal in the lexicographic rule.
 const LEXICOGRAPHIC_NOISE: f64 = 1e-10;
 /// Scaled size of a direction or a vertex: Σ column_k |z_k| and |p|.

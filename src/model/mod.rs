@@ -15,4 +15,5 @@ pub mod parameter;
 pub mod problem;
 pub mod rules;
 pub mod scenario;
+pub mod schema;
 pub mod structure;

@@ -65,6 +65,15 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// Covering, tie-break and engine as they are written.
+    pub fn words(&self) -> [String; 3] {
+        [
+            self.covering.to_string(),
+            self.tie_break.to_string(),
+            self.engine.to_string(),
+        ]
+    }
+
     /// Whether covering and tie-break are the defaults: only then a failed run is retried (theory §4).
     pub fn are_default(&self) -> bool {
         self.covering == Covering::default() && self.tie_break == TieBreak::default()

@@ -1,7 +1,5 @@
 //! Rates of the answer within its scheme: what one more unit of a parameter does, from one extra solve.
 
-use nalgebra::DVector;
-
 use crate::contact::complementarity::{ContactLcp, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
@@ -12,6 +10,7 @@ use crate::lcp::vertex::{Basis, direction};
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
 use crate::solve::Prepared;
+use crate::solve::numbers::numbers_by;
 
 /// d(numbers)/dθ and d(factors)/dθ for a parameter θ: numbers are θ itself or do not depend on it.
 pub(crate) fn number_rates(
@@ -25,33 +24,7 @@ pub(crate) fn number_rates(
         .iter()
         .map(|(_, factor)| is(factor))
         .collect();
-    let m = system.pairs.len();
-    let mut rates = ContactNumbers {
-        friction: vec![0.0; m],
-        cohesion: vec![0.0; m],
-        gap: vec![0.0; m],
-        bound: vec![0.0; m],
-        load: DVector::zeros(system.joint_count()),
-    };
-    for (i, pair) in system.pairs.iter().enumerate() {
-        match &pair.law {
-            Law::Coulomb {
-                friction,
-                cohesion,
-                gap,
-            } => {
-                rates.friction[i] = is(friction);
-                rates.cohesion[i] = is(cohesion);
-                rates.gap[i] = is(gap);
-            }
-            Law::Frictionless { gap } => rates.gap[i] = is(gap),
-            Law::Bound { bound } => rates.bound[i] = is(bound),
-        }
-    }
-    for (load, factor) in system.loads.iter().zip(&factors) {
-        rates.load += *factor * &load.vector;
-    }
-    (rates, factors)
+    (numbers_by(system, &factors, &is), factors)
 }
 
 /// The LCP at `point` with d = dM/dθ z + dq/dθ as covering: to first order w = M z + q + (θ − θ₀) d.

@@ -5,6 +5,7 @@ use super::start::{PathError, final_basis};
 use crate::answer::pairs::JointState;
 use crate::answer::record::PairState;
 use crate::contact::complementarity::load_with_gaps;
+use crate::lcp::vertex::vertex;
 use crate::model::scenario::Scenario;
 use crate::solve::solved::Trace;
 use crate::solve::{Prepared, Solved};
@@ -60,10 +61,7 @@ pub fn sensitivity(
     let system = prepared.system().ok_or(PathError::Plain("sensitivity"))?;
     let (
         Trace::Contact {
-            contact,
-            numbers,
-            last,
-            ..
+            contact, numbers, ..
         },
         Some(basis),
     ) = (&solved.trace, final_basis(solved))
@@ -72,16 +70,18 @@ pub fn sensitivity(
             "there is no answer whose derivatives could be taken".to_owned(),
         ));
     };
+    let singular = || {
+        PathError::Missing(
+            "the equations of the final scheme are singular: there are no derivatives".to_owned(),
+        )
+    };
+    // Afresh, forces included: a warm answer keeps only its displacements.
+    let point = vertex(&contact.lcp, &basis).ok_or_else(singular)?;
     let mut parameters = Vec::new();
     for name in scenario.parameters.keys() {
         let (rates, factor_rates) = number_rates(prepared, system, name);
-        let lcp = rate_lcp(system, numbers, contact, last, &rates, 1.0);
-        let Some(direction) = rate(&lcp, &basis) else {
-            return Err(PathError::Missing(
-                "the equations of the final scheme are singular: there are no derivatives"
-                    .to_owned(),
-            ));
-        };
+        let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
+        let direction = rate(&lcp, &basis).ok_or_else(singular)?;
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
         let state = JointState {
             force: &system.stiffness * &z + load_with_gaps(system, &rates),

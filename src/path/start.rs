@@ -2,10 +2,11 @@
 
 use crate::answer::pairs::{JointState, joint_state};
 use crate::contact::complementarity::{ContactLcp, contact_lcp};
+use crate::contact::load_path::is_answer;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::outcome::{Outcome, Point, RayDirection};
-use crate::lcp::vertex::Basis;
+use crate::lcp::vertex::{Basis, vertex};
 use crate::model::rules::{Covering, TieBreak};
 use crate::solve::attempt::run_scheme;
 use crate::solve::{Solved, solved::Trace};
@@ -132,14 +133,48 @@ pub(crate) fn cold(
 }
 
 /// The final scheme of a solved state; `None` where it is no answer, or one that only just is (marginal).
+///
+/// It is read from the pivots of the run, or, where the answer was reached on another way (warm, enumerated), from
+/// what is released at its vertex.
 pub fn final_basis(solved: &Solved) -> Option<Basis> {
-    match &solved.trace {
-        Trace::Contact { pivots, .. } if solved.answer.is_answer() && !solved.answer.marginal => {
-            let basis = Basis::after(pivots);
-            (!basis.p && basis.z == basis.active).then_some(basis)
-        }
-        _ => None,
+    let Trace::Contact {
+        contact,
+        pivots,
+        last,
+        ..
+    } = &solved.trace
+    else {
+        return None;
+    };
+    if !solved.answer.is_answer() || solved.answer.marginal {
+        return None;
     }
+    let released: Vec<usize> = (0..last.z.len()).filter(|&row| last.z[row] > 0.0).collect();
+    let from_vertex = Basis {
+        active: released.clone(),
+        z: released,
+        p: false,
+    };
+    [Basis::after(pivots), from_vertex]
+        .into_iter()
+        .find(|basis| {
+            !basis.p
+                && basis.z == basis.active
+                && is_answer(&contact.lcp, basis)
+                && is_at(contact, basis, last)
+        })
+}
+
+/// Whether the vertex of the scheme is this point (where there are several answers it may be another one).
+fn is_at(contact: &ContactLcp, basis: &Basis, point: &Point) -> bool {
+    let largest = point.z.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    vertex(&contact.lcp, basis).is_some_and(|found| {
+        found
+            .z
+            .iter()
+            .zip(&point.z)
+            .all(|(a, b)| (a - b).abs() <= 1e-6 * largest)
+    })
 }
 
 /// A point of a path over the joints: t is no covering, so nothing of it is added to the forces.

@@ -273,9 +273,9 @@ impl Sweep<'_> {
         for (axis, value) in self.grid.axes.iter().zip(&point) {
             values.insert(axis.name.clone(), *value);
         }
-        let solved = self
-            .prepared
-            .solve(self.scenario, &values, self.rules, &StopOnly(watch));
+        let solved =
+            self.prepared
+                .solve_briefly(self.scenario, &values, self.rules, &StopOnly(watch));
         let (fields, is_answer) = match solved {
             Ok(solved) => (fields(&solved.answer), solved.answer.is_answer()),
             Err(error) if error.is_interrupted() => return None,

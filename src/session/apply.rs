@@ -83,6 +83,10 @@ impl Session {
                 what: Export::Path,
                 file,
             } => self.export_path(&file, io)?,
+            Command::Export {
+                what: Export::Lcp,
+                file,
+            } => self.export_lcp(&file, io)?,
             Command::Export { what, file } => self.export(what, &file, io)?,
             Command::Echo { words } => io.say(&words.join(" "))?,
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
@@ -149,8 +153,12 @@ impl Session {
         Ok(())
     }
 
-    /// An answer found by a warm start has no pivots of its own: the cold run that has them takes its place.
-    fn ensure_pivots(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+    /// An answer found by a warm start has no pivots of its own: the cold run that has them takes its place. Says so
+    /// where it ends in another answer.
+    ///
+    /// # Errors
+    /// As for a solve; the session then is as it was.
+    pub fn ensure_pivots(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let Some(warm) = self.solved.clone() else {
             return Ok(());
         };

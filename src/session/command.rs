@@ -294,6 +294,7 @@ pub enum Command {
     ///   expect ux|uy|rz NODE OP NUMBER
     ///   expect p OP NUMBER
     ///   expect pivots OP NUMBER
+    ///   expect unknowns|free|lcp OP NUMBER      (sizes, as `status` shows them)
     ///   expect ray mechanism|artefact|fault|no-equilibrium
     ///   expect verdict certified|proved|undecided
     ///   expect error "part of the message"      (after a command that fails)
@@ -312,13 +313,18 @@ pub enum Command {
         )]
         words: Vec<String>,
     },
-    /// Write results to a .csv or .json file
-    #[command(after_help = "Example:\n  export pairs pairs.csv\n  export result answer.json")]
+    /// Write results, or the LCP, to a file
+    ///
+    /// Results go to .csv or .json. `export lcp` writes M, q and the covering d, in the units of the scenario: to .json
+    /// as a scenario of this program, or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format.
+    #[command(
+        after_help = "Example:\n  export pairs pairs.csv\n  export result answer.json\n  export lcp beam-lcp.json"
+    )]
     Export {
         /// What to write
         #[arg(value_name = "WHAT")]
         what: Export,
-        /// Its ending says the format: .csv or .json
+        /// Its ending says the format: .csv, .json or .mtx
         #[arg(value_name = "FILE")]
         file: PathBuf,
     },
@@ -436,6 +442,8 @@ pub enum Export {
     Result,
     /// What the last `trace` or `stages` followed
     Path,
+    /// The LCP for other solvers: a scenario of its own (.json) or Matrix Market (.mtx)
+    Lcp,
 }
 
 /// The word of `restore discard`.

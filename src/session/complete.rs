@@ -519,7 +519,10 @@ mod tests {
         assert_eq!(at_end("plot sl"), ["slip"]);
         assert_eq!(at_end("plot slip --w"), ["--width"]);
         assert_eq!(at_end("plot slip --at f"), ["first", "first,last"]);
-        assert_eq!(at_end("help se"), ["set"]);
+        assert_eq!(at_end("help se"), ["sensitivity", "set"]);
+        assert_eq!(at_end("trace p"), ["pull"]);
+        assert_eq!(at_end("trace pull t"), ["to"]);
+        assert_eq!(at_end("plot path fo"), ["force"]);
         assert_eq!(at_end("load beam-r"), ["beam-ray"]);
         assert_eq!(at_end("set f 0.3; wh"), ["why"]);
         assert_eq!(at_end("reset co"), ["covering"]);

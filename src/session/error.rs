@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::model::problem::Problems;
+use crate::solve::PrepareError;
 
 use super::command::GrammarError;
 use super::expect::{ExpectationSyntax, Unmet};
@@ -76,6 +77,15 @@ impl From<WorkerError> for CommandError {
         match error {
             WorkerError::Interrupted => CommandError::Interrupted,
             panicked @ WorkerError::Panicked(_) => CommandError::Internal(panicked.to_string()),
+        }
+    }
+}
+
+impl From<PrepareError> for CommandError {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::Problems(problems) => CommandError::Scenario(problems),
+            PrepareError::Interrupted => CommandError::Interrupted,
         }
     }
 }

@@ -88,6 +88,13 @@ pub enum Expectation {
     P(Bound),
     /// The number of pivots.
     Pivots(Bound),
+    /// A size of the problem.
+    Size {
+        /// `unknowns`, `free` or `lcp`.
+        what: String,
+        /// Compared with.
+        bound: Bound,
+    },
     /// Class of the ray.
     Ray(String),
     /// Verdict on the ray.
@@ -148,6 +155,7 @@ const QUANTITIES: &[(&str, PairQuantity)] = &[
     ("reserve_minus", PairQuantity::ReserveMinus),
 ];
 const COMPONENTS: &[&str] = &["ux", "uy", "rz"];
+const SIZES: &[&str] = &["unknowns", "free", "lcp"];
 const OTHERS: &[&str] = &["outcome", "state", "p", "pivots", "ray", "verdict", "error"];
 
 /// The words that may follow `expect`.
@@ -157,6 +165,7 @@ pub fn subjects() -> impl Iterator<Item = &'static str> {
         .copied()
         .chain(QUANTITIES.iter().map(|(word, _)| *word))
         .chain(COMPONENTS.iter().copied())
+        .chain(SIZES.iter().copied())
 }
 
 /// The words that may follow a subject, where it has a closed list.
@@ -213,6 +222,10 @@ pub fn read(words: &[String]) -> Result<Expectation, ExpectationSyntax> {
         "error" => Ok(Expectation::Error(rest.join(" "))),
         "p" => Ok(Expectation::P(bound(rest)?)),
         "pivots" => Ok(Expectation::Pivots(bound(rest)?)),
+        size if SIZES.contains(&size) => Ok(Expectation::Size {
+            what: size.to_owned(),
+            bound: bound(rest)?,
+        }),
         "state" => match rest {
             [pair, state] if STATES.contains(&state.as_str()) => Ok(Expectation::State {
                 pair: pair.clone(),
@@ -435,6 +448,15 @@ impl Expectation {
                 bound,
                 facts.answer.map(|answer| answer.pivots.len() as f64),
             ),
+            Expectation::Size { what, bound } => {
+                let size = facts.answer.map(|answer| &answer.size);
+                let found = size.and_then(|size| match what.as_str() {
+                    "unknowns" => size.unknowns,
+                    "free" => size.free,
+                    _ => Some(size.lcp),
+                });
+                compare(what.clone(), bound, found.map(|found| found as f64))
+            }
             Expectation::Error(part) => match facts.error {
                 Some(message) if message.contains(part.as_str()) => Ok(()),
                 Some(message) => Err(Ok(Unmet {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::export::{atomic, csv, json as json_export};
+use crate::export::{atomic, csv, json as json_export, lcp as lcp_export};
 
 use super::command::Export;
 use super::{CommandError, Output, Session};
@@ -28,7 +28,7 @@ impl Session {
             Export::Displacements => shown.displacements.is_none(),
             Export::Members => shown.members.is_none(),
             Export::Reactions => shown.reactions.is_none(),
-            Export::Pairs | Export::Pivots | Export::Result | Export::Path => false,
+            Export::Pairs | Export::Pivots | Export::Result | Export::Path | Export::Lcp => false,
         };
         if missing {
             let word = match what {
@@ -82,5 +82,57 @@ impl Session {
         };
         written.map_err(|error| CommandError::Refused(error.to_string()))?;
         Ok(io.say(&format!("wrote {}", path.display()))?)
+    }
+
+    /// `export lcp FILE`.
+    pub(super) fn export_lcp(&self, path: &Path, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let refused = |text: String| Err(CommandError::Refused(text));
+        let Some(prepared) = &self.now.prepared else {
+            return refused("nothing is solved yet: `solve` first".into());
+        };
+        let covering = self.now.rules.covering;
+        let (lcp, names) = prepared.written_lcp(&self.now.values, covering);
+        if lcp.covering.iter().any(|d| *d <= 0.0) {
+            return refused(format!(
+                "covering {covering} is 0 in a row without friction, and an lcp needs d > 0: `set covering cohesive` first"
+            ));
+        }
+        let scenario = &self.now.scenario;
+        let title = format!("LCP of {}: {}", scenario.name, scenario.title);
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let files = match ending {
+            Some("json") => {
+                let value = lcp_export::scenario(&lcp, &names, &title);
+                atomic::write(path, |out| {
+                    let text =
+                        serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
+                    writeln!(out, "{text}")
+                })
+                .map(|()| vec![path.to_owned()])
+            }
+            Some("mtx") => {
+                let column = |values: &[f64]| values.iter().map(|v| vec![*v]).collect::<Vec<_>>();
+                let parts = [
+                    (path.to_owned(), "M", lcp.matrix.clone()),
+                    (path.with_extension("q.mtx"), "q", column(&lcp.q)),
+                    (path.with_extension("d.mtx"), "d", column(&lcp.covering)),
+                ];
+                parts
+                    .into_iter()
+                    .map(|(file, what, rows)| {
+                        let comment = format!("{what} of w = M z + q + d p. {title}");
+                        atomic::write(&file, |out| lcp_export::matrix_market(out, &rows, &comment))
+                            .map(|()| file)
+                    })
+                    .collect()
+            }
+            _ => return refused(format!("{} must end in .json or .mtx", path.display())),
+        };
+        let files = files.map_err(|error| CommandError::Refused(error.to_string()))?;
+        let names: Vec<String> = files
+            .iter()
+            .map(|file| file.display().to_string())
+            .collect();
+        Ok(io.say(&format!("wrote {}", names.join(", ")))?)
     }
 }

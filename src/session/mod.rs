@@ -39,7 +39,7 @@ use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
 use crate::path::record::PathRecord;
 pub use crate::solve::Solved;
-use crate::solve::{self, PrepareError, Prepared};
+use crate::solve::{self, Prepared};
 use crate::watch::Watch;
 
 pub use apply::write_scenarios;
@@ -82,6 +82,16 @@ struct Change {
     command: String,
     /// What was before it (in `undo`), or after it (in `redo`).
     setup: Setup,
+}
+
+/// Looks at a scenario without solving it: what only contact holds, in sentences.
+///
+/// # Errors
+/// A main system that cannot be factorized, an interruption.
+pub fn diagnose(scenario: Scenario, watch: &dyn Watch) -> Result<Vec<String>, CommandError> {
+    worker::run(watch, move |watch| {
+        Ok::<_, CommandError>(solve::prepare(&scenario, watch)?.loose_sentences())
+    })?
 }
 
 /// A scenario that is being worked on.
@@ -465,12 +475,7 @@ impl Setup {
         let (prepared, solved) = worker::run(watch, move |watch| {
             let prepared = match prepared {
                 Some(prepared) => prepared,
-                None => Arc::new(solve::prepare(&scenario, watch).map_err(
-                    |error| match error {
-                        PrepareError::Problems(problems) => CommandError::Scenario(problems),
-                        PrepareError::Interrupted => CommandError::Interrupted,
-                    },
-                )?),
+                None => Arc::new(solve::prepare(&scenario, watch)?),
             };
             let solved = match last {
                 Some(last) => prepared.solve_from(&last, &scenario, &values, rules, watch),

@@ -1,27 +1,32 @@
 //! `trace`, `limit`, `sensitivity`, `stages`, `sweep`, and what `plot path` and `export path` show of them.
 
-use std::path::Path;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
 use crate::export::{atomic, path as path_export};
 use crate::path::friction::{self, is_friction};
-use crate::path::grid::{Axis, Grid, GridError, POINTS, Shard};
+use crate::path::grid::{Axis, Grid, GridError, POINTS};
 use crate::path::limit;
 use crate::path::load::{self, LoadReach};
 use crate::path::record::PathRecord;
 use crate::path::sensitivity::sensitivity;
 use crate::path::stages;
 use crate::path::start::PathError;
-use crate::path::sweep::{Done, Format, Sweep};
-use crate::path::sweep_file::{SweepFileError, run_to_file};
+use crate::path::sweep::Sweep;
+use crate::path::sweep_file::{self, SweepFileError, run_to_file};
 use crate::solve::{Prepared, Solved};
 use crate::view;
 use crate::view::plot::zone::Quantity;
+use crate::watch::Watch;
 
 use super::command::did_you_mean;
 use super::{CommandError, Output, Session, Setup, worker};
+
+pub use crate::path::grid::Shard;
+pub use crate::path::sweep::{Done, Format};
 
 /// A table with more rows than this belongs in a file.
 const ROWS: usize = 2_000;
@@ -45,7 +50,10 @@ impl From<GridError> for CommandError {
 
 impl From<SweepFileError> for CommandError {
     fn from(error: SweepFileError) -> Self {
-        CommandError::Refused(error.to_string())
+        match error {
+            SweepFileError::Output(error) => CommandError::Output(error),
+            error => CommandError::Refused(error.to_string()),
+        }
     }
 }
 
@@ -426,6 +434,93 @@ impl Session {
             )
         })
     }
+}
+
+/// A sweep as the shell asks for it.
+pub struct SweepRequest<'a> {
+    /// `NAME=FROM:TO:STEP`, `NAME=FROM..TO/COUNT` or `NAME=VALUE`, up to three.
+    pub axes: &'a [String],
+    /// Part of it.
+    pub shard: Option<Shard>,
+    /// CSV or JSON lines; otherwise by the ending of `out`, or CSV.
+    pub format: Option<Format>,
+    /// File; otherwise the stream.
+    pub out: Option<&'a Path>,
+    /// Continue the file.
+    pub resume: bool,
+}
+
+impl Session {
+    /// Sweeps over the present values into a file, or else into `stream`.
+    ///
+    /// # Errors
+    /// A grid that cannot be, a file that cannot be written or belongs to another sweep.
+    pub fn sweep_into(
+        &self,
+        request: &SweepRequest<'_>,
+        stream: &mut dyn Write,
+        watch: &dyn Watch,
+    ) -> Result<Done, CommandError> {
+        let axes = request
+            .axes
+            .iter()
+            .map(|axis| Axis::parse(axis))
+            .collect::<Result<_, _>>()?;
+        let grid = Grid::new(&self.now.scenario, axes)?;
+        let mut setup = self.now.clone();
+        if setup.prepared.is_none() {
+            setup.solve(watch)?;
+        }
+        let prepared = setup.prepared.ok_or_else(|| {
+            CommandError::Internal("a solved scenario has no prepared geometry".to_owned())
+        })?;
+        let sweep = Sweep {
+            prepared: &prepared,
+            scenario: &self.now.scenario,
+            values: &self.now.values,
+            rules: self.now.rules,
+            grid: &grid,
+            shard: request.shard.unwrap_or(Shard::WHOLE),
+            format: match (request.format, request.out) {
+                (Some(format), _) => format,
+                (None, Some(path)) => format_of(path)?,
+                (None, None) => Format::Csv,
+            },
+        };
+        match request.out {
+            Some(path) => Ok(run_to_file(&sweep, path, request.resume, watch)?),
+            None => {
+                stream.write_all(sweep.preamble().as_bytes())?;
+                Ok(sweep.run(0, stream, watch)?)
+            }
+        }
+    }
+}
+
+/// Joins the shards of a sweep into `out`, or into the file `to`; the number of rows.
+///
+/// # Errors
+/// Shards that do not make a whole; a place that cannot be written.
+pub fn merge(
+    files: &[PathBuf],
+    to: Option<&Path>,
+    out: &mut dyn Write,
+) -> Result<usize, CommandError> {
+    let Some(path) = to else {
+        let mut buffer = std::io::BufWriter::new(out);
+        return Ok(sweep_file::merge(files, &mut buffer)?);
+    };
+    let mut rows = Ok(0);
+    let written = atomic::write(path, |file| {
+        rows = sweep_file::merge(files, file);
+        match &rows {
+            Ok(_) => Ok(()),
+            Err(error) => Err(std::io::Error::other(error.to_string())),
+        }
+    });
+    let rows = rows?;
+    written.map_err(|error| CommandError::Refused(error.to_string()))?;
+    Ok(rows)
 }
 
 /// The pairs that slip most on a path, at most four: what a plot shows if none is named.

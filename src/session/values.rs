@@ -108,12 +108,12 @@ pub fn read(
             let present = *values
                 .get(name)
                 .ok_or_else(|| unknown_parameter(name, scenario))?;
-            if rest.is_empty() {
+            if rest.is_empty() || rest == "=" {
                 return Err(no_value());
             }
             let value = changed(rest, present).ok_or_else(|| SetError::NoNumber {
                 name: name.to_owned(),
-                text: rest.to_owned(),
+                text: rest.strip_prefix('=').unwrap_or(rest).trim().to_owned(),
             })?;
             if let Some(refusal) = scenario.refusal(name, value) {
                 return Err(SetError::Value(refusal));

@@ -7,9 +7,10 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 use super::attempt::{polish, watched};
-use crate::contact::complementarity::{ContactLcp, Couple};
+use crate::contact::complementarity::ContactLcp;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
+use crate::contact::whole::{WholeInput, whole_lcp_of};
 use crate::explain::kernel::clean;
 use crate::lcp::exact::Exact;
 use crate::lcp::mirrored::MirroredLcp;
@@ -18,7 +19,6 @@ use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::tableau::Tableau;
 use crate::lcp::variable::Variable;
-use crate::model::pair::Law;
 use crate::model::rules::Covering;
 use crate::watch::Watch;
 
@@ -99,7 +99,12 @@ pub fn run_exact_contact(
     rule: TieRule,
     watch: &dyn Watch,
 ) -> Run {
-    let problem = exact_lcp(system, numbers, contact, covering);
+    let input = WholeInput {
+        system,
+        numbers,
+        covering,
+    };
+    let problem = whole_lcp_of(&input, &exact_stiffness(system));
     rounded(
         run_exact(problem, rule, watch),
         contact.force_unit,
@@ -211,106 +216,6 @@ fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
         }
     }
     Some(a.into_iter().map(|row| row[n..].to_vec()).collect())
-}
-
-/// A row of the LCP: Σ factor·λ_joint as (joint, factor), what is added, and the joint of its z (negated or not).
-type ExactRow = (Vec<(usize, BigRational)>, BigRational, usize, bool);
-
-fn exact_lcp(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    covering: Covering,
-) -> Lcp<BigRational> {
-    let stiffness = exact_stiffness(system);
-    let k = system.joint_count();
-    let constants: Vec<BigRational> = (0..k)
-        .map(|i| {
-            let gaps: BigRational = (0..system.pairs.len())
-                .filter(|&p| numbers.gap[p] != 0.0)
-                .map(|p| &stiffness[i][p] * rational(numbers.gap[p]))
-                .sum();
-            rational(numbers.load[i]) - gaps
-        })
-        .collect();
-    // Each row of the LCP as Σ factor·λ_joint + fixed, and the joint and sign of its z.
-    let rows: Vec<ExactRow> = contact
-        .rows
-        .iter()
-        .map(|row| {
-            let pair = row.pair;
-            let sign = match row.couple {
-                Couple::Normal => {
-                    return (
-                        vec![(pair, BigRational::one())],
-                        BigRational::zero(),
-                        pair,
-                        false,
-                    );
-                }
-                Couple::Plus => BigRational::one(),
-                Couple::Minus => -BigRational::one(),
-            };
-            // Invariant: a pair with rows x⁺, x⁻ has a tangential joint.
-            let joint = system.pairs[pair].tangential.unwrap_or(pair);
-            let mut terms = vec![(joint, sign)];
-            let fixed = match system.pairs[pair].law {
-                Law::Bound { .. } => numbers.bound[pair],
-                _ => {
-                    terms.push((pair, rational(numbers.friction[pair])));
-                    numbers.cohesion[pair]
-                }
-            };
-            (terms, rational(fixed), joint, row.couple == Couple::Minus)
-        })
-        .collect();
-    let matrix = rows
-        .iter()
-        .map(|(terms, ..)| {
-            rows.iter()
-                .map(|(_, _, joint, negative)| {
-                    let value: BigRational = terms
-                        .iter()
-                        .map(|(i, factor)| factor * &stiffness[*i][*joint])
-                        .sum();
-                    if *negative { -value } else { value }
-                })
-                .collect()
-        })
-        .collect();
-    let q = rows
-        .iter()
-        .map(|(terms, fixed, ..)| {
-            let sum: BigRational = terms.iter().map(|(i, f)| f * &constants[*i]).sum();
-            sum + fixed
-        })
-        .collect();
-    let cover = contact
-        .rows
-        .iter()
-        .map(|row| {
-            let bound = matches!(system.pairs[row.pair].law, Law::Bound { .. });
-            if row.couple == Couple::Normal || bound {
-                return BigRational::one();
-            }
-            let f = rational(numbers.friction[row.pair]);
-            match covering {
-                Covering::Cohesive => BigRational::one() + f,
-                Covering::Ones => BigRational::one(),
-                Covering::Weight => f,
-            }
-        })
-        .collect();
-    Lcp {
-        matrix,
-        q,
-        covering: cover,
-        // Exact arithmetic compares with zero itself.
-        scale: Scale {
-            row: vec![1.0; rows.len()],
-            column: vec![1.0; rows.len()],
-        },
-    }
 }
 
 /// An exact run in f64, forces divided by `force` and displacements by `length` (powers of two).

@@ -12,6 +12,7 @@ pub mod resume;
 pub mod retry;
 pub mod solved;
 pub mod warm;
+mod written;
 
 pub use prepared::{PrepareError, Prepared, prepare};
 pub use solved::{SolveError, Solved};

@@ -6,7 +6,7 @@ use super::prepared::Prepared;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::model::pair::Law;
-use crate::model::parameter::ParameterValues;
+use crate::model::parameter::{Number, ParameterValues};
 
 /// The factor of every load case.
 pub fn factors(prepared: &Prepared, values: &ParameterValues) -> Vec<f64> {
@@ -23,6 +23,15 @@ pub fn contact_numbers(
     factors: &[f64],
     values: &ParameterValues,
 ) -> ContactNumbers {
+    numbers_by(system, factors, &|number| number.value(values))
+}
+
+/// The numbers of the laws, each as `value` reads it, and Σ factor·RF.
+pub(crate) fn numbers_by(
+    system: &ContactSystem,
+    factors: &[f64],
+    value: &dyn Fn(&Number) -> f64,
+) -> ContactNumbers {
     let m = system.pairs.len();
     let mut numbers = ContactNumbers {
         friction: vec![0.0; m],
@@ -38,12 +47,12 @@ pub fn contact_numbers(
                 cohesion,
                 gap,
             } => {
-                numbers.friction[i] = friction.value(values);
-                numbers.cohesion[i] = cohesion.value(values);
-                numbers.gap[i] = gap.value(values);
+                numbers.friction[i] = value(friction);
+                numbers.cohesion[i] = value(cohesion);
+                numbers.gap[i] = value(gap);
             }
-            Law::Frictionless { gap } => numbers.gap[i] = gap.value(values),
-            Law::Bound { bound } => numbers.bound[i] = bound.value(values),
+            Law::Frictionless { gap } => numbers.gap[i] = value(gap),
+            Law::Bound { bound } => numbers.bound[i] = value(bound),
         }
     }
     for (load, factor) in system.loads.iter().zip(factors) {

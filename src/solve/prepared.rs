@@ -88,6 +88,7 @@ impl PrepareError {
 /// with its place in the file.
 pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
     let start = Instant::now();
+    crate::lcp::compute_sequentially();
     let mut prepared = match &scenario.source {
         Source::Structure(structure) => prepare_structure(scenario, structure, watch)?,
         Source::ContactSystem(given) => {

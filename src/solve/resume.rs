@@ -89,11 +89,7 @@ impl Prepared {
             pivots: Vec::new(),
             point,
         };
-        let words = [
-            rules.covering.to_string(),
-            rules.tie_break.to_string(),
-            rules.engine.to_string(),
-        ];
+        let words = rules.words();
         let mut answer = empty_answer(&run, words, self.size(system, &contact));
         answer.timings.lemke = seconds;
         answer.start = Start::Warm {

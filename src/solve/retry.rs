@@ -93,6 +93,7 @@ impl Prepared {
         system: &ContactSystem,
         values: &ParameterValues,
         rules: Rules,
+        brief: bool,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
         let factors = factors(self, values);
@@ -120,7 +121,7 @@ impl Prepared {
         } else if !certified {
             job.compare_with_default(&mut solved, &subject)?;
         }
-        if let Some(report) = &mut solved.ray {
+        if let Some(report) = solved.ray.as_mut().filter(|_| !brief) {
             let solves = |numbers: &ContactNumbers, changed: Option<(usize, f64)>| {
                 let default = Rules {
                     engine: Engine::Scheme,

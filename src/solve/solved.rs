@@ -132,6 +132,31 @@ impl Prepared {
         rules: Rules,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
+        self.solve_told(scenario, values, rules, false, watch)
+    }
+
+    /// As [`Prepared::solve`], without looking for what would stop a collapse: for sweeps, which only count.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve`].
+    pub fn solve_briefly(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        self.solve_told(scenario, values, rules, true, watch)
+    }
+
+    fn solve_told(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        rules: Rules,
+        brief: bool,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
         for (name, value) in values {
             if let Some(refusal) = scenario.refusal(name, *value) {
                 return Err(SolveError::Value(refusal));
@@ -155,7 +180,7 @@ impl Prepared {
                 solve_plain_judged(&Arc::new(lcp), names, *covering_given, rules, watch)?
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                self.solve_contact_judged(system, values, rules, watch)?
+                self.solve_contact_judged(system, values, rules, brief, watch)?
             }
         };
         if !scenario.stages.is_empty() {
@@ -212,11 +237,7 @@ impl Prepared {
             run.point = sharpen(system, numbers, &contact, &basis, point);
         }
         let seconds = start.elapsed().as_secs_f64();
-        let words = [
-            rules.covering.to_string(),
-            rules.tie_break.to_string(),
-            rules.engine.to_string(),
-        ];
+        let words = rules.words();
         let mut answer = empty_answer(&run, words, self.size(system, &contact));
         answer.timings.lemke = seconds;
         answer.p = run.point.p * contact.force_unit;

@@ -168,6 +168,8 @@ pub enum Job {
     },
     /// All answers.
     Answers,
+    /// The pivots of an answer that was found by a warm start.
+    Pivots,
 }
 
 /// How a job ended.

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::app::{Pane, State};
-use super::tour;
+use super::{panes, tour};
 
 /// No pane makes sense below this.
 pub const SMALLEST: (u16, u16) = (40, 12);
@@ -54,6 +54,14 @@ pub fn places(state: &State) -> Option<Places> {
             take(lines.clamp(2, 6) as u16)
         }
         (Some(_), false) => take(4),
+        (None, true) if state.shown.at_ray() => {
+            // what a ray means takes more words than a pivot
+            let sentence = panes::pivots::sentence(state);
+            let columns = usize::from(width);
+            let lines = state.look.report(columns).wrap(&sentence, columns).len();
+            // at most 6
+            take(lines.clamp(2, if height >= ALL.1 { 6 } else { 4 }) as u16)
+        }
         (None, _) => take(2),
     };
     let body = Rect::new(0, 1, width, left - 1);

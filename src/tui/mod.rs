@@ -9,6 +9,7 @@ pub mod app;
 pub mod config;
 pub mod draw;
 pub mod entry;
+pub mod frame;
 pub mod keymap;
 pub mod layout;
 pub mod overlay;

@@ -90,7 +90,8 @@ pub fn run(session: Session, style: Style, start: Start) -> io::Result<(Session,
             .unwrap_or_else(PoisonError::into_inner)
             .send(Incoming::Action(action));
     })?;
-    let reader = Reader::start(sender, signals)?;
+    let reader = Reader::start(sender.clone(), signals.clone())?;
+    reader.watch_signals(sender, signals)?;
     let mut loop_ = Loop {
         state,
         screen,
@@ -122,7 +123,9 @@ struct Reader {
 struct Rest {
     end: AtomicBool,
     /// While the program is stopped nobody may read.
-    pause: Mutex<()>,
+    pause: AtomicBool,
+    /// Held by the one who reads.
+    reading: Mutex<()>,
 }
 
 impl Reader {
@@ -131,13 +134,15 @@ impl Reader {
         let theirs = Arc::clone(&rests);
         let read = move || {
             while !theirs.end.load(Ordering::SeqCst) {
-                if let Some(asked) = signals.asked()
-                    && sender.send(Incoming::Signal(asked)).is_err()
-                {
-                    return;
+                if theirs.pause.load(Ordering::SeqCst) {
+                    thread::sleep(TOGETHER);
+                    continue;
                 }
                 let found = {
-                    let _reading = theirs.pause.lock().unwrap_or_else(PoisonError::into_inner);
+                    let _reading = theirs
+                        .reading
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner);
                     match event::poll(LOOK) {
                         Ok(true) => Some(event::read()),
                         Ok(false) => None,
@@ -168,9 +173,37 @@ impl Reader {
         Ok(Reader { rests, thread })
     }
 
+    /// Looks for signals on a thread of its own: the reader may hang for good in a terminal that is gone (crossterm
+    /// 0.29 reads the end of file over and over).
+    fn watch_signals(&self, sender: Sender<Incoming>, signals: Signals) -> io::Result<()> {
+        let theirs = Arc::clone(&self.rests);
+        let look = move || {
+            while !theirs.end.load(Ordering::SeqCst) {
+                if let Some(asked) = signals.asked()
+                    && sender.send(Incoming::Signal(asked)).is_err()
+                {
+                    return;
+                }
+                thread::sleep(LOOK);
+            }
+        };
+        thread::Builder::new()
+            .name("signals".to_owned())
+            .spawn(look)?;
+        Ok(())
+    }
+
     fn end(self) {
         self.rests.end.store(true, Ordering::SeqCst);
-        // it reads for a tenth of a second more at most
+        // It reads for a tenth of a second more; where the terminal is gone it may never come back, and ends with
+        // the process.
+        let deadline = Instant::now() + 4 * LOOK;
+        while !self.thread.is_finished() {
+            if Instant::now() > deadline {
+                return;
+            }
+            thread::sleep(TOGETHER);
+        }
         let _ = self.thread.join();
     }
 }
@@ -300,8 +333,13 @@ impl Loop {
 
     fn suspend(&mut self) -> io::Result<()> {
         let rests = Arc::clone(&self.reader.rests);
-        let _nobody_reads = rests.pause.lock().unwrap_or_else(PoisonError::into_inner);
-        self.screen.suspend()?;
+        rests.pause.store(true, Ordering::SeqCst);
+        let suspended = {
+            let _nobody_reads = rests.reading.lock().unwrap_or_else(PoisonError::into_inner);
+            self.screen.suspend()
+        };
+        rests.pause.store(false, Ordering::SeqCst);
+        suspended?;
         self.state.size = self.screen.size()?;
         Ok(())
     }

@@ -9,7 +9,7 @@ use crate::model::structure::Structure;
 use crate::session::Session;
 use crate::session::Solved;
 use crate::session::complete::Vocabulary;
-use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution};
+use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, Start};
 use crate::view::difference::{self, Change};
 
 /// A session at one moment.
@@ -99,6 +99,12 @@ impl Shown {
     /// Whether the ray itself is shown: its end, not a pivot on the way.
     pub fn at_ray(&self) -> bool {
         self.position.is_none() && self.answer().is_some_and(|answer| answer.ray.is_some())
+    }
+
+    /// Whether the answer was followed from the last one and has no pivots yet.
+    pub fn is_warm(&self) -> bool {
+        self.answer()
+            .is_some_and(|answer| answer.start != Start::Cold)
     }
 
     /// Whether the answer before is worth showing beside the present one.

@@ -1,6 +1,6 @@
 //! The terminal: taken at the start, given back as it was on every way out.
 
-use std::io::{self, BufWriter, Stdout, Write};
+use std::io::{self, Stdout, Write};
 use std::panic;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,8 +8,8 @@ use std::thread;
 
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{
-    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
-    disable_raw_mode, enable_raw_mode,
+    BeginSynchronizedUpdate, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen,
+    LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{cursor, execute, queue};
 use ratatui::Terminal;
@@ -19,24 +19,26 @@ use signal_hook::low_level;
 
 use super::app::State;
 use super::draw;
+use super::frame::Frame;
 
 /// Presses, drags and the wheel; not every move of the mouse, which would only cost bytes.
 const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
 const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 
-/// A frame leaves in one piece.
-const FRAME: usize = 1 << 16;
-
 type Hook = Box<dyn Fn(&panic::PanicHookInfo<'_>) + Sync + Send + 'static>;
 
 /// The terminal while it belongs to the panes.
 pub struct Screen {
-    terminal: Terminal<CrosstermBackend<BufWriter<Stdout>>>,
+    terminal: Terminal<CrosstermBackend<Frame<Stdout>>>,
     mouse: bool,
     hook: Option<Arc<Hook>>,
 }
 
+/// Whether the terminal is ours: leaving the alternate screen twice would put the cursor over what was printed since.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
 fn take(mouse: bool) -> io::Result<()> {
+    TAKEN.store(true, Ordering::SeqCst);
     enable_raw_mode()?;
     let mut out = io::stdout();
     execute!(
@@ -51,8 +53,11 @@ fn take(mouse: bool) -> io::Result<()> {
     out.flush()
 }
 
-/// Gives the terminal back. May be called more than once; what fails because the terminal is gone is passed over.
+/// Gives the terminal back, if it was taken. What fails because the terminal is gone is passed over.
 pub fn restore() {
+    if !TAKEN.swap(false, Ordering::SeqCst) {
+        return;
+    }
     let mut out = io::stdout();
     let _ = out.write_all(MOUSE_OFF);
     let _ = execute!(
@@ -83,15 +88,12 @@ impl Screen {
         }));
         // from here on dropping the screen gives everything back
         let mut screen = Screen {
-            terminal: Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(
-                FRAME,
-                io::stdout(),
-            )))?,
+            terminal: Terminal::new(CrosstermBackend::new(Frame::new(io::stdout())))?,
             mouse,
             hook: Some(before),
         };
         take(mouse)?;
-        screen.terminal.clear()?;
+        screen.clear()?;
         Ok(screen)
     }
 
@@ -119,7 +121,11 @@ impl Screen {
     /// # Errors
     /// The terminal does not take it.
     pub fn clear(&mut self) -> io::Result<()> {
-        self.terminal.clear()
+        // ratatui's own `clear` asks the terminal where its cursor is, and some never answer
+        queue!(self.terminal.backend_mut(), Clear(ClearType::All))?;
+        // after a frame the other buffer holds it: swapping empties that, so that all cells are sent again
+        self.terminal.swap_buffers();
+        Ok(())
     }
 
     /// Takes or leaves the mouse.

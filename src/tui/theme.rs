@@ -94,7 +94,7 @@ impl Look {
     /// Reports come with the colour codes of [`style::Style::paint`]: they become spans. Other control characters
     /// are left out.
     pub fn lines(&self, report: &str) -> Vec<Line<'static>> {
-        report.lines().map(|line| spans(line)).collect()
+        report.lines().map(spans).collect()
     }
 }
 

@@ -50,7 +50,7 @@ pub const STEPS: [Step; 6] = [
     },
     Step {
         text: "F2 = 300 kN = 6 f F: the limit. Every support carries its bound of 50 kN; c1 has no reserve left but \
-               need not slip yet. This is still an answer, marked as marginal or with a reserve of exactly 0.",
+               need not slip yet. This is still an answer; the least more is too much.",
         commands: "set f 0.5; set F 100; set F2 300",
         pane: Pane::Plot,
         plot: Plot::Force,

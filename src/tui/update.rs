@@ -403,14 +403,19 @@ fn order(state: &mut State, job: Job) -> Vec<Effect> {
                     && !matches!(waiting, Job::Step(_))
             });
             state.wanted_step = None;
-            if matches!(running, Job::Set { name: other, .. } if other == name) {
+            let older = match running {
+                Job::Set { name: other, .. } => other == name,
+                Job::Pivots => true,
+                _ => false,
+            };
+            if older {
                 effects.push(Effect::Stop);
             }
         }
         Job::Step(_) => state
             .waiting
             .retain(|waiting| !matches!(waiting, Job::Step(_))),
-        Job::Answers | Job::Line { .. } => {}
+        Job::Answers | Job::Line { .. } | Job::Pivots => {}
     }
     state.waiting.push_back(job);
     effects
@@ -497,11 +502,12 @@ fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         state.new_scenario();
     }
     settle(state, &done.job);
-    let changed = matches!(done.job, Job::Set { .. });
+    let changed = matches!(done.job, Job::Set { .. } | Job::Pivots);
+    let followed = changed && !done.interrupted && done.error.is_none();
     if let Some(error) = done.error {
         if done.interrupted {
             // a slider that moved on stops its older solve: nothing to tell
-            if !(changed && !state.waiting.is_empty()) {
+            if !changed || state.waiting.is_empty() {
                 state.say(Role::Warning, "stopped: the session is as it was");
             }
         } else {
@@ -526,6 +532,10 @@ fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     {
         state.running = Some(next.clone());
         effects.push(Effect::Run(next));
+    }
+    if followed && state.shown.is_warm() {
+        // The answer is there; its pivots follow unless a slider moves on.
+        effects.extend(order(state, Job::Pivots));
     }
     effects
 }
@@ -596,6 +606,16 @@ fn show_output(state: &mut State, job: &Job, output: &str) {
                 }
             }
         }
+        Job::Pivots => {
+            if let Some(line) = state.look.lines(output).first() {
+                let text: String = line
+                    .spans
+                    .iter()
+                    .map(|span| span.content.as_ref())
+                    .collect();
+                state.say(Role::Warning, text);
+            }
+        }
         Job::Line { .. } | Job::Set { .. } => {
             // `undone: …`, or that a value lies outside its range; the last line says what the screen shows anyway
             let lines = state.look.lines(output);
@@ -626,6 +646,7 @@ fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
         Job::Set { name, .. } => format!("set {name}"),
         Job::Step(_) => "step".into(),
         Job::Answers => "answers".into(),
+        Job::Pivots => "pivots".into(),
     };
     let style = state.look.role(role);
     let report = state.look.report(overlay::text_width(state));

@@ -40,6 +40,9 @@ pub fn perform(session: &mut Session, job: Job, style: Style, watch: &dyn Watch)
             watch,
         ),
         Job::Line { text, .. } => run(session, text, &mut output, style, watch),
+        Job::Pivots => session
+            .ensure_pivots(&mut Output::text(&mut output, style, watch))
+            .map(|()| Next::Continue),
         Job::Answers => session.all_answers(watch).map(|found| {
             answers = Some(found);
             Next::Continue

@@ -33,6 +33,18 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A number as it was given: the shortest decimal that reads back as the same number, with an exponent where it would
+/// be long.
+pub fn in_full(value: f64) -> String {
+    if value == 0.0 || (1e-5..1e15).contains(&value.abs()) {
+        (value + 0.0).to_string()
+    } else if value.is_finite() {
+        format!("{value:e}")
+    } else {
+        simple(value)
+    }
+}
+
 /// A check figure: two significant digits with an exponent, `2.2e-16`.
 pub fn residual(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -164,6 +176,22 @@ mod tests {
         ];
         for (value, text) in cases {
             assert_eq!(engineering(value), text, "{value:e}");
+        }
+    }
+
+    #[test]
+    fn a_given_number_keeps_its_digits() {
+        let cases = [
+            (60.00006, "60.00006"),
+            (0.123456789012, "0.123456789012"),
+            (2.1e8, "210000000"),
+            (1e-7, "1e-7"),
+            (1e21, "1e21"),
+            (-0.0, "0"),
+            (f64::INFINITY, "n/a"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(in_full(value), text, "{value:e}");
         }
     }
 

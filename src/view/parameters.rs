@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::short;
+use super::number::in_full;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::parameter::{Parameter, ParameterValues};
@@ -44,12 +44,12 @@ pub fn write(
         };
         let mut cells = vec![
             Cell::from(name.as_str()),
-            Cell::new(short(value), role),
+            Cell::new(in_full(value), role),
             Cell::new(parameter.unit.clone().unwrap_or_default(), Role::Muted),
         ];
         if any {
             let file = if is_changed {
-                format!("was {}", short(parameter.value))
+                format!("was {}", in_full(parameter.value))
             } else {
                 String::new()
             };
@@ -65,16 +65,16 @@ pub fn write(
 /// `0 … 400 by 10`.
 fn range(parameter: &Parameter) -> String {
     let mut text = match (parameter.min, parameter.max) {
-        (Some(min), Some(max)) => format!("{} … {}", short(min), short(max)),
-        (Some(min), None) => format!("≥ {}", short(min)),
-        (None, Some(max)) => format!("≤ {}", short(max)),
+        (Some(min), Some(max)) => format!("{} … {}", in_full(min), in_full(max)),
+        (Some(min), None) => format!("≥ {}", in_full(min)),
+        (None, Some(max)) => format!("≤ {}", in_full(max)),
         (None, None) => String::new(),
     };
     if let Some(step) = parameter.step {
         if !text.is_empty() {
             text.push(' ');
         }
-        text.push_str(&format!("by {}", short(step)));
+        text.push_str(&format!("by {}", in_full(step)));
     }
     text
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::number::{residual, short, with_unit};
+use super::number::{in_full, residual, short, with_unit};
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
 use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, Start, State, Verdict};
@@ -299,6 +299,13 @@ pub fn write(
             answer.covering, answer.tie_break, answer.engine
         ),
     ));
+    if let Start::Warm { changes } = answer.start {
+        let times = if changes == 1 { "change" } else { "changes" };
+        rows.push((
+            "start",
+            format!("warm: followed from the last answer, {changes} {times} of the working scheme"),
+        ));
+    }
     if answer.is_answer() || answer.outcome == OutcomeKind::CheckFailed {
         let check = &answer.check;
         let mut figures = vec![
@@ -337,7 +344,7 @@ pub fn write(
                     .parameters
                     .get(name)
                     .and_then(|p| p.unit.as_deref());
-                format!("{name} = {}", with_unit(&short(*value), unit))
+                format!("{name} = {}", with_unit(&in_full(*value), unit))
             })
             .collect();
         rows.push(("parameters", values.join(", ")));

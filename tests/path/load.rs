@@ -220,3 +220,54 @@ fn the_path_passes_through_the_answers_of_its_loads() {
         }
     }
 }
+
+/// A warm answer has no pivots of its own: its scheme is read from its vertex.
+#[test]
+fn a_warm_answer_can_be_followed_and_differentiated() {
+    let mut case = Case::new("plates-free", &[("f", 0.75), ("q", 100.0), ("T", 60.0)]);
+    let before = case.solve();
+    *case.values.get_mut("T").expect("a parameter") = 110.0;
+    let rules = case.scenario.rules;
+    let warm = case
+        .prepared
+        .follow(&before, &case.values, rules, &Quiet)
+        .expect("a way");
+    let cold = case.solve();
+    let basis = stickslip::path::start::final_basis(&warm).expect("a scheme");
+    assert!(!basis.z.is_empty());
+    let rates = |solved: &Solved| {
+        stickslip::path::sensitivity::sensitivity(
+            &case.prepared,
+            &case.scenario,
+            solved,
+            &case.values,
+        )
+        .expect("an answer")
+    };
+    let (a, b) = (rates(&warm), rates(&cold));
+    for (a, b) in a.parameters.iter().zip(&b.parameters) {
+        let size = b
+            .pairs
+            .iter()
+            .map(|pair| pair.z_t.abs())
+            .fold(0.0, f64::max);
+        for (a, b) in a.pairs.iter().zip(&b.pairs) {
+            assert!((a.z_t - b.z_t).abs() <= 1e-8 * size, "{a:?} {b:?}");
+        }
+    }
+    let reach = LoadReach {
+        to: None,
+        through: false,
+    };
+    let path = trace(
+        &case.prepared,
+        &case.scenario,
+        &case.values,
+        Some(&warm),
+        "push",
+        reach,
+        &Quiet,
+    )
+    .expect("a path");
+    close(path.limit().expect("a limit"), 150.0, 1e-9);
+}

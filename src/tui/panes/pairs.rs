@@ -15,7 +15,14 @@ use crate::view::{force_unit, length_unit};
 /// The order, if it is not that of the file.
 pub fn note(state: &State) -> String {
     if state.sort == SortKey::File && !state.descending {
-        return String::new();
+        return if state.shown.at_ray() {
+            "last vertex before the ray".to_owned()
+        } else {
+            state
+                .shown
+                .position
+                .map_or(String::new(), |step| format!("pivot {step}"))
+        };
     }
     let arrow = if state.descending { "↓" } else { "↑" };
     format!("{} {arrow}", state.sort.word())

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use unicode_width::UnicodeWidthStr;
 
-use crate::tui::app::{Input, Pane, State};
+use crate::tui::app::{Pane, State};
 use crate::tui::vary;
 use crate::view::number::{short, with_unit};
 use crate::view::style::{Role, pad_left, pad_right};
@@ -148,8 +148,5 @@ pub fn about(state: &State) -> Option<String> {
         text.push_str(&format!(" · {} … {}", short(low), short(high)));
     }
     text.push_str(&format!(" · step {}", short(vary::step(value, parameter))));
-    if matches!(state.input, Input::None) && !state.shown.scenario.parameters.is_empty() {
-        return Some(text);
-    }
     Some(text)
 }

@@ -70,8 +70,11 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     };
     let pivots = &answer.pivots;
     if pivots.is_empty() {
-        let text =
-            "no pivots: with every joint on nothing is violated, so the main system is the answer";
+        let text = if state.shown.is_warm() {
+            "followed from the last answer; its pivots come in a moment"
+        } else {
+            "no pivots: with every joint on nothing is violated, so the main system is the answer"
+        };
         super::put_text(look, text, muted, area, buffer);
         return;
     }

@@ -176,12 +176,10 @@ fn segment(a: (f64, f64), b: (f64, f64), dots: (f64, f64)) -> Option<((f64, f64)
             to = to.min(q / p);
         }
     }
-    (from <= to).then(|| {
-        (
-            (a.0 + from * dx, a.1 + from * dy),
-            (a.0 + to * dx, a.1 + to * dy),
-        )
-    })
+    (from <= to).then_some((
+        (a.0 + from * dx, a.1 + from * dy),
+        (a.0 + to * dx, a.1 + to * dy),
+    ))
 }
 
 /// Draws the pane.

@@ -1,0 +1,545 @@
+//! JSON Schema of the scenario format, for editors and other programs.
+//!
+//! The decoder reads the tree by hand, to collect all problems with their places; these types only say the same once
+//! more in a form from which a schema can be made. The tests hold the two together, key by key.
+
+#![expect(
+    dead_code,
+    reason = "the types are only looked at: the schema is made of them"
+)]
+
+use std::collections::BTreeMap;
+
+use schemars::generate::SchemaSettings;
+use schemars::transform::{RecursiveTransform, Transform};
+use schemars::{JsonSchema, Schema};
+use serde_json::Value;
+
+/// A scenario of stickslip: a structure, a contact system or an LCP
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields, title = "stickslip/1")]
+#[schemars(extend("oneOf" = [
+    { "required": ["contact_system"] },
+    { "required": ["lcp"], "not": { "required": ["stages"] } },
+    { "anyOf": [
+        { "required": ["materials"] }, { "required": ["sections"] }, { "required": ["nodes"] },
+        { "required": ["bars"] }, { "required": ["plates"] }, { "required": ["quads"] },
+        { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
+        { "required": ["contacts"] }, { "required": ["loads"] },
+    ] },
+]))]
+struct Scenario {
+    /// Version of the format
+    #[schemars(extend("const" = "stickslip/1"))]
+    format: String,
+    /// A few words on what this is
+    #[schemars(length(min = 1))]
+    title: String,
+    /// More about it
+    description: Option<String>,
+    /// Labels of the author's consistent units
+    units: Option<Units>,
+    /// What the user varies, by name; wherever a number may be a parameter, its name stands instead
+    parameters: Option<BTreeMap<String, Parameter>>,
+    /// Load history: for each stage what multiplies the factors of the load cases; cases not named count 0
+    stages: Option<Vec<BTreeMap<String, NumberOrParameter>>>,
+    /// Rules of the solver
+    solver: Option<Solver>,
+    /// Materials by id
+    materials: Option<BTreeMap<String, Material>>,
+    /// Cross-sections of bars by id
+    sections: Option<BTreeMap<String, Section>>,
+    /// Nodes by id: [x, y]
+    nodes: Option<BTreeMap<String, [f64; 2]>>,
+    /// Frame and truss bars
+    bars: Option<Vec<Bar>>,
+    /// Rectangular plates of bilinear elements
+    plates: Option<Vec<Plate>>,
+    /// Single four-node elements
+    quads: Option<Vec<Quad>>,
+    /// Nodes that share displacements
+    ties: Option<Vec<Tie>>,
+    /// Supports
+    supports: Option<Vec<Support>>,
+    /// Springs to the ground
+    springs: Option<Vec<Spring>>,
+    /// Frictional contacts
+    contacts: Option<Vec<Contact>>,
+    /// Load cases by name
+    loads: Option<BTreeMap<String, LoadCase>>,
+    /// CSM and CLV computed elsewhere
+    contact_system: Option<ContactSystem>,
+    /// A bare linear complementarity problem
+    lcp: Option<Lcp>,
+}
+
+/// Labels of units
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Units {
+    /// E.g. m
+    length: Option<String>,
+    /// E.g. kN
+    force: Option<String>,
+}
+
+/// A number, or the name of a parameter
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum NumberOrParameter {
+    /// The number itself
+    Number(f64),
+    /// Name of a parameter
+    Parameter(String),
+}
+
+/// A value, or the value with its range
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum Parameter {
+    /// The value alone
+    Value(f64),
+    /// The value with its range
+    Ranged(RangedParameter),
+}
+
+/// A parameter with what a slider needs
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct RangedParameter {
+    /// Value in the file, within min and max
+    value: f64,
+    /// Low end of the slider
+    min: Option<f64>,
+    /// High end of the slider
+    max: Option<f64>,
+    /// Step of the slider
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    step: Option<f64>,
+    /// Label of its unit
+    unit: Option<String>,
+    /// What it is
+    about: Option<String>,
+}
+
+/// Rules of the solver
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Solver {
+    /// Covering vector; not for an lcp
+    covering: Option<Covering>,
+    /// Which of tied rows leaves: lexicographic, natural, first-row or random:SEED
+    #[schemars(regex(pattern = r"^(lexicographic|natural|first-row|random:[0-9]+)$"))]
+    tie_break: Option<String>,
+    /// Which implementation of Lemke's algorithm runs
+    engine: Option<Engine>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum Covering {
+    Cohesive,
+    Ones,
+    Weight,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum Engine {
+    Scheme,
+    Tableau,
+    Exact,
+}
+
+/// A linear elastic material
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Material {
+    /// Young's modulus
+    #[schemars(rename = "E", extend("exclusiveMinimum" = 0))]
+    modulus: f64,
+    /// Poisson's ratio; 0.5 is excluded in plane strain
+    #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
+    nu: f64,
+    /// Mass per volume; 0 if left out
+    #[schemars(range(min = 0))]
+    density: Option<f64>,
+    /// Thermal expansion; 0 if left out
+    expansion: Option<f64>,
+}
+
+/// Cross-section of a bar
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Section {
+    /// Area
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    area: f64,
+    /// Second moment of area; not needed by trusses
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    inertia: Option<f64>,
+}
+
+/// A straight bar
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Bar {
+    /// Id
+    id: String,
+    /// Start and end
+    nodes: [String; 2],
+    /// `frame` if left out
+    kind: Option<BarKind>,
+    /// Id of the material
+    material: String,
+    /// Id of the section
+    section: String,
+    /// Number of equal elements; 1 if left out
+    #[schemars(range(min = 1))]
+    divisions: Option<u32>,
+    /// Ends with a hinge
+    hinges: Option<Vec<BarEnd>>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum BarKind {
+    Frame,
+    Truss,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum BarEnd {
+    Start,
+    End,
+}
+
+/// A rectangle of four-node elements: `size` and `divisions`, or grid lines `x` and `y`
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [
+    { "required": ["size", "divisions"] },
+    { "required": ["x", "y"] },
+]))]
+struct Plate {
+    /// Id
+    id: String,
+    /// Place of node [0,0]
+    origin: [f64; 2],
+    /// Length and height
+    size: Option<[f64; 2]>,
+    /// Elements along the length and the height
+    divisions: Option<[u32; 2]>,
+    /// Grid lines along the length, from the origin
+    x: Option<Vec<f64>>,
+    /// Grid lines along the height, from the origin
+    y: Option<Vec<f64>>,
+    /// Degrees counter-clockwise about the origin; 0 if left out
+    rotation: Option<f64>,
+    /// Thickness
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    thickness: f64,
+    /// Id of the material
+    material: String,
+    /// Plane strain or plane stress
+    plane: Plane,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum Plane {
+    Strain,
+    Stress,
+}
+
+/// One four-node element of any convex shape
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Quad {
+    /// Id
+    id: String,
+    /// Corners counter-clockwise
+    nodes: [String; 4],
+    /// Thickness
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    thickness: f64,
+    /// Id of the material
+    material: String,
+    /// Plane strain or plane stress
+    plane: Plane,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum Component {
+    X,
+    Y,
+    R,
+}
+
+/// Nodes that share displacements
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["nodes"] }, { "required": ["at"] }]))]
+struct Tie {
+    /// Two nodes or more
+    nodes: Option<Vec<String>>,
+    /// An edge all nodes of which are tied
+    at: Option<String>,
+    /// What they share; x and y if left out
+    fixed: Option<Vec<Component>>,
+}
+
+/// A support
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Support {
+    /// Node or edge
+    at: String,
+    /// Held displacements
+    fixed: Vec<Component>,
+    /// Imposed displacement, scaled by the factor of `case`
+    settlement: Option<[f64; 2]>,
+    /// Load case of the settlement
+    case: Option<String>,
+}
+
+/// A spring to the ground
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Spring {
+    /// Node or edge
+    at: String,
+    /// Any non-zero vector
+    direction: [f64; 2],
+    /// Force per displacement; at an edge, of each node
+    #[schemars(range(min = 0))]
+    stiffness: f64,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum Law {
+    Coulomb,
+    Frictionless,
+    Bound,
+}
+
+/// One for all pairs, or for an edge an array with one entry per pair
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum PerPair {
+    /// For all pairs
+    All(NumberOrParameter),
+    /// Pair by pair
+    Each(Vec<NumberOrParameter>),
+}
+
+/// Frictional contact of a node or of the nodes of an edge
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["node", "normal"] }, { "required": ["edge"] }]))]
+struct Contact {
+    /// Id of the pair, or of the row of pairs id[0], id[1] …
+    id: String,
+    /// A node
+    node: Option<String>,
+    /// An edge
+    edge: Option<String>,
+    /// Another node or edge, or "ground"
+    against: String,
+    /// From `against` to `node`; an edge has its own
+    normal: Option<[f64; 2]>,
+    /// `coulomb` if left out
+    law: Option<Law>,
+    /// Friction coefficient f ≥ 0
+    friction: Option<PerPair>,
+    /// Cohesion c ≥ 0
+    cohesion: Option<PerPair>,
+    /// Gap g ≥ 0
+    gap: Option<PerPair>,
+    /// Friction bound r_f ≥ 0 of the law `bound`
+    bound: Option<PerPair>,
+    /// Indices of an edge without contact
+    skip: Option<Vec<u32>>,
+}
+
+/// Loads that grow together
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct LoadCase {
+    /// 1 if left out
+    factor: Option<NumberOrParameter>,
+    /// The loads
+    items: Vec<Load>,
+}
+
+/// One load
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum Load {
+    /// At a node; on an edge the total
+    Point(PointLoad),
+    /// Along an edge
+    Traction(Traction),
+    /// Along a bar
+    Line(LineLoad),
+    /// On all elements with a density
+    Gravity(Gravity),
+    /// Change of temperature
+    Temperature(Temperature),
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct PointLoad {
+    /// Node or edge
+    at: String,
+    /// Force [Fx, Fy]
+    force: [f64; 2],
+    /// Counter-clockwise
+    moment: Option<f64>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Traction {
+    /// Edge
+    edge: String,
+    /// Force per unit length of edge
+    value: [f64; 2],
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct LineLoad {
+    /// Bar
+    bar: String,
+    /// Force per unit length, global axes
+    value: [f64; 2],
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Gravity {
+    /// Acceleration [gx, gy]
+    acceleration: [f64; 2],
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Temperature {
+    /// Degrees
+    change: f64,
+    /// Ids of the elements
+    on: Vec<String>,
+}
+
+/// Contact stiffness matrix and contact load vectors
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct ContactSystem {
+    /// Ids of the m pairs
+    pairs: Vec<String>,
+    /// Places of the pairs, for plots
+    positions: Option<Vec<f64>>,
+    /// 2m × 2m: all normals, then all tangentials
+    stiffness: Stiffness,
+    /// Load cases by name
+    loads: BTreeMap<String, JointLoad>,
+    /// Law of each pair; coulomb if left out
+    law: Option<Vec<Law>>,
+    /// f of each pair; 0 if left out
+    friction: Option<Vec<NumberOrParameter>>,
+    /// c of each pair; 0 if left out
+    cohesion: Option<Vec<NumberOrParameter>>,
+    /// g of each pair; 0 if left out
+    gap: Option<Vec<NumberOrParameter>>,
+    /// r_f of each pair, where the law is `bound`
+    bound: Option<Vec<NumberOrParameter>>,
+    /// Motions z with R z = 0
+    kernel: Option<Vec<Vec<f64>>>,
+}
+
+/// A symmetric matrix
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum Stiffness {
+    /// Its rows
+    Rows(Vec<Vec<f64>>),
+    /// In a Matrix Market file
+    File(MatrixFile),
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct MatrixFile {
+    /// Matrix Market file, relative to the scenario
+    file: String,
+}
+
+/// Loads in the joints
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct JointLoad {
+    /// 1 if left out
+    factor: Option<NumberOrParameter>,
+    /// 2m entries: all normals, then all tangentials
+    vector: Vec<f64>,
+}
+
+/// w = M z + q, w ≥ 0, z ≥ 0, wᵀz = 0
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Lcp {
+    /// Rows of the matrix
+    #[schemars(rename = "M")]
+    matrix: Vec<Vec<f64>>,
+    /// Right-hand side
+    q: Vec<NumberOrParameter>,
+    /// Covering vector d; ones if left out
+    covering: Option<Vec<f64>>,
+    /// Names of the rows
+    names: Option<Vec<String>>,
+}
+
+/// The decoder knows a key that is left out, but no `null`.
+fn without_null(schema: &mut Schema) {
+    let Some(object) = schema.as_object_mut() else {
+        return;
+    };
+    if let Some(Value::Array(kinds)) = object.get_mut("type") {
+        kinds.retain(|kind| kind != "null");
+        if let [one] = kinds.as_slice() {
+            let one = one.clone();
+            object.insert("type".into(), one);
+        }
+    }
+    if let Some(Value::Array(kinds)) = object.get_mut("enum") {
+        kinds.retain(|kind| !kind.is_null());
+    }
+    if let Some(Value::Array(ways)) = object.get_mut("anyOf") {
+        ways.retain(|way| way.get("type").is_none_or(|kind| kind != "null"));
+        if let [Value::Object(one)] = ways.as_slice() {
+            let one = one.clone();
+            object.remove("anyOf");
+            for (key, value) in one {
+                object.entry(key).or_insert(value);
+            }
+        }
+    }
+}
+
+/// The schema, JSON Schema draft 2020-12.
+pub fn schema() -> Value {
+    let mut schema = SchemaSettings::draft2020_12()
+        .into_generator()
+        .into_root_schema_for::<Scenario>();
+    RecursiveTransform(without_null).transform(&mut schema);
+    schema.to_value()
+}
+
+#[cfg(test)]
+#[path = "schema_tests.rs"]
+mod tests;
