@@ -55,6 +55,16 @@ fn uncoupled_pairs_have_one_answer_for_every_friction() {
 }
 
 #[test]
+fn rounding_of_a_coupling_is_no_critical_friction() {
+    let mut r = DMatrix::identity(4, 4);
+    // Normal and tangential joints coupled by what condensation leaves of an exact zero.
+    for (i, j) in [(0, 2), (1, 3), (0, 3)] {
+        (r[(i, j)], r[(j, i)]) = (3e-17, 3e-17);
+    }
+    assert_eq!(critical(&coulomb(r)).value, None);
+}
+
+#[test]
 fn large_problems_are_sampled() {
     // Ten copies of the one-pair problem, one of them with f_crit = 1.25.
     let m = 10;

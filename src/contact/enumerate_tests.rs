@@ -20,6 +20,12 @@ fn all(system: &ContactSystem, numbers: &ContactNumbers) -> Enumeration {
 }
 
 #[test]
+fn without_pairs_there_is_the_one_answer_of_the_main_system() {
+    let got = all(&coulomb(DMatrix::zeros(0, 0)), &plain(0.5, &[]));
+    assert_eq!((got.answers.len(), got.total, got.complete), (1, 1, true));
+}
+
+#[test]
 fn klarbring_has_three_answers() {
     let system = coulomb(DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.5]));
     let got = all(&system, &plain(2.0, &[0.6, -1.0]));

@@ -26,20 +26,16 @@ pub fn write(
 ) -> Result<(), WriteError> {
     replace(path, content).map_err(|source| WriteError {
         path: path.to_owned(),
-        source: plain(source),
+        source,
     })
 }
 
-/// The error without the name of the temporary file, which says nothing and differs from run to run.
-fn plain(error: io::Error) -> io::Error {
-    let system = error
-        .get_ref()
-        .and_then(std::error::Error::source)
-        .and_then(|inner| inner.downcast_ref::<io::Error>())
-        .and_then(io::Error::raw_os_error);
-    match system {
-        Some(code) => io::Error::from_raw_os_error(code),
-        None => error,
+/// Why no temporary file can be made in `folder`, without the name of that file, which says nothing and differs from run
+/// to run.
+fn refusal(folder: &Path, error: &io::Error) -> io::Error {
+    match fs::metadata(folder) {
+        Err(missing) => missing,
+        Ok(_) => io::Error::from(error.kind()),
     }
 }
 
@@ -75,7 +71,9 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder
+        .tempfile_in(folder)
+        .map_err(|error| refusal(folder, &error))?;
     {
         let mut out = BufWriter::new(file.as_file_mut());
         content(&mut out)?;

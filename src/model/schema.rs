@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, Transform};
 use schemars::{JsonSchema, Schema};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// A scenario of stickslip: a structure, a contact system or an LCP
 #[derive(JsonSchema)]
@@ -537,7 +537,16 @@ pub fn schema() -> Value {
         .into_generator()
         .into_root_schema_for::<Scenario>();
     RecursiveTransform(without_null).transform(&mut schema);
-    schema.to_value()
+    let Value::Object(mut rules) = schema.to_value() else {
+        return Value::Bool(true); // a type with fields never is
+    };
+    // What it is stands first.
+    let mut ordered = Map::new();
+    for key in ["$schema", "title", "description"] {
+        ordered.extend(rules.remove(key).map(|value| (key.to_owned(), value)));
+    }
+    ordered.extend(rules);
+    Value::Object(ordered)
 }
 
 #[cfg(test)]

@@ -527,6 +527,19 @@ mod tests {
     }
 
     #[test]
+    fn sizes_are_compared_like_numbers() {
+        let read = read(&words("lcp <= 48")).unwrap();
+        let Expectation::Size { what, bound } = &read else {
+            panic!("{read:?}")
+        };
+        assert_eq!(
+            (what.as_str(), bound.to_string().as_str()),
+            ("lcp", "<= 48")
+        );
+        assert!(bound.holds(48.0) && !bound.holds(49.0));
+    }
+
+    #[test]
     fn not_a_number_fulfils_nothing() {
         let Ok(Expectation::P(bound)) = read(&words("p = 1 ± 1")) else {
             panic!()

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest, residual, short};
+use super::number::{denoised, in_column, largest, residual, short};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{length_unit, moment_unit};
@@ -37,7 +37,15 @@ pub fn write(
         .map(|case| largest(ends().map(|end| end.factors[case])))
         .collect();
     let slips = largest(ends().flat_map(|end| end.pairs.iter().map(|pair| pair.z_t)));
-    let work = largest(history.stages.iter().map(|stage| stage.dissipated));
+    // Rounding beside the work of the loads is no dissipation.
+    let energies = largest(history.stages.iter().flat_map(|stage| {
+        let energy = stage.energy.unwrap_or_default();
+        [stage.dissipated, energy.work, energy.stored]
+    }));
+    let work = denoised(
+        largest(history.stages.iter().map(|stage| stage.dissipated)),
+        energies,
+    );
     for (index, stage) in history.stages.iter().enumerate() {
         let Some(end) = stage.moments.last() else {
             continue;
@@ -62,7 +70,7 @@ pub fn write(
                 slips,
             )),
             Cell::from(in_column(largest(stage.slip.iter().copied()), slips)),
-            Cell::from(in_column(stage.dissipated, work)),
+            Cell::from(in_column(denoised(stage.dissipated, energies), work)),
             Cell::from(
                 stage
                     .energy
@@ -126,7 +134,10 @@ pub fn write_stage(
             "work {} = stored {} + dissipated {}, balance {}",
             short(energy.work),
             short(energy.stored),
-            short(stage.dissipated),
+            short(denoised(
+                stage.dissipated,
+                energy.work.abs().max(energy.stored.abs())
+            )),
             residual(energy.residual)
         );
         writeln!(out, "{}", style.fit(&text, style.width))?;

@@ -4,6 +4,7 @@
 //!   a² = 4 P R / (π E*),  p0 = 2 P / (π a),  stick half-width c = a √(1 − Q / (f P))
 //! ```
 
+use std::f64::consts::{FRAC_2_PI, FRAC_2_SQRT_PI};
 use std::fmt::Write;
 
 use stickslip::answer::record::State;
@@ -91,7 +92,8 @@ fn scenario(shear: f64) -> String {
 #[test]
 #[ignore = "a fine mesh: half a minute in debug"]
 fn pressure_and_stick_zone_are_those_of_the_closed_forms() {
-    for (shear, stick) in [(5.0, 1.1284), (7.5, 0.7979)] {
+    // c = a √(1 − Q/fP) with a² = 8/π: 2/√π and √(2/π).
+    for (shear, stick) in [(5.0, FRAC_2_SQRT_PI), (7.5, FRAC_2_PI.sqrt())] {
         let scenario = load_text("hertz", &scenario(shear), None).expect("sound");
         let prepared = prepare(&scenario, &Quiet).expect("sound");
         let history =

@@ -1,10 +1,10 @@
 //! The language of commands, driven without a terminal: every command and its help, scripts, recordings, journals,
 //! and ten thousand lines of noise.
 
+mod program;
+
 use std::fs;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
 use std::sync::Arc;
 
 use rand::{Rng, SeedableRng};
@@ -708,135 +708,43 @@ fn ten_thousand_random_lines_neither_panic_nor_change_the_session_wrongly() {
     );
 }
 
-// ---- the program itself ----
-
-fn program() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
-    command.env_remove("NO_COLOR").env("TERM", "xterm");
-    command
-}
-
-fn piped(arguments: &[&str], input: &[u8]) -> (Vec<u8>, String, i32) {
-    let mut child = program()
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    let input = input.to_vec();
-    let writer = std::thread::spawn(move || {
-        let _ = stdin.write_all(&input);
-    });
-    let output = child.wait_with_output().unwrap();
-    writer.join().unwrap();
-    let error = String::from_utf8(output.stderr).unwrap();
-    (output.stdout, error, output.status.code().unwrap())
+#[test]
+fn given_numbers_keep_their_digits() {
+    let mut session = session("beam");
+    shown(&mut session, "set F2 60.00006; set f 0.123456789012");
+    for command in ["params", "status"] {
+        let text = shown(&mut session, command);
+        assert!(
+            text.contains("60.00006") && text.contains("0.123456789012"),
+            "{text}"
+        );
+    }
+    assert!(refused(&mut session, "set f=").contains("to what?"));
+    assert!(refused(&mut session, "set f=abc").starts_with("`abc`"));
 }
 
 #[test]
-fn exit_statuses_of_the_program() {
+fn the_lcp_goes_to_a_scenario_and_to_matrix_market() {
     let folder = tempfile::tempdir().unwrap();
-    let bad = folder.path().join("bad.json");
-    fs::write(&bad, "{").unwrap();
-    let bad = bad.display().to_string();
-    for (arguments, input, status) in [
-        (&["solve"][..], "", 0),
-        (&["solve", "beam", "--set", "F2=10"], "", 0),
-        (&["solve", "beam-ray"], "", 3),
-        (&["solve", "painleve"], "", 3),
-        (&["solve", "beam", "--set", "nothing=1"], "", 2),
-        (&["solve", "beam", "--covering", "none"], "", 2),
-        (&["solve", "nowhere"], "", 2),
-        (
-            &["solve", "greco", "--covering", "ones", "--set", "f=2"],
-            "",
-            4,
-        ),
-        (&["solve", "cycling", "--tie-break", "first-row"], "", 4),
-        (&["check", "beam", "frame"], "", 0),
-        (&["check", "beam", &bad], "", 2),
-        (&["scenarios"], "", 0),
-        (&["completions", "bash"], "", 0),
-        (&["--help"], "", 0),
-        (&["--version"], "", 0),
-        (&["--bogus"], "", 2),
-        (&[&bad], "", 2),
-        (&[], "status\n", 0),
-        (&["beam-ray"], "status\n", 0),
-        (&[], "bogus\nstatus\n", 2),
-        (&[], "bogus\nexpect error unknown\n", 0),
-        (&[], "expect outcome ray\n", 1),
-        (&[], "expect outcome normal\nquit\nbogus\n", 0),
-        (&["replay", "-"], "expect outcome normal", 0),
-        (&["replay", "-"], "expect outcome ray", 1),
-        (&["replay", "-"], "bogus", 2),
-        (&["replay", "nowhere.stick"], "", 2),
-    ] {
-        let (_, error, found) = piped(arguments, input.as_bytes());
-        assert_eq!(found, status, "{arguments:?} {input:?}: {error}");
-        assert_eq!(error.is_empty(), !error.contains(':'), "{error}");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let mut session = session("beam");
+    let said = shown(&mut session, &format!("export lcp {}", at("b.mtx")));
+    for part in ["b.mtx", "b.q.mtx", "b.d.mtx"] {
+        assert!(said.contains(part), "{said}");
+        let text = fs::read_to_string(at(part)).unwrap();
+        let columns = if part == "b.mtx" { 18 } else { 1 };
+        assert!(text.contains(&format!("\n18 {columns}\n")), "{text}");
     }
-}
-
-#[test]
-fn a_pipe_gets_results_only() {
-    let (out, error, status) = piped(
-        &["--width", "60"],
-        b"status\npairs\n\xff\xfe\nset F2 150\r\nplot slip\n",
+    assert!(refused(&mut session, &format!("export lcp {}", at("b.csv"))).contains(".mtx"));
+    shown(
+        &mut session,
+        &format!("export lcp {}; load {}", at("b.json"), at("b.json")),
     );
-    let out = String::from_utf8(out).unwrap();
-    assert!(!out.contains('\u{1b}') && !out.contains("> "), "{out}");
-    assert!(out.starts_with("beam"));
-    assert!(
-        out.lines()
-            .all(|line| line.trim_end().chars().count() <= 60),
-        "{out}"
-    );
-    assert!(error.contains("unknown command"), "{error}");
-    assert_eq!(status, 2);
-    let (out, ..) = piped(
-        &["--ascii"],
-        b"status; pairs; plot slip; plot structure; pivots",
-    );
-    assert!(out.is_ascii());
-    let (out, ..) = piped(&["--color", "always"], b"pairs");
-    assert!(out.contains(&0x1b));
-}
-
-#[test]
-fn replays_repeat_to_the_byte_in_other_processes() {
-    let scripts: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/scripts");
-    let script = scripts.join("plates.stick").display().to_string();
-    for format in ["text", "json"] {
-        let first = piped(&["replay", &script, "--format", format], b"");
-        assert_eq!(first.2, 0);
-        assert_eq!(piped(&["replay", &script, "--format", format], b""), first);
-    }
-    let (out, _, _) = piped(&["solve", "frame", "--format", "json"], b"");
-    assert_eq!(piped(&["solve", "frame", "--format", "json"], b"").0, out);
-    let result: serde_json::Value = serde_json::from_slice(&out).unwrap();
-    assert_eq!(result["format"], "stickslip-result/1");
-}
-
-#[test]
-fn a_closed_pipe_is_success() {
-    let mut child = program()
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    let mut stdin = child.stdin.take().unwrap();
-    let _ = stdin.write_all("pairs\n".repeat(50).as_bytes());
-    drop(stdin);
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(0));
-    assert!(
-        output.stderr.is_empty(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    shown(&mut session, "expect outcome normal; expect lcp = 18");
+    // Without friction the tightening weight covers nothing: no covering vector of an lcp.
+    let text = r#"{ "format": "stickslip/1", "title": "t", "solver": { "covering": "weight" }, "contact_system":
+        { "pairs": ["c"], "stiffness": [[1, 0], [0, 1]], "loads": { "w": { "vector": [1, 0] } } } }"#;
+    fs::write(at("smooth.json"), text).unwrap();
+    shown(&mut session, &format!("load {}", at("smooth.json")));
+    assert!(refused(&mut session, &format!("export lcp {}", at("c.json"))).contains("d > 0"));
 }
