@@ -59,7 +59,13 @@ def quantecon(m, q, d):
 
 
 def lemkelcp(m, q, _):
-    from lemkelcp import lemkelcp as solve
+    import builtins
+
+    from lemkelcp import lemkelcp as module
+
+    # Written for Python 2: it assigns to the elements of a range.
+    module.range = lambda *arguments: list(builtins.range(*arguments))
+    solve = module.lemkelcp
 
     def run():
         z, code, message = solve(m, q, maxIter=100_000)

@@ -495,7 +495,16 @@ impl Parametric {
             return lost();
         };
         let (mut tied, mut step) = self.blocking(c);
-        if self.stand.is_suspicious(c, &tied) && self.stand.refresh() {
+        // Where the target comes before any row that blocks, no rate near the noise decides anything.
+        let raw = self
+            .stand
+            .dictionary
+            .along(Local::P, c, &self.stand.column)
+            .rate;
+        let ends_here = reach.target.is_finite()
+            && raw > 0.0
+            && (reach.target - self.stand.p()).max(0.0) / raw <= step;
+        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.refresh() {
             self.stand.fetch(c);
             (tied, step) = self.blocking(c);
         }

@@ -78,6 +78,8 @@ mod tests {
     #[test]
     fn only_what_does_not_fit_is_refused() {
         assert_eq!(refusal(for_nodes(1000.0)), None);
+        // Two unknowns to a node of a plate: 1e6 unknowns are welcome on 4 GiB, 1e8 on no desk.
+        assert!(for_nodes(5e5) < 4.0 * GIB && for_nodes(5e7) > 100.0 * GIB);
         assert!(
             refusal(for_nodes(1e12))
                 .unwrap()

@@ -9,7 +9,6 @@ use super::plain_answers::{MOST_ROWS, PlainCheck, all_plain_answers, check_plain
 use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved, Trace, empty_answer};
 use crate::answer::check::{TOLERANCE, check_plain};
-use crate::answer::pairs::{joint_state, pair_states};
 use crate::answer::record::{Answer, OutcomeKind, PlainSolution, State};
 use crate::contact::complementarity::{Couple, contact_lcp};
 use crate::contact::critical::{CriticalFriction, critical_friction};
@@ -181,36 +180,13 @@ impl Prepared {
             z,
             p: 0.0,
         };
-        let state = joint_state(system, numbers, &contact, &point);
-        let run = Run {
-            outcome: Outcome::Normal { marginal: false },
-            pivots: Vec::new(),
-            point,
-        };
         let default = Rules::default();
         let words = [
             default.covering.to_string(),
             default.tie_break.to_string(),
             ENUMERATION.to_owned(),
         ];
-        let mut answer = empty_answer(&run, words, self.size(system, &contact));
-        answer.pairs = pair_states(system, numbers, &contact, &state);
-        self.add_released_slips(&mut answer.pairs, numbers, factors, &state);
-        self.complete(&mut answer, system, numbers, factors, &state);
-        Ok(Solved {
-            answer,
-            trace: Trace::Contact {
-                contact,
-                numbers: numbers.clone(),
-                factors: factors.to_vec(),
-                pivots: run.pivots,
-                last: run.point,
-            },
-            ray: None,
-            cycled: false,
-            kept: None,
-            told: String::new(),
-        })
+        Ok(self.answer_at(system, numbers, factors, contact, point, words))
     }
 
     /// The value of a friction parameter above which more than one answer is possible for some load.

@@ -2,6 +2,7 @@
 
 pub mod all_answers;
 pub mod attempt;
+mod by_path;
 pub mod compare;
 pub mod explain;
 pub mod judge;

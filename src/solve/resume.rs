@@ -5,12 +5,11 @@ use std::time::Instant;
 
 use super::numbers::{contact_numbers, factors};
 use super::prepared::Prepared;
-use super::solved::{SolveError, Solved, Trace, empty_answer};
+use super::solved::{SolveError, Solved};
 use super::warm::Kept;
-use crate::answer::pairs::{joint_state, pair_states};
 use crate::answer::record::{Answer, PairState, Start};
 use crate::contact::complementarity::contact_lcp_like;
-use crate::lcp::outcome::{Outcome, Point, Run};
+use crate::lcp::outcome::Point;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Engine, Rules};
 use crate::model::scenario::Scenario;
@@ -82,22 +81,18 @@ impl Prepared {
             w: vec![0.0; contact.rows.len()],
             p: 0.0,
         };
-        let state = joint_state(system, &numbers, &contact, &point);
         let seconds = start.elapsed().as_secs_f64();
-        let run = Run {
-            outcome: Outcome::Normal { marginal: false },
-            pivots: Vec::new(),
-            point,
-        };
-        let words = rules.words();
-        let mut answer = empty_answer(&run, words, self.size(system, &contact));
+        let words = [
+            rules.covering.to_string(),
+            rules.tie_break.to_string(),
+            rules.engine.to_string(),
+        ];
+        let mut solved = self.answer_at(system, &numbers, &factors, contact, point, words);
+        let answer = &mut solved.answer;
         answer.timings.lemke = seconds;
         answer.start = Start::Warm {
             changes: found.pivots,
         };
-        answer.pairs = pair_states(system, &numbers, &contact, &state);
-        self.add_released_slips(&mut answer.pairs, &numbers, &factors, &state);
-        self.complete(&mut answer, system, &numbers, &factors, &state);
         if !answer.is_answer() {
             return None;
         }
@@ -106,20 +101,8 @@ impl Prepared {
         answer.timings.factor = self.factor_seconds;
         answer.timings.condense = self.condense_seconds;
         answer.timings.total = self.seconds + start.elapsed().as_secs_f64();
-        Some(Solved {
-            answer,
-            trace: Trace::Contact {
-                contact,
-                numbers,
-                factors,
-                pivots: Vec::new(),
-                last: run.point,
-            },
-            ray: None,
-            told: String::new(),
-            cycled: false,
-            kept: Some(Arc::clone(seat)),
-        })
+        solved.kept = Some(Arc::clone(seat));
+        Some(solved)
     }
 }
 

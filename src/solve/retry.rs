@@ -168,7 +168,7 @@ impl Job<'_> {
         word.parse().unwrap_or(self.rules.covering)
     }
 
-    /// Other rules, then all working schemes; the first answer wins. Without one the run under the default rules is
+    /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run under the default rules is
     /// what is shown, with what was proved.
     fn retry(&self, first: Solved, subject: &Subject) -> Result<Solved, SolveError> {
         let m = self.system.pairs.len();
@@ -220,6 +220,18 @@ impl Job<'_> {
                         return Ok(again);
                     }
                 }
+            }
+        }
+        if try_rules
+            && let Some(mut again) =
+                self.prepared
+                    .along_load(self.system, self.numbers, self.factors, self.watch)?
+        {
+            attempts.append(&mut again.answer.attempts);
+            if again.answer.is_answer() {
+                again.answer.notes.push(told(&first, &attempts));
+                again.answer.attempts = attempts;
+                return Ok(again);
             }
         }
         let mut shown = first;

@@ -284,6 +284,43 @@ impl Prepared {
         Ok(solved)
     }
 
+    /// The state at a point found other than by pivots from z = 0, freshly checked; `words` are covering, tie-break
+    /// and engine as the attempt is listed.
+    pub(super) fn answer_at(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        contact: ContactLcp,
+        point: Point,
+        words: [String; 3],
+    ) -> Solved {
+        let state = joint_state(system, numbers, &contact, &point);
+        let run = Run {
+            outcome: Outcome::Normal { marginal: false },
+            pivots: Vec::new(),
+            point,
+        };
+        let mut answer = empty_answer(&run, words, self.size(system, &contact));
+        answer.pairs = pair_states(system, numbers, &contact, &state);
+        self.add_released_slips(&mut answer.pairs, numbers, factors, &state);
+        self.complete(&mut answer, system, numbers, factors, &state);
+        Solved {
+            answer,
+            trace: Trace::Contact {
+                contact,
+                numbers: numbers.clone(),
+                factors: factors.to_vec(),
+                pivots: run.pivots,
+                last: run.point,
+            },
+            ray: None,
+            cycled: false,
+            kept: None,
+            told: String::new(),
+        }
+    }
+
     pub(super) fn size(&self, system: &ContactSystem, contact: &ContactLcp) -> Size {
         let unknowns = match &self.geometry {
             Geometry::Structure { main, .. } => Some(main.size()),

@@ -102,6 +102,10 @@ impl Kept {
     ) -> Option<usize> {
         let (from_q, from_b) = self.right_side(system, &self.numbers, &self.extra);
         let (to_q, to_b) = self.right_side(system, to, extra);
+        if from_q == to_q && from_b == to_b {
+            self.numbers = to.clone();
+            return Some(0);
+        }
         let mut lcp = MirroredLcp::clone(&self.contact.lcp);
         for row in 0..lcp.size() {
             lcp.q[row] = from_q[row];

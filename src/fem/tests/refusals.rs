@@ -256,6 +256,29 @@ fn stops_when_told() {
     assert_eq!(result.unwrap_err(), MainSystemError::Interrupted);
 }
 
+/// Stops at the first look after a fifth of the factorization.
+#[test]
+fn stops_within_the_factorization() {
+    #[derive(Default)]
+    struct Impatient(std::sync::atomic::AtomicBool);
+    impl Watch for Impatient {
+        fn progress(&self, what: &str, fraction: f64) {
+            assert!(!self.stop(), "{what} went on to {fraction}");
+            if what.starts_with("factorizing") && fraction > 0.2 {
+                self.0.store(true, std::sync::atomic::Ordering::Relaxed);
+            }
+        }
+        fn stop(&self) -> bool {
+            self.0.load(std::sync::atomic::Ordering::Relaxed)
+        }
+    }
+    let model = two_plates([8.0, 4.0], [48, 24], 0);
+    let watch = Impatient::default();
+    let result = crate::fem::MainSystem::new(&model.0, &model.joints(), &watch);
+    assert_eq!(result.unwrap_err(), MainSystemError::Interrupted);
+    assert!(watch.stop());
+}
+
 #[test]
 fn everything_held() {
     let mut model = Model::default();

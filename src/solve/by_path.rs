@@ -1,0 +1,129 @@
+//! The retry that does not start from the load: from zero load, where nothing is violated, the answer is followed
+//! along the growing load (theory §4, "fault").
+
+use std::ops::ControlFlow;
+
+use super::prepared::Prepared;
+use super::solved::{SolveError, Solved};
+use crate::contact::complementarity::contact_lcp_like;
+use crate::contact::load_path::{order, path_lcp};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::lcp::outcome::Point;
+use crate::lcp::parametric::{End, Parametric, Reach};
+use crate::lcp::vertex::Basis;
+use crate::model::rules::Rules;
+use crate::watch::Watch;
+
+/// What stands for the engine in the list of attempts.
+pub const LOAD_PATH: &str = "load-path";
+/// A path with more pivots is given up.
+const PIVOTS: usize = 20_000;
+
+impl Prepared {
+    /// The answer at the end of the path from zero load, turning points passed through. `Ok(None)` where there are
+    /// gaps (zero load then is no simpler start) or the path ends before the load.
+    ///
+    /// # Errors
+    /// Where the default covering does not fit the numbers.
+    pub(super) fn along_load(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        watch: &dyn Watch,
+    ) -> Result<Option<Solved>, SolveError> {
+        if numbers.gap.iter().any(|gap| *gap > 0.0) {
+            return Ok(None);
+        }
+        let mut rest = numbers.clone();
+        rest.load.fill(0.0);
+        let path = path_lcp(system, &rest, &numbers.load);
+        let nothing = Basis {
+            z: Vec::new(),
+            active: Vec::new(),
+            p: false,
+        };
+        let Some(mut engine) = Parametric::new(path.lcp.clone(), &nothing, order(&path)) else {
+            return Ok(None);
+        };
+        let reach = Reach {
+            target: 1.0,
+            through: true,
+            pivots: PIVOTS,
+        };
+        let (end, _) = engine.walk(reach, &mut |_| {
+            if watch.stop() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        if end == End::Interrupted {
+            return Err(SolveError::Interrupted);
+        }
+        if end != End::Target {
+            return Ok(None);
+        }
+        let rules = Rules::default();
+        let contact = contact_lcp_like(Some(&path), system, numbers, rules.covering)?;
+        let length = path.length_unit / contact.length_unit;
+        let point = Point {
+            z: engine
+                .point()
+                .z
+                .iter()
+                .map(|z| (z * length).max(0.0))
+                .collect(),
+            w: vec![0.0; contact.rows.len()],
+            p: 0.0,
+        };
+        let words = [
+            rules.covering.to_string(),
+            rules.tie_break.to_string(),
+            LOAD_PATH.to_owned(),
+        ];
+        Ok(Some(self.answer_at(
+            system, numbers, factors, contact, point, words,
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::embedded;
+    use crate::solve::numbers::{contact_numbers, factors};
+    use crate::solve::prepare;
+    use crate::solve::resume::same_answer;
+    use crate::watch::Quiet;
+
+    #[test]
+    fn the_load_path_ends_in_the_answer_of_the_cold_run() {
+        for name in [
+            "beam",
+            "frame",
+            "frame-rotated",
+            "plates-hinged",
+            "plates-free",
+            "greco",
+            "block",
+        ] {
+            let scenario = embedded::load(name).expect("embedded");
+            let prepared = prepare(&scenario, &Quiet).expect("sound");
+            let values = scenario.parameter_values();
+            let cold = prepared
+                .solve(&scenario, &values, scenario.rules, &Quiet)
+                .expect("solved");
+            assert!(cold.answer.is_answer(), "{name}");
+            let system = prepared.system().expect("a contact problem");
+            let factors = factors(&prepared, &values);
+            let numbers = contact_numbers(system, &factors, &values);
+            let found = prepared
+                .along_load(system, &numbers, &factors, &Quiet)
+                .expect("covered")
+                .unwrap_or_else(|| panic!("{name}: no way"));
+            assert!(found.answer.check.passed, "{name}");
+            assert!(same_answer(&found.answer, &cold.answer), "{name}");
+        }
+    }
+}
