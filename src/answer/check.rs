@@ -63,16 +63,17 @@ pub fn check_contact(
 
 /// Checks an answer of a bare LCP from M and q; w is computed afresh.
 pub fn check_plain(lcp: &MirroredLcp, point: &Point) -> Check {
-    let z = nalgebra::DVector::from_column_slice(&point.z);
-    let response = &*lcp.matrix * &z;
-    let length = z.amax();
+    let z = &point.z;
+    let matrix = lcp.matrix.written_out();
+    let response = lcp.matrix.times(z);
+    let length = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut check = Check::default();
     for i in 0..lcp.size() {
         let w = response[i] + lcp.q[i];
         // Each row is judged against the terms it sums.
         let size = lcp.q[i].abs().max(
             (0..lcp.size())
-                .map(|j| (lcp.matrix[(i, j)] * z[j]).abs())
+                .map(|j| (matrix[(i, j)] * z[j]).abs())
                 .fold(0.0, f64::max),
         );
         let w = if size > 0.0 { w / size } else { w };

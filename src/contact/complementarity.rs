@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
 use super::whole::{joint_constants, rows};
-use crate::lcp::mirrored::{Mirror, MirroredLcp};
+use crate::lcp::mirrored::{Mirror, MirroredLcp, Operator};
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::Scale;
 use crate::lcp::ratio_test::TieRule;
@@ -115,7 +115,7 @@ pub fn contact_lcp(
     contact_lcp_like(None, system, numbers, covering)
 }
 
-/// As [`contact_lcp`], with the matrix of an earlier LCP of the same system where the friction is the same.
+/// As [`contact_lcp`], sharing the stiffness of an earlier LCP of the same system.
 ///
 /// # Errors
 /// Where the covering cannot cover q.
@@ -177,27 +177,22 @@ pub fn contact_lcp_like(
         * 1e-9;
     let column_scale: Vec<f64> = joint_scale.iter().map(|s| s.max(floor)).collect();
 
-    let same = earlier.filter(|earlier| earlier.friction == numbers.friction);
-    let matrix = same.map_or_else(
+    let base = earlier.map_or_else(
         || {
-            let mut matrix = DMatrix::zeros(count, count);
-            for column in 0..count {
-                let b = joint_of(column);
-                for (row, &i) in normals.iter().enumerate() {
-                    matrix[(row, column)] = r(i, b);
-                }
-                for (k, &(i, joint)) in tangentials.iter().enumerate() {
-                    matrix[(normals.len() + k, column)] = r(joint, b) + friction_of(i) * r(i, b);
-                }
+            let joints: Vec<usize> = (0..count).map(joint_of).collect();
+            let mut entries = Vec::with_capacity(count * count);
+            for &joint in &joints {
+                let column = system.stiffness.column(joint);
+                entries.extend(joints.iter().map(|&row| column[row] / stiffness_unit));
             }
-            Arc::new(matrix)
+            Arc::new(DMatrix::from_vec(count, count, entries))
         },
-        |earlier| Arc::clone(&earlier.lcp.matrix),
+        |earlier| Arc::clone(earlier.lcp.matrix.base()),
     );
     let mut q = DVector::zeros(count);
     let mut d = DVector::zeros(count);
     let mut row_scale = vec![0.0; count];
-    let mut mirrors = vec![None; count];
+    let mut mirrors: Vec<Option<Mirror>> = vec![None; count];
     let rows = rows(system);
     let (mut normal_row, mut plus_row, mut minus_row) = (
         vec![None; pairs.len()],
@@ -244,8 +239,15 @@ pub fn contact_lcp_like(
         plus_row[i] = Some(row);
         minus_row[i] = Some(count + k);
     }
+    let coupled = mirrors
+        .iter()
+        .map(|mirror| {
+            let mirror = mirror.as_ref()?;
+            Some((mirror.normal?, mirror.friction))
+        })
+        .collect();
     let lcp = MirroredLcp {
-        matrix,
+        matrix: Operator::coupled(base, coupled),
         q,
         covering: d,
         whole: (0..count).collect(),

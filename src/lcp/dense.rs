@@ -2,6 +2,7 @@
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
@@ -11,7 +12,7 @@ pub(crate) fn compute_sequentially() {
     faer::set_global_parallelism(Par::Seq);
 }
 
-/// target += left · rightᵀ; all column-major: rows × columns, rows × k, columns × k.
+/// target += left · right; all column-major: rows × columns, rows × k, k × columns.
 pub(crate) fn add_product(
     target: &mut [f64],
     left: &[f64],
@@ -26,9 +27,24 @@ pub(crate) fn add_product(
     matmul(
         MatMut::from_column_major_slice_mut(target, rows, columns),
         Accum::Add,
-        MatRef::from_column_major_slice(&left[..rows * k], rows, k),
-        MatRef::from_column_major_slice(&right[..columns * k], columns, k).transpose(),
+        MatRef::from_column_major_slice(left, rows, k),
+        MatRef::from_column_major_slice(right, k, columns),
         1.0,
+        Par::Seq,
+    );
+}
+
+/// target += matrix · x; the matrix column-major, as many columns as x has entries.
+pub(crate) fn add_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
+    let rows = target.len();
+    add_product(target, matrix, x, rows, 1, x.len());
+}
+
+/// right := lower⁻¹ right, where `lower` (size × size, column-major) has ones on its diagonal.
+pub(crate) fn solve_unit_lower(lower: &[f64], right: &mut [f64], size: usize, columns: usize) {
+    solve_unit_lower_triangular_in_place(
+        MatRef::from_column_major_slice(lower, size, size),
+        MatMut::from_column_major_slice_mut(right, size, columns),
         Par::Seq,
     );
 }

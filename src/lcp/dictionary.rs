@@ -1,15 +1,16 @@
 //! The dictionary of a mirrored LCP: basic variables as affine functions of the nonbasic ones,
 //!
 //! ```text
-//!   x_B = value + (T + U Vᵀ) x_N          N rows, N + 1 columns
+//!   x_B = value + A x_N          N rows, N + 1 columns
 //! ```
-//! Pivots are collected as rank-one terms u vᵀ and flushed into T by one matrix product (theory §5 (b)). A pivot
-//! on (r, c) zeroes row r and column c and then adds u vᵀ with u_r = 1, v_c = 1/pivot: no cancellation.
+//! A pivot on (r, c) zeroes row r and column c and then adds u vᵀ with u_r = 1, v_c = 1/pivot: no cancellation
+//! (theory §5 (b)); how such steps are collected and multiplied out is the matter of [`super::updated_matrix`].
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::{Factor, add_product};
+use super::dense::Factor;
 use super::mirrored::MirroredLcp;
+use super::updated_matrix::{Combination, UpdatedMatrix};
 use super::vertex::Basis;
 
 /// A variable of the dictionary. `W(i)` and `Z(i)` of a mirrored row stand for the member of the couple that
@@ -28,17 +29,11 @@ pub(crate) enum Place {
     Column(usize),
 }
 
-/// How many rank-one terms wait before they are multiplied out.
-const PENDING: usize = 48;
-
 /// See the module.
 #[derive(Clone, Debug)]
 pub(crate) struct Dictionary {
     size: usize,
-    t: Vec<f64>,
-    u: Vec<f64>,
-    v: Vec<f64>,
-    pending: usize,
+    entries: UpdatedMatrix,
     /// Values of the basic variables where all nonbasic ones are zero.
     pub(crate) value: Vec<f64>,
     /// Variable of each row.
@@ -63,17 +58,14 @@ impl Dictionary {
     /// All w basic, all z and p nonbasic, no row turned.
     pub(crate) fn new(lcp: &MirroredLcp) -> Dictionary {
         let size = lcp.size();
-        let mut t = Vec::with_capacity(size * (size + 1));
-        t.extend_from_slice(lcp.matrix.as_slice());
-        t.extend_from_slice(lcp.covering.as_slice());
+        let mut entries = Vec::with_capacity(size * (size + 1));
+        lcp.matrix.write_out(&mut entries);
+        entries.extend_from_slice(lcp.covering.as_slice());
         let mut column: Vec<Local> = (0..size).map(Local::Z).collect();
         column.push(Local::P);
         Dictionary {
             size,
-            t,
-            u: vec![0.0; size * PENDING],
-            v: vec![0.0; (size + 1) * PENDING],
-            pending: 0,
+            entries: UpdatedMatrix::new(size, size + 1, entries),
             value: lcp.q.as_slice().to_vec(),
             row: (0..size).map(Local::W).collect(),
             column,
@@ -111,49 +103,40 @@ impl Dictionary {
         dictionary.rebuild(lcp).then_some(dictionary)
     }
 
-    /// Takes another load: the values and the column of p become those of the given q and d. M and the mirrors'
-    /// friction must be the same, and p nonbasic; `false` (and no change) where it is not.
+    /// Takes another load increment: the column of p becomes that of the given d. M and the mirrors' friction must
+    /// be the same, and p nonbasic; `false` (and no change) where it is not.
     pub(crate) fn reload(&mut self, lcp: &MirroredLcp) -> bool {
         let Place::Column(c) = self.place_p else {
             return false;
         };
-        self.flush();
-        let respond = |dictionary: &Dictionary, primary: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            // Of w = M z + r with the nonbasic w held at 0: a nonbasic w enters its column as w − r.
-            let mut response = vec![0.0; dictionary.size];
-            for (column, &local) in dictionary.column.iter().enumerate() {
-                if let Local::W(i) = local {
-                    let right = primary(i);
-                    if right != 0.0 {
-                        let t =
-                            &dictionary.t[column * dictionary.size..(column + 1) * dictionary.size];
-                        for (entry, t) in response.iter_mut().zip(t) {
-                            *entry -= right * t;
-                        }
-                    }
-                }
-            }
-            for (entry, &local) in response.iter_mut().zip(&dictionary.row) {
-                if let Local::W(i) = local {
-                    *entry += primary(i);
-                }
-            }
-            response
+        let increment = |i: usize| match &lcp.mirrors[i] {
+            Some(mirror) if self.turned[i] => lcp.mirror_start(i, mirror).1,
+            _ => lcp.covering[i],
         };
-        let start = |i: usize| match &lcp.mirrors[i] {
-            Some(mirror) if self.turned[i] => lcp.mirror_start(i, mirror),
-            _ => (lcp.q[i], lcp.covering[i]),
-        };
-        let value = respond(self, &|i| start(i).0);
-        let column = respond(self, &|i| start(i).1);
-        self.value = value;
-        self.t[c * self.size..(c + 1) * self.size].copy_from_slice(&column);
+        // Of w = M z + d p with the nonbasic w held at 0: a nonbasic w enters its column as w − d p.
+        let held: Vec<(usize, f64)> = self
+            .column
+            .iter()
+            .enumerate()
+            .filter_map(|(column, &local)| match local {
+                Local::W(i) => Some((column, -increment(i))),
+                _ => None,
+            })
+            .collect();
+        let mut rates = self.entries.combined(&held);
+        for (rate, &local) in rates.iter_mut().zip(&self.row) {
+            if let Local::W(i) = local {
+                *rate += increment(i);
+            }
+        }
+        self.entries
+            .exchange(None, c, &rates, &Combination::default(), 1.0);
         true
     }
 
-    /// Number of rank-one terms that wait.
-    pub(crate) fn pending(&self) -> usize {
-        self.pending
+    /// Number of elimination steps that wait to be multiplied out.
+    pub(crate) fn waiting(&self) -> usize {
+        self.entries.waiting()
     }
 
     pub(crate) fn place(&self, variable: Local) -> Place {
@@ -172,49 +155,29 @@ impl Dictionary {
         }
     }
 
-    /// Entry (r, c) of T + U Vᵀ.
+    /// Entry (r, c).
     pub(crate) fn entry(&self, r: usize, c: usize) -> f64 {
-        let mut entry = self.t[r + c * self.size];
-        for k in 0..self.pending {
-            entry += self.u[r + k * self.size] * self.v[c + k * (self.size + 1)];
-        }
-        entry
+        self.entries.entry(r, c)
     }
 
-    /// Column c of T; all of it where nothing waits (after [`Dictionary::flush`]).
-    pub(crate) fn stored_column(&self, c: usize) -> &[f64] {
-        debug_assert_eq!(self.pending, 0);
-        &self.t[c * self.size..(c + 1) * self.size]
+    /// Entries of column c in some rows.
+    pub(crate) fn entries_of_column(
+        &self,
+        c: usize,
+        rows: impl Iterator<Item = usize>,
+        into: &mut Vec<f64>,
+    ) {
+        self.entries.entries(c, rows, into);
     }
 
-    /// Column c of T + U Vᵀ.
+    /// Σ factor · column over the given (column, factor).
+    pub(crate) fn combined_columns(&self, terms: &[(usize, f64)]) -> Vec<f64> {
+        self.entries.combined(terms)
+    }
+
+    /// Column c.
     pub(crate) fn fetch_column(&self, c: usize, into: &mut Vec<f64>) {
-        into.clear();
-        into.extend_from_slice(&self.t[c * self.size..(c + 1) * self.size]);
-        for k in 0..self.pending {
-            let factor = self.v[c + k * (self.size + 1)];
-            if factor != 0.0 {
-                let u = &self.u[k * self.size..(k + 1) * self.size];
-                for (entry, u) in into.iter_mut().zip(u) {
-                    *entry += u * factor;
-                }
-            }
-        }
-    }
-
-    /// Row r of T + U Vᵀ.
-    pub(crate) fn fetch_row(&self, r: usize, into: &mut Vec<f64>) {
-        into.clear();
-        into.extend(self.t[r..].iter().step_by(self.size).take(self.size + 1));
-        for k in 0..self.pending {
-            let factor = self.u[r + k * self.size];
-            if factor != 0.0 {
-                let v = &self.v[k * (self.size + 1)..(k + 1) * (self.size + 1)];
-                for (entry, v) in into.iter_mut().zip(v) {
-                    *entry += v * factor;
-                }
-            }
-        }
+        self.entries.column(c, into);
     }
 
     /// Value of a variable at the vertex.
@@ -267,32 +230,26 @@ impl Dictionary {
         }
     }
 
-    /// Adds `factor` times the row of `variable` (the unit row if it is nonbasic) to `into`.
-    fn add_row(&self, variable: Local, factor: f64, into: &mut [f64], scratch: &mut Vec<f64>) {
+    /// Adds `factor` times the row of `variable` (the unit row if it is nonbasic) to a combination.
+    fn add_row(&self, variable: Local, factor: f64, to: &mut Combination) {
         if factor == 0.0 {
             return;
         }
         match self.place(variable) {
-            Place::Row(r) => {
-                self.fetch_row(r, scratch);
-                for (entry, row) in into.iter_mut().zip(scratch.iter()) {
-                    *entry += factor * row;
-                }
-            }
-            Place::Column(c) => into[c] += factor,
+            Place::Row(r) => to.rows.push((r, factor)),
+            Place::Column(c) => to.units.push((c, factor)),
         }
     }
 
-    /// The row of the hidden member of the couple of row i over the nonbasic variables.
-    pub(crate) fn hidden_row(&self, lcp: &MirroredLcp, i: usize) -> Vec<f64> {
-        let mut row = vec![0.0; self.size + 1];
-        let mut scratch = Vec::new();
+    /// `factor` times the row of the hidden member of the couple of row i.
+    fn hidden_row(&self, lcp: &MirroredLcp, i: usize, factor: f64) -> Combination {
+        let mut row = Combination::default();
         if let Some(mirror) = &lcp.mirrors[i] {
             if let Some(n) = mirror.normal {
-                self.add_row(Local::W(n), 2.0 * mirror.friction, &mut row, &mut scratch);
+                self.add_row(Local::W(n), 2.0 * mirror.friction * factor, &mut row);
             }
-            self.add_row(Local::P, mirror.covering, &mut row, &mut scratch);
-            self.add_row(Local::W(i), -1.0, &mut row, &mut scratch);
+            self.add_row(Local::P, mirror.covering * factor, &mut row);
+            self.add_row(Local::W(i), -factor, &mut row);
         }
         row
     }
@@ -305,14 +262,9 @@ impl Dictionary {
             return;
         };
         let value = self.hidden_value(lcp, i);
-        let row = self.hidden_row(lcp, i);
-        // Replace row r by adding the unit rank-one term e_r · (new row) to a zeroed row.
-        self.clear_row(r);
-        self.push(|u, v| {
-            u[r] = 1.0;
-            v.copy_from_slice(&row);
-        });
-        self.negate_column(c);
+        let row = self.hidden_row(lcp, i, 1.0);
+        self.entries.replace_row(r, &row);
+        self.entries.negate_column(c);
         self.value[r] = value;
         self.turned[i] = !self.turned[i];
     }
@@ -321,22 +273,14 @@ impl Dictionary {
     /// takes the value `step`; the values of all rows move along.
     pub(crate) fn pivot(&mut self, r: usize, c: usize, column: &[f64], step: f64) {
         let pivot = column[r];
-        let mut row = Vec::new();
-        self.fetch_row(r, &mut row);
-        for (value, rate) in self.value.iter_mut().zip(column) {
-            *value += rate * step;
-        }
+        self.advance(column, step);
         self.value[r] = step;
-        self.clear_row(r);
-        self.clear_column(c);
-        self.push(|u, v| {
-            u.copy_from_slice(column);
-            u[r] = 1.0;
-            for (v, entry) in v.iter_mut().zip(&row) {
-                *v = -entry / pivot;
-            }
-            v[c] = 1.0 / pivot;
-        });
+        let combination = Combination {
+            rows: vec![(r, -1.0 / pivot)],
+            units: Vec::new(),
+        };
+        self.entries
+            .exchange(Some(r), c, column, &combination, 1.0 / pivot);
         let (leaving, entering) = (self.row[r], self.column[c]);
         self.row[r] = entering;
         self.column[c] = leaving;
@@ -354,82 +298,28 @@ impl Dictionary {
         column: &[f64],
         step: f64,
     ) {
-        let hidden = self.hidden_row(lcp, i);
-        let pivot = hidden[c];
-        for (value, rate) in self.value.iter_mut().zip(column) {
-            *value += rate * step;
-        }
-        self.clear_column(c);
-        self.push(|u, v| {
-            u.copy_from_slice(column);
-            for (v, entry) in v.iter_mut().zip(&hidden) {
-                *v = -entry / pivot;
-            }
-            v[c] = 1.0 / pivot;
-        });
+        let pivot = self.hidden(lcp, i, c, column).rate;
+        let combination = self.hidden_row(lcp, i, -1.0 / pivot);
+        self.advance(column, step);
+        self.entries
+            .exchange(None, c, column, &combination, 1.0 / pivot);
         if let Place::Column(z) = self.place_z[i] {
-            self.negate_column(z);
+            self.entries.negate_column(z);
         }
         self.turned[i] = !self.turned[i];
     }
 
-    fn clear_row(&mut self, r: usize) {
-        let size = self.size;
-        for entry in self.t[r..].iter_mut().step_by(size).take(size + 1) {
-            *entry = 0.0;
+    /// The values after the variable whose rates are given has grown by `step`.
+    pub(crate) fn advance(&mut self, rates: &[f64], step: f64) {
+        for (value, rate) in self.value.iter_mut().zip(rates) {
+            *value += rate * step;
         }
-        for k in 0..self.pending {
-            self.u[r + k * size] = 0.0;
-        }
-    }
-
-    fn clear_column(&mut self, c: usize) {
-        self.t[c * self.size..(c + 1) * self.size].fill(0.0);
-        for k in 0..self.pending {
-            self.v[c + k * (self.size + 1)] = 0.0;
-        }
-    }
-
-    fn negate_column(&mut self, c: usize) {
-        for entry in &mut self.t[c * self.size..(c + 1) * self.size] {
-            *entry = -*entry;
-        }
-        for k in 0..self.pending {
-            let v = &mut self.v[c + k * (self.size + 1)];
-            *v = -*v;
-        }
-    }
-
-    fn push(&mut self, fill: impl FnOnce(&mut [f64], &mut [f64])) {
-        let (size, k) = (self.size, self.pending);
-        let u = &mut self.u[k * size..(k + 1) * size];
-        let v = &mut self.v[k * (size + 1)..(k + 1) * (size + 1)];
-        u.fill(0.0);
-        v.fill(0.0);
-        fill(u, v);
-        self.pending += 1;
-        if self.pending == PENDING {
-            self.flush();
-        }
-    }
-
-    /// Multiplies the waiting rank-one terms out.
-    pub(crate) fn flush(&mut self) {
-        add_product(
-            &mut self.t,
-            &self.u,
-            &self.v,
-            self.size,
-            self.size + 1,
-            self.pending,
-        );
-        self.pending = 0;
     }
 
     /// M, q, d of the present orientations.
     fn oriented(&self, lcp: &MirroredLcp) -> (DMatrix<f64>, DVector<f64>, DVector<f64>) {
         let (mut matrix, mut q, mut d) = (
-            DMatrix::clone(&lcp.matrix),
+            lcp.matrix.written_out(),
             lcp.q.clone(),
             lcp.covering.clone(),
         );
@@ -525,9 +415,8 @@ impl Dictionary {
         if !t.iter().chain(&value).all(|entry| entry.is_finite()) {
             return false;
         }
-        self.t = t;
+        self.entries.replace(t);
         self.value = value;
-        self.pending = 0;
         true
     }
 }

@@ -211,9 +211,7 @@ impl SchemeEngine {
     /// (z⁺, z⁻) = (1, 1) moves nothing else. The run ends in that ray at the vertex after this step.
     fn finish_artefact(&mut self, i: usize, c: usize, step: f64) {
         let stand = &mut self.stand;
-        for (value, rate) in stand.dictionary.value.iter_mut().zip(&stand.column) {
-            *value += rate * step;
-        }
+        stand.dictionary.advance(&stand.column, step);
         let entering = stand.dictionary.column[c];
         let mut point = stand.point();
         match stand.variable(entering, false) {

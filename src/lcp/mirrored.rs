@@ -12,7 +12,80 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::dense::add_response;
 use super::problem::{Lcp, Scale};
+
+/// M over the primary rows, never formed for contact: M_i = S_i + f_i S_n(i) in the coupled rows (w = x⁺ = x_τ + f
+/// x_n), S_i in the others. S is shared between all LCPs of a system, whatever their loads and their friction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Operator {
+    base: Arc<DMatrix<f64>>,
+    /// n(i) and f_i of the coupled rows; no n(i) is coupled itself.
+    coupled: Vec<Option<(usize, f64)>>,
+}
+
+impl Operator {
+    /// A matrix as it is.
+    pub fn plain(matrix: DMatrix<f64>) -> Operator {
+        Operator {
+            coupled: vec![None; matrix.nrows()],
+            base: Arc::new(matrix),
+        }
+    }
+
+    /// S with f_i times row n(i) added to each coupled row i; `rows`: n(i) and f_i per row.
+    pub fn coupled(base: Arc<DMatrix<f64>>, rows: Vec<Option<(usize, f64)>>) -> Operator {
+        debug_assert!(base.is_square() && base.nrows() == rows.len());
+        Operator {
+            base,
+            coupled: rows,
+        }
+    }
+
+    /// S.
+    pub fn base(&self) -> &Arc<DMatrix<f64>> {
+        &self.base
+    }
+
+    /// n(i) and f_i of row i, where it is coupled.
+    pub(crate) fn coupling(&self, i: usize) -> Option<(usize, f64)> {
+        self.coupled[i]
+    }
+
+    /// S z → M z.
+    fn couple(&self, response: &mut [f64]) {
+        for (i, coupled) in self.coupled.iter().enumerate() {
+            if let Some((n, f)) = *coupled {
+                response[i] += f * response[n];
+            }
+        }
+    }
+
+    /// Entries column by column, appended.
+    pub(crate) fn write_out(&self, into: &mut Vec<f64>) {
+        for column in self.base.column_iter() {
+            let start = into.len();
+            into.extend_from_slice(column.as_slice());
+            self.couple(&mut into[start..]);
+        }
+    }
+
+    /// M as a matrix.
+    pub fn written_out(&self) -> DMatrix<f64> {
+        let n = self.base.nrows();
+        let mut entries = Vec::with_capacity(n * n);
+        self.write_out(&mut entries);
+        DMatrix::from_vec(n, n, entries)
+    }
+
+    /// M z.
+    pub fn times(&self, z: &[f64]) -> DVector<f64> {
+        let mut response = DVector::zeros(self.base.nrows());
+        add_response(response.as_mut_slice(), self.base.as_slice(), z);
+        self.couple(response.as_mut_slice());
+        response
+    }
+}
 
 /// The mirror of a primary row.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,8 +105,8 @@ pub struct Mirror {
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MirroredLcp {
-    /// M over the primary rows, N × N; shared between LCPs that differ in q and d only.
-    pub matrix: Arc<DMatrix<f64>>,
+    /// M over the primary rows, N × N.
+    pub matrix: Operator,
     /// q, N.
     pub q: DVector<f64>,
     /// d ≥ 0, N.
@@ -58,7 +131,7 @@ impl MirroredLcp {
     pub fn plain(lcp: &Lcp<f64>) -> MirroredLcp {
         let n = lcp.size();
         MirroredLcp {
-            matrix: Arc::new(DMatrix::from_fn(n, n, |i, j| lcp.matrix[i][j])),
+            matrix: Operator::plain(DMatrix::from_fn(n, n, |i, j| lcp.matrix[i][j])),
             q: DVector::from_column_slice(&lcp.q),
             covering: DVector::from_column_slice(&lcp.covering),
             whole: (0..n).collect(),

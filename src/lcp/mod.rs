@@ -16,6 +16,7 @@ pub mod scalar;
 mod stand;
 pub mod tableau;
 pub mod trace;
+mod updated_matrix;
 pub mod variable;
 pub mod vertex;
 

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use super::dense::add_response;
 use super::dictionary::{Dictionary, Local, Place};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
@@ -161,11 +162,11 @@ impl Parametric {
         if !self.stand.dictionary.reload(&lcp) {
             return false;
         }
-        self.stand.sizes = sizes(&lcp);
-        self.stand.lcp = lcp;
+        let sizes = sizes(&lcp);
+        self.stand.reload(lcp, sizes);
         self.stand.fresh = false;
         self.driver = Local::P;
-        self.stand.agrees() || self.stand.refresh()
+        true
     }
 
     /// The scheme it stands on.
@@ -189,7 +190,6 @@ impl Parametric {
     /// a small system in the w_n of the slipping rows that is solved by iteration. `None` where the iteration does
     /// not settle or the scheme does not hold.
     pub fn at_friction(&mut self, change: &[f64], extra: &[f64]) -> Option<Point> {
-        self.stand.dictionary.flush();
         let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
         let normal_row = |i: usize| {
             let n = lcp.mirrors[i].as_ref()?.normal?;
@@ -198,35 +198,37 @@ impl Parametric {
                 Place::Column(_) => None,
             }
         };
-        // Slipping rows: their own column, and the row of their w_n (none in an open pair).
-        let slipping: Vec<(usize, usize, Option<usize>)> = (0..lcp.size())
-            .filter(|&i| change[i] != 0.0 || extra[i] != 0.0)
-            .filter_map(|i| match d.place(Local::W(i)) {
-                Place::Column(c) => Some((i, c, normal_row(i))),
-                Place::Row(_) => None,
-            })
-            .collect();
-        let held = |i: usize, w_n: f64| extra[i] - change[i] * w_n;
-        let start: Vec<f64> = slipping
-            .iter()
-            .map(|&(_, _, row)| row.map_or(0.0, |r| d.value[r]))
-            .collect();
-        let mut normals = start.clone();
+        // Slipping rows: their own column, and which of the `pressed` rows is that of their w_n (none in an open
+        // pair).
+        let mut pressed: Vec<usize> = Vec::new();
+        let mut slipping: Vec<(usize, usize, Option<usize>)> = Vec::new();
+        for i in (0..lcp.size()).filter(|&i| change[i] != 0.0 || extra[i] != 0.0) {
+            if let Place::Column(c) = d.place(Local::W(i)) {
+                let normal = normal_row(i);
+                slipping.push((i, c, normal.map(|_| pressed.len())));
+                pressed.extend(normal);
+            }
+        }
+        // What one imposed unit on each slipping row does to the w_n of the pressed ones.
+        let mut influence: Vec<f64> = Vec::with_capacity(pressed.len() * slipping.len());
+        let mut column = Vec::with_capacity(pressed.len());
+        for &(_, c, _) in &slipping {
+            d.entries_of_column(c, pressed.iter().copied(), &mut column);
+            influence.extend_from_slice(&column);
+        }
+        let start: Vec<f64> = pressed.iter().map(|&r| d.value[r]).collect();
         let size = start.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let mut normals = start.clone();
+        let imposed = |normals: &[f64]| -> Vec<f64> {
+            let of = |&(i, _, k): &(usize, usize, Option<usize>)| {
+                extra[i] - change[i] * k.map_or(0.0, |k| normals[k])
+            };
+            slipping.iter().map(of).collect()
+        };
         let mut settled = slipping.is_empty();
         for _ in 0..60 {
             let mut next = start.clone();
-            for (&(j, c, _), w_n) in slipping.iter().zip(&normals) {
-                let imposed = held(j, *w_n);
-                if imposed != 0.0 {
-                    let column = d.stored_column(c);
-                    for (next, (_, _, row)) in next.iter_mut().zip(&slipping) {
-                        if let Some(r) = row {
-                            *next += column[*r] * imposed;
-                        }
-                    }
-                }
-            }
+            add_response(&mut next, &influence, &imposed(&normals));
             let moved = next
                 .iter()
                 .zip(&normals)
@@ -240,14 +242,14 @@ impl Parametric {
         if !settled {
             return None;
         }
+        let terms: Vec<(usize, f64)> = slipping
+            .iter()
+            .zip(imposed(&normals))
+            .map(|(&(_, c, _), imposed)| (c, imposed))
+            .collect();
         let mut value = d.value.clone();
-        for (&(j, c, _), w_n) in slipping.iter().zip(&normals) {
-            let imposed = held(j, *w_n);
-            if imposed != 0.0 {
-                for (value, entry) in value.iter_mut().zip(d.stored_column(c)) {
-                    *value += entry * imposed;
-                }
-            }
+        for (value, change) in value.iter_mut().zip(d.combined_columns(&terms)) {
+            *value += change;
         }
         let n = lcp.whole_size;
         let mut point = Point {
@@ -290,7 +292,7 @@ impl Parametric {
     }
 
     /// The rows that block; t is watched by its target and does not.
-    fn blocking(&self, c: usize) -> (Vec<Candidate>, f64) {
+    fn blocking(&mut self, c: usize) -> (Vec<Candidate>, f64) {
         self.stand.blocking(c, false)
     }
 
@@ -354,19 +356,9 @@ impl Parametric {
     /// t leaves: the path ends at the target, the dictionary stands on its answer and p is nonbasic again.
     fn settle(&mut self, c: usize, step: f64) {
         if let Place::Row(r) = self.stand.dictionary.place(Local::P) {
-            let column = std::mem::take(&mut self.stand.column);
-            self.stand.dictionary.pivot(r, c, &column, step);
-            self.stand.column = column;
+            self.stand.pivot(r, c, step);
         } else {
-            for (value, rate) in self
-                .stand
-                .dictionary
-                .value
-                .iter_mut()
-                .zip(&self.stand.column)
-            {
-                *value += rate * step;
-            }
+            self.stand.dictionary.advance(&self.stand.column, step);
         }
         self.driver = Local::P;
         self.stand.fresh = false;

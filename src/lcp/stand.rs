@@ -3,8 +3,6 @@
 
 use std::sync::Arc;
 
-use nalgebra::DVector;
-
 use super::dictionary::{Dictionary, Local, Place};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
@@ -43,14 +41,43 @@ pub(crate) struct Sizes {
     pub(crate) p: f64,
 }
 
+impl Sizes {
+    /// Natural size of the response of a variable where Σ column_k |Δz_k| = 1.
+    fn response(&self, local: Local, lcp: &MirroredLcp) -> f64 {
+        match local {
+            Local::W(i) => lcp.scale.row[i],
+            Local::Z(k) => 1.0 / lcp.scale.column[k],
+            Local::P => self.p_per_force,
+        }
+    }
+}
+
+/// Natural sizes of the variables that the rows hold, side by side for the ratio test.
+#[derive(Clone, Debug, Default)]
+struct RowSizes {
+    /// Of the response where Σ column_k |Δz_k| = 1.
+    response: Vec<f64>,
+    /// Of the response to Δp = 1 alone.
+    covering: Vec<f64>,
+    /// What a displacement in the row counts for; 0 for forces.
+    displacement: Vec<f64>,
+}
+
 /// See the module.
 #[derive(Clone, Debug)]
 pub(crate) struct Stand {
     pub(crate) lcp: Arc<MirroredLcp>,
     pub(crate) dictionary: Dictionary,
     pub(crate) sizes: Sizes,
+    row_sizes: RowSizes,
+    /// Primary row of each row of the whole LCP.
+    primary: Vec<usize>,
     /// Rates of the rows along the column fetched last.
     pub(crate) column: Vec<f64>,
+    /// Σ column_k |Δz_k| over the basic z along it.
+    column_size: f64,
+    /// Room for the ratios of all rows.
+    ratios: Vec<f64>,
     /// The dictionary is as built from the data.
     pub(crate) fresh: bool,
     /// How often it was built afresh.
@@ -59,14 +86,64 @@ pub(crate) struct Stand {
 
 impl Stand {
     pub(crate) fn new(lcp: Arc<MirroredLcp>, dictionary: Dictionary, sizes: Sizes) -> Stand {
-        Stand {
+        let mut primary = vec![0; lcp.whole_size];
+        for (i, mirror) in lcp.mirrors.iter().enumerate() {
+            primary[lcp.whole[i]] = i;
+            if let Some(mirror) = mirror {
+                primary[mirror.whole] = i;
+            }
+        }
+        let mut stand = Stand {
             lcp,
             dictionary,
             sizes,
+            row_sizes: RowSizes::default(),
+            primary,
             column: Vec::new(),
+            column_size: 0.0,
+            ratios: Vec::new(),
             fresh: true,
             refreshes: 0,
+        };
+        stand.measure_rows();
+        stand
+    }
+
+    /// Takes another load.
+    pub(crate) fn reload(&mut self, lcp: Arc<MirroredLcp>, sizes: Sizes) {
+        self.lcp = lcp;
+        self.sizes = sizes;
+        self.measure_rows();
+    }
+
+    fn measure_rows(&mut self) {
+        let size = self.dictionary.row.len();
+        self.row_sizes = RowSizes {
+            response: vec![0.0; size],
+            covering: vec![0.0; size],
+            displacement: vec![0.0; size],
+        };
+        for r in 0..size {
+            self.measure_row(r);
         }
+    }
+
+    /// Notes the natural sizes of the variable that row r holds now.
+    fn measure_row(&mut self, r: usize) {
+        let (local, scale) = (self.dictionary.row[r], &self.lcp.scale);
+        let sizes = &mut self.row_sizes;
+        sizes.response[r] = self.sizes.response(local, &self.lcp);
+        (sizes.covering[r], sizes.displacement[r]) = match local {
+            Local::W(i) => (self.sizes.d[i], 0.0),
+            Local::Z(k) => (0.0, scale.column[k]),
+            Local::P => (0.0, 0.0),
+        };
+    }
+
+    /// The variable of column c takes the place of that of row r.
+    pub(crate) fn pivot(&mut self, r: usize, c: usize, step: f64) {
+        self.dictionary.pivot(r, c, &self.column, step);
+        self.measure_row(r);
     }
 
     /// The variable of the whole LCP.
@@ -99,6 +176,7 @@ impl Stand {
     pub(crate) fn fetch(&mut self, c: usize) {
         let mut column = std::mem::take(&mut self.column);
         self.dictionary.fetch_column(c, &mut column);
+        self.column_size = self.size_of(&column);
         self.column = column;
     }
 
@@ -108,75 +186,111 @@ impl Stand {
 
     /// Σ column_k |z_k| over the basic z, with `values` per row.
     fn size_of(&self, values: &[f64]) -> f64 {
-        self.dictionary
-            .row
-            .iter()
+        let scales = self.row_sizes.displacement.iter();
+        scales
             .zip(values)
-            .map(|(local, value)| match local {
-                Local::Z(k) => self.lcp.scale.column[*k] * value.abs(),
-                _ => 0.0,
-            })
+            .map(|(scale, value)| scale * value.abs())
             .sum()
     }
 
-    /// Σ column_k |Δz_k| along column c, the entering variable included.
+    /// Σ column_k |Δz_k| along column c, which was fetched last, the entering variable included.
     pub(crate) fn rate_total(&self, c: usize) -> f64 {
         let entering = match self.dictionary.column[c] {
             Local::Z(k) => self.lcp.scale.column[k],
             _ => 0.0,
         };
-        self.size_of(&self.column) + entering
+        self.column_size + entering
     }
 
     /// Natural size of the rate of a row, where Σ column_k |Δz_k| = `size` and Δp = `p_rate`.
     pub(crate) fn rate_size(&self, local: Local, size: f64, p_rate: f64) -> f64 {
+        let response = size * self.sizes.response(local, &self.lcp);
         match local {
-            Local::W(i) => self.lcp.scale.row[i] * size + self.sizes.d[i] * p_rate.abs(),
-            Local::Z(k) => size / self.lcp.scale.column[k],
-            Local::P => size * self.sizes.p_per_force,
+            Local::W(i) => response + self.sizes.d[i] * p_rate.abs(),
+            Local::Z(_) | Local::P => response,
         }
     }
 
     /// Natural size of the value of a row, where Σ column_k |z_k| = `size`.
     fn value_size(&self, local: Local, size: f64, p: f64) -> f64 {
+        let response = size * self.sizes.response(local, &self.lcp);
         match local {
-            Local::W(i) => {
-                self.lcp.scale.row[i] * size + self.sizes.q[i] + self.sizes.d[i] * p.abs()
-            }
-            Local::Z(k) => size / self.lcp.scale.column[k],
+            Local::W(i) => response + self.sizes.q[i] + self.sizes.d[i] * p.abs(),
+            Local::Z(_) => response,
             Local::P => self.sizes.p,
         }
     }
 
-    /// Rows that fall when the variable of column c grows. `watch_slipping`: also the other reserve of a slipping
-    /// couple where e ≤ 0 does not keep it ≥ 0 by construction; the textbook rules stumble over it.
-    fn candidates(&self, c: usize, watch_slipping: bool) -> Vec<Candidate> {
+    /// The candidates at the smallest ratio, and that ratio: rows that fall when the variable of column c grows.
+    /// `watch_slipping`: also the other reserve of a slipping couple where e ≤ 0 does not keep it ≥ 0 by
+    /// construction; the textbook rules stumble over it.
+    pub(crate) fn blocking(&mut self, c: usize, watch_slipping: bool) -> (Vec<Candidate>, f64) {
+        let mut ratios = std::mem::take(&mut self.ratios);
+        let mut smallest = self.ratios_of_rows(c, &mut ratios);
+        let mut tied = self.falling_mirrors(c, watch_slipping);
+        for mirror in &tied {
+            smallest = smallest.min(mirror.value / mirror.fall);
+        }
+        tied.retain(|mirror| mirror.value - mirror.fall * smallest <= mirror.noise);
         let d = &self.dictionary;
-        let p = d.along(Local::P, c, &self.column);
-        let size = self.rate_total(c);
-        let value_size = self.size_of(&d.value);
-        let mut candidates = Vec::new();
-        let mut consider = |variable: Local, hidden: bool, value: f64, rate: f64, noise: f64| {
-            candidates.push(Candidate {
-                variable,
-                hidden,
-                value: value.max(0.0),
-                fall: -rate,
-                noise,
-            });
-        };
-        for (r, (&local, &rate)) in d.row.iter().zip(&self.column).enumerate() {
-            if rate < 0.0 && rate < -NOISE * self.rate_size(local, size, p.rate) {
-                let noise = NOISE * self.value_size(local, value_size, p.value);
-                consider(local, false, d.value[r], rate, noise);
+        let (p, value_size) = (self.p(), self.size_of(&d.value));
+        let mut rows = Vec::new();
+        for (r, _) in ratios.iter().enumerate().filter(|row| row.1.is_finite()) {
+            let (variable, value, fall) = (d.row[r], d.value[r].max(0.0), -self.column[r]);
+            let noise = NOISE * self.value_size(variable, value_size, p);
+            if value - fall * smallest <= noise {
+                rows.push(Candidate {
+                    variable,
+                    hidden: false,
+                    value,
+                    fall,
+                    noise,
+                });
             }
         }
+        rows.append(&mut tied);
+        self.ratios = ratios;
+        (rows, smallest)
+    }
+
+    /// Of each row: how far the variable of column c can grow before the row is at zero, infinite where it does not
+    /// fall. Returns the smallest.
+    fn ratios_of_rows(&self, c: usize, ratios: &mut Vec<f64>) -> f64 {
+        let d = &self.dictionary;
+        let p_rate = d.along(Local::P, c, &self.column).rate.abs();
+        let (size, sizes) = (NOISE * self.rate_total(c), &self.row_sizes);
+        let p_rate = NOISE * p_rate;
+        ratios.clear();
+        ratios.extend(
+            self.column
+                .iter()
+                .zip(&d.value)
+                .zip(sizes.response.iter().zip(&sizes.covering))
+                .map(|((rate, value), (response, covering))| {
+                    let noise = response * size + covering * p_rate;
+                    if *rate < -noise {
+                        value.max(0.0) / -rate
+                    } else {
+                        f64::INFINITY
+                    }
+                }),
+        );
+        ratios.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The hidden members that fall when the variable of column c grows.
+    fn falling_mirrors(&self, c: usize, watch_slipping: bool) -> Vec<Candidate> {
+        let d = &self.dictionary;
+        let p = d.along(Local::P, c, &self.column);
+        let (size, value_size) = (self.rate_total(c), self.size_of(&d.value));
+        let mut falling = Vec::new();
         for (i, mirror) in self.lcp.mirrors.iter().enumerate() {
             let Some(mirror) = mirror else { continue };
-            let visible = match d.place(Local::W(i)) {
+            let is_visible = |place: Place| match place {
                 Place::Row(_) => true,
                 Place::Column(j) => j == c,
             };
+            let visible = is_visible(d.place(Local::W(i)));
             if !visible && (mirror.covering > 0.0 || !watch_slipping) {
                 continue;
             }
@@ -185,10 +299,7 @@ impl Stand {
                 continue;
             }
             // An open pair's x_n is an exact zero and no source of noise.
-            let normal = mirror.normal.filter(|&n| match d.place(Local::W(n)) {
-                Place::Row(_) => true,
-                Place::Column(j) => j == c,
-            });
+            let normal = mirror.normal.filter(|&n| is_visible(d.place(Local::W(n))));
             let sum = |of: &dyn Fn(Local) -> f64, p: f64| {
                 let own = if visible { of(Local::W(i)) } else { 0.0 };
                 let normal = normal.map_or(0.0, |n| of(Local::W(n)));
@@ -196,34 +307,18 @@ impl Stand {
             };
             let rate_size = sum(&|local| self.rate_size(local, size, p.rate), p.rate);
             if along.rate < -NOISE * rate_size {
-                let value_size = sum(
-                    &|local| self.value_size(local, value_size, p.value),
-                    p.value,
-                ) + mirror.constant.abs();
-                consider(
-                    Local::W(i),
-                    true,
-                    along.value,
-                    along.rate,
-                    NOISE * value_size,
-                );
+                let natural = |local: Local| self.value_size(local, value_size, p.value);
+                let noise = NOISE * (sum(&natural, p.value) + mirror.constant.abs());
+                falling.push(Candidate {
+                    variable: Local::W(i),
+                    hidden: true,
+                    value: along.value.max(0.0),
+                    fall: -along.rate,
+                    noise,
+                });
             }
         }
-        candidates
-    }
-
-    /// The candidates at the smallest ratio, and that ratio.
-    pub(crate) fn blocking(&self, c: usize, watch_slipping: bool) -> (Vec<Candidate>, f64) {
-        let candidates = self.candidates(c, watch_slipping);
-        let smallest = candidates
-            .iter()
-            .map(|row| row.value / row.fall)
-            .fold(f64::INFINITY, f64::min);
-        let tied = candidates
-            .into_iter()
-            .filter(|row| row.value - row.fall * smallest <= row.noise)
-            .collect();
-        (tied, smallest)
+        falling
     }
 
     /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it, and they
@@ -241,9 +336,11 @@ impl Stand {
     }
 
     /// z of the primary rows with the sign of their orientation (z⁺ − z⁻ for couples).
-    fn signed(&self, z: impl Fn(usize) -> f64) -> DVector<f64> {
-        let turned = &self.dictionary.turned;
-        DVector::from_fn(turned.len(), |i, _| if turned[i] { -z(i) } else { z(i) })
+    fn signed(&self, z: impl Fn(usize) -> f64) -> Vec<f64> {
+        let turned = self.dictionary.turned.iter().enumerate();
+        turned
+            .map(|(i, &turned)| if turned { -z(i) } else { z(i) })
+            .collect()
     }
 
     /// Largest error of column c against M Δz + d Δp over all rows, relative to their natural sizes.
@@ -253,7 +350,7 @@ impl Stand {
         let z = self.signed(|i| along(Local::Z(i)));
         let p = along(Local::P);
         let size = self.rate_total(c);
-        let response = &*self.lcp.matrix * z;
+        let response = self.lcp.matrix.times(&z);
         (0..self.lcp.size())
             .map(|i| {
                 let w = response[i] + self.lcp.covering[i] * p;
@@ -274,7 +371,7 @@ impl Stand {
         let z = self.signed(|i| d.value_of(Local::Z(i)));
         let p = self.p();
         let size = self.size_of(&d.value);
-        let response = &*self.lcp.matrix * z;
+        let response = self.lcp.matrix.times(&z);
         (0..self.lcp.size())
             .map(|i| {
                 let w = response[i] + self.lcp.q[i] + self.lcp.covering[i] * p;
@@ -305,7 +402,7 @@ impl Stand {
     /// At a flush, where that costs little: the values are compared with the data. `false`: they are wrong and the
     /// equations are singular.
     pub(crate) fn keep_true(&mut self) -> bool {
-        self.fresh || self.dictionary.pending() > 0 || self.agrees() || self.refresh()
+        self.fresh || self.dictionary.waiting() > 0 || self.agrees() || self.refresh()
     }
 
     /// Exchanges the variable of column c with that of the leaving row; the entering variable takes the value `step`.
@@ -317,20 +414,24 @@ impl Stand {
         step: f64,
         tied: &[Candidate],
     ) -> Option<Local> {
-        let mut column = std::mem::take(&mut self.column);
-        let d = &mut self.dictionary;
-        match (leaving.variable, leaving.hidden, d.place(leaving.variable)) {
+        match (
+            leaving.variable,
+            leaving.hidden,
+            self.dictionary.place(leaving.variable),
+        ) {
             (Local::W(i), true, Place::Row(r)) => {
-                d.turn(&self.lcp, i);
-                d.fetch_column(c, &mut column);
-                d.pivot(r, c, &column, step);
+                self.dictionary.turn(&self.lcp, i);
+                self.fetch(c);
+                self.pivot(r, c, step);
             }
             (Local::W(i), true, Place::Column(_)) => {
-                d.pivot_hidden(&self.lcp, i, c, &column, step);
+                self.dictionary
+                    .pivot_hidden(&self.lcp, i, c, &self.column, step);
             }
-            (_, _, Place::Row(r)) => d.pivot(r, c, &column, step),
+            (_, _, Place::Row(r)) => self.pivot(r, c, step),
             (_, _, Place::Column(_)) => debug_assert!(false, "a blocking row is basic"),
         }
+        let d = &mut self.dictionary;
         // What was tied with the leaving row is zero now, not noise.
         for tie in tied {
             if !tie.hidden
@@ -340,7 +441,6 @@ impl Stand {
                 d.value[r] = 0.0;
             }
         }
-        self.column = column;
         self.fresh = false;
         match leaving.variable {
             Local::W(i) => Some(Local::Z(i)),
@@ -433,9 +533,11 @@ impl Stand {
 
     /// Column of the nonbasic w that stands in row `whole` of the whole LCP.
     fn nonbasic_w(&self, whole: usize) -> Option<usize> {
-        self.dictionary.column.iter().position(|&local| {
-            matches!(local, Local::W(_)) && self.variable(local, false) == Variable::W(whole)
-        })
+        let i = self.primary[whole];
+        if self.variable(Local::W(i), false) != Variable::W(whole) {
+            return None;
+        }
+        self.column_of(Local::W(i))
     }
 
     /// Natural size of the entry of the row of B⁻¹ of `local` in the column of primary row `j`.

@@ -59,6 +59,14 @@ struct Whole<'a> {
     rows: Vec<(usize, bool)>,
 }
 
+/// What a row of M is made of: factor · S_row + normal_factor · S_normal.
+struct Parts {
+    row: usize,
+    factor: f64,
+    normal: usize,
+    normal_factor: f64,
+}
+
 impl<'a> Whole<'a> {
     fn new(lcp: &'a MirroredLcp) -> Whole<'a> {
         let mut rows = vec![(0, false); lcp.whole_size];
@@ -88,10 +96,36 @@ impl<'a> Whole<'a> {
         }
     }
 
-    fn entry(&self, k: usize, column: usize) -> f64 {
+    /// What row k of M is made of: row i of S times a factor, and row n of S times another.
+    fn parts(&self, k: usize) -> Parts {
+        let (i, mirrored) = self.rows[k];
+        let (n, f) = self.lcp.matrix.coupling(i).unwrap_or((i, 0.0));
+        let mut parts = Parts {
+            row: i,
+            factor: 1.0,
+            normal: n,
+            normal_factor: f,
+        };
+        if let (Some(mirror), true) = (&self.lcp.mirrors[i], mirrored) {
+            parts.factor = -1.0;
+            parts.normal_factor = -f;
+            if let Some(n) = mirror.normal {
+                parts.normal = n;
+                parts.normal_factor += 2.0 * mirror.friction;
+            }
+        }
+        parts
+    }
+
+    /// Entries of a column of M in the rows made of the given parts.
+    fn column<'b>(&'b self, column: usize, rows: &'b [Parts]) -> impl Iterator<Item = f64> + 'b {
         let (j, negative) = self.rows[column];
-        let value = self.combine(k, |i| self.lcp.matrix[(i, j)], |_, _| 0.0);
-        if negative { -value } else { value }
+        let sign = if negative { -1.0 } else { 1.0 };
+        let stored = self.lcp.matrix.base().column(j);
+        rows.iter().map(move |parts| {
+            let value = parts.factor * stored[parts.row];
+            sign * (value + parts.normal_factor * stored[parts.normal])
+        })
     }
 
     fn q(&self, k: usize) -> f64 {
@@ -104,20 +138,29 @@ impl<'a> Whole<'a> {
 
     fn system(&self, basis: &Basis) -> Factor {
         let n = basis.active.len();
-        Factor::new(DMatrix::from_fn(n, n, |a, b| match basis.z.get(b) {
-            Some(&column) => self.entry(basis.active[a], column),
-            None => self.d(basis.active[a]),
-        }))
+        let rows = self.active_parts(basis);
+        let mut entries = Vec::with_capacity(n * n);
+        for &column in &basis.z {
+            entries.extend(self.column(column, &rows));
+        }
+        if basis.p {
+            entries.extend(basis.active.iter().map(|&k| self.d(k)));
+        }
+        Factor::new(DMatrix::from_vec(n, n, entries))
+    }
+
+    fn active_parts(&self, basis: &Basis) -> Vec<Parts> {
+        basis.active.iter().map(|&k| self.parts(k)).collect()
     }
 
     /// w = M z + shift q + d p of all whole rows, exact zero in the active ones.
     fn response(&self, basis: &Basis, z: &[f64], p: f64, shift: f64) -> Vec<f64> {
-        let mut primary = DVector::zeros(self.lcp.size());
+        let mut primary = vec![0.0; self.lcp.size()];
         for (k, &value) in z.iter().enumerate() {
             let (j, negative) = self.rows[k];
             primary[j] += if negative { -value } else { value };
         }
-        let mut w = &*self.lcp.matrix * primary;
+        let mut w = self.lcp.matrix.times(&primary);
         w += shift * &self.lcp.q + p * &self.lcp.covering;
         let mut whole: Vec<f64> = (0..self.lcp.whole_size)
             .map(|k| {
@@ -182,11 +225,18 @@ pub fn direction(lcp: &MirroredLcp, basis: &Basis, entering: Variable) -> Option
     if basis.z.len() + usize::from(basis.p) != n {
         return None;
     }
-    let right = DVector::from_fn(n, |a, _| match entering {
-        Variable::Z(k) => -whole.entry(basis.active[a], k),
-        Variable::W(k) => f64::from(basis.active[a] == k),
-        Variable::P => -whole.d(basis.active[a]),
-    });
+    let right: Vec<f64> = match entering {
+        Variable::Z(k) => {
+            let rows = whole.active_parts(basis);
+            whole.column(k, &rows).map(|entry| -entry).collect()
+        }
+        Variable::W(k) => {
+            let active = basis.active.iter();
+            active.map(|&row| f64::from(row == k)).collect()
+        }
+        Variable::P => basis.active.iter().map(|&row| -whole.d(row)).collect(),
+    };
+    let right = DVector::from_vec(right);
     let solution = whole.system(basis).solve(&right)?;
     let mut z = vec![0.0; lcp.whole_size];
     for (b, &k) in basis.z.iter().enumerate() {

@@ -50,9 +50,10 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
             column: column.iter().map(|&(j, _)| lcp.scale.column[j]).collect(),
         },
     };
+    let matrix = lcp.matrix.written_out();
     for i in 0..lcp.size() {
         let k = lcp.whole[i];
-        whole.matrix[k] = spread(&|j| lcp.matrix[(i, j)]);
+        whole.matrix[k] = spread(&|j| matrix[(i, j)]);
         whole.q[k] = lcp.q[i];
         whole.covering[k] = lcp.covering[i];
         whole.scale.row[k] = lcp.scale.row[i];
@@ -60,8 +61,8 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
             continue;
         };
         let k = mirror.whole;
-        let normal = |j: usize| mirror.normal.map_or(0.0, |n| lcp.matrix[(n, j)]);
-        whole.matrix[k] = spread(&|j| 2.0 * mirror.friction * normal(j) - lcp.matrix[(i, j)]);
+        let normal = |j: usize| mirror.normal.map_or(0.0, |n| matrix[(n, j)]);
+        whole.matrix[k] = spread(&|j| 2.0 * mirror.friction * normal(j) - matrix[(i, j)]);
         (whole.q[k], whole.covering[k]) = lcp.mirror_start(i, mirror);
         whole.scale.row[k] = lcp.scale.row[i];
     }

@@ -39,9 +39,7 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCh
     if n > 100 || lcp.whole_size != n {
         return None;
     }
-    let m: Vec<Vec<BigRational>> = (0..n)
-        .map(|i| (0..n).map(|j| exact(lcp.matrix[(i, j)])).collect())
-        .collect();
+    let m = exact_matrix(lcp);
     let q: Vec<BigRational> = lcp.q.iter().map(|v| exact(*v)).collect();
     let mut check = PlainCheck {
         unique: false,
@@ -69,6 +67,15 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCh
     Some(check)
 }
 
+/// M, row by row.
+fn exact_matrix(lcp: &MirroredLcp) -> Vec<Vec<BigRational>> {
+    let matrix = lcp.matrix.written_out();
+    matrix
+        .row_iter()
+        .map(|row| row.iter().map(|entry| exact(*entry)).collect())
+        .collect()
+}
+
 fn exact(value: f64) -> BigRational {
     <BigRational as crate::lcp::scalar::Scalar>::from_f64(value)
 }
@@ -79,9 +86,7 @@ pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAn
     if n > MOST_ROWS || lcp.whole_size != n {
         return None;
     }
-    let m: Vec<Vec<BigRational>> = (0..n)
-        .map(|i| (0..n).map(|j| exact(lcp.matrix[(i, j)])).collect())
-        .collect();
+    let m = exact_matrix(lcp);
     let q: Vec<BigRational> = lcp.q.iter().map(|v| exact(*v)).collect();
     let mut found = PlainAnswers {
         answers: Vec::new(),
