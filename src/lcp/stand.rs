@@ -15,6 +15,9 @@ pub(crate) const SUSPICIOUS: f64 = 1e-7;
 /// Relative error of the dictionary against the data above which it is built afresh.
 const DRIFT: f64 = 1e-10;
 
+/// Relative error of a column against the data that building it afresh would not make smaller.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// A row that may block what grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Candidate {
@@ -332,7 +335,8 @@ impl Stand {
         };
         let p_rate = self.dictionary.along(Local::P, c, &self.column).rate;
         let size = self.rate_size(blocking.variable, self.rate_total(c), p_rate);
-        blocking.fall <= SUSPICIOUS * size && self.column_error(c) > DRIFT * blocking.fall / size
+        let bearable = (DRIFT * blocking.fall / size).max(ROUNDING);
+        blocking.fall <= SUSPICIOUS * size && self.column_error(c) > bearable
     }
 
     /// z of the primary rows with the sign of their orientation (z⁺ − z⁻ for couples).
