@@ -134,7 +134,7 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whole answers, check included: cold, and from the last one after a change of the load and of friction.
+/// Whole answers, check included: cold, and followed from the last one there and back again, `REPETITIONS` times.
 fn warm(arguments: &[String]) -> Result<Value, Failure> {
     let (pairs, friction): (usize, f64) =
         (number(arguments, 0, "PAIRS")?, number(arguments, 1, "F")?);
@@ -156,33 +156,42 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
     let mut changed = serde_json::Map::new();
     for (name, parameter, value) in [
         ("load +2 %", "T", 1.02 * traction),
+        ("load -2 %", "T", 0.98 * traction),
         ("load +20 %", "T", 1.2 * traction),
         ("f +1 %", "f", 1.01 * friction),
         ("f +2 %", "f", 1.02 * friction),
         ("f -2 %", "f", 0.98 * friction),
     ] {
-        let there = [(parameter, value)];
+        let there = ready.values(&[(parameter, value)]);
+        let back = ready.values(&[]);
+        let expected = cold(&[(parameter, value)]).1?;
         let (mut whole, mut path) = (Vec::new(), Vec::new());
         let (mut changes, mut same, mut failed) = (0, true, 0);
         for _ in 0..repetitions {
             let (seconds, last) = cold(&[]);
-            let last = last?;
+            let mut last = last?;
             colds.0.push(seconds);
             colds.1.push(last.answer.timings.lemke);
-            let values = ready.values(&there);
-            let (seconds, followed) =
-                timed(|| ready.prepared.follow(&last, &values, rules, &Quiet));
-            let Some(followed) = followed else {
-                failed += 1;
-                continue;
-            };
-            whole.push(seconds);
-            path.push(followed.answer.timings.lemke);
-            if let stickslip::answer::record::Start::Warm { changes: made } = followed.answer.start
-            {
-                changes = made;
+            for round in 0..6 {
+                let values = if round % 2 == 0 { &there } else { &back };
+                let (seconds, followed) =
+                    timed(|| ready.prepared.follow(&last, values, rules, &Quiet));
+                let Some(followed) = followed else {
+                    failed += 1;
+                    break;
+                };
+                whole.push(seconds);
+                path.push(followed.answer.timings.lemke);
+                if let stickslip::answer::record::Start::Warm { changes: made } =
+                    followed.answer.start
+                {
+                    changes = made;
+                }
+                if round % 2 == 0 {
+                    same &= same_answer(&followed.answer, &expected.answer);
+                }
+                last = followed;
             }
-            same &= same_answer(&followed.answer, &cold(&there).1?.answer);
         }
         let found = (!whole.is_empty()).then(|| {
             json!({
