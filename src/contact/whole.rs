@@ -120,17 +120,19 @@ fn constants_with<T: Scalar>(
     numbers: &ContactNumbers,
     stiffness: &dyn Fn(usize, usize) -> T,
 ) -> Vec<T> {
+    let gaps: Vec<(usize, T)> = system
+        .pairs
+        .iter()
+        .zip(&numbers.gap)
+        .enumerate()
+        .filter(|(_, (pair, gap))| **gap != 0.0 && !matches!(pair.law, Law::Bound { .. }))
+        .map(|(k, (_, gap))| (k, T::from_f64(*gap)))
+        .collect();
     (0..system.joint_count())
         .map(|i| {
-            let mut sum = T::from_f64(numbers.load[i]);
-            for (k, pair) in system.pairs.iter().enumerate() {
-                let gap = numbers.gap[k];
-                if gap != 0.0 && !matches!(pair.law, Law::Bound { .. }) {
-                    let force = stiffness(i, k).mul(&T::from_f64(gap));
-                    sum = sum.sub(&force);
-                }
-            }
-            sum
+            let load = T::from_f64(numbers.load[i]);
+            gaps.iter()
+                .fold(load, |sum, (k, gap)| sum.sub(&stiffness(i, *k).mul(gap)))
         })
         .collect()
 }
