@@ -122,6 +122,7 @@ impl Dictionary {
                 Local::W(i) => Some((column, -increment(i))),
                 _ => None,
             })
+            .filter(|term| term.1 != 0.0)
             .collect();
         let mut rates = self.entries.combined(&held);
         for (rate, &local) in rates.iter_mut().zip(&self.row) {
@@ -160,14 +161,9 @@ impl Dictionary {
         self.entries.entry(r, c)
     }
 
-    /// Entries of column c in some rows.
-    pub(crate) fn entries_of_column(
-        &self,
-        c: usize,
-        rows: impl Iterator<Item = usize>,
-        into: &mut Vec<f64>,
-    ) {
-        self.entries.entries(c, rows, into);
+    /// The entries in the given rows and columns, column by column.
+    pub(crate) fn block(&self, rows: &[usize], columns: &[usize]) -> Vec<f64> {
+        self.entries.block(rows, columns)
     }
 
     /// Σ factor · column over the given (column, factor).

@@ -202,20 +202,19 @@ impl Parametric {
         // pair).
         let mut pressed: Vec<usize> = Vec::new();
         let mut slipping: Vec<(usize, usize, Option<usize>)> = Vec::new();
-        for i in (0..lcp.size()).filter(|&i| change[i] != 0.0 || extra[i] != 0.0) {
-            if let Place::Column(c) = d.place(Local::W(i)) {
-                let normal = normal_row(i);
+        for i in 0..lcp.size() {
+            let Place::Column(c) = d.place(Local::W(i)) else {
+                continue;
+            };
+            let normal = normal_row(i).filter(|_| change[i] != 0.0);
+            if normal.is_some() || extra[i] != 0.0 {
                 slipping.push((i, c, normal.map(|_| pressed.len())));
                 pressed.extend(normal);
             }
         }
         // What one imposed unit on each slipping row does to the w_n of the pressed ones.
-        let mut influence: Vec<f64> = Vec::with_capacity(pressed.len() * slipping.len());
-        let mut column = Vec::with_capacity(pressed.len());
-        for &(_, c, _) in &slipping {
-            d.entries_of_column(c, pressed.iter().copied(), &mut column);
-            influence.extend_from_slice(&column);
-        }
+        let columns: Vec<usize> = slipping.iter().map(|&(_, c, _)| c).collect();
+        let influence = d.block(&pressed, &columns);
         let start: Vec<f64> = pressed.iter().map(|&r| d.value[r]).collect();
         let size = start.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut normals = start.clone();
@@ -438,13 +437,22 @@ impl Parametric {
         }
     }
 
-    /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots.
+    /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots. At the target
+    /// it stands on the LCP of the target.
     pub fn walk(
         &mut self,
         reach: Reach,
         observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> (End, usize) {
-        self.run(reach, &mut None, observer)
+        let (end, pivots) = self.run(reach, &mut None, observer);
+        if end == End::Target {
+            let lcp = Arc::make_mut(&mut self.stand.lcp);
+            lcp.q.axpy(reach.target, &lcp.covering, 1.0);
+            for mirror in lcp.mirrors.iter_mut().flatten() {
+                mirror.constant += reach.target * mirror.covering;
+            }
+        }
+        (end, pivots)
     }
 
     fn run(
