@@ -103,6 +103,15 @@ pub fn load_with_gaps(system: &ContactSystem, numbers: &ContactNumbers) -> DVect
     DVector::from_vec(joint_constants(system, numbers))
 }
 
+/// √R_ii of every joint, R in the given unit. A joint without stiffness responds to nothing: any size will do for it,
+/// but not zero.
+fn joint_scales(system: &ContactSystem, stiffness_unit: f64) -> Vec<f64> {
+    let diagonal = system.stiffness.diagonal();
+    let scales = diagonal.map(|entry| (entry / stiffness_unit).max(0.0).sqrt());
+    let floor = scales.amax().max(f64::MIN_POSITIVE) * 1e-9;
+    scales.iter().map(|scale| scale.max(floor)).collect()
+}
+
 /// Writes the LCP of the system under the given numbers.
 ///
 /// # Errors
@@ -136,8 +145,10 @@ pub fn contact_lcp_like(
         .filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint)))
         .collect();
 
-    let largest_stiffness = system.stiffness.diagonal().amax();
-    let stiffness_unit = power_of_two(largest_stiffness);
+    let stiffness_unit = earlier.map_or_else(
+        || power_of_two(system.stiffness.diagonal().amax()),
+        |earlier| earlier.force_unit / earlier.length_unit,
+    );
     let friction_of = |pair: usize| numbers.friction[pair];
     let extra = |pair: usize| match pairs[pair].law {
         Law::Bound { .. } => numbers.bound[pair],
@@ -165,18 +176,16 @@ pub fn contact_lcp_like(
             tangentials[row - normals.len()].1
         }
     };
-    let r = |a: usize, b: usize| system.stiffness[(a, b)] / stiffness_unit;
-    let joint_scale: Vec<f64> = (0..system.joint_count())
-        .map(|i| r(i, i).max(0.0).sqrt())
-        .collect();
-    // A joint without stiffness responds to nothing: any size will do, but not zero.
-    let floor = joint_scale
-        .iter()
-        .fold(0.0f64, |a, b| a.max(*b))
-        .max(f64::MIN_POSITIVE)
-        * 1e-9;
-    let column_scale: Vec<f64> = joint_scale.iter().map(|s| s.max(floor)).collect();
-
+    let column_scale = match earlier {
+        Some(earlier) => {
+            let mut scale = vec![0.0; system.joint_count()];
+            for (row, own) in earlier.lcp.scale.column.iter().enumerate() {
+                scale[joint_of(row)] = *own;
+            }
+            scale
+        }
+        None => joint_scales(system, stiffness_unit),
+    };
     let base = earlier.map_or_else(
         || {
             let joints: Vec<usize> = (0..count).map(joint_of).collect();
@@ -193,7 +202,7 @@ pub fn contact_lcp_like(
     let mut d = DVector::zeros(count);
     let mut row_scale = vec![0.0; count];
     let mut mirrors: Vec<Option<Mirror>> = vec![None; count];
-    let rows = rows(system);
+    let rows = earlier.map_or_else(|| rows(system), |earlier| earlier.rows.clone());
     let (mut normal_row, mut plus_row, mut minus_row) = (
         vec![None; pairs.len()],
         vec![None; pairs.len()],

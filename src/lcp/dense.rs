@@ -42,6 +42,9 @@ pub(crate) fn add_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
 
 /// right := lower⁻¹ right, where `lower` (size × size, column-major) has ones on its diagonal.
 pub(crate) fn solve_unit_lower(lower: &[f64], right: &mut [f64], size: usize, columns: usize) {
+    if size == 0 || columns == 0 {
+        return;
+    }
     solve_unit_lower_triangular_in_place(
         MatRef::from_column_major_slice(lower, size, size),
         MatMut::from_column_major_slice_mut(right, size, columns),

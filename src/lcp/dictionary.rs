@@ -103,11 +103,19 @@ impl Dictionary {
         dictionary.rebuild(lcp).then_some(dictionary)
     }
 
+    /// The load increment `factor` times as large as so far.
+    pub(crate) fn rescale(&mut self, factor: f64) {
+        if let Place::Column(c) = self.place_p {
+            self.entries.scale_column(c, factor);
+        }
+    }
+
     /// Takes another load increment: the column of p becomes that of the given d. M and the mirrors' friction must
-    /// be the same, and p nonbasic; `false` (and no change) where it is not.
-    pub(crate) fn reload(&mut self, lcp: &MirroredLcp) -> bool {
+    /// be the same, and p nonbasic.
+    pub(crate) fn reload(&mut self, lcp: &MirroredLcp) {
         let Place::Column(c) = self.place_p else {
-            return false;
+            debug_assert!(false, "reload needs p nonbasic");
+            return;
         };
         let increment = |i: usize| match &lcp.mirrors[i] {
             Some(mirror) if self.turned[i] => lcp.mirror_start(i, mirror).1,
@@ -132,7 +140,6 @@ impl Dictionary {
         }
         self.entries
             .exchange(None, c, &rates, &Combination::default(), 1.0);
-        true
     }
 
     /// Number of elimination steps that wait to be multiplied out.
@@ -260,7 +267,7 @@ impl Dictionary {
         let value = self.hidden_value(lcp, i);
         let row = self.hidden_row(lcp, i, 1.0);
         self.entries.replace_row(r, &row);
-        self.entries.negate_column(c);
+        self.entries.scale_column(c, -1.0);
         self.value[r] = value;
         self.turned[i] = !self.turned[i];
     }
@@ -300,7 +307,7 @@ impl Dictionary {
         self.entries
             .exchange(None, c, column, &combination, 1.0 / pivot);
         if let Place::Column(z) = self.place_z[i] {
-            self.entries.negate_column(z);
+            self.entries.scale_column(z, -1.0);
         }
         self.turned[i] = !self.turned[i];
     }

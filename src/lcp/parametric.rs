@@ -24,6 +24,9 @@ use super::vertex::{Basis, direction, vertex};
 /// A scheme holds at another friction while nothing falls below −this multiple of the largest of its kind.
 const HOLDS: f64 = 1e-12;
 
+/// A load increment counts as a multiple of another up to this, relative to the load.
+const MULTIPLE: f64 = 16.0 * f64::EPSILON;
+
 /// How far a path goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
@@ -122,6 +125,26 @@ fn sizes(lcp: &MirroredLcp) -> Sizes {
     }
 }
 
+/// The factor of which the load increment of `new` is a multiple of that of `old`, up to rounding: a slider that
+/// moves on. The increments are differences of loads, so rounding is judged against the loads too.
+fn multiple(new: &MirroredLcp, old: &MirroredLcp) -> Option<f64> {
+    let largest = new.covering.iamax();
+    let factor = new.covering[largest] / old.covering[largest];
+    if !factor.is_finite() || factor == 0.0 {
+        return None;
+    }
+    let bearable = MULTIPLE * (new.q.amax() + new.covering.amax());
+    let same = |new: f64, old: f64| (new - factor * old).abs() <= bearable;
+    let mut increments = new.covering.iter().zip(&old.covering);
+    let mut mirrors = new.mirrors.iter().zip(&old.mirrors);
+    let all = increments.all(|(new, old)| same(*new, *old))
+        && mirrors.all(|pair| match pair {
+            (Some(new), Some(old)) => same(new.covering, old.covering),
+            _ => true,
+        });
+    all.then_some(factor)
+}
+
 impl Parametric {
     /// Stands on the answer `basis` of the LCP at t = 0 (q), ready to follow `covering` as load increment; `order`
     /// is the order of rows of the lexicographic rule. `None` where the equations of the basis are singular.
@@ -159,8 +182,12 @@ impl Parametric {
     /// Takes the next load increment after a path that ended at its target: only q, d and the constants of the
     /// mirrors may differ from the LCP so far. `false` where the dictionary cannot be carried over.
     pub fn reload(&mut self, lcp: Arc<MirroredLcp>) -> bool {
-        if !self.stand.dictionary.reload(&lcp) {
+        if self.stand.column_of(Local::P).is_none() {
             return false;
+        }
+        match multiple(&lcp, &self.stand.lcp) {
+            Some(factor) => self.stand.dictionary.rescale(factor),
+            None => self.stand.dictionary.reload(&lcp),
         }
         let sizes = sizes(&lcp);
         self.stand.reload(lcp, sizes);
