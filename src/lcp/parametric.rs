@@ -196,6 +196,11 @@ impl Parametric {
         true
     }
 
+    /// How often the dictionary was built afresh from the data.
+    pub fn refreshes(&self) -> usize {
+        self.stand.refreshes
+    }
+
     /// The scheme it stands on.
     pub fn basis(&self) -> Basis {
         let z: Vec<usize> = self.scheme.iter().copied().collect();

@@ -333,3 +333,7 @@ impl UpdatedMatrix {
         self.forget();
     }
 }
+
+#[cfg(test)]
+#[path = "updated_matrix_tests.rs"]
+mod tests;
