@@ -169,7 +169,7 @@ fn frame(criterion: &mut Criterion) {
     .scenario();
     let named = |name| embedded::load(name).expect("an embedded scenario");
     for scenario in [named("beam"), named("plates-free"), pulled] {
-        let name = scenario.name.clone();
+        let name = scenario.title.clone();
         let session = Session::new(scenario, &Quiet).expect("it has an answer");
         let look = Look {
             color: true,
@@ -196,5 +196,9 @@ fn frame(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, lemke, condensation, resolve, loading, frame);
+criterion_group! {
+    name = benches;
+    config = Criterion::default().warm_up_time(Duration::from_secs(1));
+    targets = lemke, condensation, resolve, loading, frame
+}
 criterion_main!(benches);

@@ -241,10 +241,11 @@ fn condense(arguments: &[String]) -> Result<Value, Failure> {
     });
     drop(main);
     if arguments.get(5).is_some_and(|word| word == "plain") {
-        let (starts, rows, values) = MainSystem::matrix(structure, &joints, &Quiet)?;
-        let n = starts.len() - 1;
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
-        let matrix = SparseColMatRef::new(pattern, &values);
+        let k_m = MainSystem::matrix(structure, &joints, &Quiet)?;
+        let n = k_m.order();
+        let pattern =
+            SymbolicSparseColMatRef::new_checked(n, n, &k_m.column_start, None, &k_m.rows);
+        let matrix = SparseColMatRef::new(pattern, &k_m.values);
         faer::set_global_parallelism(faer::Par::Seq);
         let (plain, factor) = timed(|| matrix.sp_cholesky(Side::Lower));
         factor.map_err(|error| format!("{error:?}"))?;

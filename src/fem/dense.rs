@@ -1,6 +1,5 @@
 //! Dense decompositions (faer) of the few full matrices: one place for them, nalgebra outside.
 
-use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef, Side};
 use nalgebra::{DMatrix, DVector};
 
@@ -62,23 +61,12 @@ pub fn largest_eigenvalue(a: &DMatrix<f64>) -> f64 {
     value.max(a.diagonal().max())
 }
 
-/// Smallest eigenvalue of a symmetric matrix, from above, by inverse iteration; `None` if it is not positive
-/// definite to working precision.
-pub fn smallest_eigenvalue(a: &DMatrix<f64>) -> Option<f64> {
-    let llt = view(a).llt(Side::Lower).ok()?;
-    let n = a.nrows();
-    let mut x = Mat::from_fn(n, 1, |i, _| 1.0 + 0.5 * (1.7 * i as f64).sin());
-    let mut value = f64::INFINITY;
-    for _ in 0..6 {
-        let norm = x.norm_l2();
-        for i in 0..n {
-            x[(i, 0)] /= norm;
-        }
-        let y = llt.solve(&x);
-        // Rayleigh quotient of A⁻¹.
-        let quotient: f64 = (0..n).map(|i| x[(i, 0)] * y[(i, 0)]).sum();
-        value = value.min(1.0 / quotient);
-        x = y;
+/// Whether all eigenvalues of a symmetric matrix are above `limit`: A − limit·1 has a Cholesky factor (Sylvester). The
+/// rounding of the factorization, some n·ε of the largest eigenvalue, has to be small beside the limit.
+pub fn is_above(a: &DMatrix<f64>, limit: f64) -> bool {
+    let mut shifted = a.clone();
+    for i in 0..a.nrows() {
+        shifted[(i, i)] -= limit;
     }
-    value.is_finite().then_some(value)
+    view(&shifted).llt(Side::Lower).is_ok()
 }

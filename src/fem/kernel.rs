@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::{largest_eigenvalue, smallest_eigenvalue, svd, symmetric_eigen};
+use super::dense::{is_above, largest_eigenvalue, svd, symmetric_eigen};
 use super::error::{FreeDirection, MainSystemError};
 use super::loose::Motion;
 use crate::model::pair::Joint;
@@ -14,8 +14,9 @@ use crate::model::structure::Structure;
 /// Eigenvalues of R below this share of the largest are suspected of being zero.
 pub const ZERO_EIGENVALUE: f64 = 1e-10;
 
-/// Above this share the smallest eigenvalue is surely not one of those, and no decomposition is needed.
-const SURELY_POSITIVE: f64 = 1e-8;
+/// Above this share the smallest eigenvalue is surely not one of those, and no decomposition is needed: the largest
+/// eigenvalue is known within less than a factor of 4.
+const SURELY_POSITIVE: f64 = 4.0 * ZERO_EIGENVALUE;
 
 /// Singular values below this share of the largest: motions that no joint feels.
 const UNFELT: f64 = 1e-10;
@@ -144,7 +145,7 @@ pub fn suspects(r: &DMatrix<f64>, z: &DMatrix<f64>) -> Result<Vec<DVector<f64>>,
     let mut lifted = r.clone();
     // Z gets the largest eigenvalue: what is small now is new.
     lifted.gemm(largest, z, &z.transpose(), 1.0);
-    if smallest_eigenvalue(&lifted).is_some_and(|smallest| smallest > SURELY_POSITIVE * largest) {
+    if is_above(&lifted, SURELY_POSITIVE * largest) {
         return Ok(Vec::new());
     }
     let (values, vectors) = symmetric_eigen(&lifted).ok_or(MainSystemError::NoConvergence)?;

@@ -23,9 +23,6 @@ use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 use crate::watch::Watch;
 
-/// A sparse matrix by columns: starts of the columns, rows, values.
-pub type SparseColumns = (Vec<u32>, Vec<u32>, Vec<f64>);
-
 /// An eigenvector of R is a mechanism if its u has ‖K u‖ below this share of the terms it sums, both in equations
 /// scaled to a unit diagonal (so that a soft part is no mechanism beside a stiff one).
 const NO_FORCE: f64 = 1e-12;
@@ -167,8 +164,7 @@ impl MainSystem {
         Ok(system)
     }
 
-    /// K_m by columns, lower triangle: starts of the columns, rows, values. For measuring other solvers on the same
-    /// matrix.
+    /// K_m, for measuring other solvers on the same matrix.
     ///
     /// # Errors
     /// As [`MainSystem::new`] up to the assembly.
@@ -176,13 +172,12 @@ impl MainSystem {
         structure: &Structure,
         joints: &[Joint],
         watch: &dyn Watch,
-    ) -> Result<SparseColumns, MainSystemError> {
+    ) -> Result<SymmetricSparse, MainSystemError> {
         let dofs = Dofs::new(structure);
         let elimination =
             Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
         let k = assemble(structure, &dofs, &|| watch.stop())?;
-        let k_m = main_matrices(&k, &elimination).k_m;
-        Ok((k_m.column_start, k_m.rows, k_m.values))
+        Ok(main_matrices(&k, &elimination).k_m)
     }
 
     /// Adds eigenvectors of R that cost no energy in K to the kernel.

@@ -40,3 +40,4 @@ pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub use loose::Motion;
 pub use main_system::{Displacements, MainSystem, Seconds, Unknowns};
 pub use recovery::{EndForces, MemberForces, QuadStress, Reaction};
+pub use sparse::SymmetricSparse;
