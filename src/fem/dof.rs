@@ -93,6 +93,13 @@ impl Dofs {
         base
     }
 
+    /// Node of each base dof.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        let components = self.has_rotation.iter().enumerate();
+        components
+            .flat_map(|(node, &rotation)| std::iter::repeat_n(node, if rotation { 3 } else { 2 }))
+    }
+
     /// Which base dofs are rotations.
     pub fn is_rotation(&self) -> Vec<bool> {
         let mut rotations = vec![false; self.count];

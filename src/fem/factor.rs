@@ -1,4 +1,4 @@
-//! The main system, factorized and condensed to its joints in one sweep: the one file that names faer's sparse solver.
+//! The main system, factorized and condensed to its joints in one sweep.
 //!
 //! ```text
 //!     [ Pᵀ S K_m S P   .  ]   [ L        ]            S = diag of powers of two that brings the diagonal of K_m
@@ -9,15 +9,12 @@
 //!
 //! z is carried along as further rows that are not eliminated ([`super::supernodes`]), so the sparsity of C is used
 //! to the end. The unknowns that the joints tie to others come last: before them the bodies are apart, and only the
-//! one that C belongs to carries the rows of z. The other rows are ordered by approximate minimum degree, whose order
-//! is a postorder of its elimination tree; appending rows keeps it one, as faer's supernodes need.
+//! one that C belongs to carries the rows of z. How the others are ordered: [`super::order`].
 
-use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
 use faer::sparse::FaerError;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
@@ -26,6 +23,7 @@ use nalgebra::DMatrix;
 
 use super::error::MainSystemError;
 use super::memory::available_memory;
+use super::order::{Places, elimination_order};
 use super::sparse::SymmetricSparse;
 use super::supernodes::Supernodes;
 use super::watch::check_stop;
@@ -63,14 +61,14 @@ fn out_of_memory(doing: &'static str) -> MainSystemError {
 
 impl Factor {
     /// Orders and factorizes K_m (scaled in place) with the terms (row, joint, value) of C for `joints` joints;
-    /// the rows `last` are ordered behind all others.
+    /// the rows that have to come last are ordered behind all others.
     ///
     /// # Errors
     /// Singular; too large; out of memory; interrupted.
     pub fn new(
         k_m: &mut SymmetricSparse,
         c: &[(u32, u32, f64)],
-        last: &[bool],
+        places: Places,
         joints: usize,
         watch: &dyn Watch,
     ) -> Result<Factor, FactorError> {
@@ -82,11 +80,16 @@ impl Factor {
                 values: vec![1.0],
             };
         }
-        let last = if last.is_empty() { &[false] } else { last };
+        let idle = Places {
+            node: &[0],
+            coordinates: &[[0.0; 2]],
+            last: &[false],
+        };
+        let places = if places.node.is_empty() { idle } else { places };
         let n = k_m.order();
         let scale = k_m.scale_to_unit_diagonal();
         watch.progress("ordering the unknowns", 0.0);
-        let forward = order_with_last(k_m, last)?;
+        let forward = elimination_order(k_m, places, watch)?;
         let mut position = vec![0_u32; n];
         for (at, &row) in forward.iter().enumerate() {
             position[row as usize] = at as u32;
@@ -302,45 +305,4 @@ fn with_joints(
     );
     let Ok(sum) = sum;
     sum
-}
-
-/// The order: AMD of the rows that are not `last`, then those; entry i is the row at position i.
-fn order_with_last(k: &SymmetricSparse, last: &[bool]) -> Result<Vec<u32>, MainSystemError> {
-    let doing = "ordering the unknowns";
-    let inner: Vec<u32> = (0..k.order() as u32)
-        .filter(|&row| !last[row as usize])
-        .collect();
-    let mut number = vec![u32::MAX; k.order()];
-    for (i, &row) in inner.iter().enumerate() {
-        number[row as usize] = i as u32;
-    }
-    let mut column_start = Vec::with_capacity(inner.len() + 1);
-    let mut rows = Vec::with_capacity(k.rows.len());
-    column_start.push(0_u32);
-    for &column in &inner {
-        for (row, _) in k.column(column as usize) {
-            if !last[row] {
-                rows.push(number[row]);
-            }
-        }
-        column_start.push(rows.len() as u32);
-    }
-    drop(number);
-    let n = inner.len();
-    let pattern = SymbolicSparseColMatRef::new_checked(n, n, &column_start, None, &rows);
-    let mut order = vec![0_u32; n];
-    let mut inverse = vec![0_u32; n];
-    let request = amd::order_scratch::<u32>(n, rows.len());
-    let mut memory = MemBuffer::try_new(request).map_err(|_| out_of_memory(doing))?;
-    amd::order(
-        &mut order,
-        &mut inverse,
-        pattern,
-        amd::Control::default(),
-        MemStack::new(&mut memory),
-    )
-    .map_err(|_| out_of_memory(doing))?;
-    let mut forward: Vec<u32> = order.into_iter().map(|i| inner[i as usize]).collect();
-    forward.extend((0..k.order() as u32).filter(|&row| last[row as usize]));
-    Ok(forward)
 }

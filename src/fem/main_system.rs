@@ -18,6 +18,7 @@ use super::error::MainSystemError;
 use super::factor::{Factor, FactorError};
 use super::kernel::{self, RigidKernel};
 use super::loose::{Motion, loose_motions};
+use super::order::Places;
 use super::sparse::SymmetricSparse;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
@@ -118,8 +119,20 @@ impl MainSystem {
                 }
             }
         }
+        let mut node = vec![0; elimination.masters()];
+        for (dof, at) in dofs.nodes().enumerate() {
+            for (master, _) in elimination.free_terms(dof) {
+                node[master] = at as u32;
+            }
+        }
+        let coordinates: Vec<[f64; 2]> = structure.nodes.iter().map(|node| node.position).collect();
+        let places = Places {
+            node: &node,
+            coordinates: &coordinates,
+            last: &last,
+        };
         let factor =
-            Factor::new(&mut main.k_m, &main.c, &last, joints.len(), watch).map_err(|error| {
+            Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch).map_err(|error| {
                 match error {
                     FactorError::Other(error) => error,
                     FactorError::Singular(v) => {

@@ -29,6 +29,7 @@ mod joint_rows;
 mod kernel;
 mod loose;
 mod memory;
+mod order;
 mod sparse;
 mod supernodes;
 mod watch;
