@@ -15,7 +15,7 @@ use super::watch::check_stop;
 use crate::watch::Watch;
 
 /// So many nodes are not cut further.
-const LEAF: usize = 128;
+const LEAF: usize = 64;
 
 /// Where the unknowns are.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,7 @@ pub fn elimination_order(
         watch,
     };
     let mut all: Vec<u32> = (0..dissection.side.len() as u32).collect();
-    dissection.dissect(&mut all)?;
+    dissection.dissect(&mut all, [0.0; 2])?;
     let mut order = Vec::with_capacity(n);
     for &group in &dissection.out {
         let range = groups.start[group as usize]..groups.start[group as usize + 1];
@@ -177,22 +177,32 @@ struct Dissection<'a> {
 }
 
 impl Dissection<'_> {
-    /// Appends the order of some groups.
-    fn dissect(&mut self, members: &mut [u32]) -> Result<(), MainSystemError> {
+    /// Appends the order of some groups; `expected`: how many groups a cut across either axis will take.
+    fn dissect(
+        &mut self,
+        members: &mut [u32],
+        mut expected: [f64; 2],
+    ) -> Result<(), MainSystemError> {
         if members.len() <= LEAF {
             return self.order_leaf(members);
         }
         check_stop(self.watch)?;
         let half = members.len() / 2;
-        let across = [0, 1].map(|axis| {
-            self.split(members, axis);
-            self.cut(members).len()
-        });
-        // The second split is in place.
-        if across[0] <= across[1] {
-            self.split(members, 0);
+        let mut axis = usize::from(expected[1] < expected[0]);
+        let mut cut = self.split(members, axis);
+        expected[axis] = cut.len() as f64;
+        if expected[1 - axis] < expected[axis] {
+            // Worse than expected: the other way may be the better one.
+            let other = self.split(members, 1 - axis);
+            expected[1 - axis] = other.len() as f64;
+            if other.len() < cut.len() {
+                (axis, cut) = (1 - axis, other);
+            } else {
+                cut = self.split(members, axis);
+            }
         }
-        let cut = self.cut(members);
+        // The halves are as wide as the whole along the cut, and half as long across it.
+        expected[1 - axis] *= 0.5;
         let (near, far) = members.split_at_mut(half);
         // The cut to the end of the near half.
         for &group in &cut {
@@ -210,14 +220,14 @@ impl Dissection<'_> {
             self.side[group as usize] = Side::Elsewhere;
         }
         let near = &mut near[..kept];
-        self.dissect(near)?;
-        self.dissect(far)?;
+        self.dissect(near, expected)?;
+        self.dissect(far, expected)?;
         self.out.extend(cut);
         Ok(())
     }
 
-    /// The nearer half of the members along an axis to the front.
-    fn split(&self, members: &mut [u32], axis: usize) {
+    /// The nearer half of the members along an axis to the front; returns those of it that touch the other half.
+    fn split(&mut self, members: &mut [u32], axis: usize) -> Vec<u32> {
         let points = &self.points;
         let key = |group: u32| {
             let point = points[group as usize];
@@ -228,11 +238,7 @@ impl Dissection<'_> {
             let (a, b) = (key(a), key(b));
             a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
-    }
-
-    /// The members of the front half that touch the other one, in their order.
-    fn cut(&mut self, members: &[u32]) -> Vec<u32> {
-        let (near, far) = members.split_at(members.len() / 2);
+        let (near, far) = members.split_at(half);
         for &group in far {
             self.side[group as usize] = Side::Far;
         }
