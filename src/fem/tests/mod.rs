@@ -4,4 +4,5 @@ mod builder;
 mod closed_forms;
 mod kernel;
 mod large;
+mod ordering;
 mod refusals;
