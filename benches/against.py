@@ -77,13 +77,12 @@ def lemkelcp(m, q, _):
 def drake(m, q, _):
     from pydrake.solvers import MathematicalProgram, UnrevisedLemkeSolver
 
-    program = MathematicalProgram()
-    z = program.NewContinuousVariables(len(q))
-    program.AddLinearComplementarityConstraint(m, q, z)
-    solver = UnrevisedLemkeSolver()
-
     def run():
-        result = solver.Solve(program)
+        # A solver keeps the basis of its last run and starts from it: each run gets its own.
+        program = MathematicalProgram()
+        z = program.NewContinuousVariables(len(q))
+        program.AddLinearComplementarityConstraint(m, q, z)
+        result = UnrevisedLemkeSolver().Solve(program)
         return (result.GetSolution(z) if result.is_success() else None), str(
             result.get_solution_result()
         )

@@ -216,6 +216,15 @@ impl Dictionary {
         }
     }
 
+    /// Rate of a variable along the column `c`, whose entries are `rates`.
+    #[inline]
+    pub(crate) fn rate(&self, variable: Local, c: usize, rates: &[f64]) -> f64 {
+        match self.place(variable) {
+            Place::Row(r) => rates[r],
+            Place::Column(j) => f64::from(j == c),
+        }
+    }
+
     /// Value and rate of the hidden member of the couple of row i, from 2 f w_n + b + e p − w.
     pub(crate) fn hidden(&self, lcp: &MirroredLcp, i: usize, c: usize, rates: &[f64]) -> Along {
         let Some(mirror) = &lcp.mirrors[i] else {

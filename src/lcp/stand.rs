@@ -297,10 +297,13 @@ impl Stand {
             if !visible && (mirror.covering > 0.0 || !watch_slipping) {
                 continue;
             }
-            let along = d.hidden(&self.lcp, i, c, &self.column);
-            if along.rate >= 0.0 {
+            let rate = |local: Local| d.rate(local, c, &self.column);
+            let normal_rate = mirror.normal.map_or(0.0, |n| rate(Local::W(n)));
+            let own = rate(Local::W(i));
+            if 2.0 * mirror.friction * normal_rate + mirror.covering * p.rate - own >= 0.0 {
                 continue;
             }
+            let along = d.hidden(&self.lcp, i, c, &self.column);
             // An open pair's x_n is an exact zero and no source of noise.
             let normal = mirror.normal.filter(|&n| is_visible(d.place(Local::W(n))));
             let sum = |of: &dyn Fn(Local) -> f64, p: f64| {
