@@ -27,6 +27,10 @@ const HOLDS: f64 = 1e-12;
 /// A load increment counts as a multiple of another up to this, relative to the load.
 const MULTIPLE: f64 = 16.0 * f64::EPSILON;
 
+/// Values are refined where the bound of what rounding may do to them exceeds this, relative to the load. They are
+/// better than that by a digit or two, and the fresh check asks for 1e-9.
+const BLURRED: f64 = 1e-9;
+
 /// How far a path goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
@@ -211,9 +215,16 @@ impl Parametric {
         }
     }
 
-    /// All variables where it stands, as the kept dictionary holds them.
-    pub fn point(&self) -> Point {
+    /// All variables where it stands, as the kept dictionary holds them, refined from the data where rounding shows.
+    pub fn point(&mut self) -> Point {
+        self.sharpen();
         self.stand.point()
+    }
+
+    fn sharpen(&mut self) {
+        if self.stand.blur() > BLURRED {
+            self.stand.refine();
+        }
     }
 
     /// The answer of the same scheme after a change of friction, f_i + `change`_i, per primary row; `extra` is what
@@ -222,6 +233,7 @@ impl Parametric {
     /// a small system in the w_n of the slipping rows that is solved by iteration. `None` where the iteration does
     /// not settle or the scheme does not hold.
     pub fn at_friction(&mut self, change: &[f64], extra: &[f64]) -> Option<Point> {
+        self.sharpen();
         let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
         let normal_row = |i: usize| {
             let n = lcp.mirrors[i].as_ref()?.normal?;
@@ -395,29 +407,32 @@ impl Parametric {
         self.stand.fresh = false;
     }
 
-    /// The rate of t along the present column, zero where it is noise.
-    fn t_rate(&self, c: usize) -> f64 {
-        let raw = self
-            .stand
-            .dictionary
-            .along(Local::P, c, &self.stand.column)
-            .rate;
+    /// The rate of t along the present column and its natural size; `None`: so far above the noise that nothing hangs
+    /// on its last digits.
+    fn faint_t_rate(&self, c: usize) -> Option<(f64, f64)> {
+        let stand = &self.stand;
         if self.driver == Local::P {
-            return raw;
+            return None;
         }
-        let size = self
-            .stand
-            .rate_size(Local::P, self.stand.rate_total(c), 0.0);
-        if raw.abs() > SUSPICIOUS * size {
-            return raw;
-        }
-        // Near the noise the data decide: the direction at the last knot, its equations solved afresh.
-        let row = match self.stand.variable(self.driver, false) {
-            Variable::W(k) | Variable::Z(k) => k,
-            Variable::P => return raw,
+        let rate = stand.dictionary.along(Local::P, c, &stand.column).rate;
+        let size = stand.rate_size(Local::P, stand.rate_total(c), 0.0);
+        (rate.abs() <= SUSPICIOUS * size).then_some((rate, size))
+    }
+
+    /// The rate of t along the present column, zero where it is noise. `recorded`: near the noise the direction at the
+    /// last knot decides, its equations solved afresh; otherwise the column, which is refined already.
+    fn t_rate(&self, c: usize, recorded: bool) -> f64 {
+        let stand = &self.stand;
+        let Some((faint, size)) = self.faint_t_rate(c) else {
+            return stand.dictionary.along(Local::P, c, &stand.column).rate;
         };
-        let entering = self.stand.variable(self.driver, false);
-        let rate = direction(&self.stand.lcp, &self.knot_basis(row), entering).map_or(raw, |d| d.p);
+        let entering = stand.variable(self.driver, false);
+        let rate = match entering {
+            Variable::W(k) | Variable::Z(k) if recorded => {
+                direction(&stand.lcp, &self.knot_basis(k), entering).map_or(faint, |d| d.p)
+            }
+            _ => faint,
+        };
         if rate.abs() <= NOISE * size {
             0.0
         } else {
@@ -526,6 +541,9 @@ impl Parametric {
         let Some(c) = self.fetch() else {
             return lost();
         };
+        if knots.is_none() && self.faint_t_rate(c).is_some() {
+            self.stand.refine_column(c);
+        }
         let (mut tied, mut step) = self.blocking(c);
         // Where the target comes before any row that blocks, no rate near the noise decides anything.
         let raw = self
@@ -536,11 +554,10 @@ impl Parametric {
         let ends_here = reach.target.is_finite()
             && raw > 0.0
             && (reach.target - self.stand.p()).max(0.0) / raw <= step;
-        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.refresh() {
-            self.stand.fetch(c);
+        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.confirm(c) {
             (tied, step) = self.blocking(c);
         }
-        let t_rate = self.t_rate(c);
+        let t_rate = self.t_rate(c, knots.is_some());
         let t = self.stand.dictionary.value_of(Local::P);
         if t_rate < 0.0 && step > 0.0 {
             if !reach.through {

@@ -392,6 +392,77 @@ impl Stand {
             .fold(0.0, f64::max)
     }
 
+    /// By how much rounding may move a value, relative to the largest load: where the responses of single
+    /// displacements are much larger than the load and cancel.
+    pub(crate) fn blur(&self) -> f64 {
+        let row = self.lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let load = self.sizes.q.iter().fold(0.0, |a: f64, b| a.max(*b));
+        ROUNDING * row * self.size_of(&self.dictionary.value) / load
+    }
+
+    /// One step of iterative refinement: the equations of the scheme evaluated from the data, solved by the dictionary.
+    /// `held`: a number for each row, values (`shift` 1, no `entering`) or rates along the column `entering` (`shift`
+    /// 0).
+    fn corrected(&self, held: &[f64], entering: Option<usize>, shift: f64) -> Vec<f64> {
+        let (d, lcp) = (&self.dictionary, &self.lcp);
+        let nonbasic = |c: usize| f64::from(entering == Some(c));
+        let number = |local: Local| match d.place(local) {
+            Place::Row(r) => held[r],
+            Place::Column(c) => nonbasic(c),
+        };
+        let p = number(Local::P);
+        let w = lcp.matrix.times(&self.signed(|i| number(Local::Z(i))));
+        let w = w + shift * &lcp.q + p * &lcp.covering;
+        let oriented = |i: usize| match &lcp.mirrors[i] {
+            Some(mirror) if d.turned[i] => {
+                let normal = mirror.normal.map_or(0.0, |n| w[n]);
+                let sum = 2.0 * mirror.friction * normal + mirror.covering * p;
+                sum + shift * mirror.constant - w[i]
+            }
+            _ => w[i],
+        };
+        let wrong: Vec<(usize, f64)> = d
+            .column
+            .iter()
+            .enumerate()
+            .filter_map(|(c, &local)| match local {
+                Local::W(i) => Some((c, nonbasic(c) - oriented(i))),
+                _ => None,
+            })
+            .collect();
+        let change = d.combined_columns(&wrong);
+        std::iter::zip(&d.row, std::iter::zip(held, change))
+            .map(|(&local, (held, change))| match local {
+                Local::W(i) => oriented(i) + change,
+                _ => held + change,
+            })
+            .collect()
+    }
+
+    /// Refines the values.
+    pub(crate) fn refine(&mut self) {
+        self.dictionary.value = self.corrected(&self.dictionary.value, None, 1.0);
+    }
+
+    /// Makes the column fetched last as true to the data as it can be made: by refinement, or where that is not enough
+    /// by a dictionary built afresh. `false`: the equations of the scheme are singular.
+    pub(crate) fn confirm(&mut self, c: usize) -> bool {
+        self.refine_column(c);
+        if self.column_error(c) > ROUNDING {
+            if !self.refresh() {
+                return false;
+            }
+            self.fetch(c);
+        }
+        true
+    }
+
+    /// Refines the column fetched last.
+    pub(crate) fn refine_column(&mut self, c: usize) {
+        self.column = self.corrected(&self.column, Some(c), 0.0);
+        self.column_size = self.size_of(&self.column);
+    }
+
     /// Whether the dictionary's values still agree with the data.
     pub(crate) fn agrees(&self) -> bool {
         self.drift() <= DRIFT
