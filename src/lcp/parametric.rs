@@ -27,9 +27,9 @@ const HOLDS: f64 = 1e-12;
 /// A load increment counts as a multiple of another up to this, relative to the load.
 const MULTIPLE: f64 = 16.0 * f64::EPSILON;
 
-/// Values are refined where the bound of what rounding may do to them exceeds this, relative to the load. They are
-/// better than that by a digit or two, and the fresh check asks for 1e-9.
-const BLURRED: f64 = 1e-9;
+/// Values are refined at once where the bound of what rounding may do to them exceeds this, relative to the load. They
+/// are better than that by a digit or two; the fresh check, which asks for 1e-9, finds the others.
+const BLURRED: f64 = 3e-9;
 
 /// How far a path goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,6 +225,11 @@ impl Parametric {
         if self.stand.blur() > BLURRED {
             self.stand.refine();
         }
+    }
+
+    /// Refines the values from the data.
+    pub fn refine(&mut self) {
+        self.stand.refine();
     }
 
     /// The answer of the same scheme after a change of friction, f_i + `change`_i, per primary row; `extra` is what

@@ -9,6 +9,7 @@ use super::solved::{SolveError, Solved};
 use super::warm::Kept;
 use crate::answer::record::{Answer, PairState, Start};
 use crate::contact::complementarity::contact_lcp_like;
+use crate::contact::numbers::ContactNumbers;
 use crate::lcp::outcome::Point;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Engine, Rules};
@@ -72,9 +73,46 @@ impl Prepared {
         let start = Instant::now();
         let factors = factors(self, values);
         let numbers = contact_numbers(system, &factors, values);
-        let found = kept.follow(system, &numbers, watch)?;
+        let numbers_seconds = start.elapsed().as_secs_f64();
+        let (mut solved, mut seconds) =
+            self.from_kept(&mut kept, &numbers, &factors, rules, watch)?;
+        if !solved.answer.is_answer() {
+            // The way is made; only its end was not sharp enough.
+            let way = solved.answer.start;
+            kept.refine();
+            let (refined, more) = self.from_kept(&mut kept, &numbers, &factors, rules, watch)?;
+            solved = refined;
+            solved.answer.start = way;
+            seconds += more;
+        }
+        if !solved.answer.is_answer() {
+            return None;
+        }
+        let answer = &mut solved.answer;
+        *guard = Some(kept);
+        drop(guard);
+        answer.timings.factor = self.factor_seconds;
+        answer.timings.condense = self.condense_seconds;
+        answer.timings.lemke = numbers_seconds + seconds;
+        answer.timings.total = self.seconds + start.elapsed().as_secs_f64();
+        solved.kept = Some(Arc::clone(seat));
+        Some(solved)
+    }
+
+    /// The checked state at the numbers, followed in the kept dictionary, and the seconds that the following took.
+    fn from_kept(
+        &self,
+        kept: &mut Kept,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Option<(Solved, f64)> {
+        let system = self.system()?;
+        let start = Instant::now();
+        let found = kept.follow(system, numbers, watch)?;
         let contact =
-            contact_lcp_like(Some(kept.contact()), system, &numbers, rules.covering).ok()?;
+            contact_lcp_like(Some(kept.contact()), system, numbers, rules.covering).ok()?;
         let length = found.length_unit / contact.length_unit;
         let point = Point {
             z: found.point.z.iter().map(|z| z * length).collect(),
@@ -82,27 +120,12 @@ impl Prepared {
             p: 0.0,
         };
         let seconds = start.elapsed().as_secs_f64();
-        let words = [
-            rules.covering.to_string(),
-            rules.tie_break.to_string(),
-            rules.engine.to_string(),
-        ];
-        let mut solved = self.answer_at(system, &numbers, &factors, contact, point, words);
-        let answer = &mut solved.answer;
-        answer.timings.lemke = seconds;
-        answer.start = Start::Warm {
+        let words = rules.words();
+        let mut solved = self.answer_at(system, numbers, factors, contact, point, words);
+        solved.answer.start = Start::Warm {
             changes: found.pivots,
         };
-        if !answer.is_answer() {
-            return None;
-        }
-        *guard = Some(kept);
-        drop(guard);
-        answer.timings.factor = self.factor_seconds;
-        answer.timings.condense = self.condense_seconds;
-        answer.timings.total = self.seconds + start.elapsed().as_secs_f64();
-        solved.kept = Some(Arc::clone(seat));
-        Some(solved)
+        Some((solved, seconds))
     }
 }
 

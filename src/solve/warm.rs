@@ -58,6 +58,11 @@ impl Kept {
         }
     }
 
+    /// Refines what is kept from the data, where its answer was not good enough; then [`Kept::follow`] again.
+    pub fn refine(&mut self) {
+        self.engine.refine();
+    }
+
     /// The LCP whose matrix can be shared by others of the same friction.
     pub fn contact(&self) -> &ContactLcp {
         &self.contact
