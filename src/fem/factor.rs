@@ -88,7 +88,6 @@ impl Factor {
         let places = if places.node.is_empty() { idle } else { places };
         let n = k_m.order();
         let scale = k_m.scale_to_unit_diagonal();
-        watch.progress("ordering the unknowns", 0.0);
         let forward = elimination_order(k_m, places, watch)?;
         let mut position = vec![0_u32; n];
         for (at, &row) in forward.iter().enumerate() {
@@ -102,6 +101,7 @@ impl Factor {
             needed,
             available: available_memory().unwrap_or(u64::MAX),
         };
+        watch.progress(&format!("analysing {n} unknowns"), 0.0);
         let matrix = with_joints(k_m, &position, &scale, c, joints);
         let order = n + joints;
         let same: Vec<u32> = (0..order as u32).collect();
@@ -145,10 +145,8 @@ impl Factor {
             return Err(too_large(needed).into());
         }
         check_stop(watch)?;
-        watch.progress("factorizing the main system", 0.0);
         let positive = factor.supernodes.factorize(&matrix, 0.0, watch)?;
         check_stop(watch)?;
-        watch.progress("factorizing the main system", 1.0);
         match factor.null_vector(k_m, &matrix, positive, watch)? {
             Some(null_vector) => Err(FactorError::Singular(null_vector)),
             None => Ok(factor),

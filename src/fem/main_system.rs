@@ -96,7 +96,10 @@ impl MainSystem {
         watch: &dyn Watch,
     ) -> Result<MainSystem, MainSystemError> {
         let clock = Instant::now();
-        watch.progress("assembling the stiffness", 0.0);
+        watch.progress(
+            &format!("assembling {} elements", structure.elements.len()),
+            0.0,
+        );
         let dofs = Dofs::new(structure);
         let elimination =
             Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
@@ -145,7 +148,7 @@ impl MainSystem {
         seconds.factor = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        watch.progress("condensing to the contact joints", 0.0);
+        watch.progress(&format!("condensing to {} joints", joints.len()), 0.0);
         let mut r = factor.schur(std::mem::take(&mut main.d));
         let loads: Vec<Vec<f64>> = f.iter().map(|f| on_masters(&elimination, f)).collect();
         let condensed = factor.project(&loads);
@@ -173,7 +176,7 @@ impl MainSystem {
         };
         system.add_internal_mechanisms()?;
         system.seconds.condense = clock.elapsed().as_secs_f64();
-        watch.progress("condensing to the contact joints", 1.0);
+        watch.progress(&format!("condensing to {} joints", joints.len()), 1.0);
         Ok(system)
     }
 

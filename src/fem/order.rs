@@ -187,6 +187,11 @@ impl Dissection<'_> {
             return self.order_leaf(members);
         }
         check_stop(self.watch)?;
+        let (done, all) = (self.out.len(), self.side.len());
+        self.watch.progress(
+            &format!("ordering, {done} of {all} nodes"),
+            done as f64 / all as f64,
+        );
         let half = members.len() / 2;
         let mut axis = usize::from(expected[1] < expected[0]);
         let mut cut = self.split(members, axis);

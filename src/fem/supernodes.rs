@@ -184,7 +184,11 @@ impl Supernodes {
             spent += cost;
             if spent >= told + 0.01 * total {
                 told = spent;
-                watch.progress(DOING, spent / total);
+                let done = self.begin(s + 1).min(self.eliminated);
+                watch.progress(
+                    &format!("{DOING}, {done} of {} unknowns", self.eliminated),
+                    spent / total,
+                );
                 check_stop(watch)?;
             }
         }

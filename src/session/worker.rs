@@ -90,7 +90,8 @@ pub fn run<T: Send + 'static>(
                     .progress
                     .lock()
                     .unwrap_or_else(PoisonError::into_inner)
-                    .take();
+                    .clone();
+                // At every look, new or not: whoever shows it now and then shows the latest.
                 if let Some((what, done)) = news {
                     watch.progress(&what, done);
                 }
