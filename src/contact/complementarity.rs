@@ -1,8 +1,8 @@
 //! Contact system + numbers → LCP, eqs. (1), (2), (8) of theory §3, laws mixed, dimensionless inside.
 //!
 //! Rows of the whole LCP: all x_n (coulomb, frictionless), then all x⁺, then all x⁻ (coulomb, bound), each in the
-//! order of the pairs. Only x_n and x⁺ are stored; x⁻ is the mirror of x⁺ (see `lcp::mirrored`), so neither M
-//! nor its 3m rows are ever formed.
+//! order of the pairs. Only x_n and x⁺ are stored; x⁻ is the mirror of x⁺ (see `lcp::mirrored`), so the 3m rows of M
+//! are never formed.
 //!
 //! Forces are divided by `force_unit`, displacements by `length_unit`, both exact powers of two (up to the ratio
 //! given by R), so that results scale back without rounding.

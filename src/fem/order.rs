@@ -160,7 +160,7 @@ impl Neighbors {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Elsewhere,
-    Near,
+    Cut,
     Far,
 }
 
@@ -211,12 +211,12 @@ impl Dissection<'_> {
         let (near, far) = members.split_at_mut(half);
         // The cut to the end of the near half.
         for &group in &cut {
-            self.side[group as usize] = Side::Near;
+            self.side[group as usize] = Side::Cut;
         }
         let side = &self.side;
         let mut kept = 0;
         for i in 0..near.len() {
-            if side[near[i] as usize] != Side::Near {
+            if side[near[i] as usize] != Side::Cut {
                 near.swap(kept, i);
                 kept += 1;
             }
@@ -266,7 +266,7 @@ impl Dissection<'_> {
 
     /// Approximate minimum degree of a few groups.
     fn order_leaf(&mut self, members: &[u32]) -> Result<(), MainSystemError> {
-        let out_of_memory = |_| MainSystemError::OutOfMemory {
+        let out_of_memory = || MainSystemError::OutOfMemory {
             doing: "ordering the unknowns",
         };
         for (number, &group) in members.iter().enumerate() {
@@ -298,7 +298,7 @@ impl Dissection<'_> {
         let n = members.len();
         let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
         let request = amd::order_scratch::<u32>(n, rows.len());
-        let mut memory = MemBuffer::try_new(request).map_err(|_| out_of_memory(()))?;
+        let mut memory = MemBuffer::try_new(request).map_err(|_| out_of_memory())?;
         amd::order(
             &mut order,
             &mut inverse,
@@ -306,7 +306,7 @@ impl Dissection<'_> {
             amd::Control::default(),
             MemStack::new(&mut memory),
         )
-        .map_err(|_| out_of_memory(()))?;
+        .map_err(|_| out_of_memory())?;
         self.out
             .extend(order.into_iter().map(|i| members[i as usize]));
         Ok(())

@@ -105,9 +105,11 @@ impl Dictionary {
 
     /// The load increment `factor` times as large as so far.
     pub(crate) fn rescale(&mut self, factor: f64) {
-        if let Place::Column(c) = self.place_p {
-            self.entries.scale_column(c, factor);
-        }
+        let Place::Column(c) = self.place_p else {
+            debug_assert!(false, "rescale needs p nonbasic");
+            return;
+        };
+        self.entries.scale_column(c, factor);
     }
 
     /// Takes another load increment: the column of p becomes that of the given d. M and the mirrors' friction must
@@ -142,9 +144,9 @@ impl Dictionary {
             .exchange(None, c, &rates, &Combination::default(), 1.0);
     }
 
-    /// Number of elimination steps that wait to be multiplied out.
-    pub(crate) fn waiting(&self) -> usize {
-        self.entries.waiting()
+    /// How often waiting elimination steps were multiplied out.
+    pub(crate) fn flushes(&self) -> usize {
+        self.entries.flushes()
     }
 
     pub(crate) fn place(&self, variable: Local) -> Place {

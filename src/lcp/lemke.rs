@@ -272,7 +272,7 @@ impl Engine for SchemeEngine {
         };
         self.stand.fetch(c);
         let (mut tied, mut step) = self.stand.blocking(c, true);
-        if self.stand.is_suspicious(c, &tied) && self.stand.confirm(c) {
+        if self.stand.is_suspicious(c, &tied) && self.stand.confirm(c, &tied) {
             (tied, step) = self.stand.blocking(c, true);
         }
         if tied.is_empty() {

@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use super::dense::add_response;
 use super::problem::{Lcp, Scale};
 
-/// M over the primary rows, never formed for contact: M_i = S_i + f_i S_n(i) in the coupled rows (w = x⁺ = x_τ + f
+/// M over the primary rows, not stored for contact: M_i = S_i + f_i S_n(i) in the coupled rows (w = x⁺ = x_τ + f
 /// x_n), S_i in the others. S is shared between all LCPs of a system, whatever their loads and their friction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operator {
@@ -109,7 +109,7 @@ pub struct MirroredLcp {
     pub matrix: Operator,
     /// q, N.
     pub q: DVector<f64>,
-    /// d ≥ 0, N.
+    /// d, N; ≥ 0 for Lemke's algorithm, of any sign as the increment of a path.
     pub covering: DVector<f64>,
     /// Row of the whole LCP of each primary row.
     pub whole: Vec<usize>,

@@ -5,6 +5,11 @@
 //! mirrors must not cover (e ≥ 0 only where a bound grows with t). The rule for ties is the lexicographic one, so
 //! that starts from zero load, where everything is degenerate, end as well (theory §6, "Load parameter").
 
+mod friction;
+mod path;
+
+pub use path::{End, Knot, Path, Reach};
+
 use std::collections::{BTreeSet, HashSet};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -12,7 +17,6 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::dense::add_response;
 use super::dictionary::{Dictionary, Local, Place};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
@@ -21,86 +25,12 @@ use super::stand::{Candidate, NOISE, SUSPICIOUS, Sizes, Stand};
 use super::variable::Variable;
 use super::vertex::{Basis, direction, vertex};
 
-/// A scheme holds at another friction while nothing falls below −this multiple of the largest of its kind.
-const HOLDS: f64 = 1e-12;
-
 /// A load increment counts as a multiple of another up to this, relative to the load.
 const MULTIPLE: f64 = 16.0 * f64::EPSILON;
 
 /// Values are refined at once where the bound of what rounding may do to them exceeds this, relative to the load. They
 /// are better than that by a digit or two; the fresh check, which asks for 1e-9, finds the others.
 const BLURRED: f64 = 3e-9;
-
-/// How far a path goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reach {
-    /// t at which it ends; infinite: as far as it goes.
-    pub target: f64,
-    /// Whether it goes on where t has to fall.
-    pub through: bool,
-    /// No more pivots than this.
-    pub pivots: usize,
-}
-
-/// Why a path ends.
-#[derive(Clone, Debug, PartialEq)]
-pub enum End {
-    /// t reached the target.
-    Target,
-    /// t would have to fall: there is no answer on this path just beyond its last knot.
-    Turning,
-    /// Nothing blocks while t stays: the limit of the load, with the direction of collapse.
-    Limit(RayDirection),
-    /// The last scheme holds for every larger t.
-    Unbounded,
-    /// Going through turning points t fell back to 0.
-    Returned,
-    /// More pivots than allowed.
-    PivotLimit,
-    /// Stopped from outside.
-    Interrupted,
-    /// The numbers no longer belong together.
-    Breakdown(String),
-}
-
-/// A breakpoint: where the scheme changes (the first: the start; the last: the end).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Knot {
-    /// t.
-    pub t: f64,
-    /// All variables there, computed afresh from the data; its `p` is t.
-    pub point: Point,
-    /// What reached zero here, one after the other.
-    pub leaving: Vec<Variable>,
-    /// The scheme beyond it: rows of the whole LCP whose z is basic, ascending.
-    pub scheme: Vec<usize>,
-}
-
-/// A followed path: its knots; between two of them everything is affine.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Path {
-    /// The knots, start and end included. t rises along them except beyond turning points.
-    pub knots: Vec<Knot>,
-    /// Why it ended.
-    pub end: End,
-    /// Pivots made.
-    pub pivots: usize,
-}
-
-impl Path {
-    /// The scheme at the end.
-    pub fn last_scheme(&self) -> Basis {
-        let z = self
-            .knots
-            .last()
-            .map_or(Vec::new(), |knot| knot.scheme.clone());
-        Basis {
-            active: z.clone(),
-            z,
-            p: false,
-        }
-    }
-}
 
 /// The engine; see the module. It keeps its dictionary from one path to the next.
 #[derive(Clone, Debug)]
@@ -132,12 +62,19 @@ fn sizes(lcp: &MirroredLcp) -> Sizes {
 /// The factor of which the load increment of `new` is a multiple of that of `old`, up to rounding: a slider that
 /// moves on. The increments are differences of loads, so rounding is judged against the loads too.
 fn multiple(new: &MirroredLcp, old: &MirroredLcp) -> Option<f64> {
+    if new.covering.is_empty() {
+        return None;
+    }
     let largest = new.covering.iamax();
     let factor = new.covering[largest] / old.covering[largest];
     if !factor.is_finite() || factor == 0.0 {
         return None;
     }
     let bearable = MULTIPLE * (new.q.amax() + new.covering.amax());
+    // An increment hardly above the rounding of the load has no direction.
+    if bearable > 1e-9 * new.covering.amax() {
+        return None;
+    }
     let same = |new: f64, old: f64| (new - factor * old).abs() <= bearable;
     let mut increments = new.covering.iter().zip(&old.covering);
     let mut mirrors = new.mirrors.iter().zip(&old.mirrors);
@@ -183,8 +120,9 @@ impl Parametric {
         })
     }
 
-    /// Takes the next load increment after a path that ended at its target: only q, d and the constants of the
-    /// mirrors may differ from the LCP so far. `false` where the dictionary cannot be carried over.
+    /// Takes the next load increment after a path that ended at its target. q and the constants of the mirrors are those
+    /// of that target, M and the mirrors' friction are the same; only the increment (d, e) is new. `false` where the
+    /// dictionary cannot be carried over.
     pub fn reload(&mut self, lcp: Arc<MirroredLcp>) -> bool {
         if self.stand.column_of(Local::P).is_none() {
             return false;
@@ -230,107 +168,6 @@ impl Parametric {
     /// Refines the values from the data.
     pub fn refine(&mut self) {
         self.stand.refine();
-    }
-
-    /// The answer of the same scheme after a change of friction, f_i + `change`_i, per primary row; `extra` is what
-    /// the constants b_i of the LCP held so far exceed those of the problem by, halved (extra cohesion). The
-    /// dictionary stays that of the old friction: a slipping row's new w = 0 means w = extra − change·w_n in it,
-    /// a small system in the w_n of the slipping rows that is solved by iteration. `None` where the iteration does
-    /// not settle or the scheme does not hold.
-    pub fn at_friction(&mut self, change: &[f64], extra: &[f64]) -> Option<Point> {
-        self.sharpen();
-        let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
-        let normal_row = |i: usize| {
-            let n = lcp.mirrors[i].as_ref()?.normal?;
-            match d.place(Local::W(n)) {
-                Place::Row(r) => Some(r),
-                Place::Column(_) => None,
-            }
-        };
-        // Slipping rows: their own column, and which of the `pressed` rows is that of their w_n (none in an open
-        // pair).
-        let mut pressed: Vec<usize> = Vec::new();
-        let mut slipping: Vec<(usize, usize, Option<usize>)> = Vec::new();
-        for i in 0..lcp.size() {
-            let Place::Column(c) = d.place(Local::W(i)) else {
-                continue;
-            };
-            let normal = normal_row(i).filter(|_| change[i] != 0.0);
-            if normal.is_some() || extra[i] != 0.0 {
-                slipping.push((i, c, normal.map(|_| pressed.len())));
-                pressed.extend(normal);
-            }
-        }
-        // What one imposed unit on each slipping row does to the w_n of the pressed ones.
-        let columns: Vec<usize> = slipping.iter().map(|&(_, c, _)| c).collect();
-        let influence = d.block(&pressed, &columns);
-        let start: Vec<f64> = pressed.iter().map(|&r| d.value[r]).collect();
-        let size = start.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let mut normals = start.clone();
-        let imposed = |normals: &[f64]| -> Vec<f64> {
-            let of = |&(i, _, k): &(usize, usize, Option<usize>)| {
-                extra[i] - change[i] * k.map_or(0.0, |k| normals[k])
-            };
-            slipping.iter().map(of).collect()
-        };
-        let mut settled = slipping.is_empty();
-        for _ in 0..60 {
-            let mut next = start.clone();
-            add_response(&mut next, &influence, &imposed(&normals));
-            let moved = next
-                .iter()
-                .zip(&normals)
-                .fold(0.0, |a: f64, (next, now)| a.max((next - now).abs()));
-            normals = next;
-            if moved <= 4.0 * f64::EPSILON * size {
-                settled = true;
-                break;
-            }
-        }
-        if !settled {
-            return None;
-        }
-        let terms: Vec<(usize, f64)> = slipping
-            .iter()
-            .zip(imposed(&normals))
-            .map(|(&(_, c, _), imposed)| (c, imposed))
-            .collect();
-        let mut value = d.value.clone();
-        for (value, change) in value.iter_mut().zip(d.combined_columns(&terms)) {
-            *value += change;
-        }
-        let n = lcp.whole_size;
-        let mut point = Point {
-            z: vec![0.0; n],
-            w: vec![0.0; n],
-            p: 0.0,
-        };
-        for (r, &local) in d.row.iter().enumerate() {
-            match self.stand.variable(local, false) {
-                Variable::Z(k) => point.z[k] = value[r],
-                Variable::W(k) => point.w[k] = value[r],
-                Variable::P => return None,
-            }
-        }
-        for i in 0..lcp.size() {
-            let Some(mirror) = &lcp.mirrors[i] else {
-                continue;
-            };
-            let w_n = normal_row(i).map_or(0.0, |r| value[r]);
-            let own = match d.place(Local::W(i)) {
-                Place::Row(r) => value[r] - extra[i] + change[i] * w_n,
-                Place::Column(_) => 0.0,
-            };
-            let sum = 2.0 * (mirror.friction + change[i]) * w_n + mirror.constant - 2.0 * extra[i];
-            for (hidden, w) in [(false, own), (true, sum - own)] {
-                if let Variable::W(k) = self.stand.variable(Local::W(i), hidden) {
-                    point.w[k] = w;
-                }
-            }
-        }
-        let largest = |all: &[f64]| all.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let above = |all: &[f64], size: f64| all.iter().all(|one| *one >= -HOLDS * size);
-        (above(&point.z, largest(&point.z)) && above(&point.w, largest(&point.w))).then_some(point)
     }
 
     fn fetch(&mut self) -> Option<usize> {
@@ -425,7 +262,7 @@ impl Parametric {
     }
 
     /// The rate of t along the present column, zero where it is noise. `recorded`: near the noise the direction at the
-    /// last knot decides, its equations solved afresh; otherwise the column, which is refined already.
+    /// last knot decides, its equations solved afresh; otherwise the column, which was refined before.
     fn t_rate(&self, c: usize, recorded: bool) -> f64 {
         let stand = &self.stand;
         let Some((faint, size)) = self.faint_t_rate(c) else {
@@ -468,7 +305,8 @@ impl Parametric {
         ray
     }
 
-    /// Follows the path; `observer` is called after every pivot with t and may break.
+    /// Follows the path; `observer` is called after every pivot with t and may break. At the target it stands on the LCP
+    /// of the target.
     pub fn follow(
         &mut self,
         reach: Reach,
@@ -489,22 +327,13 @@ impl Parametric {
         }
     }
 
-    /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots. At the target
-    /// it stands on the LCP of the target.
+    /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots.
     pub fn walk(
         &mut self,
         reach: Reach,
         observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> (End, usize) {
-        let (end, pivots) = self.run(reach, &mut None, observer);
-        if end == End::Target {
-            let lcp = Arc::make_mut(&mut self.stand.lcp);
-            lcp.q.axpy(reach.target, &lcp.covering, 1.0);
-            for mirror in lcp.mirrors.iter_mut().flatten() {
-                mirror.constant += reach.target * mirror.covering;
-            }
-        }
-        (end, pivots)
+        self.run(reach, &mut None, observer)
     }
 
     fn run(
@@ -527,6 +356,13 @@ impl Parametric {
                 break End::Interrupted;
             }
         };
+        if end == End::Target {
+            let lcp = Arc::make_mut(&mut self.stand.lcp);
+            lcp.q.axpy(reach.target, &lcp.covering, 1.0);
+            for mirror in lcp.mirrors.iter_mut().flatten() {
+                mirror.constant += reach.target * mirror.covering;
+            }
+        }
         (end, pivots)
     }
 
@@ -559,7 +395,7 @@ impl Parametric {
         let ends_here = reach.target.is_finite()
             && raw > 0.0
             && (reach.target - self.stand.p()).max(0.0) / raw <= step;
-        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.confirm(c) {
+        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.confirm(c, &tied) {
             (tied, step) = self.blocking(c);
         }
         let t_rate = self.t_rate(c, knots.is_some());
@@ -594,7 +430,7 @@ impl Parametric {
             Variable::W(k) | Variable::Z(k) => k,
             Variable::P => return lost(),
         };
-        let scheme: Vec<usize> = self.scheme.iter().copied().collect();
+        let scheme = |engine: &Self| engine.scheme.iter().copied().collect::<Vec<usize>>();
         if step > 0.0 {
             met.clear();
             if let Some(knots) = knots {
@@ -604,10 +440,11 @@ impl Parametric {
                     t: point.p,
                     point,
                     leaving: vec![name],
-                    scheme,
+                    scheme: scheme(self),
                 });
             }
         } else {
+            let scheme = scheme(self);
             if let Some(knot) = knots.as_mut().and_then(|knots| knots.last_mut()) {
                 knot.leaving.push(name);
                 knot.scheme.clone_from(&scheme);

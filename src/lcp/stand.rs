@@ -1,23 +1,19 @@
 //! Where a run stands: the LCP, its dictionary, and the column of what grows. What Lemke's algorithm and the path
 //! in a load have in common: natural sizes, zero tests, the ratio test with its ties, the watch over errors.
 
+mod accuracy;
+mod inverse_row;
+
 use std::sync::Arc;
 
 use super::dictionary::{Dictionary, Local, Place};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
 pub(crate) use super::problem::NOISE;
-use super::ratio_test::TiedRow;
 use super::variable::Variable;
 
 /// A rate below this multiple of its natural size is confirmed from the data before it decides anything.
 pub(crate) const SUSPICIOUS: f64 = 1e-7;
-/// Relative error of the dictionary against the data above which it is built afresh.
-const DRIFT: f64 = 1e-10;
-
-/// Relative error of a column against the data that building it afresh would not make smaller.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
 /// A row that may block what grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Candidate {
@@ -85,6 +81,8 @@ pub(crate) struct Stand {
     pub(crate) fresh: bool,
     /// How often it was built afresh.
     pub(crate) refreshes: usize,
+    /// Number of the flush after which the values were last compared with the data.
+    compared: usize,
 }
 
 impl Stand {
@@ -107,6 +105,7 @@ impl Stand {
             ratios: Vec::new(),
             fresh: true,
             refreshes: 0,
+            compared: 0,
         };
         stand.measure_rows();
         stand
@@ -327,162 +326,6 @@ impl Stand {
         falling
     }
 
-    /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it, and they
-    /// do not.
-    pub(crate) fn is_suspicious(&self, c: usize, tied: &[Candidate]) -> bool {
-        if self.fresh {
-            return false;
-        }
-        let Some(blocking) = tied.iter().max_by(|a, b| a.fall.total_cmp(&b.fall)) else {
-            return true;
-        };
-        let p_rate = self.dictionary.along(Local::P, c, &self.column).rate;
-        let size = self.rate_size(blocking.variable, self.rate_total(c), p_rate);
-        let bearable = (DRIFT * blocking.fall / size).max(ROUNDING);
-        blocking.fall <= SUSPICIOUS * size && self.column_error(c) > bearable
-    }
-
-    /// z of the primary rows with the sign of their orientation (z⁺ − z⁻ for couples).
-    fn signed(&self, z: impl Fn(usize) -> f64) -> Vec<f64> {
-        let turned = self.dictionary.turned.iter().enumerate();
-        turned
-            .map(|(i, &turned)| if turned { -z(i) } else { z(i) })
-            .collect()
-    }
-
-    /// Largest error of column c against M Δz + d Δp over all rows, relative to their natural sizes.
-    fn column_error(&self, c: usize) -> f64 {
-        let d = &self.dictionary;
-        let along = |local: Local| d.along(local, c, &self.column).rate;
-        let z = self.signed(|i| along(Local::Z(i)));
-        let p = along(Local::P);
-        let size = self.rate_total(c);
-        let response = self.lcp.matrix.times(&z);
-        (0..self.lcp.size())
-            .map(|i| {
-                let w = response[i] + self.lcp.covering[i] * p;
-                let held = if d.turned[i] {
-                    d.hidden(&self.lcp, i, c, &self.column).rate
-                } else {
-                    along(Local::W(i))
-                };
-                let own = self.rate_size(Local::W(i), size, p).max(f64::MIN_POSITIVE);
-                (w - held).abs() / own
-            })
-            .fold(0.0, f64::max)
-    }
-
-    /// Largest error of the dictionary's values against w = M z + q + d p, relative to their natural sizes.
-    fn drift(&self) -> f64 {
-        let d = &self.dictionary;
-        let z = self.signed(|i| d.value_of(Local::Z(i)));
-        let p = self.p();
-        let size = self.size_of(&d.value);
-        let response = self.lcp.matrix.times(&z);
-        (0..self.lcp.size())
-            .map(|i| {
-                let w = response[i] + self.lcp.q[i] + self.lcp.covering[i] * p;
-                let held = if d.turned[i] {
-                    d.hidden_value(&self.lcp, i)
-                } else {
-                    d.value_of(Local::W(i))
-                };
-                (w - held).abs() / self.value_size(Local::W(i), size, p).max(f64::MIN_POSITIVE)
-            })
-            .fold(0.0, f64::max)
-    }
-
-    /// By how much rounding may move a value, relative to the largest load: where the responses of single
-    /// displacements are much larger than the load and cancel.
-    pub(crate) fn blur(&self) -> f64 {
-        let row = self.lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let load = self.sizes.q.iter().fold(0.0, |a: f64, b| a.max(*b));
-        ROUNDING * row * self.size_of(&self.dictionary.value) / load
-    }
-
-    /// One step of iterative refinement: the equations of the scheme evaluated from the data, solved by the dictionary.
-    /// `held`: a number for each row, values (`shift` 1, no `entering`) or rates along the column `entering` (`shift`
-    /// 0).
-    fn corrected(&self, held: &[f64], entering: Option<usize>, shift: f64) -> Vec<f64> {
-        let (d, lcp) = (&self.dictionary, &self.lcp);
-        let nonbasic = |c: usize| f64::from(entering == Some(c));
-        let number = |local: Local| match d.place(local) {
-            Place::Row(r) => held[r],
-            Place::Column(c) => nonbasic(c),
-        };
-        let p = number(Local::P);
-        let w = lcp.matrix.times(&self.signed(|i| number(Local::Z(i))));
-        let w = w + shift * &lcp.q + p * &lcp.covering;
-        let oriented = |i: usize| match &lcp.mirrors[i] {
-            Some(mirror) if d.turned[i] => {
-                let normal = mirror.normal.map_or(0.0, |n| w[n]);
-                let sum = 2.0 * mirror.friction * normal + mirror.covering * p;
-                sum + shift * mirror.constant - w[i]
-            }
-            _ => w[i],
-        };
-        let wrong: Vec<(usize, f64)> = d
-            .column
-            .iter()
-            .enumerate()
-            .filter_map(|(c, &local)| match local {
-                Local::W(i) => Some((c, nonbasic(c) - oriented(i))),
-                _ => None,
-            })
-            .collect();
-        let change = d.combined_columns(&wrong);
-        std::iter::zip(&d.row, std::iter::zip(held, change))
-            .map(|(&local, (held, change))| match local {
-                Local::W(i) => oriented(i) + change,
-                _ => held + change,
-            })
-            .collect()
-    }
-
-    /// Refines the values.
-    pub(crate) fn refine(&mut self) {
-        self.dictionary.value = self.corrected(&self.dictionary.value, None, 1.0);
-    }
-
-    /// Makes the column fetched last as true to the data as it can be made: by refinement, or where that is not enough
-    /// by a dictionary built afresh. `false`: the equations of the scheme are singular.
-    pub(crate) fn confirm(&mut self, c: usize) -> bool {
-        self.refine_column(c);
-        if self.column_error(c) > ROUNDING {
-            if !self.refresh() {
-                return false;
-            }
-            self.fetch(c);
-        }
-        true
-    }
-
-    /// Refines the column fetched last.
-    pub(crate) fn refine_column(&mut self, c: usize) {
-        self.column = self.corrected(&self.column, Some(c), 0.0);
-        self.column_size = self.size_of(&self.column);
-    }
-
-    /// Whether the dictionary's values still agree with the data.
-    pub(crate) fn agrees(&self) -> bool {
-        self.drift() <= DRIFT
-    }
-
-    /// Builds the dictionary afresh from the data; `false` where the equations of the scheme are singular.
-    pub(crate) fn refresh(&mut self) -> bool {
-        if self.dictionary.rebuild(&self.lcp) {
-            self.fresh = true;
-            self.refreshes += 1;
-        }
-        self.fresh
-    }
-
-    /// At a flush, where that costs little: the values are compared with the data. `false`: they are wrong and the
-    /// equations are singular.
-    pub(crate) fn keep_true(&mut self) -> bool {
-        self.fresh || self.dictionary.waiting() > 0 || self.agrees() || self.refresh()
-    }
-
     /// Exchanges the variable of column c with that of the leaving row; the entering variable takes the value `step`.
     /// Returns what grows next: the complement of what left (`None` after p).
     pub(crate) fn exchange(
@@ -498,8 +341,10 @@ impl Stand {
             self.dictionary.place(leaving.variable),
         ) {
             (Local::W(i), true, Place::Row(r)) => {
+                // Turning changes row r and the column of z_i, which is not the entering one.
+                let rate = self.dictionary.hidden(&self.lcp, i, c, &self.column).rate;
                 self.dictionary.turn(&self.lcp, i);
-                self.fetch(c);
+                self.column[r] = rate;
                 self.pivot(r, c, step);
             }
             (Local::W(i), true, Place::Column(_)) => {
@@ -592,86 +437,5 @@ impl Stand {
             }
         }
         ray
-    }
-
-    /// The rows of B⁻¹ of tied candidates, for the lexicographic rule.
-    pub(crate) fn inverse_rows<'a>(
-        &'a self,
-        tied: &'a [Candidate],
-        table_row: &'a dyn Fn(Variable) -> usize,
-    ) -> Vec<InverseRow<'a>> {
-        tied.iter()
-            .map(|candidate| InverseRow {
-                stand: self,
-                candidate,
-                table_row,
-            })
-            .collect()
-    }
-
-    /// Column of the nonbasic w that stands in row `whole` of the whole LCP.
-    fn nonbasic_w(&self, whole: usize) -> Option<usize> {
-        let i = self.primary[whole];
-        if self.variable(Local::W(i), false) != Variable::W(whole) {
-            return None;
-        }
-        self.column_of(Local::W(i))
-    }
-
-    /// Natural size of the entry of the row of B⁻¹ of `local` in the column of primary row `j`.
-    fn inverse_size(&self, local: Local, j: usize) -> f64 {
-        let scale = &self.lcp.scale;
-        let column = scale.row[j].max(f64::MIN_POSITIVE);
-        match local {
-            Local::W(i) => scale.row[i] / column,
-            Local::Z(k) => 1.0 / (scale.column[k] * column),
-            Local::P => self.sizes.p_per_force / column,
-        }
-    }
-}
-
-/// The row of B⁻¹ of a tied candidate: what an ε added to a w does to its value.
-pub(crate) struct InverseRow<'a> {
-    stand: &'a Stand,
-    candidate: &'a Candidate,
-    table_row: &'a dyn Fn(Variable) -> usize,
-}
-
-impl TiedRow for InverseRow<'_> {
-    fn table_row(&self) -> usize {
-        (self.table_row)(self.stand.name(self.candidate))
-    }
-
-    fn entry(&self, row: usize) -> (f64, f64) {
-        let stand = self.stand;
-        let d = &stand.dictionary;
-        let column = stand.nonbasic_w(row);
-        let is = |local: Local| f64::from(stand.variable(local, false) == Variable::W(row));
-        let visible = |local: Local| match d.place(local) {
-            Place::Row(_) if is(local) == 1.0 => 1.0,
-            // A nonbasic w stands in its column with the opposite sign of its ε.
-            Place::Row(r) => column.map_or(0.0, |c| -d.entry(r, c)),
-            Place::Column(_) => 0.0,
-        };
-        let natural = |local: Local| match column.map(|c| d.column[c]) {
-            Some(Local::W(j) | Local::Z(j)) => stand.inverse_size(local, j),
-            _ => 0.0,
-        };
-        let candidate = self.candidate;
-        let mut size = natural(candidate.variable) + 1.0;
-        let mut entry = visible(candidate.variable);
-        if candidate.hidden
-            && let Local::W(i) = candidate.variable
-            && let Some(mirror) = &stand.lcp.mirrors[i]
-        {
-            let own = f64::from(stand.variable(Local::W(i), true) == Variable::W(row));
-            entry = own + is(Local::W(i)) - entry + mirror.covering * visible(Local::P);
-            if let Some(n) = mirror.normal {
-                let double = 2.0 * mirror.friction;
-                entry += double * (visible(Local::W(n)) - is(Local::W(n)));
-                size += double * (1.0 + natural(Local::W(n)));
-            }
-        }
-        (entry / candidate.fall, size / candidate.fall)
     }
 }

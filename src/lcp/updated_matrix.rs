@@ -39,6 +39,7 @@ pub(crate) struct UpdatedMatrix {
     from_steps: Vec<f64>,
     /// Number of steps that wait.
     waiting: usize,
+    flushes: usize,
 }
 
 impl UpdatedMatrix {
@@ -59,6 +60,7 @@ impl UpdatedMatrix {
             from_units: Vec::new(),
             from_steps: vec![0.0; limit * limit],
             waiting: 0,
+            flushes: 0,
         }
     }
 
@@ -69,9 +71,9 @@ impl UpdatedMatrix {
         self.forget();
     }
 
-    /// Number of steps that wait.
-    pub(crate) fn waiting(&self) -> usize {
-        self.waiting
+    /// How often waiting steps were multiplied out.
+    pub(crate) fn flushes(&self) -> usize {
+        self.flushes
     }
 
     fn stored(&self, j: usize) -> &[f64] {
@@ -160,7 +162,7 @@ impl UpdatedMatrix {
         }
         self.finish_multipliers(&mut multipliers, columns.len());
         let mut waiting = Vec::with_capacity(rows.len() * self.waiting);
-        for step in self.u.chunks_exact(self.rows).take(self.waiting) {
+        for step in self.u.chunks_exact(self.rows.max(1)).take(self.waiting) {
             waiting.extend(rows.iter().map(|&row| step[row]));
         }
         let (height, width) = (rows.len(), columns.len());
@@ -177,7 +179,16 @@ impl UpdatedMatrix {
 
     /// Entry (row, j).
     pub(crate) fn entry(&self, row: usize, j: usize) -> f64 {
-        self.block(&[row], &[j])[0]
+        let kept = if self.cleared[row] {
+            0.0
+        } else {
+            self.stored(j)[row]
+        };
+        let u = self.u[row..].iter().step_by(self.rows);
+        kept + u
+            .zip(self.column_multipliers(j))
+            .map(|(u, v)| u * v)
+            .sum::<f64>()
     }
 
     /// Σ x_j · column j over the given (j, x_j).
@@ -218,7 +229,7 @@ impl UpdatedMatrix {
     }
 
     /// Adds `u` times the combination to all other columns, after clearing column `c`, which becomes `factor` · u;
-    /// with `row`: clears this row first, and u counts as 1 in it. `u` is the present column c.
+    /// with `row`: clears this row first, and u counts as 1 in it. u stands for column c, whatever it held.
     pub(crate) fn exchange(
         &mut self,
         row: Option<usize>,
@@ -321,6 +332,7 @@ impl UpdatedMatrix {
         for &(step, column, factor) in &self.from_units {
             v[step + steps * column] += factor;
         }
+        self.flushes += 1;
         self.finish_multipliers(&mut v, self.columns);
         add_product(
             &mut self.t,

@@ -75,12 +75,12 @@ impl Prepared {
         let numbers = contact_numbers(system, &factors, values);
         let numbers_seconds = start.elapsed().as_secs_f64();
         let (mut solved, mut seconds) =
-            self.from_kept(&mut kept, &numbers, &factors, rules, watch)?;
+            self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
         if !solved.answer.is_answer() {
             // The way is made; only its end was not sharp enough.
             let way = solved.answer.start;
             kept.refine();
-            let (refined, more) = self.from_kept(&mut kept, &numbers, &factors, rules, watch)?;
+            let (refined, more) = self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
             solved = refined;
             solved.answer.start = way;
             seconds += more;
@@ -100,7 +100,7 @@ impl Prepared {
     }
 
     /// The checked state at the numbers, followed in the kept dictionary, and the seconds that the following took.
-    fn from_kept(
+    fn follow_kept(
         &self,
         kept: &mut Kept,
         numbers: &ContactNumbers,

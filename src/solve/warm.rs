@@ -63,7 +63,7 @@ impl Kept {
         self.engine.refine();
     }
 
-    /// The LCP whose matrix can be shared by others of the same friction.
+    /// The LCP whose matrix can be shared by others of the same system.
     pub fn contact(&self) -> &ContactLcp {
         &self.contact
     }
