@@ -248,6 +248,27 @@ fn no_claim_is_stronger_than_proved() {
     no_claim_too_strong(400, 21);
 }
 
+/// The second pair can be lifted off without any resistance, so that nothing but p moves its x_n; when the motion of the
+/// ray sets in, the rate of p is rounding, and x_n must not be told to fall by it.
+#[test]
+fn a_force_that_only_p_moves_does_not_fall_by_the_noise_of_p() {
+    let mut rng = ChaCha8Rng::seed_from_u64(22);
+    for k in 0..1526 {
+        loose(&mut rng, 1 + k % 4);
+    }
+    let problem = loose(&mut rng, 3);
+    assert!(problem.stiffness[(1, 1)].abs() < 1e-28);
+    let scenario = problem.scenario();
+    let prepared = prepare(&scenario, &Quiet).expect("prepared");
+    let solved = solve(&prepared, &scenario, Engine::Scheme);
+    let ray = solved.answer.ray.expect("a ray");
+    assert_eq!(ray.class, RayClass::Mechanism);
+    let all = prepared
+        .all_answers(&scenario.parameter_values(), &Quiet)
+        .expect("few pairs");
+    assert!(all.answers.is_empty());
+}
+
 #[test]
 #[ignore = "the full count: run with --release"]
 fn no_claim_is_stronger_than_proved_on_two_thousand() {

@@ -213,6 +213,17 @@ impl Stand {
         }
     }
 
+    /// |Δp| along column c, against which the noise of the rows is judged. Where Δp is noise itself, no part of what it
+    /// gives to a row counts: a row that nothing but p moves would be told to fall otherwise.
+    fn p_rate_size(&self, c: usize) -> f64 {
+        let rate = self.dictionary.rate(Local::P, c, &self.column).abs();
+        if rate <= NOISE * self.rate_size(Local::P, self.rate_total(c), 0.0) {
+            rate / NOISE
+        } else {
+            rate
+        }
+    }
+
     /// Natural size of the value of a row, where Σ column_k |z_k| = `size`.
     fn value_size(&self, local: Local, size: f64, p: f64) -> f64 {
         let response = size * self.sizes.response(local, &self.lcp);
@@ -259,9 +270,8 @@ impl Stand {
     /// fall. Returns the smallest.
     fn ratios_of_rows(&self, c: usize, ratios: &mut Vec<f64>) -> f64 {
         let d = &self.dictionary;
-        let p_rate = d.along(Local::P, c, &self.column).rate.abs();
         let (size, sizes) = (NOISE * self.rate_total(c), &self.row_sizes);
-        let p_rate = NOISE * p_rate;
+        let p_rate = NOISE * self.p_rate_size(c);
         ratios.clear();
         ratios.extend(
             self.column
@@ -283,7 +293,7 @@ impl Stand {
     /// The hidden members that fall when the variable of column c grows.
     fn falling_mirrors(&self, c: usize, watch_slipping: bool) -> Vec<Candidate> {
         let d = &self.dictionary;
-        let p = d.along(Local::P, c, &self.column);
+        let (p, p_rate) = (d.along(Local::P, c, &self.column), self.p_rate_size(c));
         let (size, value_size) = (self.rate_total(c), self.size_of(&d.value));
         let mut falling = Vec::new();
         for (i, mirror) in self.lcp.mirrors.iter().enumerate() {
@@ -310,7 +320,7 @@ impl Stand {
                 let normal = normal.map_or(0.0, |n| of(Local::W(n)));
                 own + 2.0 * mirror.friction * normal + (mirror.covering * p).abs()
             };
-            let rate_size = sum(&|local| self.rate_size(local, size, p.rate), p.rate);
+            let rate_size = sum(&|local| self.rate_size(local, size, p_rate), p_rate);
             if along.rate < -NOISE * rate_size {
                 let natural = |local: Local| self.value_size(local, value_size, p.value);
                 let noise = NOISE * (sum(&natural, p.value) + mirror.constant.abs());
@@ -410,7 +420,7 @@ impl Stand {
             p: 0.0,
         };
         let size = self.rate_total(c);
-        let p_rate = d.along(Local::P, c, &self.column).rate;
+        let p_rate = self.p_rate_size(c);
         let mut put = |variable: Variable, rate: f64, noise: f64| {
             let rate = if rate.abs() <= noise { 0.0 } else { rate };
             match variable {

@@ -8,7 +8,7 @@ const DRIFT: f64 = 1e-10;
 
 /// Relative error of a column against the data that building it afresh would not make smaller.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// A column is refined, and not the dictionary built afresh, up to this error relative to the small rate at stake.
+/// A column is refined, and the dictionary not built afresh, up to this error relative to the small rate at stake.
 const REFINED: f64 = 1e-5;
 
 impl Stand {
@@ -22,12 +22,10 @@ impl Stand {
             })
     }
 
-    /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it, and they
-    /// do not.
+    /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it: a small residual
+    /// of the column does not show that a small rate in it is right.
     pub(crate) fn is_suspicious(&self, c: usize, tied: &[Candidate]) -> bool {
-        !self.fresh
-            && (tied.is_empty()
-                || (self.relative_fall(c, tied) <= SUSPICIOUS && self.column_error(c) > ROUNDING))
+        !self.fresh && self.relative_fall(c, tied) <= SUSPICIOUS
     }
 
     /// z of the primary rows with the sign of their orientation (z⁺ − z⁻ for couples).
@@ -138,7 +136,7 @@ impl Stand {
     pub(crate) fn confirm(&mut self, c: usize, tied: &[Candidate]) -> bool {
         let fall = self.relative_fall(c, tied);
         let error = self.column_error(c);
-        if error > REFINED * fall && error > ROUNDING {
+        if error > REFINED * fall {
             if !self.refresh() {
                 return false;
             }
