@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::contact::complementarity::contact_lcp;
 use stickslip::contact::numbers::ContactNumbers;
-use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
+use stickslip::contact::system::ContactSystem;
 use stickslip::contact::whole::{WholeInput, whole_lcp};
 use stickslip::lcp::driver::{Engine, Step, run};
 use stickslip::lcp::lemke::SchemeEngine;
@@ -20,14 +20,14 @@ use stickslip::lcp::problem::{Lcp, Scale};
 use stickslip::lcp::ratio_test::TieRule;
 use stickslip::lcp::tableau::Tableau;
 use stickslip::lcp::vertex::{Basis, vertex};
-use stickslip::model::pair::Law;
-use stickslip::model::parameter::Number;
 use stickslip::model::rules::{Covering, TieBreak};
 
+mod common;
 #[path = "../benches/common/mod.rs"]
 #[allow(dead_code, reason = "the measurements use the rest")]
 mod plates;
 
+use common::systems;
 use plates::{Plates, Pull, Ready};
 
 /// Coulomb pairs with a random positive definite R; `whole`: small integers, so that ties are everywhere.
@@ -44,36 +44,7 @@ fn random_system(m: usize, f: f64, whole: bool, seed: u64) -> (ContactSystem, Co
     let a = DMatrix::from_fn(n, n, |_, _| number(-1, 1));
     let stiffness = &a * a.transpose() + DMatrix::identity(n, n);
     let load = DVector::from_fn(n, |_, _| number(-3, 3));
-    let law = Law::Coulomb {
-        friction: Number::Value(f),
-        cohesion: Number::Value(0.0),
-        gap: Number::Value(0.0),
-    };
-    let pairs = (0..m)
-        .map(|i| ContactPair {
-            id: format!("c{}", i + 1),
-            law: law.clone(),
-            position: None,
-            tangential: Some(m + i),
-        })
-        .collect();
-    let numbers = ContactNumbers {
-        friction: vec![f; m],
-        cohesion: vec![0.0; m],
-        gap: vec![0.0; m],
-        bound: vec![0.0; m],
-        load: load.clone(),
-    };
-    let system = ContactSystem {
-        pairs,
-        stiffness,
-        loads: vec![JointLoad {
-            name: "load".into(),
-            vector: load,
-        }],
-        kernel: DMatrix::zeros(n, 0),
-    };
-    (system, numbers)
+    systems::coulomb(stiffness, load, f)
 }
 
 /// Worst violation of the laws, forces relative to the largest load, displacements to the largest of them.

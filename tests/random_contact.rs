@@ -8,13 +8,12 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::contact::complementarity::contact_lcp;
 use stickslip::contact::numbers::ContactNumbers;
-use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
+use stickslip::contact::system::ContactSystem;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::outcome::Outcome;
 use stickslip::lcp::vertex::{Basis, vertex};
 use stickslip::model::pair::Law;
-use stickslip::model::parameter::Number;
 use stickslip::model::rules::{Covering, TieBreak};
 
 /// R = A Aᵀ / n + shift·I; with `ties` the entries of A and the loads are small integers.
@@ -39,41 +38,12 @@ pub fn random_system(
             rng.random_range(-1.0..1.0)
         }
     });
-    let law = Law::Coulomb {
-        friction: Number::Value(0.0),
-        cohesion: Number::Value(0.0),
-        gap: Number::Value(0.0),
-    };
-    let pairs = (0..m)
-        .map(|i| ContactPair {
-            id: format!("c{}", i + 1),
-            law: law.clone(),
-            position: None,
-            tangential: Some(m + i),
-        })
-        .collect();
     let f = if ties {
         f64::from(rng.random_range(0..=5))
     } else {
         rng.random_range(0.0..5.0)
     };
-    let numbers = ContactNumbers {
-        friction: vec![f; m],
-        cohesion: vec![0.0; m],
-        gap: vec![0.0; m],
-        bound: vec![0.0; m],
-        load: load.clone(),
-    };
-    let system = ContactSystem {
-        pairs,
-        stiffness,
-        loads: vec![JointLoad {
-            name: "load".into(),
-            vector: load,
-        }],
-        kernel: DMatrix::zeros(n, 0),
-    };
-    (system, numbers)
+    common::systems::coulomb(stiffness, load, f)
 }
 
 /// Worst violation of the laws at joint displacements z, relative to the largest force.

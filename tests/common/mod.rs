@@ -4,6 +4,7 @@
 
 pub mod balance;
 pub mod laws;
+pub mod systems;
 
 use serde_json::Value;
 use stickslip::answer::record::{Answer, OutcomeKind, PairState, RayClass, State};

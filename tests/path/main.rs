@@ -1,5 +1,7 @@
 //! Paths: loads, friction, history, sweeps, and the commands that follow them.
 
+#[path = "../common/mod.rs"]
+mod common;
 mod friction;
 mod hertz;
 mod load;

@@ -10,17 +10,17 @@ use rand_chacha::ChaCha8Rng;
 use stickslip::contact::complementarity::contact_lcp;
 use stickslip::contact::load_path::{order, path_lcp};
 use stickslip::contact::numbers::ContactNumbers;
-use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
+use stickslip::contact::system::ContactSystem;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::outcome::Outcome;
 use stickslip::lcp::parametric::{End, Parametric, Reach};
 use stickslip::lcp::vertex::Basis;
-use stickslip::model::pair::Law;
-use stickslip::model::parameter::Number;
 use stickslip::model::rules::{Covering, TieBreak};
 use stickslip::solve::warm::Kept;
 use stickslip::watch::Quiet;
+
+use crate::common::systems::coulomb;
 
 /// R = A Aᵀ / n + I; with `ties` the entries of A and the loads are small integers.
 fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
@@ -35,42 +35,14 @@ fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, 
     let a = DMatrix::from_fn(n, n, |_, _| number(rng, ties));
     let stiffness = &a * a.transpose() / n as f64 + DMatrix::identity(n, n);
     let load = DVector::from_fn(n, |_, _| number(rng, ties));
-    let law = Law::Coulomb {
-        friction: Number::Value(0.0),
-        cohesion: Number::Value(0.0),
-        gap: Number::Value(0.0),
+    let friction = if ties {
+        0.25
+    } else {
+        rng.random_range(0.0..0.4)
     };
-    let pairs = (0..m)
-        .map(|i| ContactPair {
-            id: format!("c{}", i + 1),
-            law: law.clone(),
-            position: None,
-            tangential: Some(m + i),
-        })
-        .collect();
-    let numbers = ContactNumbers {
-        friction: vec![
-            if ties {
-                0.25
-            } else {
-                rng.random_range(0.0..0.4)
-            };
-            m
-        ],
-        cohesion: vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m],
-        gap: vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m],
-        bound: vec![0.0; m],
-        load: load.clone(),
-    };
-    let system = ContactSystem {
-        pairs,
-        stiffness,
-        loads: vec![JointLoad {
-            name: "load".into(),
-            vector: load,
-        }],
-        kernel: DMatrix::zeros(n, 0),
-    };
+    let (system, mut numbers) = coulomb(stiffness, load, friction);
+    numbers.cohesion = vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m];
+    numbers.gap = vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m];
     (system, numbers)
 }
 
