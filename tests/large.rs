@@ -13,7 +13,7 @@ use stickslip::contact::system::ContactSystem;
 use stickslip::contact::whole::{WholeInput, whole_lcp};
 use stickslip::lcp::driver::{Engine, Step, run};
 use stickslip::lcp::lemke::SchemeEngine;
-use stickslip::lcp::mirrored::{MirroredLcp, Operator};
+use stickslip::lcp::mirrored::MirroredLcp;
 use stickslip::lcp::outcome::{Outcome, Run};
 use stickslip::lcp::parametric::{End, Parametric, Reach};
 use stickslip::lcp::problem::{Lcp, Scale};
@@ -239,7 +239,7 @@ fn errors_of_a_long_walk(n: usize, pivots: usize) -> (f64, f64) {
     let matrix = &a * a.transpose() / n as f64 + DMatrix::identity(n, n) * 0.1;
     let load = |rng: &mut ChaCha8Rng| DVector::from_fn(n, |_, _| rng.random_range(-1.0..1.0));
     let mut lcp = MirroredLcp {
-        matrix: Operator::plain(matrix.clone()),
+        base: Arc::new(matrix.clone()),
         q: DVector::repeat(n, 1.0),
         covering: load(&mut rng),
         whole: (0..n).collect(),

@@ -64,8 +64,8 @@ pub fn check_contact(
 /// Checks an answer of a bare LCP from M and q; w is computed afresh.
 pub fn check_plain(lcp: &MirroredLcp, point: &Point) -> Check {
     let z = &point.z;
-    let matrix = lcp.matrix.written_out();
-    let response = lcp.matrix.times(z);
+    let matrix = lcp.matrix();
+    let response = lcp.times(z);
     let length = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut check = Check::default();
     for i in 0..lcp.size() {

@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
 use super::whole::{joint_constants, rows};
-use crate::lcp::mirrored::{Mirror, MirroredLcp, Operator};
+use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::Scale;
 use crate::lcp::ratio_test::TieRule;
@@ -196,7 +196,7 @@ pub fn contact_lcp_like(
             }
             Arc::new(DMatrix::from_vec(count, count, entries))
         },
-        |earlier| Arc::clone(earlier.lcp.matrix.base()),
+        |earlier| Arc::clone(&earlier.lcp.base),
     );
     let mut q = DVector::zeros(count);
     let mut d = DVector::zeros(count);
@@ -248,15 +248,8 @@ pub fn contact_lcp_like(
         plus_row[i] = Some(row);
         minus_row[i] = Some(count + k);
     }
-    let coupled = mirrors
-        .iter()
-        .map(|mirror| {
-            let mirror = mirror.as_ref()?;
-            Some((mirror.normal?, mirror.friction))
-        })
-        .collect();
     let lcp = MirroredLcp {
-        matrix: Operator::coupled(base, coupled),
+        base,
         q,
         covering: d,
         whole: (0..count).collect(),

@@ -16,6 +16,8 @@ use crate::watch::Watch;
 
 /// So many nodes are not cut further.
 const LEAF: usize = 64;
+/// In the place of a number: there is none.
+const NONE: u32 = u32::MAX;
 
 /// Where the unknowns are.
 #[derive(Clone, Copy, Debug)]
@@ -40,10 +42,10 @@ pub fn elimination_order(
     let n = k.order();
     let groups = Groups::new(places);
     let mut dissection = Dissection {
-        neighbors: Neighbors::new(k, &groups, places.last),
+        neighbors: Neighbors::new(k, &groups),
         points: groups.points,
         side: vec![Side::Elsewhere; groups.start.len() - 1],
-        number: vec![u32::MAX; groups.start.len() - 1],
+        number: vec![NONE; groups.start.len() - 1],
         out: Vec::with_capacity(groups.start.len() - 1),
         watch,
     };
@@ -64,21 +66,21 @@ struct Groups {
     start: Vec<usize>,
     rows: Vec<u32>,
     points: Vec<[f64; 2]>,
-    /// Group of each row; `u32::MAX` for those that come last.
+    /// Group of each row; `NONE` for those that come last.
     of_row: Vec<u32>,
 }
 
 impl Groups {
     fn new(places: Places) -> Groups {
-        let mut of_node = vec![u32::MAX; places.coordinates.len()];
-        let mut of_row = vec![u32::MAX; places.node.len()];
+        let mut of_node = vec![NONE; places.coordinates.len()];
+        let mut of_row = vec![NONE; places.node.len()];
         let (mut points, mut start) = (Vec::new(), vec![0_usize]);
         for (row, &node) in places.node.iter().enumerate() {
             if places.last[row] {
                 continue;
             }
             let group = &mut of_node[node as usize];
-            if *group == u32::MAX {
+            if *group == NONE {
                 *group = points.len() as u32;
                 points.push(places.coordinates[node as usize]);
                 start.push(0);
@@ -92,7 +94,7 @@ impl Groups {
         let mut next = start.clone();
         let mut rows = vec![0_u32; start[points.len()]];
         for (row, &group) in of_row.iter().enumerate() {
-            if group != u32::MAX {
+            if group != NONE {
                 rows[next[group as usize]] = row as u32;
                 next[group as usize] += 1;
             }
@@ -113,16 +115,17 @@ struct Neighbors {
 }
 
 impl Neighbors {
-    fn new(k: &SymmetricSparse, groups: &Groups, last: &[bool]) -> Neighbors {
+    fn new(k: &SymmetricSparse, groups: &Groups) -> Neighbors {
         let count = groups.points.len();
         let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(4 * count);
         // The group that last coupled to each.
-        let mut seen = vec![u32::MAX; count];
+        let mut seen = vec![NONE; count];
         for group in 0..count {
             for &column in &groups.rows[groups.start[group]..groups.start[group + 1]] {
                 for (row, _) in k.column(column as usize) {
                     let other = groups.of_row[row];
-                    if last[row] || other == group as u32 || seen[other as usize] == group as u32 {
+                    if [NONE, group as u32].contains(&other) || seen[other as usize] == group as u32
+                    {
                         continue;
                     }
                     seen[other as usize] = group as u32;
@@ -279,7 +282,7 @@ impl Dissection<'_> {
             rows.extend(
                 inside
                     .map(|&other| self.number[other as usize])
-                    .filter(|&number| number != u32::MAX),
+                    .filter(|&number| number != NONE),
             );
             rows[from..].sort_unstable();
             let mut kept = from;
@@ -293,7 +296,7 @@ impl Dissection<'_> {
             start.push(rows.len() as u32);
         }
         for &group in members {
-            self.number[group as usize] = u32::MAX;
+            self.number[group as usize] = NONE;
         }
         let n = members.len();
         let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);

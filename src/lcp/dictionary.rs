@@ -47,19 +47,12 @@ pub(crate) struct Dictionary {
     pub(crate) turned: Vec<bool>,
 }
 
-/// An affine function of the nonbasic variables, evaluated along one column: value and rate.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Along {
-    pub(crate) value: f64,
-    pub(crate) rate: f64,
-}
-
 impl Dictionary {
     /// All w basic, all z and p nonbasic, no row turned.
     pub(crate) fn new(lcp: &MirroredLcp) -> Dictionary {
         let size = lcp.size();
         let mut entries = Vec::with_capacity(size * (size + 1));
-        lcp.matrix.write_out(&mut entries);
+        lcp.write_matrix(&mut entries);
         entries.extend_from_slice(lcp.covering.as_slice());
         let mut column: Vec<Local> = (0..size).map(Local::Z).collect();
         column.push(Local::P);
@@ -193,31 +186,6 @@ impl Dictionary {
         }
     }
 
-    /// Value of the hidden member of the couple of row i.
-    pub(crate) fn hidden_value(&self, lcp: &MirroredLcp, i: usize) -> f64 {
-        let Some(mirror) = &lcp.mirrors[i] else {
-            return 0.0;
-        };
-        let normal = mirror.normal.map_or(0.0, |n| self.value_of(Local::W(n)));
-        2.0 * mirror.friction * normal + mirror.constant + mirror.covering * self.value_of(Local::P)
-            - self.value_of(Local::W(i))
-    }
-
-    /// Value of a variable at the vertex and its rate along the column `c`, whose entries are `rates`.
-    pub(crate) fn along(&self, variable: Local, c: usize, rates: &[f64]) -> Along {
-        match self.place(variable) {
-            Place::Row(r) => Along {
-                value: self.value[r],
-                rate: rates[r],
-            },
-            Place::Column(j) if j == c => Along {
-                value: 0.0,
-                rate: 1.0,
-            },
-            Place::Column(_) => Along::default(),
-        }
-    }
-
     /// Rate of a variable along the column `c`, whose entries are `rates`.
     #[inline]
     pub(crate) fn rate(&self, variable: Local, c: usize, rates: &[f64]) -> f64 {
@@ -227,21 +195,20 @@ impl Dictionary {
         }
     }
 
-    /// Value and rate of the hidden member of the couple of row i, from 2 f w_n + b + e p − w.
-    pub(crate) fn hidden(&self, lcp: &MirroredLcp, i: usize, c: usize, rates: &[f64]) -> Along {
-        let Some(mirror) = &lcp.mirrors[i] else {
-            return Along::default();
-        };
-        let own = self.along(Local::W(i), c, rates);
-        let p = self.along(Local::P, c, rates);
-        let normal = mirror
-            .normal
-            .map_or(Along::default(), |n| self.along(Local::W(n), c, rates));
-        let double = 2.0 * mirror.friction;
-        Along {
-            value: double * normal.value + mirror.constant + mirror.covering * p.value - own.value,
-            rate: double * normal.rate + mirror.covering * p.rate - own.rate,
-        }
+    /// Value of the hidden member of the couple of row i; 0 where it has none.
+    pub(crate) fn hidden_value(&self, lcp: &MirroredLcp, i: usize) -> f64 {
+        let value = |row| self.value_of(Local::W(row));
+        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| {
+            mirror.reflect(i, value, self.value_of(Local::P), 1.0)
+        })
+    }
+
+    /// Rate of the hidden member of the couple of row i along the column `c`; 0 where it has none.
+    pub(crate) fn hidden_rate(&self, lcp: &MirroredLcp, i: usize, c: usize, rates: &[f64]) -> f64 {
+        let rate = |row| self.rate(Local::W(row), c, rates);
+        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| {
+            mirror.reflect(i, rate, self.rate(Local::P, c, rates), 0.0)
+        })
     }
 
     /// Adds `factor` times the row of `variable` (the unit row if it is nonbasic) to a combination.
@@ -312,7 +279,7 @@ impl Dictionary {
         column: &[f64],
         step: f64,
     ) {
-        let pivot = self.hidden(lcp, i, c, column).rate;
+        let pivot = self.hidden_rate(lcp, i, c, column);
         let combination = self.hidden_row(lcp, i, -1.0 / pivot);
         self.advance(column, step);
         self.entries
@@ -332,18 +299,13 @@ impl Dictionary {
 
     /// M, q, d of the present orientations.
     fn oriented(&self, lcp: &MirroredLcp) -> (DMatrix<f64>, DVector<f64>, DVector<f64>) {
-        let (mut matrix, mut q, mut d) = (
-            lcp.matrix.written_out(),
-            lcp.q.clone(),
-            lcp.covering.clone(),
-        );
+        let (mut matrix, mut q, mut d) = (lcp.matrix(), lcp.q.clone(), lcp.covering.clone());
         for i in (0..self.size).filter(|&i| self.turned[i]) {
             let Some(mirror) = &lcp.mirrors[i] else {
                 continue;
             };
             for j in 0..self.size {
-                let normal = mirror.normal.map_or(0.0, |n| matrix[(n, j)]);
-                matrix[(i, j)] = 2.0 * mirror.friction * normal - matrix[(i, j)];
+                matrix[(i, j)] = mirror.reflect(i, |row| matrix[(row, j)], 0.0, 0.0);
             }
             (q[i], d[i]) = lcp.mirror_start(i, mirror);
         }

@@ -15,78 +15,6 @@ use nalgebra::{DMatrix, DVector};
 use super::dense::add_response;
 use super::problem::{Lcp, Scale};
 
-/// M over the primary rows, not stored for contact: M_i = S_i + f_i S_n(i) in the coupled rows (w = x⁺ = x_τ + f
-/// x_n), S_i in the others. S is shared between all LCPs of a system, whatever their loads and their friction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Operator {
-    base: Arc<DMatrix<f64>>,
-    /// n(i) and f_i of the coupled rows; no n(i) is coupled itself.
-    coupled: Vec<Option<(usize, f64)>>,
-}
-
-impl Operator {
-    /// A matrix as it is.
-    pub fn plain(matrix: DMatrix<f64>) -> Operator {
-        Operator {
-            coupled: vec![None; matrix.nrows()],
-            base: Arc::new(matrix),
-        }
-    }
-
-    /// S with f_i times row n(i) added to each coupled row i; `rows`: n(i) and f_i per row.
-    pub fn coupled(base: Arc<DMatrix<f64>>, rows: Vec<Option<(usize, f64)>>) -> Operator {
-        debug_assert!(base.is_square() && base.nrows() == rows.len());
-        Operator {
-            base,
-            coupled: rows,
-        }
-    }
-
-    /// S.
-    pub fn base(&self) -> &Arc<DMatrix<f64>> {
-        &self.base
-    }
-
-    /// n(i) and f_i of row i, where it is coupled.
-    pub(crate) fn coupling(&self, i: usize) -> Option<(usize, f64)> {
-        self.coupled[i]
-    }
-
-    /// S z → M z.
-    fn couple(&self, response: &mut [f64]) {
-        for (i, coupled) in self.coupled.iter().enumerate() {
-            if let Some((n, f)) = *coupled {
-                response[i] += f * response[n];
-            }
-        }
-    }
-
-    /// Entries column by column, appended.
-    pub(crate) fn write_out(&self, into: &mut Vec<f64>) {
-        for column in self.base.column_iter() {
-            let start = into.len();
-            into.extend_from_slice(column.as_slice());
-            self.couple(&mut into[start..]);
-        }
-    }
-
-    /// M as a matrix.
-    pub fn written_out(&self) -> DMatrix<f64> {
-        let n = self.base.nrows();
-        let mut entries = Vec::with_capacity(n * n);
-        self.write_out(&mut entries);
-        DMatrix::from_vec(n, n, entries)
-    }
-
-    /// M z.
-    pub fn times(&self, z: &[f64]) -> DVector<f64> {
-        let mut response = DVector::zeros(self.base.nrows());
-        add_response(response.as_mut_slice(), self.base.as_slice(), z);
-        self.couple(response.as_mut_slice());
-        response
-    }
-}
-
 /// The mirror of a primary row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mirror {
@@ -102,11 +30,22 @@ pub struct Mirror {
     pub covering: f64,
 }
 
+impl Mirror {
+    /// 2 f w_n + `shift` b + e p − w_i for row i, from the w of the primary rows: the value of w_i' where `shift` = 1, its
+    /// rate or an entry of its row where `shift` = 0.
+    #[inline]
+    pub(crate) fn reflect(&self, i: usize, w: impl Fn(usize) -> f64, p: f64, shift: f64) -> f64 {
+        let normal = self.normal.map_or(0.0, &w);
+        2.0 * self.friction * normal + shift * self.constant + self.covering * p - w(i)
+    }
+}
+
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MirroredLcp {
-    /// M over the primary rows, N × N.
-    pub matrix: Operator,
+    /// S, N × N, which M follows from: M_i = S_i + f_i S_n(i) in rows with a mirror and a normal force (w = x⁺ = x_τ +
+    /// f x_n), S_i in the others. Shared between all LCPs of a system, whatever their loads and their friction.
+    pub base: Arc<DMatrix<f64>>,
     /// q, N.
     pub q: DVector<f64>,
     /// d, N; ≥ 0 for Lemke's algorithm, of any sign as the increment of a path.
@@ -131,7 +70,7 @@ impl MirroredLcp {
     pub fn plain(lcp: &Lcp<f64>) -> MirroredLcp {
         let n = lcp.size();
         MirroredLcp {
-            matrix: Operator::plain(DMatrix::from_fn(n, n, |i, j| lcp.matrix[i][j])),
+            base: Arc::new(DMatrix::from_fn(n, n, |i, j| lcp.matrix[i][j])),
             q: DVector::from_column_slice(&lcp.q),
             covering: DVector::from_column_slice(&lcp.covering),
             whole: (0..n).collect(),
@@ -141,14 +80,63 @@ impl MirroredLcp {
         }
     }
 
+    /// n(i) and f_i of a row that is coupled to a normal force.
+    pub(crate) fn coupling(&self, i: usize) -> Option<(usize, f64)> {
+        let mirror = self.mirrors[i].as_ref()?;
+        Some((mirror.normal?, mirror.friction))
+    }
+
+    /// A column of S → of M, or S z → M z.
+    fn couple(&self, response: &mut [f64]) {
+        for i in 0..self.size() {
+            if let Some((n, f)) = self.coupling(i) {
+                response[i] += f * response[n];
+            }
+        }
+    }
+
+    /// The entries of M column by column, appended.
+    pub(crate) fn write_matrix(&self, into: &mut Vec<f64>) {
+        for column in self.base.column_iter() {
+            let start = into.len();
+            into.extend_from_slice(column.as_slice());
+            self.couple(&mut into[start..]);
+        }
+    }
+
+    /// M over the primary rows, N × N.
+    pub fn matrix(&self) -> DMatrix<f64> {
+        let n = self.size();
+        let mut entries = Vec::with_capacity(n * n);
+        self.write_matrix(&mut entries);
+        DMatrix::from_vec(n, n, entries)
+    }
+
+    /// M z.
+    pub fn times(&self, z: &[f64]) -> DVector<f64> {
+        let mut response = DVector::zeros(self.size());
+        add_response(response.as_mut_slice(), self.base.as_slice(), z);
+        self.couple(response.as_mut_slice());
+        response
+    }
+
+    /// Primary row of each row of the whole LCP, and whether it is the mirror of that.
+    pub(crate) fn primary_rows(&self) -> Vec<(usize, bool)> {
+        let mut rows = vec![(0, false); self.whole_size];
+        for (i, mirror) in self.mirrors.iter().enumerate() {
+            rows[self.whole[i]] = (i, false);
+            if let Some(mirror) = mirror {
+                rows[mirror.whole] = (i, true);
+            }
+        }
+        rows
+    }
+
     /// q of the mirror of row i, and its entry of the covering vector.
-    pub(crate) fn mirror_start(&self, row: usize, mirror: &Mirror) -> (f64, f64) {
-        let (q_n, d_n) = mirror
-            .normal
-            .map_or((0.0, 0.0), |n| (self.q[n], self.covering[n]));
+    pub(crate) fn mirror_start(&self, i: usize, mirror: &Mirror) -> (f64, f64) {
         (
-            2.0 * mirror.friction * q_n + mirror.constant - self.q[row],
-            2.0 * mirror.friction * d_n + mirror.covering - self.covering[row],
+            mirror.reflect(i, |row| self.q[row], 0.0, 1.0),
+            mirror.reflect(i, |row| self.covering[row], 1.0, 0.0),
         )
     }
 }

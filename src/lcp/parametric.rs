@@ -256,7 +256,7 @@ impl Parametric {
         if self.driver == Local::P {
             return None;
         }
-        let rate = stand.dictionary.along(Local::P, c, &stand.column).rate;
+        let rate = stand.dictionary.rate(Local::P, c, &stand.column);
         let size = stand.rate_size(Local::P, stand.rate_total(c), 0.0);
         (rate.abs() <= SUSPICIOUS * size).then_some((rate, size))
     }
@@ -266,7 +266,7 @@ impl Parametric {
     fn t_rate(&self, c: usize, recorded: bool) -> f64 {
         let stand = &self.stand;
         let Some((faint, size)) = self.faint_t_rate(c) else {
-            return stand.dictionary.along(Local::P, c, &stand.column).rate;
+            return stand.dictionary.rate(Local::P, c, &stand.column);
         };
         let entering = stand.variable(self.driver, false);
         let rate = match entering {
@@ -387,11 +387,7 @@ impl Parametric {
         }
         let (mut tied, mut step) = self.blocking(c);
         // Where the target comes before any row that blocks, no rate near the noise decides anything.
-        let raw = self
-            .stand
-            .dictionary
-            .along(Local::P, c, &self.stand.column)
-            .rate;
+        let raw = self.stand.dictionary.rate(Local::P, c, &self.stand.column);
         let ends_here = reach.target.is_finite()
             && raw > 0.0
             && (reach.target - self.stand.p()).max(0.0) / raw <= step;

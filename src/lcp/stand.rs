@@ -69,8 +69,8 @@ pub(crate) struct Stand {
     pub(crate) dictionary: Dictionary,
     pub(crate) sizes: Sizes,
     row_sizes: RowSizes,
-    /// Primary row of each row of the whole LCP.
-    primary: Vec<usize>,
+    /// Primary row of each row of the whole LCP, and whether it is the mirror of that.
+    primary: Vec<(usize, bool)>,
     /// Rates of the rows along the column fetched last.
     pub(crate) column: Vec<f64>,
     /// Σ column_k |Δz_k| over the basic z along it.
@@ -87,19 +87,12 @@ pub(crate) struct Stand {
 
 impl Stand {
     pub(crate) fn new(lcp: Arc<MirroredLcp>, dictionary: Dictionary, sizes: Sizes) -> Stand {
-        let mut primary = vec![0; lcp.whole_size];
-        for (i, mirror) in lcp.mirrors.iter().enumerate() {
-            primary[lcp.whole[i]] = i;
-            if let Some(mirror) = mirror {
-                primary[mirror.whole] = i;
-            }
-        }
         let mut stand = Stand {
+            primary: lcp.primary_rows(),
             lcp,
             dictionary,
             sizes,
             row_sizes: RowSizes::default(),
-            primary,
             column: Vec::new(),
             column_size: 0.0,
             ratios: Vec::new(),
@@ -178,6 +171,10 @@ impl Stand {
     pub(crate) fn fetch(&mut self, c: usize) {
         let mut column = std::mem::take(&mut self.column);
         self.dictionary.fetch_column(c, &mut column);
+        self.set_column(column);
+    }
+
+    fn set_column(&mut self, column: Vec<f64>) {
         self.column_size = self.size_of(&column);
         self.column = column;
     }
@@ -293,7 +290,7 @@ impl Stand {
     /// The hidden members that fall when the variable of column c grows.
     fn falling_mirrors(&self, c: usize, watch_slipping: bool) -> Vec<Candidate> {
         let d = &self.dictionary;
-        let (p, p_rate) = (d.along(Local::P, c, &self.column), self.p_rate_size(c));
+        let (p, p_rate) = (self.p(), self.p_rate_size(c));
         let (size, value_size) = (self.rate_total(c), self.size_of(&d.value));
         let mut falling = Vec::new();
         for (i, mirror) in self.lcp.mirrors.iter().enumerate() {
@@ -306,13 +303,10 @@ impl Stand {
             if !visible && (mirror.covering > 0.0 || !watch_slipping) {
                 continue;
             }
-            let rate = |local: Local| d.rate(local, c, &self.column);
-            let normal_rate = mirror.normal.map_or(0.0, |n| rate(Local::W(n)));
-            let own = rate(Local::W(i));
-            if 2.0 * mirror.friction * normal_rate + mirror.covering * p.rate - own >= 0.0 {
+            let rate = d.hidden_rate(&self.lcp, i, c, &self.column);
+            if rate >= 0.0 {
                 continue;
             }
-            let along = d.hidden(&self.lcp, i, c, &self.column);
             // An open pair's x_n is an exact zero and no source of noise.
             let normal = mirror.normal.filter(|&n| is_visible(d.place(Local::W(n))));
             let sum = |of: &dyn Fn(Local) -> f64, p: f64| {
@@ -321,14 +315,14 @@ impl Stand {
                 own + 2.0 * mirror.friction * normal + (mirror.covering * p).abs()
             };
             let rate_size = sum(&|local| self.rate_size(local, size, p_rate), p_rate);
-            if along.rate < -NOISE * rate_size {
-                let natural = |local: Local| self.value_size(local, value_size, p.value);
-                let noise = NOISE * (sum(&natural, p.value) + mirror.constant.abs());
+            if rate < -NOISE * rate_size {
+                let natural = |local: Local| self.value_size(local, value_size, p);
+                let noise = NOISE * (sum(&natural, p) + mirror.constant.abs());
                 falling.push(Candidate {
                     variable: Local::W(i),
                     hidden: true,
-                    value: along.value.max(0.0),
-                    fall: -along.rate,
+                    value: d.hidden_value(&self.lcp, i).max(0.0),
+                    fall: -rate,
                     noise,
                 });
             }
@@ -352,7 +346,7 @@ impl Stand {
         ) {
             (Local::W(i), true, Place::Row(r)) => {
                 // Turning changes row r and the column of z_i, which is not the entering one.
-                let rate = self.dictionary.hidden(&self.lcp, i, c, &self.column).rate;
+                let rate = self.dictionary.hidden_rate(&self.lcp, i, c, &self.column);
                 self.dictionary.turn(&self.lcp, i);
                 self.column[r] = rate;
                 self.pivot(r, c, step);
@@ -441,7 +435,7 @@ impl Stand {
             if lcp.mirrors[i].is_some() {
                 put(
                     self.variable(Local::W(i), true),
-                    d.hidden(lcp, i, c, &self.column).rate,
+                    d.hidden_rate(lcp, i, c, &self.column),
                     4.0 * NOISE * self.rate_size(Local::W(i), size, p_rate),
                 );
             }

@@ -95,6 +95,12 @@ impl UpdatedMatrix {
         }
     }
 
+    /// The same for column j of A.
+    fn start_column_multipliers(&self, v: &mut [f64], j: usize) {
+        let stored = self.stored(j);
+        self.start_multipliers(v, |row| stored[row], |column| f64::from(column == j));
+    }
+
     /// Adds to the multipliers of many columns what each step gives to those after it.
     fn finish_multipliers(&self, v: &mut [f64], columns: usize) {
         let steps = self.waiting;
@@ -157,8 +163,7 @@ impl UpdatedMatrix {
                 rows.iter()
                     .map(|&row| if self.cleared[row] { 0.0 } else { stored[row] }),
             );
-            let v = &mut multipliers[steps * k..steps * (k + 1)];
-            self.start_multipliers(v, |row| stored[row], |column| f64::from(column == j));
+            self.start_column_multipliers(&mut multipliers[steps * k..steps * (k + 1)], j);
         }
         self.finish_multipliers(&mut multipliers, columns.len());
         let mut waiting = Vec::with_capacity(rows.len() * self.waiting);
@@ -225,7 +230,7 @@ impl UpdatedMatrix {
         let u = self.next_step(combination);
         u.fill(0.0);
         self.clear_row(row);
-        self.end_step(row);
+        self.end_step();
     }
 
     /// Adds `u` times the combination to all other columns, after clearing column `c`, which becomes `factor` · u;
@@ -245,12 +250,9 @@ impl UpdatedMatrix {
         match row {
             Some(row) => {
                 self.clear_row(row);
-                self.end_step(row);
+                self.end_step();
             }
-            None => self.waiting += 1,
-        }
-        if self.waiting == self.limit {
-            self.flush();
+            None => self.end_step(),
         }
     }
 
@@ -268,9 +270,6 @@ impl UpdatedMatrix {
 
     /// Notes how the multiplier of a new step comes about, and returns the room for its u.
     fn next_step(&mut self, combination: &Combination) -> &mut [f64] {
-        if self.waiting == self.limit {
-            self.flush();
-        }
         let step = self.waiting;
         for i in 0..step {
             let u = &self.u[i * self.rows..(i + 1) * self.rows];
@@ -291,18 +290,22 @@ impl UpdatedMatrix {
         &mut self.u[step * self.rows..(step + 1) * self.rows]
     }
 
+    /// Clears a row before the step at hand, whose u counts as 1 in it.
     fn clear_row(&mut self, row: usize) {
         for i in 0..self.waiting {
             self.u[row + i * self.rows] = 0.0;
         }
+        self.u[row + self.waiting * self.rows] = 1.0;
         if !std::mem::replace(&mut self.cleared[row], true) {
             self.cleared_rows.push(row);
         }
     }
 
-    fn end_step(&mut self, row: usize) {
-        self.u[row + self.waiting * self.rows] = 1.0;
+    fn end_step(&mut self) {
         self.waiting += 1;
+        if self.waiting == self.limit {
+            self.flush();
+        }
     }
 
     fn forget(&mut self) {
@@ -317,20 +320,12 @@ impl UpdatedMatrix {
     /// Multiplies the waiting steps out.
     fn flush(&mut self) {
         let (steps, rows) = (self.waiting, self.rows);
-        if steps == 0 {
-            return;
-        }
         let mut v = vec![0.0; steps * self.columns];
-        for (column, v) in self.t.chunks_exact_mut(rows).zip(v.chunks_exact_mut(steps)) {
-            for &(step, row, factor) in &self.from_rows {
-                v[step] += factor * column[row];
-            }
+        for (j, v) in v.chunks_exact_mut(steps).enumerate() {
+            self.start_column_multipliers(v, j);
             for &row in &self.cleared_rows {
-                column[row] = 0.0;
+                self.t[row + j * rows] = 0.0;
             }
-        }
-        for &(step, column, factor) in &self.from_units {
-            v[step + steps * column] += factor;
         }
         self.flushes += 1;
         self.finish_multipliers(&mut v, self.columns);

@@ -59,81 +59,55 @@ struct Whole<'a> {
     rows: Vec<(usize, bool)>,
 }
 
-/// What a row of M is made of: factor · S_row + normal_factor · S_normal.
+/// What a row of M is made of: S_i + f S_n, or f S_n − S_i in a mirror.
 struct Parts {
     row: usize,
-    factor: f64,
-    normal: usize,
-    normal_factor: f64,
+    mirrored: bool,
+    coupling: Option<(usize, f64)>,
 }
 
 impl<'a> Whole<'a> {
     fn new(lcp: &'a MirroredLcp) -> Whole<'a> {
-        let mut rows = vec![(0, false); lcp.whole_size];
-        for i in 0..lcp.size() {
-            rows[lcp.whole[i]] = (i, false);
-            if let Some(mirror) = &lcp.mirrors[i] {
-                rows[mirror.whole] = (i, true);
-            }
-        }
+        let rows = lcp.primary_rows();
         Whole { lcp, rows }
     }
 
-    /// Applies w_i' = 2 f w_n + extra − w_i where row k is a mirror.
-    fn combine(
-        &self,
-        k: usize,
-        read: impl Fn(usize) -> f64,
-        extra: impl Fn(f64, f64) -> f64,
-    ) -> f64 {
+    /// Row k of what `read` gives for the primary rows; see [`Mirror::reflect`].
+    fn combine(&self, k: usize, read: impl Fn(usize) -> f64, p: f64, shift: f64) -> f64 {
         let (i, mirrored) = self.rows[k];
         match (&self.lcp.mirrors[i], mirrored) {
-            (Some(mirror), true) => {
-                let normal = mirror.normal.map_or(0.0, &read);
-                2.0 * mirror.friction * normal + extra(mirror.constant, mirror.covering) - read(i)
-            }
+            (Some(mirror), true) => mirror.reflect(i, read, p, shift),
             _ => read(i),
         }
     }
 
-    /// What row k of M is made of: row i of S times a factor, and row n of S times another.
     fn parts(&self, k: usize) -> Parts {
-        let (i, mirrored) = self.rows[k];
-        let (n, f) = self.lcp.matrix.coupling(i).unwrap_or((i, 0.0));
-        let mut parts = Parts {
-            row: i,
-            factor: 1.0,
-            normal: n,
-            normal_factor: f,
-        };
-        if let (Some(mirror), true) = (&self.lcp.mirrors[i], mirrored) {
-            parts.factor = -1.0;
-            parts.normal_factor = -f;
-            if let Some(n) = mirror.normal {
-                parts.normal = n;
-                parts.normal_factor += 2.0 * mirror.friction;
-            }
+        let (row, mirrored) = self.rows[k];
+        Parts {
+            row,
+            mirrored,
+            coupling: self.lcp.coupling(row),
         }
-        parts
     }
 
     /// Entries of a column of M in the rows made of the given parts.
     fn column<'b>(&'b self, column: usize, rows: &'b [Parts]) -> impl Iterator<Item = f64> + 'b {
         let (j, negative) = self.rows[column];
         let sign = if negative { -1.0 } else { 1.0 };
-        let stored = self.lcp.matrix.base().column(j);
+        let stored = self.lcp.base.column(j);
         rows.iter().map(move |parts| {
-            let value = parts.factor * stored[parts.row];
-            sign * (value + parts.normal_factor * stored[parts.normal])
+            let own = stored[parts.row];
+            let own = if parts.mirrored { -own } else { own };
+            sign * (own + parts.coupling.map_or(0.0, |(n, f)| f * stored[n]))
         })
     }
 
     fn q(&self, k: usize) -> f64 {
-        self.combine(k, |i| self.lcp.q[i], |constant, _| constant)
+        self.combine(k, |i| self.lcp.q[i], 0.0, 1.0)
     }
 
     fn d(&self, k: usize) -> f64 {
-        self.combine(k, |i| self.lcp.covering[i], |_, covering| covering)
+        self.combine(k, |i| self.lcp.covering[i], 1.0, 0.0)
     }
 
     fn system(&self, basis: &Basis) -> Factor {
@@ -160,16 +134,10 @@ impl<'a> Whole<'a> {
             let (j, negative) = self.rows[k];
             primary[j] += if negative { -value } else { value };
         }
-        let mut w = self.lcp.matrix.times(&primary);
+        let mut w = self.lcp.times(&primary);
         w += shift * &self.lcp.q + p * &self.lcp.covering;
         let mut whole: Vec<f64> = (0..self.lcp.whole_size)
-            .map(|k| {
-                self.combine(
-                    k,
-                    |i| w[i],
-                    |constant, covering| shift * constant + p * covering,
-                )
-            })
+            .map(|k| self.combine(k, |i| w[i], p, shift))
             .collect();
         for &k in &basis.active {
             whole[k] = 0.0;

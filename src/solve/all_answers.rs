@@ -430,7 +430,7 @@ fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers,
 
 /// An enumerated answer of a bare LCP as a solved state, freshly checked; rules and size as `like`.
 pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], like: &Answer) -> Solved {
-    let w = lcp.matrix.times(z) + &lcp.q;
+    let w = lcp.times(z) + &lcp.q;
     let point = Point {
         w: w.iter().copied().collect(),
         z: z.to_vec(),

@@ -30,16 +30,10 @@ pub const EXACT_ROWS: usize = 3 * EXACT_PAIRS;
 /// Every row of a mirrored LCP written out.
 pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
     let n = lcp.whole_size;
-    // Primary row and sign of every column.
-    let mut column = vec![(0, 1.0); n];
-    for i in 0..lcp.size() {
-        column[lcp.whole[i]] = (i, 1.0);
-        if let Some(mirror) = &lcp.mirrors[i] {
-            column[mirror.whole] = (i, -1.0);
-        }
-    }
+    let columns = lcp.primary_rows();
     let spread = |row: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        column.iter().map(|&(j, sign)| sign * row(j)).collect()
+        let entry = |&(j, mirrored): &(usize, bool)| if mirrored { -row(j) } else { row(j) };
+        columns.iter().map(entry).collect()
     };
     let mut whole = Lcp {
         matrix: vec![Vec::new(); n],
@@ -47,10 +41,10 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
         covering: vec![0.0; n],
         scale: Scale {
             row: vec![0.0; n],
-            column: column.iter().map(|&(j, _)| lcp.scale.column[j]).collect(),
+            column: columns.iter().map(|&(j, _)| lcp.scale.column[j]).collect(),
         },
     };
-    let matrix = lcp.matrix.written_out();
+    let matrix = lcp.matrix();
     for i in 0..lcp.size() {
         let k = lcp.whole[i];
         whole.matrix[k] = spread(&|j| matrix[(i, j)]);
@@ -61,8 +55,7 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
             continue;
         };
         let k = mirror.whole;
-        let normal = |j: usize| mirror.normal.map_or(0.0, |n| matrix[(n, j)]);
-        whole.matrix[k] = spread(&|j| 2.0 * mirror.friction * normal(j) - matrix[(i, j)]);
+        whole.matrix[k] = spread(&|j| mirror.reflect(i, |row| matrix[(row, j)], 0.0, 0.0));
         (whole.q[k], whole.covering[k]) = lcp.mirror_start(i, mirror);
         whole.scale.row[k] = lcp.scale.row[i];
     }

@@ -69,7 +69,7 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCh
 
 /// M, row by row.
 fn exact_matrix(lcp: &MirroredLcp) -> Vec<Vec<BigRational>> {
-    let matrix = lcp.matrix.written_out();
+    let matrix = lcp.matrix();
     matrix
         .row_iter()
         .map(|row| row.iter().map(|entry| exact(*entry)).collect())

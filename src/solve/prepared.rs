@@ -1,6 +1,7 @@
 //! What depends on the geometry alone: factorization, R, RF per load case. Computed once per scenario and reused
 //! for every change of f, c, gap and load factors.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
@@ -8,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::contact::given::{GivenError, ReleasedTangentials, given_system};
 use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
 use crate::fem::{MainSystem, MainSystemError};
-use crate::lcp::mirrored::{MirroredLcp, Operator};
+use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
 use crate::model::pair::{JointDirection, joints};
 use crate::model::parameter::Number;
@@ -121,7 +122,7 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
 fn prepare_plain(given: &GivenLcp) -> Prepared {
     let n = given.q.len();
     let lcp = MirroredLcp {
-        matrix: Operator::plain(DMatrix::from_fn(n, n, |i, j| given.matrix[i][j])),
+        base: Arc::new(DMatrix::from_fn(n, n, |i, j| given.matrix[i][j])),
         q: DVector::zeros(n),
         covering: given.covering.as_ref().map_or_else(
             || DVector::repeat(n, 1.0),

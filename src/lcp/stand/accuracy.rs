@@ -1,5 +1,7 @@
 //! The watch over errors: the numbers of a stand against the data, their refinement, the dictionary built afresh.
 
+use nalgebra::DVector;
+
 use super::super::dictionary::{Local, Place};
 use super::{Candidate, SUSPICIOUS, Stand};
 
@@ -28,54 +30,14 @@ impl Stand {
         !self.fresh && self.relative_fall(c, tied) <= SUSPICIOUS
     }
 
-    /// z of the primary rows with the sign of their orientation (z⁺ − z⁻ for couples).
-    fn signed(&self, z: impl Fn(usize) -> f64) -> Vec<f64> {
-        let turned = self.dictionary.turned.iter().enumerate();
-        turned
-            .map(|(i, &turned)| if turned { -z(i) } else { z(i) })
-            .collect()
+    /// The values at the vertex beside those that the data give.
+    fn values(&self) -> Numbers<'_> {
+        Numbers::new(self, &self.dictionary.value, None, 1.0)
     }
 
-    /// Largest error of column c against M Δz + d Δp over all rows, relative to their natural sizes.
-    fn column_error(&self, c: usize) -> f64 {
-        let d = &self.dictionary;
-        let along = |local: Local| d.along(local, c, &self.column).rate;
-        let z = self.signed(|i| along(Local::Z(i)));
-        let p = along(Local::P);
-        let size = self.rate_total(c);
-        let response = self.lcp.matrix.times(&z);
-        (0..self.lcp.size())
-            .map(|i| {
-                let w = response[i] + self.lcp.covering[i] * p;
-                let held = if d.turned[i] {
-                    d.hidden(&self.lcp, i, c, &self.column).rate
-                } else {
-                    along(Local::W(i))
-                };
-                let own = self.rate_size(Local::W(i), size, p).max(f64::MIN_POSITIVE);
-                (w - held).abs() / own
-            })
-            .fold(0.0, larger)
-    }
-
-    /// Largest error of the dictionary's values against w = M z + q + d p, relative to their natural sizes.
-    fn drift(&self) -> f64 {
-        let d = &self.dictionary;
-        let z = self.signed(|i| d.value_of(Local::Z(i)));
-        let p = self.p();
-        let size = self.size_of(&d.value);
-        let response = self.lcp.matrix.times(&z);
-        (0..self.lcp.size())
-            .map(|i| {
-                let w = response[i] + self.lcp.q[i] + self.lcp.covering[i] * p;
-                let held = if d.turned[i] {
-                    d.hidden_value(&self.lcp, i)
-                } else {
-                    d.value_of(Local::W(i))
-                };
-                (w - held).abs() / self.value_size(Local::W(i), size, p).max(f64::MIN_POSITIVE)
-            })
-            .fold(0.0, larger)
+    /// The rates along column c, which was fetched last, beside those that the data give.
+    fn rates(&self, c: usize) -> Numbers<'_> {
+        Numbers::new(self, &self.column, Some(c), 0.0)
     }
 
     /// By how much rounding may move a value, relative to the largest load: where the responses of single
@@ -86,75 +48,40 @@ impl Stand {
         ROUNDING * row * self.size_of(&self.dictionary.value) / load
     }
 
-    /// One step of iterative refinement: the equations of the scheme evaluated from the data, solved by the dictionary.
-    /// `held`: a number for each row, values (`shift` 1, no `entering`) or rates along the column `entering` (`shift`
-    /// 0).
-    fn corrected(&self, held: &[f64], entering: Option<usize>, shift: f64) -> Vec<f64> {
-        let (d, lcp) = (&self.dictionary, &self.lcp);
-        let nonbasic = |c: usize| f64::from(entering == Some(c));
-        let number = |local: Local| match d.place(local) {
-            Place::Row(r) => held[r],
-            Place::Column(c) => nonbasic(c),
-        };
-        let p = number(Local::P);
-        let w = lcp.matrix.times(&self.signed(|i| number(Local::Z(i))));
-        let w = w + shift * &lcp.q + p * &lcp.covering;
-        let oriented = |i: usize| match &lcp.mirrors[i] {
-            Some(mirror) if d.turned[i] => {
-                let normal = mirror.normal.map_or(0.0, |n| w[n]);
-                let sum = 2.0 * mirror.friction * normal + mirror.covering * p;
-                sum + shift * mirror.constant - w[i]
-            }
-            _ => w[i],
-        };
-        let wrong: Vec<(usize, f64)> = d
-            .column
-            .iter()
-            .enumerate()
-            .filter_map(|(c, &local)| match local {
-                Local::W(i) => Some((c, nonbasic(c) - oriented(i))),
-                _ => None,
-            })
-            .collect();
-        let change = d.combined_columns(&wrong);
-        std::iter::zip(&d.row, std::iter::zip(held, change))
-            .map(|(&local, (held, change))| match local {
-                Local::W(i) => oriented(i) + change,
-                _ => held + change,
-            })
-            .collect()
-    }
-
     /// Refines the values.
     pub(crate) fn refine(&mut self) {
-        self.dictionary.value = self.corrected(&self.dictionary.value, None, 1.0);
+        self.dictionary.value = self.values().corrected();
     }
 
     /// Makes the column fetched last, on whose small rate in the `tied` rows a decision hangs, as true to the data as it
     /// can be made: by refinement, or where the dictionary is too far off, its row as well, by building it afresh.
     /// `false` (and nothing changed): the equations of the scheme are singular.
     pub(crate) fn confirm(&mut self, c: usize, tied: &[Candidate]) -> bool {
-        let fall = self.relative_fall(c, tied);
-        let error = self.column_error(c);
-        if error > REFINED * fall {
-            if !self.refresh() {
-                return false;
-            }
-            self.fetch(c);
+        let bearable = REFINED * self.relative_fall(c, tied);
+        let rates = self.rates(c);
+        if rates.error(self.rate_total(c)) <= bearable {
+            let refined = rates.corrected();
+            self.set_column(refined);
+            return true;
         }
+        if !self.refresh() {
+            return false;
+        }
+        self.fetch(c);
         self.refine_column(c);
         true
     }
 
     /// Refines the column fetched last.
     pub(crate) fn refine_column(&mut self, c: usize) {
-        self.column = self.corrected(&self.column, Some(c), 0.0);
-        self.column_size = self.size_of(&self.column);
+        let refined = self.rates(c).corrected();
+        self.set_column(refined);
     }
 
     /// Whether the dictionary's values still agree with the data.
     fn agrees(&self) -> bool {
-        self.drift() <= DRIFT
+        let size = self.size_of(&self.dictionary.value);
+        self.values().error(size) <= DRIFT
     }
 
     /// Builds the dictionary afresh from the data; `false` where the equations of the scheme are singular.
@@ -173,6 +100,102 @@ impl Stand {
             return true;
         }
         self.fresh || self.agrees() || self.refresh()
+    }
+}
+
+/// The numbers of all variables, values or rates, as the dictionary holds them, and w as the data give it.
+struct Numbers<'a> {
+    stand: &'a Stand,
+    /// Of the basic variables, row by row.
+    held: &'a [f64],
+    /// Column of the variable that grows; the others are zero.
+    entering: Option<usize>,
+    /// 1 for values, 0 for rates: whether the constants count.
+    shift: f64,
+    p: f64,
+    /// M z + shift q + d p over the primary rows.
+    w: DVector<f64>,
+}
+
+impl<'a> Numbers<'a> {
+    fn new(stand: &'a Stand, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a> {
+        let mut numbers = Numbers {
+            stand,
+            held,
+            entering,
+            shift,
+            p: 0.0,
+            w: DVector::zeros(0),
+        };
+        let z: Vec<f64> = std::iter::zip(0.., &stand.dictionary.turned)
+            .map(|(i, &turned)| {
+                let z = numbers.of(Local::Z(i));
+                // z⁺ − z⁻ for couples.
+                if turned { -z } else { z }
+            })
+            .collect();
+        numbers.p = numbers.of(Local::P);
+        let lcp = &stand.lcp;
+        numbers.w = lcp.times(&z) + shift * &lcp.q + numbers.p * &lcp.covering;
+        numbers
+    }
+
+    fn nonbasic(&self, c: usize) -> f64 {
+        f64::from(self.entering == Some(c))
+    }
+
+    /// As the dictionary holds it.
+    fn of(&self, local: Local) -> f64 {
+        match self.stand.dictionary.place(local) {
+            Place::Row(r) => self.held[r],
+            Place::Column(c) => self.nonbasic(c),
+        }
+    }
+
+    /// `w` of row i where it is turned round, from the w of the primary rows, and the other way.
+    fn turned(&self, i: usize, w: impl Fn(usize) -> f64) -> f64 {
+        match &self.stand.lcp.mirrors[i] {
+            Some(mirror) if self.stand.dictionary.turned[i] => {
+                mirror.reflect(i, w, self.p, self.shift)
+            }
+            _ => w(i),
+        }
+    }
+
+    /// The largest difference between the dictionary and the data, relative to the natural sizes of the rows; `size`: Σ
+    /// column_k |z_k|.
+    fn error(&self, size: f64) -> f64 {
+        let stand = self.stand;
+        (0..stand.lcp.size())
+            .map(|i| {
+                let held = self.turned(i, |row| self.of(Local::W(row)));
+                let natural =
+                    stand.rate_size(Local::W(i), size, self.p) + self.shift * stand.sizes.q[i];
+                (self.w[i] - held).abs() / natural.max(f64::MIN_POSITIVE)
+            })
+            .fold(0.0, larger)
+    }
+
+    /// One step of iterative refinement: the equations of the scheme as the data give them, solved by the dictionary.
+    fn corrected(&self) -> Vec<f64> {
+        let d = &self.stand.dictionary;
+        let from_data = |i: usize| self.turned(i, |row| self.w[row]);
+        let wrong: Vec<(usize, f64)> = d
+            .column
+            .iter()
+            .enumerate()
+            .filter_map(|(c, &local)| match local {
+                Local::W(i) => Some((c, self.nonbasic(c) - from_data(i))),
+                _ => None,
+            })
+            .collect();
+        let change = d.combined_columns(&wrong);
+        std::iter::zip(&d.row, std::iter::zip(self.held, change))
+            .map(|(&local, (held, change))| match local {
+                Local::W(i) => from_data(i) + change,
+                _ => held + change,
+            })
+            .collect()
     }
 }
 

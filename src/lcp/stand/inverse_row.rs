@@ -23,8 +23,8 @@ impl Stand {
 
     /// Column of the nonbasic w that stands in row `whole` of the whole LCP.
     fn nonbasic_w(&self, whole: usize) -> Option<usize> {
-        let i = self.primary[whole];
-        if self.variable(Local::W(i), false) != Variable::W(whole) {
+        let (i, mirrored) = self.primary[whole];
+        if mirrored != self.dictionary.turned[i] {
             return None;
         }
         self.column_of(Local::W(i))
