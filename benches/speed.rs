@@ -42,14 +42,8 @@ fn lcp(ready: &Ready, friction: f64) -> ContactLcp {
 /// From R, RF and f to the vertex: what the yardsticks of `against.py` do from M and q.
 fn lemke(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("lemke");
-    group
-        .sample_size(10)
-        .measurement_time(Duration::from_secs(3));
-    let sizes: &[usize] = if is_large() {
-        &[50, 100, 300, 1000]
-    } else {
-        &[50, 100, 300]
-    };
+    group.sample_size(10).measurement_time(Duration::from_secs(3));
+    let sizes: &[usize] = if is_large() { &[50, 100, 300, 1000] } else { &[50, 100, 300] };
     for &pairs in sizes {
         let ready = Ready::new(&Plates::with_pairs(pairs, 0.4));
         for friction in [0.1, 0.4, 2.0] {
@@ -59,10 +53,7 @@ fn lemke(criterion: &mut Criterion) {
                 bench.iter(|| black_box(run_scheme(&contact.lcp, rule.clone(), &Quiet)));
             });
         }
-        let symmetric = Plates {
-            pull: Pull::Symmetric,
-            ..Plates::with_pairs(pairs, 0.4)
-        };
+        let symmetric = Plates { pull: Pull::Symmetric, ..Plates::with_pairs(pairs, 0.4) };
         let contact = lcp(&Ready::new(&symmetric), 0.4);
         for ties in [TieBreak::Lexicographic, TieBreak::Natural] {
             let rule = contact.tie_rule(ties);
@@ -77,15 +68,9 @@ fn lemke(criterion: &mut Criterion) {
 /// Assembly, ordering, factorization, R and RF.
 fn condensation(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("condensation");
-    group
-        .sample_size(10)
-        .measurement_time(Duration::from_secs(5));
+    group.sample_size(10).measurement_time(Duration::from_secs(5));
     for divisions in [[40, 20], [80, 40], [160, 80]] {
-        let scenario = Plates {
-            divisions,
-            ..Plates::with_pairs(2, 0.4)
-        }
-        .scenario();
+        let scenario = Plates { divisions, ..Plates::with_pairs(2, 0.4) }.scenario();
         let name = format!("{}x{}", divisions[0], divisions[1]);
         group.bench_function(name, |bench| {
             bench.iter(|| prepare(&scenario, &Quiet).expect("it stands"));
@@ -97,26 +82,16 @@ fn condensation(criterion: &mut Criterion) {
 /// A whole answer with its check: cold, after a change of the load, after a change of f by 2 %.
 fn resolve(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("solve again");
-    group
-        .sample_size(20)
-        .measurement_time(Duration::from_secs(3));
+    group.sample_size(20).measurement_time(Duration::from_secs(3));
     for pairs in [100, 300] {
         let ready = Ready::new(&Plates::with_pairs(pairs, 0.4));
         let rules = ready.scenario.rules;
-        let solve = |values: &_| {
-            ready
-                .prepared
-                .solve(&ready.scenario, values, rules, &Quiet)
-                .expect("an answer")
-        };
+        let solve = |values: &_| ready.prepared.solve(&ready.scenario, values, rules, &Quiet).expect("an answer");
         group.bench_function(BenchmarkId::new("cold", pairs), |bench| {
             let values = ready.values(&[]);
             bench.iter(|| black_box(solve(&values)));
         });
-        for (what, parameter, here, there) in [
-            ("load by 2 %", "T", 60.0, 61.2),
-            ("f by 2 %", "f", 0.4, 0.408),
-        ] {
+        for (what, parameter, here, there) in [("load by 2 %", "T", 60.0, 61.2), ("f by 2 %", "f", 0.4, 0.408)] {
             let ends = [here, there].map(|value| ready.values(&[(parameter, value)]));
             group.bench_function(BenchmarkId::new(what, pairs), |bench| {
                 // There and back again; each step starts from the answer before it.
@@ -125,10 +100,7 @@ fn resolve(criterion: &mut Criterion) {
                     let clock = Instant::now();
                     for step in 1..=steps {
                         let values = &ends[usize::from(step % 2 == 1)];
-                        last = ready
-                            .prepared
-                            .follow(&last, values, rules, &Quiet)
-                            .expect("the path gets there");
+                        last = ready.prepared.follow(&last, values, rules, &Quiet).expect("the path gets there");
                     }
                     clock.elapsed()
                 });
@@ -147,11 +119,7 @@ fn loading(criterion: &mut Criterion) {
             bench.iter(|| load_text(name, black_box(text), None).expect("sound"));
         });
     }
-    let text = Plates {
-        divisions: [160, 80],
-        ..Plates::with_pairs(2, 0.4)
-    }
-    .text();
+    let text = Plates { divisions: [160, 80], ..Plates::with_pairs(2, 0.4) }.text();
     group.sample_size(20);
     group.bench_function("plates 160x80", |bench| {
         bench.iter(|| load_text("plates", black_box(&text), None).expect("sound"));
@@ -162,34 +130,19 @@ fn loading(criterion: &mut Criterion) {
 /// One frame of the full screen, drawn from nothing.
 fn frame(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("frame");
-    let pulled = Plates {
-        divisions: [60, 30],
-        ..Plates::with_pairs(2, 0.4)
-    }
-    .scenario();
+    let pulled = Plates { divisions: [60, 30], ..Plates::with_pairs(2, 0.4) }.scenario();
     let named = |name| embedded::load(name).expect("an embedded scenario");
     for scenario in [named("beam"), named("plates-free"), pulled] {
         let name = scenario.title.clone();
         let session = Session::new(scenario, &Quiet).expect("it has an answer");
-        let look = Look {
-            color: true,
-            ascii: false,
-        };
+        let look = Look { color: true, ascii: false };
         let size = (120, 40);
-        let state = State::new(
-            Arc::new(Shown::of(&session)),
-            look,
-            Arc::new(Keymap::default()),
-            size,
-            Leave::Quit,
-        );
+        let state = State::new(Arc::new(Shown::of(&session)), look, Arc::new(Keymap::default()), size, Leave::Quit);
         let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("in memory");
         group.bench_function(name, |bench| {
             bench.iter(|| {
                 terminal.clear().expect("in memory");
-                terminal
-                    .draw(|frame| draw(&state, frame))
-                    .expect("in memory");
+                terminal.draw(|frame| draw(&state, frame)).expect("in memory");
             });
         });
     }

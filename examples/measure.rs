@@ -57,11 +57,8 @@ fn peak_megabytes() -> Option<f64> {
 type Failure = Box<dyn std::error::Error>;
 
 fn number<T: std::str::FromStr>(arguments: &[String], at: usize, name: &str) -> Result<T, Failure> {
-    let word = arguments
-        .get(at)
-        .ok_or_else(|| format!("{name} is missing"))?;
-    word.parse()
-        .map_err(|_| format!("{name}: `{word}` is no such number").into())
+    let word = arguments.get(at).ok_or_else(|| format!("{name} is missing"))?;
+    word.parse().map_err(|_| format!("{name}: `{word}` is no such number").into())
 }
 
 /// Engine runs on request, so that another program can time its own runs in between.
@@ -69,29 +66,17 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
     let symmetric = arguments.get(3).is_some_and(|word| word == "symmetric");
     let ready = Ready::new(&Plates {
         traction: number(arguments, 2, "T")?,
-        pull: if symmetric {
-            Pull::Symmetric
-        } else {
-            Pull::OneSided
-        },
+        pull: if symmetric { Pull::Symmetric } else { Pull::OneSided },
         ..Plates::with_pairs(number(arguments, 0, "PAIRS")?, number(arguments, 1, "F")?)
     });
     let system = ready.prepared.system().ok_or("no contact system")?;
     let covering = ready.scenario.rules.covering;
     let numbers = ready.numbers(&ready.values(&[]));
     if let Some(folder) = arguments.get(4) {
-        let whole = whole_lcp::<f64>(&WholeInput {
-            system,
-            numbers: &numbers,
-            covering,
-        });
+        let whole = whole_lcp::<f64>(&WholeInput { system, numbers: &numbers, covering });
         let column = |entries: &[f64]| entries.iter().map(|entry| vec![*entry]).collect::<Vec<_>>();
         let folder = Path::new(folder);
-        for (name, rows) in [
-            ("M", &whole.matrix),
-            ("q", &column(&whole.q)),
-            ("d", &column(&whole.covering)),
-        ] {
+        for (name, rows) in [("M", &whole.matrix), ("q", &column(&whole.q)), ("d", &column(&whole.covering))] {
             let mut out = BufWriter::new(File::create(folder.join(format!("{name}.mtx")))?);
             matrix_market(&mut out, rows, name)?;
             out.flush()?;
@@ -136,21 +121,13 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
 
 /// Whole answers, check included: cold, and followed from the last one there and back again, `REPETITIONS` times.
 fn warm(arguments: &[String]) -> Result<Value, Failure> {
-    let (pairs, friction): (usize, f64) =
-        (number(arguments, 0, "PAIRS")?, number(arguments, 1, "F")?);
+    let (pairs, friction): (usize, f64) = (number(arguments, 0, "PAIRS")?, number(arguments, 1, "F")?);
     let traction: f64 = number(arguments, 2, "T")?;
     let repetitions: usize = number(arguments, 3, "REPETITIONS")?;
-    let ready = Ready::new(&Plates {
-        traction,
-        ..Plates::with_pairs(pairs, friction)
-    });
+    let ready = Ready::new(&Plates { traction, ..Plates::with_pairs(pairs, friction) });
     let rules = ready.scenario.rules;
     let cold = |changes: &[(&str, f64)]| {
-        timed(|| {
-            ready
-                .prepared
-                .solve(&ready.scenario, &ready.values(changes), rules, &Quiet)
-        })
+        timed(|| ready.prepared.solve(&ready.scenario, &ready.values(changes), rules, &Quiet))
     };
     let mut colds = (Vec::new(), Vec::new());
     let mut changed = serde_json::Map::new();
@@ -174,17 +151,14 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
             colds.1.push(last.answer.timings.lemke);
             for round in 0..6 {
                 let values = if round % 2 == 0 { &there } else { &back };
-                let (seconds, followed) =
-                    timed(|| ready.prepared.follow(&last, values, rules, &Quiet));
+                let (seconds, followed) = timed(|| ready.prepared.follow(&last, values, rules, &Quiet));
                 let Some(followed) = followed else {
                     failed += 1;
                     break;
                 };
                 whole.push(seconds);
                 path.push(followed.answer.timings.lemke);
-                if let stickslip::answer::record::Start::Warm { changes: made } =
-                    followed.answer.start
-                {
+                if let stickslip::answer::record::Start::Warm { changes: made } = followed.answer.start {
                     changes = made;
                 }
                 if round % 2 == 0 {
@@ -210,10 +184,7 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
 fn condense(arguments: &[String]) -> Result<Value, Failure> {
     let scenario = Plates {
         divisions: [number(arguments, 0, "NX")?, number(arguments, 1, "NY")?],
-        size: [
-            number(arguments, 2, "WIDTH")?,
-            number(arguments, 3, "HEIGHT")?,
-        ],
+        size: [number(arguments, 2, "WIDTH")?, number(arguments, 3, "HEIGHT")?],
         cases: number(arguments, 4, "CASES")?,
         ..Plates::with_pairs(2, 0.4)
     }
@@ -243,8 +214,7 @@ fn condense(arguments: &[String]) -> Result<Value, Failure> {
     if arguments.get(5).is_some_and(|word| word == "plain") {
         let k_m = MainSystem::matrix(structure, &joints, &Quiet)?;
         let n = k_m.order();
-        let pattern =
-            SymbolicSparseColMatRef::new_checked(n, n, &k_m.column_start, None, &k_m.rows);
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &k_m.column_start, None, &k_m.rows);
         let matrix = SparseColMatRef::new(pattern, &k_m.values);
         faer::set_global_parallelism(faer::Par::Seq);
         let (plain, factor) = timed(|| matrix.sp_cholesky(Side::Lower));

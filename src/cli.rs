@@ -74,11 +74,9 @@ enum Command {
     ///
     /// Rows come in the order of the grid (the last parameter runs fastest) and are the same bytes whatever the number
     /// of threads or shards. Ctrl-C keeps the rows that are done; --resume goes on from there.
-    #[command(
-        after_help = "Examples:\n  stickslip sweep beam --vary f=0:1:0.05 --out beam.csv\n  \
+    #[command(after_help = "Examples:\n  stickslip sweep beam --vary f=0:1:0.05 --out beam.csv\n  \
                       stickslip sweep beam --vary f=0:1:0.05 --vary F2=0:400:10 --shard $K/$N --out part-$K.csv --resume\n  \
-                      stickslip merge part-*.csv > beam.csv"
-    )]
+                      stickslip merge part-*.csv > beam.csv")]
     Sweep(SweepArguments),
     /// Join the shards of a sweep into what one run would have written, checking that none is missing
     #[command(after_help = "Example:\n  stickslip merge part-*.csv --out beam.csv")]
@@ -136,8 +134,7 @@ struct Settings {
 impl Settings {
     /// The words after a `set`, setting by setting.
     fn words(&self) -> Vec<Vec<String>> {
-        let rule =
-            |name: &str, choice: Option<String>| choice.map(|choice| vec![name.to_owned(), choice]);
+        let rule = |name: &str, choice: Option<String>| choice.map(|choice| vec![name.to_owned(), choice]);
         self.values
             .iter()
             .map(|setting| vec![setting.clone()])
@@ -264,9 +261,7 @@ pub fn main() -> Next {
     let errors = cli.look.style(&io::stderr());
     let started = match &cli.command {
         None => start(&cli, &cli.scenario, errors).map(|start| Next::Repl(Box::new(start))),
-        Some(Command::Tui { scenario }) => {
-            start_screen(&cli, scenario, errors).map(|start| Next::Tui(Box::new(start)))
-        }
+        Some(Command::Tui { scenario }) => start_screen(&cli, scenario, errors).map(|start| Next::Tui(Box::new(start))),
         Some(_) => return Next::Exit(status(run(cli), &errors)),
     };
     started.unwrap_or_else(|failure| Next::Exit(status(Err(failure), &errors)))
@@ -300,12 +295,7 @@ fn start(cli: &Cli, scenario: &str, errors: Style) -> Result<Start, Failure> {
     let scenario = load(scenario)?;
     let session = Session::new(scenario, &watch);
     watch.clear();
-    Ok(Start {
-        session: session?,
-        style,
-        signals,
-        errors,
-    })
+    Ok(Start { session: session?, style, signals, errors })
 }
 
 fn status(result: Result<u8, Failure>, errors: &Style) -> u8 {
@@ -326,12 +316,7 @@ fn status(result: Result<u8, Failure>, errors: &Style) -> u8 {
 /// An error on stderr; if nobody can read it, so be it.
 fn tell(style: &Style, message: &str) {
     let lines: Vec<String> = message.lines().map(|line| style.text(line)).collect();
-    let _ = writeln!(
-        io::stderr(),
-        "{} {}",
-        style.paint(Role::Bad, "error:"),
-        lines.join("\n")
-    );
+    let _ = writeln!(io::stderr(), "{} {}", style.paint(Role::Bad, "error:"), lines.join("\n"));
 }
 
 fn run(cli: Cli) -> Result<u8, Failure> {
@@ -374,16 +359,10 @@ impl Look {
         };
         let width = match self.width {
             Some(width) => usize::from(width),
-            None if terminal => {
-                crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20))
-            }
+            None if terminal => crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20)),
             None => 80,
         };
-        Style {
-            width,
-            color,
-            ascii: self.ascii,
-        }
+        Style { width, color, ascii: self.ascii }
     }
 }
 
@@ -403,12 +382,7 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     };
     match arguments.format {
         Form::Json => {
-            let result = json::result(
-                answer,
-                &session.scenario().name,
-                session.values(),
-                arguments.timings,
-            );
+            let result = json::result(answer, &session.scenario().name, session.values(), arguments.timings);
             let text = serde_json::to_string_pretty(&result).map_err(io::Error::other)?;
             writeln!(out, "{text}")?;
         }
@@ -495,8 +469,8 @@ fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, F
             .lock()
             .read_to_end(&mut bytes)
             .map_err(|error| Failure::Status(2, format!("cannot read stdin: {error}")))?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Failure::Status(2, "stdin: the script is not UTF-8".to_owned()))?;
+        let text =
+            String::from_utf8(bytes).map_err(|_| Failure::Status(2, "stdin: the script is not UTF-8".to_owned()))?;
         ("stdin".to_owned(), text)
     } else {
         let name = arguments.script.display().to_string();
@@ -507,22 +481,12 @@ fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, F
         Form::Text => Format::Text,
         Form::Json => Format::JsonLines,
     };
-    let errors = Style {
-        color: style.color && io::stderr().is_terminal(),
-        ..style
-    };
+    let errors = Style { color: style.color && io::stderr().is_terminal(), ..style };
     let mut io = Output::new(out, style, format, &watch);
-    let ended = script::run(
-        &mut session,
-        &name,
-        &text,
-        arguments.keep_going,
-        &mut io,
-        &mut |error| {
-            watch.clear();
-            tell(&errors, &error.to_string());
-        },
-    );
+    let ended = script::run(&mut session, &name, &text, arguments.keep_going, &mut io, &mut |error| {
+        watch.clear();
+        tell(&errors, &error.to_string());
+    });
     watch.clear();
     Ok(ended?.status)
 }
@@ -533,8 +497,7 @@ fn check(names: &[String], style: &Style, out: &mut dyn Write) -> Result<u8, Fai
     let mut status = 0;
     let mut problems = |text: &str| -> io::Result<()> {
         status = 2;
-        text.lines()
-            .try_for_each(|line| writeln!(io::stderr(), "{}", style.text(line)))
+        text.lines().try_for_each(|line| writeln!(io::stderr(), "{}", style.text(line)))
     };
     for name in names {
         match load_named_or_file(name) {

@@ -12,10 +12,7 @@ fn main() -> ExitCode {
         Next::Exit(status) => status,
         Next::Repl(start) => finish(*start, None),
         Next::Tui(start) => {
-            let first = tui::Start {
-                tour: false,
-                home: Leave::Quit,
-            };
+            let first = tui::Start { tour: false, home: Leave::Quit };
             finish(*start, Some(first))
         }
     })
@@ -28,12 +25,7 @@ fn finish(start: Start, screen: Option<tui::Start>) -> u8 {
 
 /// The command line and the full screen by turns, with one session.
 fn converse(start: Start, mut screen: Option<tui::Start>) -> io::Result<u8> {
-    let Start {
-        mut session,
-        style,
-        signals,
-        ..
-    } = start;
+    let Start { mut session, style, signals, .. } = start;
     if repl::is_interactive() {
         repl::keep_journal(&mut session);
     }
@@ -54,10 +46,7 @@ fn converse(start: Start, mut screen: Option<tui::Start>) -> io::Result<u8> {
         again = true;
         match ended.next {
             session::Next::FullScreen { tour } => {
-                screen = Some(tui::Start {
-                    tour,
-                    home: Leave::Repl,
-                });
+                screen = Some(tui::Start { tour, home: Leave::Repl });
             }
             session::Next::Continue | session::Next::Quit => return Ok(ended.status),
         }

@@ -29,11 +29,7 @@ impl Signals {
     /// The system refuses.
     pub fn install() -> io::Result<Self> {
         let signals = Signals::default();
-        for (signal, flag) in [
-            (SIGINT, &signals.interrupt),
-            (SIGHUP, &signals.hangup),
-            (SIGTERM, &signals.terminate),
-        ] {
+        for (signal, flag) in [(SIGINT, &signals.interrupt), (SIGHUP, &signals.hangup), (SIGTERM, &signals.terminate)] {
             signal_hook::flag::register(signal, Arc::clone(flag))?;
         }
         Ok(signals)
@@ -96,9 +92,7 @@ impl Signals {
             }
         };
         // without that thread the end waits for the next key
-        let _ = std::thread::Builder::new()
-            .name("signals".to_owned())
-            .spawn(watcher);
+        let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(watcher);
     }
 }
 
@@ -122,10 +116,7 @@ impl TerminalWatch {
         TerminalWatch {
             signals: signals.clone(),
             shows: io::stderr().is_terminal() && !is_dumb(),
-            state: Mutex::new(Progress {
-                start: Instant::now(),
-                last: None,
-            }),
+            state: Mutex::new(Progress { start: Instant::now(), last: None }),
         }
     }
 

@@ -14,35 +14,11 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("contact", &["model", "fem", "lcp"]),
     ("answer", &["model", "fem", "contact", "lcp"]),
     ("explain", &["model", "fem", "contact", "lcp", "answer"]),
-    (
-        "solve",
-        &["model", "fem", "contact", "lcp", "answer", "explain"],
-    ),
-    (
-        "path",
-        &[
-            "model", "fem", "contact", "lcp", "answer", "explain", "solve",
-        ],
-    ),
-    (
-        "view",
-        &[
-            "model", "fem", "contact", "lcp", "answer", "explain", "solve", "path",
-        ],
-    ),
-    (
-        "export",
-        &[
-            "model", "fem", "contact", "lcp", "answer", "explain", "solve", "path",
-        ],
-    ),
-    (
-        "session",
-        &[
-            "model", "fem", "contact", "lcp", "answer", "explain", "solve", "path", "view",
-            "export",
-        ],
-    ),
+    ("solve", &["model", "fem", "contact", "lcp", "answer", "explain"]),
+    ("path", &["model", "fem", "contact", "lcp", "answer", "explain", "solve"]),
+    ("view", &["model", "fem", "contact", "lcp", "answer", "explain", "solve", "path"]),
+    ("export", &["model", "fem", "contact", "lcp", "answer", "explain", "solve", "path"]),
+    ("session", &["model", "fem", "contact", "lcp", "answer", "explain", "solve", "path", "view", "export"]),
     ("repl", &["session", "view", "export", "model", "signals"]),
     ("tui", &["session", "view", "export", "model", "signals"]),
     ("cli", &["session", "view", "export", "model", "signals"]),
@@ -92,9 +68,7 @@ fn code(text: &str) -> String {
                     }
                 }
             }
-            'r' if (next == '"' || next == '#')
-                && !out.ends_with(|c: char| c.is_alphanumeric() || c == '_') =>
-            {
+            'r' if (next == '"' || next == '#') && !out.ends_with(|c: char| c.is_alphanumeric() || c == '_') => {
                 let hashes = chars[i + 1..].iter().take_while(|c| **c == '#').count();
                 if chars.get(i + 1 + hashes) != Some(&'"') {
                     out.push('r'); // r#name
@@ -127,9 +101,7 @@ fn code(text: &str) -> String {
             '\'' if next == '\\' || chars.get(i + 2) == Some(&'\'') => {
                 // A char literal, not a lifetime.
                 let from = if next == '\\' { i + 3 } else { i + 2 };
-                let end = (from..chars.len())
-                    .find(|k| chars[*k] == '\'')
-                    .unwrap_or(chars.len() - 1);
+                let end = (from..chars.len()).find(|k| chars[*k] == '\'').unwrap_or(chars.len() - 1);
                 out.push_str(&" ".repeat(end + 1 - i));
                 i = end + 1;
             }
@@ -164,10 +136,7 @@ fn without_tests(code: &str) -> String {
             }
             _ => semicolon,
         };
-        let blanks: String = rest[..=end]
-            .chars()
-            .map(|c| if c == '\n' { '\n' } else { ' ' })
-            .collect();
+        let blanks: String = rest[..=end].chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect();
         out.replace_range(start..=start + end, &blanks);
     }
     out
@@ -175,11 +144,8 @@ fn without_tests(code: &str) -> String {
 
 /// The top module of a file of `src`, and how many modules deep it is (`src/model/pair.rs`: model, 2).
 fn module(path: &Path) -> (String, usize) {
-    let mut parts: Vec<String> = path
-        .with_extension("")
-        .components()
-        .map(|part| part.as_os_str().to_string_lossy().into_owned())
-        .collect();
+    let mut parts: Vec<String> =
+        path.with_extension("").components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
     if parts.len() > 1 && parts.last().is_some_and(|last| last == "mod") {
         parts.pop();
     }
@@ -193,10 +159,7 @@ fn module(path: &Path) -> (String, usize) {
 fn named(code: &str, at: usize) -> Vec<String> {
     let rest = code[at..].trim_start();
     if !rest.starts_with('{') {
-        let name: String = rest
-            .chars()
-            .take_while(|c| c.is_alphanumeric() || *c == '_')
-            .collect();
+        let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
         return vec![name];
     }
     let (mut names, mut depth, mut name, mut take) = (Vec::new(), 0, String::new(), true);
@@ -229,9 +192,7 @@ fn named(code: &str, at: usize) -> Vec<String> {
 fn imports(code: &str, depth: usize) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     let line = |at: usize| code[..at].matches('\n').count() + 1;
-    let boundary = |at: usize| {
-        !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':' || c == '$')
-    };
+    let boundary = |at: usize| !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':' || c == '$');
     for root in ["crate::", "stickslip::"] {
         for (at, _) in code.match_indices(root) {
             if boundary(at) {
@@ -271,9 +232,7 @@ fn imports(code: &str, depth: usize) -> Vec<(usize, String)> {
 fn complaints(path: &Path, text: &str) -> Vec<String> {
     let (top, depth) = module(path);
     // What tests import and print is their own affair.
-    if path
-        .components()
-        .any(|part| part.as_os_str() == "tests" || part.as_os_str() == "tests.rs")
+    if path.components().any(|part| part.as_os_str() == "tests" || part.as_os_str() == "tests.rs")
         || path.to_string_lossy().ends_with("_tests.rs")
     {
         return Vec::new();
@@ -283,16 +242,12 @@ fn complaints(path: &Path, text: &str) -> Vec<String> {
     let shown = path.display();
     if top != "lib" && top != "main" {
         match ARROWS.iter().find(|(name, _)| *name == top) {
-            None => wrong.push(format!(
-                "src/{shown}: `{top}` has no place in the order of the modules"
-            )),
+            None => wrong.push(format!("src/{shown}: `{top}` has no place in the order of the modules")),
             Some((_, allowed)) => {
                 for (line, name) in imports(&code, depth) {
                     let ours = name == top || name == "watch" || allowed.contains(&name.as_str());
                     if !ours {
-                        wrong.push(format!(
-                            "src/{shown}:{line}: `{top}` must not import `{name}`"
-                        ));
+                        wrong.push(format!("src/{shown}:{line}: `{top}` must not import `{name}`"));
                     }
                 }
             }
@@ -303,9 +258,7 @@ fn complaints(path: &Path, text: &str) -> Vec<String> {
             for (at, _) in code.match_indices(print) {
                 if !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
                     let line = code[..at].matches('\n').count() + 1;
-                    wrong.push(format!(
-                        "src/{shown}:{line}: only faces print, but here is `{print}`"
-                    ));
+                    wrong.push(format!("src/{shown}:{line}: only faces print, but here is `{print}`"));
                 }
             }
         }
@@ -333,12 +286,7 @@ fn no_arrow_points_back_and_only_faces_print() {
     assert!(files.len() > 20, "the sources were not found");
     let wrong: Vec<String> = files
         .iter()
-        .flat_map(|file| {
-            complaints(
-                file.strip_prefix(&root).unwrap(),
-                &fs::read_to_string(file).unwrap(),
-            )
-        })
+        .flat_map(|file| complaints(file.strip_prefix(&root).unwrap(), &fs::read_to_string(file).unwrap()))
         .collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
@@ -348,10 +296,7 @@ fn the_order_itself_has_no_cycle() {
     for (index, (name, allowed)) in ARROWS.iter().enumerate() {
         for import in *allowed {
             let place = ARROWS.iter().position(|(known, _)| known == import);
-            assert!(
-                place.is_some_and(|place| place < index),
-                "{name} ← {import}"
-            );
+            assert!(place.is_some_and(|place| place < index), "{name} ← {import}");
         }
     }
 }
@@ -361,24 +306,12 @@ fn a_wrong_arrow_is_found_in_every_spelling() {
     let judge = |path: &str, text: &str| complaints(Path::new(path), text).len();
     for (path, line) in [
         ("lcp/lemke.rs", "use crate::model::pair::Law;"),
-        (
-            "model/pair.rs",
-            "fn f() -> crate::fem::MainSystem { todo() }",
-        ),
-        (
-            "fem/dof.rs",
-            "use crate::{model::pair::Joint, contact::system::ContactSystem};",
-        ),
-        (
-            "fem/dof.rs",
-            "use crate::{\n    contact::{a, b},\n    model,\n};",
-        ),
+        ("model/pair.rs", "fn f() -> crate::fem::MainSystem { todo() }"),
+        ("fem/dof.rs", "use crate::{model::pair::Joint, contact::system::ContactSystem};"),
+        ("fem/dof.rs", "use crate::{\n    contact::{a, b},\n    model,\n};"),
         ("lcp/mod.rs", "use super::model::pair;"),
         ("lcp/lemke.rs", "use super::super::contact;"),
-        (
-            "lcp/deep/file.rs",
-            "use super::super::super::contact::system;",
-        ),
+        ("lcp/deep/file.rs", "use super::super::super::contact::system;"),
         ("tui/panes/pairs.rs", "use crate::repl::Next;"),
         ("repl/mod.rs", "use crate::cli;"),
         ("cli.rs", "use crate::tui;"),
@@ -390,40 +323,17 @@ fn a_wrong_arrow_is_found_in_every_spelling() {
         assert_eq!(judge(path, line), 1, "{path}: {line}");
     }
     for (path, line) in [
-        (
-            "lcp/lemke.rs",
-            "use super::variable::Variable; // not crate::model",
-        ),
-        (
-            "lcp/lemke.rs",
-            "/* crate::fem */ const A: &str = \"use crate::fem\";",
-        ),
-        (
-            "lcp/lemke.rs",
-            "const A: &str = r#\"use crate::fem \" println!\"#; const B: char = '\"';",
-        ),
-        (
-            "fem/dof.rs",
-            "use crate::{model::{pair::contact, structure}, watch::Watch};",
-        ),
-        (
-            "fem/dof.rs",
-            "use super::contact_like::X; use crate::fem::error;",
-        ),
+        ("lcp/lemke.rs", "use super::variable::Variable; // not crate::model"),
+        ("lcp/lemke.rs", "/* crate::fem */ const A: &str = \"use crate::fem\";"),
+        ("lcp/lemke.rs", "const A: &str = r#\"use crate::fem \" println!\"#; const B: char = '\"';"),
+        ("fem/dof.rs", "use crate::{model::{pair::contact, structure}, watch::Watch};"),
+        ("fem/dof.rs", "use super::contact_like::X; use crate::fem::error;"),
         ("model/pair.rs", "fn f<'a>(x: &'a str) -> char { '\\'' }"),
-        (
-            "main.rs",
-            "use stickslip::cli; fn main() { println!(\"x\"); }",
-        ),
+        ("main.rs", "use stickslip::cli; fn main() { println!(\"x\"); }"),
         ("lib.rs", "pub mod model; pub mod lcp;"),
         ("session/mod.rs", "use crate::{view, export, path, solve};"),
     ] {
-        assert_eq!(
-            judge(path, line),
-            0,
-            "{path}: {line}: {:?}",
-            complaints(Path::new(path), line)
-        );
+        assert_eq!(judge(path, line), 0, "{path}: {line}: {:?}", complaints(Path::new(path), line));
     }
 }
 
@@ -434,23 +344,8 @@ fn a_print_is_found_outside_the_faces() {
     assert_eq!(judge("view/table.rs", "fn f() { eprint!(\"x\") }"), 1);
     assert_eq!(judge("lib.rs", "fn f() { dbg!(1); }"), 1);
     assert_eq!(judge("repl/mod.rs", "fn f() { println!(); }"), 0);
-    assert_eq!(
-        judge(
-            "fem/dof.rs",
-            "#[cfg(test)]\nmod tests { fn f() { println!(); } }"
-        ),
-        0
-    );
-    assert_eq!(
-        judge(
-            "fem/dof.rs",
-            "#[cfg(test)]\nmod tests { fn f() { } }\nfn g() { println!(); }"
-        ),
-        1
-    );
+    assert_eq!(judge("fem/dof.rs", "#[cfg(test)]\nmod tests { fn f() { println!(); } }"), 0);
+    assert_eq!(judge("fem/dof.rs", "#[cfg(test)]\nmod tests { fn f() { } }\nfn g() { println!(); }"), 1);
     assert_eq!(judge("fem/tests/large.rs", "fn f() { println!(); }"), 0);
-    assert_eq!(
-        judge("fem/dof.rs", "fn f() { writeln!(out, \"println!\"); }"),
-        0
-    );
+    assert_eq!(judge("fem/dof.rs", "fn f() { writeln!(out, \"println!\"); }"), 0);
 }

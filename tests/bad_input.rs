@@ -15,10 +15,7 @@ fn invalid_files() -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = fs::read_dir(folder)
         .expect("cargo runs tests in the root of the package")
         .map(|entry| entry.unwrap().path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "json")
-        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
         .collect();
     files.sort();
     files
@@ -54,10 +51,7 @@ fn every_invalid_file_gets_its_message() {
         }
         let expected = fs::read_to_string(&expected_file).unwrap_or_default();
         if expected.trim_end() != found {
-            wrong.push(format!(
-                "{}\n--- expected\n{expected}--- found\n{found}\n",
-                file.display()
-            ));
+            wrong.push(format!("{}\n--- expected\n{expected}--- found\n{found}\n", file.display()));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -67,10 +61,7 @@ fn every_invalid_file_gets_its_message() {
 fn every_expected_message_has_its_file() {
     for entry in fs::read_dir("tests/invalid").unwrap() {
         let path = entry.unwrap().path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "expected")
-        {
+        if path.extension().is_some_and(|extension| extension == "expected") {
             assert!(path.with_extension("json").exists(), "{}", path.display());
         }
     }
@@ -79,10 +70,7 @@ fn every_expected_message_has_its_file() {
 #[test]
 fn a_missing_file_and_an_unknown_name_say_what_was_expected() {
     let problems = load_named_or_file("no/such.json").unwrap_err().to_string();
-    assert!(
-        problems.starts_with("no/such.json: cannot read the file: "),
-        "{problems}"
-    );
+    assert!(problems.starts_with("no/such.json: cannot read the file: "), "{problems}");
     let problems = load_named_or_file("baem").unwrap_err().to_string();
     assert!(
         problems.starts_with(
@@ -110,10 +98,7 @@ fn text_that_is_not_utf8_is_refused_at_its_place() {
 #[test]
 fn more_than_twenty_problems_are_counted() {
     let nodes: Vec<String> = (0..50).map(|k| format!("\"n{k}\": [0]")).collect();
-    let text = format!(
-        "{{ \"format\": \"stickslip/1\", \"title\": \"t\", \"nodes\": {{ {} }} }}",
-        nodes.join(", ")
-    );
+    let text = format!("{{ \"format\": \"stickslip/1\", \"title\": \"t\", \"nodes\": {{ {} }} }}", nodes.join(", "));
     let problems = load_text("many", &text, None).unwrap_err();
     assert_eq!(problems.problems.len(), 20);
     assert_eq!(problems.more, 30);
@@ -146,19 +131,15 @@ fn mutated() -> impl Strategy<Value = String> {
         Just("[0, 0]"),
     ];
     let edit = (any::<prop::sample::Index>(), 0usize..8, piece);
-    (
-        prop::sample::select(names),
-        prop::collection::vec(edit, 1..5),
-    )
-        .prop_map(|(name, edits)| {
-            let mut text: Vec<char> = embedded::text(name).unwrap().chars().collect();
-            for (at, removed, piece) in edits {
-                let from = at.index(text.len());
-                let to = (from + removed).min(text.len());
-                text.splice(from..to, piece.chars());
-            }
-            text.into_iter().collect()
-        })
+    (prop::sample::select(names), prop::collection::vec(edit, 1..5)).prop_map(|(name, edits)| {
+        let mut text: Vec<char> = embedded::text(name).unwrap().chars().collect();
+        for (at, removed, piece) in edits {
+            let from = at.index(text.len());
+            let to = (from + removed).min(text.len());
+            text.splice(from..to, piece.chars());
+        }
+        text.into_iter().collect()
+    })
 }
 
 /// Any JSON, with the keys and words of the format more often than chance.
@@ -215,22 +196,17 @@ fn random_json() -> impl Strategy<Value = String> {
     ]);
     let leaf = prop_oneof![
         word.clone().prop_map(|word| format!("\"{word}\"")),
-        any::<f64>()
-            .prop_filter("JSON", |x| x.is_finite())
-            .prop_map(|x| format!("{x:e}")),
+        any::<f64>().prop_filter("JSON", |x| x.is_finite()).prop_map(|x| format!("{x:e}")),
         (-3i32..9).prop_map(|x| x.to_string()),
         Just("null".to_string()),
         Just("true".to_string()),
     ];
     leaf.prop_recursive(5, 64, 6, move |inner| {
         prop_oneof![
-            prop::collection::vec(inner.clone(), 0..6)
-                .prop_map(|list| format!("[{}]", list.join(","))),
+            prop::collection::vec(inner.clone(), 0..6).prop_map(|list| format!("[{}]", list.join(","))),
             prop::collection::vec((word.clone(), inner), 0..6).prop_map(|entries| {
-                let entries: Vec<String> = entries
-                    .into_iter()
-                    .map(|(key, value)| format!("\"{key}\":{value}"))
-                    .collect();
+                let entries: Vec<String> =
+                    entries.into_iter().map(|(key, value)| format!("\"{key}\":{value}")).collect();
                 format!("{{{}}}", entries.join(","))
             }),
         ]

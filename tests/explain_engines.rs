@@ -40,11 +40,7 @@ impl Problem {
 
     fn scenario(&self) -> Scenario {
         let m = self.law.len();
-        let rows: Vec<Vec<f64>> = self
-            .stiffness
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect();
+        let rows: Vec<Vec<f64>> = self.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
         let mut system = serde_json::json!({
             "pairs": (1..=m).map(|i| format!("c{i}")).collect::<Vec<_>>(),
             "stiffness": rows,
@@ -58,10 +54,7 @@ impl Problem {
             system["bound"] = serde_json::json!(self.bound);
         }
         if let Some(kernel) = &self.kernel {
-            let columns: Vec<Vec<f64>> = kernel
-                .column_iter()
-                .map(|column| column.iter().copied().collect())
-                .collect();
+            let columns: Vec<Vec<f64>> = kernel.column_iter().map(|column| column.iter().copied().collect()).collect();
             system["kernel"] = serde_json::json!(columns);
         }
         let text = serde_json::json!({
@@ -73,24 +66,15 @@ impl Problem {
 }
 
 fn solve(prepared: &Prepared, scenario: &Scenario, engine: Engine) -> Solved {
-    let rules = Rules {
-        engine,
-        ..Rules::default()
-    };
-    prepared
-        .solve(scenario, &scenario.parameter_values(), rules, &Quiet)
-        .expect("the default rules fit every problem")
+    let rules = Rules { engine, ..Rules::default() };
+    prepared.solve(scenario, &scenario.parameter_values(), rules, &Quiet).expect("the default rules fit every problem")
 }
 
 /// Positive definite R; `whole`: small integers, so that ties are everywhere. Mixed laws, gaps, cohesion.
 fn mixed(rng: &mut ChaCha8Rng, m: usize, whole: bool) -> Problem {
     let n = 2 * m;
     let number = |low: f64, high: f64, rng: &mut ChaCha8Rng| {
-        if whole {
-            f64::from(rng.random_range(low as i32..=high as i32))
-        } else {
-            rng.random_range(low..high)
-        }
+        if whole { f64::from(rng.random_range(low as i32..=high as i32)) } else { rng.random_range(low..high) }
     };
     let a = DMatrix::from_fn(n, n, |_, _| number(-1.0, 1.0, rng));
     let shift = if whole { 1.0 } else { 0.1 };
@@ -146,10 +130,7 @@ fn engines_agree(count: usize, seed: u64) {
         }
     }
     println!("{count} problems, {exact} in exact arithmetic, {other_answers} with another answer");
-    assert!(
-        other_answers * 200 <= count,
-        "{other_answers} of {count} gave another answer"
-    );
+    assert!(other_answers * 200 <= count, "{other_answers} of {count} gave another answer");
 }
 
 #[test]
@@ -174,19 +155,12 @@ fn loose(rng: &mut ChaCha8Rng, m: usize) -> Problem {
         }
     };
     let a = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0));
-    let gram = (z.transpose() * &z)
-        .try_inverse()
-        .expect("independent columns");
+    let gram = (z.transpose() * &z).try_inverse().expect("independent columns");
     let projector = DMatrix::identity(n, n) - &z * gram * z.transpose();
     let stiffness = &projector * (&a * a.transpose()) * &projector;
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
-    let load = DVector::from_fn(n, |i, _| {
-        if i < m {
-            rng.random_range(-0.5..2.0)
-        } else {
-            rng.random_range(-1.0..1.0)
-        }
-    });
+    let load =
+        DVector::from_fn(n, |i, _| if i < m { rng.random_range(-0.5..2.0) } else { rng.random_range(-1.0..1.0) });
     let mut problem = Problem::coulomb(stiffness, load, rng.random_range(0.0..1.5));
     problem.kernel = Some(z);
     if rng.random_range(0..4) == 0 {
@@ -209,18 +183,13 @@ fn no_claim_too_strong(count: usize, seed: u64) {
                 assert!(answer.is_answer(), "problem {k}: {:?}", answer.failure);
                 assert!(answer.check.passed);
                 if answer.attempts.len() > 1 {
-                    format!(
-                        "answer at a later attempt ({})",
-                        answer.attempts[answer.attempts.len() - 1].engine
-                    )
+                    format!("answer at a later attempt ({})", answer.attempts[answer.attempts.len() - 1].engine)
                 } else {
                     "answer".to_owned()
                 }
             }
             Some(ray) => {
-                let all = prepared
-                    .all_answers(&scenario.parameter_values(), &Quiet)
-                    .expect("few pairs");
+                let all = prepared.all_answers(&scenario.parameter_values(), &Quiet).expect("few pairs");
                 match ray.verdict {
                     Some(Verdict::Certified | Verdict::Proved) => assert!(
                         all.answers.is_empty(),
@@ -231,10 +200,7 @@ fn no_claim_too_strong(count: usize, seed: u64) {
                     Some(Verdict::Undecided) => assert!(all.answers.is_empty(), "problem {k}"),
                     None => panic!("problem {k}: {:?} without a verdict", ray.class),
                 }
-                assert!(matches!(
-                    ray.class,
-                    RayClass::Mechanism | RayClass::NoEquilibrium
-                ));
+                assert!(matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium));
                 format!("{:?} {:?}", ray.class, ray.verdict)
             }
         };
@@ -263,9 +229,7 @@ fn a_force_that_only_p_moves_does_not_fall_by_the_noise_of_p() {
     let solved = solve(&prepared, &scenario, Engine::Scheme);
     let ray = solved.answer.ray.expect("a ray");
     assert_eq!(ray.class, RayClass::Mechanism);
-    let all = prepared
-        .all_answers(&scenario.parameter_values(), &Quiet)
-        .expect("few pairs");
+    let all = prepared.all_answers(&scenario.parameter_values(), &Quiet).expect("few pairs");
     assert!(all.answers.is_empty());
 }
 
@@ -285,9 +249,7 @@ fn contrast(rng: &mut ChaCha8Rng, m: usize, joints: bool) -> Problem {
         let d = DMatrix::from_diagonal(&soft);
         &d * (&a * a.transpose() / n as f64 + DMatrix::identity(n, n) * 0.01) * &d
     } else {
-        let q = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0))
-            .qr()
-            .q();
+        let q = DMatrix::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0)).qr().q();
         let values = DVector::from_fn(n, |i, _| match i {
             0 => 1.0,
             1 => 10f64.powf(-decades),
@@ -311,21 +273,9 @@ fn contrasts(count: usize, seed: u64, most: usize) {
         let prepared = prepare(&scenario, &Quiet).expect("prepared");
         let solved = solve(&prepared, &scenario, Engine::Scheme);
         let answer = &solved.answer;
-        assert!(
-            answer.is_answer(),
-            "problem {k}, m = {m}: {:?} {:?} {:?}",
-            answer.outcome,
-            answer.failure,
-            answer.ray
-        );
-        if answer
-            .notes
-            .iter()
-            .any(|note| note.contains("proved in exact"))
-        {
-            *told
-                .entry("check at the size of rounding, proved exactly".to_owned())
-                .or_default() += 1;
+        assert!(answer.is_answer(), "problem {k}, m = {m}: {:?} {:?} {:?}", answer.outcome, answer.failure, answer.ray);
+        if answer.notes.iter().any(|note| note.contains("proved in exact")) {
+            *told.entry("check at the size of rounding, proved exactly".to_owned()).or_default() += 1;
         }
         if answer.attempts.len() > 1 {
             let first = answer.attempts[0].outcome;

@@ -17,21 +17,12 @@ fn load(name: &str) -> (Scenario, Prepared) {
     (scenario, prepared)
 }
 
-fn solve(
-    (scenario, prepared): &(Scenario, Prepared),
-    sets: &[(&str, f64)],
-    rules: Rules,
-) -> Solved {
+fn solve((scenario, prepared): &(Scenario, Prepared), sets: &[(&str, f64)], rules: Rules) -> Solved {
     let mut values = scenario.parameter_values();
     for (name, value) in sets {
-        assert!(
-            values.insert((*name).to_owned(), *value).is_some(),
-            "{name}"
-        );
+        assert!(values.insert((*name).to_owned(), *value).is_some(), "{name}");
     }
-    prepared
-        .solve(scenario, &values, rules, &Quiet)
-        .unwrap_or_else(|error| panic!("{error}"))
+    prepared.solve(scenario, &values, rules, &Quiet).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn mechanism(solved: &Solved) -> &Ray {
@@ -42,10 +33,7 @@ fn mechanism(solved: &Solved) -> &Ray {
 }
 
 fn close(found: f64, expected: f64, relative: f64) {
-    assert!(
-        (found - expected).abs() <= relative * expected.abs(),
-        "{found} instead of {expected}"
-    );
+    assert!((found - expected).abs() <= relative * expected.abs(), "{found} instead of {expected}");
 }
 
 /// Validation 4: overturns at H = 0.25 (f = 0.4), slides at H = f W (f = 0.2).
@@ -55,21 +43,13 @@ fn block_on_a_rough_plane() {
     let over = solve(&block, &[("f", 0.4), ("H", 0.26)], Rules::default());
     let ray = mechanism(&over);
     close(ray.p, 0.8 * 0.01, 1e-9);
-    assert_eq!(
-        ray.mode,
-        "rotation of `block` about (1.0, 0.0), clockwise: pairs base[0] to base[3] open"
-    );
+    assert_eq!(ray.mode, "rotation of `block` about (1.0, 0.0), clockwise: pairs base[0] to base[3] open");
     for (direction, expected) in ray.direction.iter().zip([1.0, 0.75, 0.5, 0.25, 0.0]) {
         assert!((direction.z_n - expected).abs() < 1e-9 && direction.z_t.abs() < 1e-9);
     }
     let report = over.ray.as_ref().expect("a report");
     // No friction stops a block from overturning; a push below 0.25 does.
-    assert!(
-        report
-            .remedies
-            .iter()
-            .any(|remedy| matches!(remedy, Remedy::Friction { needed: None, .. }))
-    );
+    assert!(report.remedies.iter().any(|remedy| matches!(remedy, Remedy::Friction { needed: None, .. })));
     assert!(report.remedies.iter().any(|remedy| matches!(
         remedy,
         Remedy::Load { case, between, tried: Some(_), .. } if case == "push" && (between[1] - 0.25).abs() < 1e-7
@@ -78,10 +58,7 @@ fn block_on_a_rough_plane() {
     let slide = solve(&block, &[("f", 0.2), ("H", 0.21)], Rules::default());
     let ray = mechanism(&slide);
     close(ray.p, 0.01 / 6.0, 1e-9);
-    assert_eq!(
-        ray.mode,
-        "rigid translation of `block` along +x: all pairs slip +"
-    );
+    assert_eq!(ray.mode, "rigid translation of `block` along +x: all pairs slip +");
     // Rigid sliding on one plane: the friction needed is the ratio of the forces.
     let report = slide.ray.as_ref().expect("a report");
     assert!(report.remedies.iter().any(|remedy| matches!(
@@ -90,17 +67,9 @@ fn block_on_a_rough_plane() {
     )));
 
     for (f, limit) in [(0.4, 0.25), (0.2, 0.2)] {
-        let below = solve(
-            &block,
-            &[("f", f), ("H", limit * (1.0 - 1e-9))],
-            Rules::default(),
-        );
+        let below = solve(&block, &[("f", f), ("H", limit * (1.0 - 1e-9))], Rules::default());
         assert_eq!(below.answer.outcome, OutcomeKind::Normal);
-        let above = solve(
-            &block,
-            &[("f", f), ("H", limit * (1.0 + 1e-9))],
-            Rules::default(),
-        );
+        let above = solve(&block, &[("f", f), ("H", limit * (1.0 + 1e-9))], Rules::default());
         mechanism(&above);
     }
 }
@@ -113,17 +82,11 @@ fn upper_plate_on_the_lower_one() {
     let slide = at(0.3, 60.00006);
     let ray = mechanism(&slide);
     close(ray.p, 1.0860e-5, 1e-4);
-    assert_eq!(
-        ray.mode,
-        "rigid translation of `upper` along +x: all pairs slip +"
-    );
+    assert_eq!(ray.mode, "rigid translation of `upper` along +x: all pairs slip +");
     close(mechanism(&at(0.3, 100.0)).p, 7.23982, 1e-6);
     let over = at(3.0, 410.0);
     let ray = mechanism(&over);
-    assert_eq!(
-        ray.mode,
-        "rotation of `upper` about (8.0, 4.0), clockwise: pairs joint[0] to joint[15] open"
-    );
+    assert_eq!(ray.mode, "rotation of `upper` about (8.0, 4.0), clockwise: pairs joint[0] to joint[15] open");
     for (f, limit) in [(0.3, 60.0), (3.0, 400.0)] {
         assert!(at(f, limit * (1.0 - 1e-9)).answer.is_answer());
         mechanism(&at(f, limit * (1.0 + 1e-9)));
@@ -156,10 +119,9 @@ fn bar_beyond_its_limit_is_certified_by_every_covering_and_engine() {
 
 #[test]
 fn chosen_rules_fail_as_they_must_and_the_rule_that_succeeds_is_named() {
-    for (name, sets, covering, tie_break) in [
-        ("greco", vec![("f", 2.0)], "ones", "lexicographic"),
-        ("block", vec![("H", 0.2)], "weight", "natural"),
-    ] {
+    for (name, sets, covering, tie_break) in
+        [("greco", vec![("f", 2.0)], "ones", "lexicographic"), ("block", vec![("H", 0.2)], "weight", "natural")]
+    {
         let problem = load(name);
         let rules = Rules {
             covering: covering.parse().expect("a covering"),
@@ -170,21 +132,15 @@ fn chosen_rules_fail_as_they_must_and_the_rule_that_succeeds_is_named() {
         assert_eq!(solved.answer.outcome, OutcomeKind::Ray, "{name}");
         assert_eq!(solved.answer.attempts.len(), 1, "{name}: run as chosen");
         let ray = solved.answer.ray.as_ref().expect("a ray");
-        assert!(
-            matches!(ray.class, RayClass::Artefact | RayClass::Fault),
-            "{name}"
-        );
+        assert!(matches!(ray.class, RayClass::Artefact | RayClass::Fault), "{name}");
         assert_eq!(ray.verdict, None);
         assert!(
-            ray.explanation.contains("says nothing about the structure")
-                || ray.explanation.contains("not a collapse"),
+            ray.explanation.contains("says nothing about the structure") || ray.explanation.contains("not a collapse"),
             "{}",
             ray.explanation
         );
         assert!(
-            ray.explanation.contains(
-                "The default rules (covering cohesive, tie-break lexicographic) find an answer"
-            ),
+            ray.explanation.contains("The default rules (covering cohesive, tie-break lexicographic) find an answer"),
             "{}",
             ray.explanation
         );
@@ -197,14 +153,9 @@ fn loose_parts_are_named_before_solving() {
     let sentences = |name: &str| load(name).1.loose_sentences();
     assert_eq!(
         sentences("plates-slide"),
-        [
-            "`upper` can slide along x, lift off along y and turn about (4.0, 6.0); only contact holds it"
-        ]
+        ["`upper` can slide along x, lift off along y and turn about (4.0, 6.0); only contact holds it"]
     );
-    assert_eq!(
-        sentences("plates-hinged"),
-        ["`upper` can turn about (0, 4.0); only contact holds it"]
-    );
+    assert_eq!(sentences("plates-hinged"), ["`upper` can turn about (0, 4.0); only contact holds it"]);
     assert!(sentences("greco").is_empty());
 }
 
@@ -220,20 +171,11 @@ fn margins_of_the_bar_are_its_breakpoints() {
         values
     };
     let margins = solved.margins(&beam.1, &beam.0, &values, 0);
-    let pull = margins
-        .iter()
-        .find(|margin| margin.parameter.contains("pull"))
-        .expect("a margin in the pull");
-    let (up, down) = (
-        pull.up.as_ref().expect("up"),
-        pull.down.as_ref().expect("down"),
-    );
+    let pull = margins.iter().find(|margin| margin.parameter.contains("pull")).expect("a margin in the pull");
+    let (up, down) = (pull.up.as_ref().expect("up"), pull.down.as_ref().expect("down"));
     close(up.at, 150.0, 1e-9);
     close(down.at, 100.0, 1e-9);
-    let friction = margins
-        .iter()
-        .find(|margin| margin.parameter == "friction f")
-        .expect("a margin in f");
+    let friction = margins.iter().find(|margin| margin.parameter == "friction f").expect("a margin in f");
     // Two pairs slip as long as 2 f F < F2 < 3 f F.
     close(friction.up.as_ref().expect("up").at, 0.6, 1e-8);
     close(friction.down.as_ref().expect("down").at, 0.4, 1e-8);
@@ -245,10 +187,7 @@ fn transcript(script: &str) -> String {
     let scenario = embedded::load(first).unwrap_or_else(|problems| panic!("{problems}"));
     let mut session = Session::new(scenario, &Quiet).expect("a session");
     let mut out = Vec::new();
-    let style = Style {
-        width: 100,
-        ..Style::default()
-    };
+    let style = Style { width: 100, ..Style::default() };
     for line in lines {
         out.extend_from_slice(format!("> {line}\n").as_bytes());
         let mut io = Output::text(&mut out, style, &Quiet);
@@ -261,20 +200,9 @@ fn transcript(script: &str) -> String {
 
 #[test]
 fn transcripts_of_the_questions() {
-    for name in [
-        "beam-ray",
-        "beam-limit",
-        "block",
-        "klarbring",
-        "cycling",
-        "murty6",
-    ] {
+    for name in ["beam-ray", "beam-limit", "block", "klarbring", "cycling", "murty6"] {
         // On its limit a structure is proved or refuted by the last bits of R, which differ between processors.
-        let exact = if name == "beam-limit" {
-            ""
-        } else {
-            "\nenumerate\ncheck exact"
-        };
+        let exact = if name == "beam-limit" { "" } else { "\nenumerate\ncheck exact" };
         let script = format!("{name}\nray\nties\ncompare{exact}");
         insta::assert_snapshot!(format!("questions-{name}"), transcript(&script));
     }
@@ -286,8 +214,7 @@ fn transcripts_of_the_questions() {
         assert!(limit.contains(said), "{limit}");
     }
     assert!(
-        limit.contains("proved in exact arithmetic")
-            || limit.contains("refuted in exact arithmetic: x+[c1]"),
+        limit.contains("proved in exact arithmetic") || limit.contains("refuted in exact arithmetic: x+[c1]"),
         "{limit}"
     );
     insta::assert_snapshot!(

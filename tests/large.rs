@@ -35,11 +35,7 @@ fn random_system(m: usize, f: f64, whole: bool, seed: u64) -> (ContactSystem, Co
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let n = 2 * m;
     let mut number = |low: i32, high: i32| {
-        if whole {
-            f64::from(rng.random_range(low..=high))
-        } else {
-            rng.random_range(f64::from(low)..f64::from(high))
-        }
+        if whole { f64::from(rng.random_range(low..=high)) } else { rng.random_range(f64::from(low)..f64::from(high)) }
     };
     let a = DMatrix::from_fn(n, n, |_, _| number(-1, 1));
     let stiffness = &a * a.transpose() + DMatrix::identity(n, n);
@@ -77,22 +73,11 @@ fn agree(system: &ContactSystem, numbers: &ContactNumbers, what: &str) -> (usize
     let covering = Covering::default();
     let contact = contact_lcp(system, numbers, covering).expect("cohesive covers everything");
     let rule = contact.tie_rule(TieBreak::Lexicographic);
-    let fast = finished(&mut SchemeEngine::new(
-        Arc::clone(&contact.lcp),
-        rule.clone(),
-    ));
-    let whole = whole_lcp::<f64>(&WholeInput {
-        system,
-        numbers,
-        covering,
-    });
+    let fast = finished(&mut SchemeEngine::new(Arc::clone(&contact.lcp), rule.clone()));
+    let whole = whole_lcp::<f64>(&WholeInput { system, numbers, covering });
     let judge = finished(&mut Tableau::new(&whole, rule));
     let normal = Outcome::Normal { marginal: false };
-    assert_eq!(
-        (&fast.outcome, &judge.outcome),
-        (&normal, &normal),
-        "{what}"
-    );
+    assert_eq!((&fast.outcome, &judge.outcome), (&normal, &normal), "{what}");
     // As the product does, each answer is computed afresh from the data at the end.
     let answer = |run: &Run| {
         let point = vertex(&contact.lcp, &Basis::after(&run.pivots)).expect("regular");
@@ -106,18 +91,13 @@ fn agree(system: &ContactSystem, numbers: &ContactNumbers, what: &str) -> (usize
     let (judge_z, judge_x) = answer(&judge);
     let z_error = (fast_z - &judge_z).amax() / judge_z.amax();
     let x_error = (fast_x - &judge_x).amax() / judge_x.amax();
-    assert!(
-        z_error < 1e-9 && x_error < 1e-9,
-        "{what}: z {z_error:e}, x {x_error:e}"
-    );
+    assert!(z_error < 1e-9 && x_error < 1e-9, "{what}: z {z_error:e}, x {x_error:e}");
     let raw = contact.joint_displacements(system, &fast.point.z) * contact.length_unit;
     let z_drift = (raw - &judge_z).amax() / judge_z.amax();
     assert!(z_drift < 1e-9, "{what}: drift {z_drift:e}");
     let names = |run: &Run| -> Vec<_> {
         let pivots = run.pivots.iter();
-        pivots
-            .map(|pivot| (pivot.entering, pivot.leaving))
-            .collect()
+        pivots.map(|pivot| (pivot.entering, pivot.leaving)).collect()
     };
     let same = names(&fast) == names(&judge);
     if same {
@@ -125,11 +105,7 @@ fn agree(system: &ContactSystem, numbers: &ContactNumbers, what: &str) -> (usize
         let first = judge.pivots[0].p_after;
         for (a, b) in fast.pivots.iter().zip(&judge.pivots) {
             let error = (a.p_after * contact.force_unit - b.p_after).abs() / first;
-            assert!(
-                error < 1e-9,
-                "{what}: p at pivot {} differs by {error:e}",
-                a.step
-            );
+            assert!(error < 1e-9, "{what}: p at pivot {} differs by {error:e}", a.step);
         }
     }
     println!(
@@ -148,15 +124,10 @@ fn agree_on_all(m: usize) {
             assert!(same, "{name}, m = {m}, f = {f}: other pivots");
         }
         // Pulled from both sides the plates stick longer: the more friction, the stronger the pull.
-        for (pull, traction, name) in [
-            (Pull::OneSided, 60.0, "plates"),
-            (Pull::Symmetric, 600.0 * f, "plates with ties"),
-        ] {
-            let ready = Ready::new(&Plates {
-                pull,
-                traction,
-                ..Plates::with_pairs(m, f)
-            });
+        for (pull, traction, name) in
+            [(Pull::OneSided, 60.0, "plates"), (Pull::Symmetric, 600.0 * f, "plates with ties")]
+        {
+            let ready = Ready::new(&Plates { pull, traction, ..Plates::with_pairs(m, f) });
             let numbers = ready.numbers(&ready.values(&[]));
             let system = ready.prepared.system().expect("condensed");
             // Mirror images tie up to the rounding of their condensation: the order may differ, the answer not.
@@ -179,17 +150,11 @@ fn engines_agree_on_three_hundred_and_a_thousand_pairs() {
 }
 
 /// Largest error of w = M z + q + d p over the rows, relative to the terms that a row sums.
-fn residual(
-    matrix: &DMatrix<f64>,
-    lcp: &MirroredLcp,
-    point: &stickslip::lcp::outcome::Point,
-) -> f64 {
+fn residual(matrix: &DMatrix<f64>, lcp: &MirroredLcp, point: &stickslip::lcp::outcome::Point) -> f64 {
     let z = DVector::from_column_slice(&point.z);
     let w = matrix * &z + &lcp.q + point.p * &lcp.covering;
     let terms = matrix.abs() * z.abs() + lcp.q.abs() + point.p * lcp.covering.abs();
-    (0..lcp.size())
-        .map(|i| (w[i] - point.w[i]).abs() / terms[i])
-        .fold(0.0, f64::max)
+    (0..lcp.size()).map(|i| (w[i] - point.w[i]).abs() / terms[i]).fold(0.0, f64::max)
 }
 
 /// 8 192 pivots on Murty's problem: M is unit lower triangular with twos, numbers up to 2^13.
@@ -201,33 +166,18 @@ fn errors_do_not_grow_over_murtys_pivots() {
         std::cmp::Ordering::Equal => 1.0,
         std::cmp::Ordering::Greater => 0.0,
     });
-    let rows: Vec<Vec<f64>> = matrix
-        .row_iter()
-        .map(|r| r.iter().copied().collect())
-        .collect();
-    let q: Vec<f64> = (1..=n as i32)
-        .map(|i| {
-            -(n as i32 + 1 - i..=n as i32)
-                .map(|j| 2f64.powi(j))
-                .sum::<f64>()
-        })
-        .collect();
-    let lcp = Arc::new(MirroredLcp::plain(&Lcp {
-        scale: Scale::plain(&rows),
-        matrix: rows,
-        q,
-        covering: vec![1.0; n],
-    }));
+    let rows: Vec<Vec<f64>> = matrix.row_iter().map(|r| r.iter().copied().collect()).collect();
+    let q: Vec<f64> =
+        (1..=n as i32).map(|i| -(n as i32 + 1 - i..=n as i32).map(|j| 2f64.powi(j)).sum::<f64>()).collect();
+    let lcp =
+        Arc::new(MirroredLcp::plain(&Lcp { scale: Scale::plain(&rows), matrix: rows, q, covering: vec![1.0; n] }));
     let mut engine = SchemeEngine::new(Arc::clone(&lcp), TieRule::Lexicographic((0..n).collect()));
     let mut worst = 0f64;
     while engine.step() == Step::Pivoted {
         worst = worst.max(residual(&matrix, &lcp, &engine.point()));
     }
     assert_eq!(engine.pivots().len(), 1 << n);
-    println!(
-        "worst {worst:e}, {} restarts from the data",
-        engine.refreshes()
-    );
+    println!("worst {worst:e}, {} restarts from the data", engine.refreshes());
     assert!(worst < 1e-13, "{worst:e}");
 }
 
@@ -250,19 +200,10 @@ fn errors_of_a_long_walk(n: usize, pivots: usize) -> (f64, f64) {
         },
         whole_size: n,
     };
-    let start = Basis {
-        z: Vec::new(),
-        active: Vec::new(),
-        p: false,
-    };
+    let start = Basis { z: Vec::new(), active: Vec::new(), p: false };
     let order = (0..n).collect();
-    let mut engine =
-        Parametric::new(Arc::new(lcp.clone()), &start, order).expect("z = 0 is an answer");
-    let reach = Reach {
-        target: 1.0,
-        through: false,
-        pivots: 100_000,
-    };
+    let mut engine = Parametric::new(Arc::new(lcp.clone()), &start, order).expect("z = 0 is an answer");
+    let reach = Reach { target: 1.0, through: false, pivots: 100_000 };
     let (mut made, mut errors) = (0, Vec::new());
     while made < pivots {
         let (end, some) = engine.walk(reach, &mut |_| ControlFlow::Continue(()));
@@ -272,10 +213,7 @@ fn errors_of_a_long_walk(n: usize, pivots: usize) -> (f64, f64) {
         lcp.q += &lcp.covering;
         lcp.covering = load(&mut rng) - &lcp.q;
         let point = engine.point();
-        let at_target = MirroredLcp {
-            covering: DVector::zeros(n),
-            ..lcp.clone()
-        };
+        let at_target = MirroredLcp { covering: DVector::zeros(n), ..lcp.clone() };
         errors.push(residual(&matrix, &at_target, &point));
         assert!(point.z.iter().chain(&point.w).all(|value| *value > -1e-12));
         assert!(point.z.iter().zip(&point.w).all(|(z, w)| z * w == 0.0));
@@ -291,10 +229,7 @@ fn errors_of_a_long_walk(n: usize, pivots: usize) -> (f64, f64) {
         worst(&errors[errors.len() - tenth..])
     );
     assert_eq!(engine.refreshes(), 0, "no restart hides the errors");
-    (
-        worst(&errors[..tenth]),
-        worst(&errors[errors.len() - tenth..]),
-    )
+    (worst(&errors[..tenth]), worst(&errors[errors.len() - tenth..]))
 }
 
 #[test]

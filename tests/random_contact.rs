@@ -17,32 +17,25 @@ use stickslip::model::pair::Law;
 use stickslip::model::rules::{Covering, TieBreak};
 
 /// R = A Aᵀ / n + shift·I; with `ties` the entries of A and the loads are small integers.
-pub fn random_system(
-    rng: &mut ChaCha8Rng,
-    m: usize,
-    ties: bool,
-) -> (ContactSystem, ContactNumbers) {
+pub fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
     let n = 2 * m;
-    let a = DMatrix::from_fn(n, n, |_, _| {
-        if ties {
-            f64::from(rng.random_range(-1..=1))
-        } else {
-            rng.random_range(-1.0..1.0)
-        }
-    });
+    let a =
+        DMatrix::from_fn(
+            n,
+            n,
+            |_, _| {
+                if ties { f64::from(rng.random_range(-1..=1)) } else { rng.random_range(-1.0..1.0) }
+            },
+        );
     let stiffness = &a * a.transpose() / n as f64 + DMatrix::identity(n, n) * 0.05;
-    let load = DVector::from_fn(n, |_, _| {
-        if ties {
-            f64::from(rng.random_range(-2..=2))
-        } else {
-            rng.random_range(-1.0..1.0)
-        }
-    });
-    let f = if ties {
-        f64::from(rng.random_range(0..=5))
-    } else {
-        rng.random_range(0.0..5.0)
-    };
+    let load =
+        DVector::from_fn(
+            n,
+            |_, _| {
+                if ties { f64::from(rng.random_range(-2..=2)) } else { rng.random_range(-1.0..1.0) }
+            },
+        );
+    let f = if ties { f64::from(rng.random_range(0..=5)) } else { rng.random_range(0.0..5.0) };
     common::systems::coulomb(stiffness, load, f)
 }
 
@@ -55,10 +48,7 @@ fn violation(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>)
     for i in 0..m {
         let (x_n, x_t, z_n, z_t) = (force[i], force[m + i], z[i], z[m + i]);
         let bound = numbers.friction[i] * x_n;
-        worst = worst
-            .max(-x_n / scale)
-            .max(-z_n)
-            .max((x_n * z_n).abs() / scale);
+        worst = worst.max(-x_n / scale).max(-z_n).max((x_n * z_n).abs() / scale);
         worst = worst.max((x_t.abs() - bound) / scale);
         // slip + goes with x_τ = −bound
         worst = worst.max((z_t.max(0.0) * (bound + x_t)).abs() / scale);
@@ -76,16 +66,10 @@ fn default_rules_always_answer_where_r_is_positive_definite() {
         let m = 1 + k % 20;
         let (system, numbers) = random_system(&mut rng, m, k % 3 == 0);
         let contact = contact_lcp(&system, &numbers, Covering::Cohesive).unwrap();
-        let mut engine = SchemeEngine::new(
-            contact.lcp.clone(),
-            contact.tie_rule(TieBreak::Lexicographic),
-        );
+        let mut engine = SchemeEngine::new(contact.lcp.clone(), contact.tie_rule(TieBreak::Lexicographic));
         let run = run(&mut engine, 20_000, &mut |_| ControlFlow::Continue(()));
         assert!(
-            matches!(
-                run.outcome,
-                Outcome::Trivial | Outcome::Normal { marginal: false }
-            ),
+            matches!(run.outcome, Outcome::Trivial | Outcome::Normal { marginal: false }),
             "problem {k}: m = {m}, f = {}: {:?}",
             numbers.friction[0],
             run.outcome
@@ -108,11 +92,7 @@ mod common;
 fn random_scenario(rng: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> String {
     let n = 2 * m;
     let number = |rng: &mut ChaCha8Rng, size: f64| {
-        if ties {
-            f64::from(rng.random_range(-2..=2)) * size / 2.0
-        } else {
-            rng.random_range(-size..size)
-        }
+        if ties { f64::from(rng.random_range(-2..=2)) * size / 2.0 } else { rng.random_range(-size..size) }
     };
     // R = S (A Aᵀ/n + 0.05) S with S a contrast of stiffness up to 1e3 (none with ties).
     let a = DMatrix::from_fn(n, n, |_, _| number(rng, 1.0));
@@ -126,35 +106,21 @@ fn random_scenario(rng: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> 
         let z = DMatrix::from_fn(n, loose, |_, _| number(rng, 1.0)).qr().q();
         let keep = DMatrix::identity(n, n) - &z * z.transpose();
         r = &keep * r * &keep;
-        kernel = z
-            .column_iter()
-            .map(|z| z.iter().copied().collect())
-            .collect();
+        kernel = z.column_iter().map(|z| z.iter().copied().collect()).collect();
     }
     let r = (&r + r.transpose()) * 0.5;
     let mut pair = |choices: &[f64]| choices[rng.random_range(0..choices.len())];
     let laws: Vec<&str> = (0..m)
-        .map(|_| {
-            ["coulomb", "coulomb", "coulomb", "frictionless", "bound"]
-                [pair(&[0.0, 1.0, 2.0, 3.0, 4.0]) as usize]
-        })
+        .map(|_| ["coulomb", "coulomb", "coulomb", "frictionless", "bound"][pair(&[0.0, 1.0, 2.0, 3.0, 4.0]) as usize])
         .collect();
     let one = |law: &[&str], pair: &mut dyn FnMut() -> f64| -> Vec<f64> {
-        laws.iter()
-            .map(|l| if law.contains(l) { pair() } else { 0.0 })
-            .collect()
+        laws.iter().map(|l| if law.contains(l) { pair() } else { 0.0 }).collect()
     };
     let friction = one(&["coulomb"], &mut || {
-        if ties {
-            pair(&[0.0, 1.0, 2.0, 5.0])
-        } else {
-            pair(&[0.0, 0.1, 0.4, 0.9, 1.3, 2.2, 3.7, 5.0])
-        }
+        if ties { pair(&[0.0, 1.0, 2.0, 5.0]) } else { pair(&[0.0, 0.1, 0.4, 0.9, 1.3, 2.2, 3.7, 5.0]) }
     });
     let cohesion = one(&["coulomb"], &mut || pair(&[0.0, 0.0, 0.5, 1.0]));
-    let gap = one(&["coulomb", "frictionless"], &mut || {
-        pair(&[0.0, 0.0, 1.0, 0.1])
-    });
+    let gap = one(&["coulomb", "frictionless"], &mut || pair(&[0.0, 0.0, 1.0, 0.1]));
     let bound = one(&["bound"], &mut || pair(&[0.0, 0.5, 1.0]));
     let mut load: Vec<f64> = (0..n).map(|_| number(rng, 2.0)).collect();
     if loose > 0 {
@@ -186,10 +152,7 @@ fn judge(case: &common::Case, answer: &stickslip::answer::record::Answer, what: 
         if i >= m {
             return pair.z_t;
         }
-        let gap = given.laws[i]
-            .numbers()
-            .into_iter()
-            .find(|(key, _)| *key == "gap");
+        let gap = given.laws[i].numbers().into_iter().find(|(key, _)| *key == "gap");
         pair.z_n - gap.map_or(0.0, |(_, gap)| gap.value(&values))
     });
     let r = DMatrix::from_fn(2 * m, 2 * m, |i, j| given.stiffness[i][j]);
@@ -199,11 +162,7 @@ fn judge(case: &common::Case, answer: &stickslip::answer::record::Answer, what: 
         if i < m { pair.x_n } else { pair.x_t }
     });
     // Against the terms that are summed.
-    let scale = (r.abs() * z.abs())
-        .max()
-        .max(force.amax())
-        .max(reported.amax())
-        .max(1.0);
+    let scale = (r.abs() * z.abs()).max().max(force.amax()).max(reported.amax()).max(1.0);
     let off = (&force - &reported).amax() / scale;
     assert!(off < 1e-9, "{what}: forces off by {off:e}");
     let wrong = common::laws::violation(&case.scenario, &values, answer);
@@ -233,17 +192,13 @@ fn mixed_laws_gaps_and_cohesion_always_answer_where_r_is_positive_definite() {
 #[test]
 fn only_a_gap_and_no_load() {
     // λ = R (z − g) is rounding of R g here: it must not be judged against itself.
-    for (r, f) in [
-        ([[0.175, 0.25], [0.25, 0.675]], 0.0),
-        ([[1.0, 0.3], [0.3, 0.7]], 0.4),
-        ([[3.1, -0.7], [-0.7, 0.3]], 2.0),
-    ] {
+    for (r, f) in
+        [([[0.175, 0.25], [0.25, 0.675]], 0.0), ([[1.0, 0.3], [0.3, 0.7]], 0.4), ([[3.1, -0.7], [-0.7, 0.3]], 2.0)]
+    {
         for gap in [0.1, 0.3, 1e-7] {
-            let case = common::Case::text(&common::scenario_text(
-                serde_json::json!({ "contact_system": {
+            let case = common::Case::text(&common::scenario_text(serde_json::json!({ "contact_system": {
                 "pairs": ["c"], "stiffness": r, "loads": { "load": { "vector": [0, 0] } }, "friction": [f], "gap": [gap]
-            } }),
-            ));
+            } })));
             let answer = case.solve(&[]);
             common::is_answer(&answer);
             common::close("z_n", answer.pairs[0].z_n, gap, 1e-12);
@@ -262,10 +217,7 @@ fn every_rule_answers_right_or_says_so() {
         let case = common::Case::text(&text);
         for rules in common::all_rules() {
             let values = case.scenario.parameter_values();
-            let Ok(solved) =
-                case.prepared
-                    .solve(&case.scenario, &values, rules, &stickslip::watch::Quiet)
-            else {
+            let Ok(solved) = case.prepared.solve(&case.scenario, &values, rules, &stickslip::watch::Quiet) else {
                 continue; // `weight` without friction
             };
             let answer = solved.answer;
@@ -275,30 +227,16 @@ fn every_rule_answers_right_or_says_so() {
             } else if let Some(ray) = &answer.ray {
                 use stickslip::answer::record::RayClass;
                 rays += 1;
-                assert!(
-                    matches!(ray.class, RayClass::Artefact | RayClass::Fault),
-                    "problem {k} {rules:?}: {ray:?}"
-                );
+                assert!(matches!(ray.class, RayClass::Artefact | RayClass::Fault), "problem {k} {rules:?}: {ray:?}");
             } else {
                 // Only rules that may cycle may end otherwise.
                 use stickslip::answer::record::OutcomeKind;
-                assert_eq!(
-                    answer.outcome,
-                    OutcomeKind::PivotLimit,
-                    "problem {k} {rules:?}: {:?}",
-                    answer.failure
-                );
-                assert!(!matches!(
-                    rules.tie_break,
-                    TieBreak::Lexicographic | TieBreak::Natural
-                ));
+                assert_eq!(answer.outcome, OutcomeKind::PivotLimit, "problem {k} {rules:?}: {:?}", answer.failure);
+                assert!(!matches!(rules.tie_break, TieBreak::Lexicographic | TieBreak::Natural));
             }
         }
     }
-    assert!(
-        answers > 1000 && rays > 50,
-        "{answers} answers, {rays} rays"
-    );
+    assert!(answers > 1000 && rays > 50, "{answers} answers, {rays} rays");
 }
 
 #[test]
@@ -317,10 +255,8 @@ fn loose_parts_stand_or_their_ray_is_a_motion_the_loads_drive() {
             judge(&case, &answer, &what);
             continue;
         }
-        let ray = answer
-            .ray
-            .as_ref()
-            .unwrap_or_else(|| panic!("{what}: {:?} {:?}\n{text}", answer.outcome, answer.failure));
+        let ray =
+            answer.ray.as_ref().unwrap_or_else(|| panic!("{what}: {:?} {:?}\n{text}", answer.outcome, answer.failure));
         match ray.class {
             RayClass::Mechanism => mechanisms += 1,
             RayClass::NoEquilibrium => {
@@ -335,16 +271,10 @@ fn loose_parts_stand_or_their_ray_is_a_motion_the_loads_drive() {
             if joint < m {
                 return ray.direction[joint].z_n;
             }
-            let pair = system
-                .pairs
-                .iter()
-                .position(|pair| pair.tangential == Some(joint));
+            let pair = system.pairs.iter().position(|pair| pair.tangential == Some(joint));
             ray.direction[pair.unwrap()].z_t
         });
-        assert!(
-            (&system.stiffness * &z).amax() <= 1e-9 * system.stiffness.amax(),
-            "{what}"
-        );
+        assert!((&system.stiffness * &z).amax() <= 1e-9 * system.stiffness.amax(), "{what}");
         assert!(system.loads[0].vector.dot(&z) < 0.0, "{what}");
         assert!((z.amax() - 1.0).abs() < 1e-12, "{what}");
         for (i, pair) in system.pairs.iter().enumerate() {
@@ -355,8 +285,5 @@ fn loose_parts_stand_or_their_ray_is_a_motion_the_loads_drive() {
         }
     }
     println!("{answers} answers, {mechanisms} mechanisms, {others} without equilibrium");
-    assert!(
-        answers > 100 && mechanisms > 20,
-        "{answers} answers, {mechanisms} mechanisms"
-    );
+    assert!(answers > 100 && mechanisms > 20, "{answers} answers, {mechanisms} mechanisms");
 }

@@ -38,25 +38,13 @@ struct Terminal {
 impl Terminal {
     /// Starts the REPL in `folder`, its state kept there too.
     fn start(folder: &Path, term: &str, arguments: &[&str]) -> Terminal {
-        let pair = native_pty_system()
-            .openpty(PtySize {
-                rows: 24,
-                cols: 80,
-                pixel_width: 0,
-                pixel_height: 0,
-            })
-            .unwrap();
-        let child = pair
-            .slave
-            .spawn_command(command(folder, term, arguments))
-            .unwrap();
+        let pair =
+            native_pty_system().openpty(PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 }).unwrap();
+        let child = pair.slave.spawn_command(command(folder, term, arguments)).unwrap();
         drop(pair.slave);
         let mut reader = pair.master.try_clone_reader().unwrap();
         let writer = pair.master.take_writer().unwrap();
-        let seen = Arc::new(Mutex::new((
-            vt100::Parser::new(cells(24), cells(80), 1000),
-            Vec::new(),
-        )));
+        let seen = Arc::new(Mutex::new((vt100::Parser::new(cells(24), cells(80), 1000), Vec::new())));
         let theirs = Arc::clone(&seen);
         std::thread::spawn(move || {
             let mut bytes = [0; 4096];
@@ -66,12 +54,7 @@ impl Terminal {
                 seen.1.extend_from_slice(&bytes[..count]);
             }
         });
-        Terminal {
-            child,
-            master: Some(pair.master),
-            writer: Some(writer),
-            seen,
-        }
+        Terminal { child, master: Some(pair.master), writer: Some(writer), seen }
     }
 
     fn screen(&self) -> String {
@@ -111,11 +94,7 @@ impl Terminal {
     /// Waits for an empty prompt in the last line that is written on.
     fn prompt(&self) -> String {
         self.wait("the prompt", |screen| {
-            screen
-                .trim_end_matches('\n')
-                .lines()
-                .next_back()
-                .is_some_and(|line| line.trim_end() == PROMPT.trim_end())
+            screen.trim_end_matches('\n').lines().next_back().is_some_and(|line| line.trim_end() == PROMPT.trim_end())
         })
     }
 
@@ -123,15 +102,10 @@ impl Terminal {
     fn ask(&mut self, text: &str, answer: &str) -> String {
         self.send(&format!("{text}\r"));
         self.wait(answer, |screen| {
-            let mut behind = screen
-                .rsplit_once(&format!("{PROMPT}{text}"))
-                .map_or("", |(_, behind)| behind);
+            let mut behind = screen.rsplit_once(&format!("{PROMPT}{text}")).map_or("", |(_, behind)| behind);
             behind = behind.trim_end();
             behind.contains(answer)
-                && behind
-                    .lines()
-                    .next_back()
-                    .is_some_and(|line| line.trim_end() == PROMPT.trim_end())
+                && behind.lines().next_back().is_some_and(|line| line.trim_end() == PROMPT.trim_end())
         })
     }
 
@@ -142,21 +116,14 @@ impl Terminal {
             if let Some(status) = self.child.try_wait().unwrap() {
                 return status.exit_code();
             }
-            assert!(
-                start.elapsed() < PATIENCE,
-                "it does not end:\n{}",
-                self.screen()
-            );
+            assert!(start.elapsed() < PATIENCE, "it does not end:\n{}", self.screen());
             std::thread::sleep(Duration::from_millis(5));
         }
     }
 
     fn signal(&self, signal: &str) {
         let id = self.child.process_id().unwrap().to_string();
-        let sent = std::process::Command::new("kill")
-            .args([signal, &id])
-            .status()
-            .unwrap();
+        let sent = std::process::Command::new("kill").args([signal, &id]).status().unwrap();
         assert!(sent.success());
     }
 }
@@ -188,14 +155,10 @@ fn tab_completes_and_hints_are_shown() {
     terminal.prompt();
     // the candidates, each with what it is
     terminal.send("set F\t\t");
-    terminal.wait("the parameters", |screen| {
-        screen.contains("F2") && screen.contains("250")
-    });
+    terminal.wait("the parameters", |screen| screen.contains("F2") && screen.contains("250"));
     terminal.send("2 1\u{15}");
     terminal.send("why c\t\t");
-    terminal.wait("the pairs", |screen| {
-        screen.contains("c1") && screen.contains("c5")
-    });
+    terminal.wait("the pairs", |screen| screen.contains("c1") && screen.contains("c5"));
     terminal.send("6\r");
     terminal.wait("the answer", |screen| screen.contains("c6 slip+"));
     terminal.prompt();
@@ -219,17 +182,11 @@ fn the_history_comes_back_in_the_next_run_and_can_be_searched() {
     let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
     terminal.prompt();
     terminal.send("\u{1b}[A");
-    terminal.wait("the last line", |screen| {
-        screen.trim_end().ends_with("› status")
-    });
+    terminal.wait("the last line", |screen| screen.trim_end().ends_with("› status"));
     terminal.send("\u{1b}[A");
-    terminal.wait("the line before", |screen| {
-        screen.trim_end().ends_with("› set F2 123")
-    });
+    terminal.wait("the line before", |screen| screen.trim_end().ends_with("› set F2 123"));
     terminal.send("\u{15}\u{12}F2");
-    terminal.wait("the search", |screen| {
-        screen.contains("reverse-i-search") && screen.contains("set F2 123")
-    });
+    terminal.wait("the search", |screen| screen.contains("reverse-i-search") && screen.contains("set F2 123"));
     terminal.send("\r");
     terminal.wait("its answer", |screen| screen.contains("(was "));
     terminal.prompt();
@@ -263,18 +220,14 @@ fn long_results_are_paged_and_keys_answer() {
     terminal.type_by_hand("pivots");
     let first = terminal.wait("the question", |screen| screen.contains("more: space page"));
     terminal.send(" ");
-    let second = terminal.wait("the next page", |screen| {
-        screen.contains("more: space page") && screen != first
-    });
+    let second = terminal.wait("the next page", |screen| screen.contains("more: space page") && screen != first);
     assert_ne!(first, second);
     terminal.send("q");
     terminal.prompt();
     terminal.type_by_hand("help");
     terminal.wait("the question", |screen| screen.contains("more: space page"));
     terminal.send("a");
-    terminal.wait("the end", |screen| {
-        screen.contains("says more, with an example")
-    });
+    terminal.wait("the end", |screen| screen.contains("says more, with an example"));
     terminal.prompt();
     // what is no answer to the question is the next command
     terminal.type_by_hand("help");
@@ -303,9 +256,7 @@ fn control_c_drops_the_line() {
 /// Two plates so fine that their factorization takes a while.
 fn large(folder: &Path) -> String {
     let text = stickslip::model::embedded::text("plates-free").unwrap();
-    let fine = text
-        .replace("[16, 8]", "[480, 240]")
-        .replace("[16,8]", "[480,240]");
+    let fine = text.replace("[16, 8]", "[480, 240]").replace("[16,8]", "[480,240]");
     assert_ne!(fine, text, "the scenario is written differently");
     let file = folder.join("fine.json");
     std::fs::write(&file, fine).unwrap();
@@ -339,24 +290,8 @@ fn the_width_follows_the_window() {
     let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
     terminal.prompt();
     terminal.ask("pairs c1", "50.000");
-    terminal
-        .seen
-        .lock()
-        .unwrap()
-        .0
-        .screen_mut()
-        .set_size(cells(24), cells(40));
-    terminal
-        .master
-        .as_ref()
-        .unwrap()
-        .resize(PtySize {
-            rows: 24,
-            cols: 40,
-            pixel_width: 0,
-            pixel_height: 0,
-        })
-        .unwrap();
+    terminal.seen.lock().unwrap().0.screen_mut().set_size(cells(24), cells(40));
+    terminal.master.as_ref().unwrap().resize(PtySize { rows: 24, cols: 40, pixel_width: 0, pixel_height: 0 }).unwrap();
     std::thread::sleep(Duration::from_millis(100));
     terminal.ask("status", "…");
     terminal.send("quit\r");
@@ -374,9 +309,7 @@ fn a_dumb_terminal_gets_no_codes() {
     terminal.wait("the error", |screen| screen.contains("unknown command"));
     terminal.send("set F2 9\u{3}");
     terminal.send("diff\n");
-    terminal.wait("the session as it was", |screen| {
-        screen.contains("150 kN (file: 250)")
-    });
+    terminal.wait("the session as it was", |screen| screen.contains("150 kN (file: 250)"));
     terminal.send("quit\n");
     let bytes = Arc::clone(&terminal.seen);
     assert_eq!(terminal.end(), 0);
@@ -413,9 +346,7 @@ fn killed_sessions_are_restored() {
             }
         }
         let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
-        terminal.wait("the offer", |screen| {
-            screen.contains("brings back its 2 changes")
-        });
+        terminal.wait("the offer", |screen| screen.contains("brings back its 2 changes"));
         terminal.prompt();
         terminal.ask("restore", "2 changes restored");
         terminal.ask("diff", "123 kN");
@@ -430,17 +361,9 @@ fn killed_sessions_are_restored() {
 #[test]
 fn a_line_that_drops_loses_nothing() {
     let folder = folder();
-    let size = PtySize {
-        rows: 24,
-        cols: 80,
-        pixel_width: 0,
-        pixel_height: 0,
-    };
+    let size = PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 };
     let pair = native_pty_system().openpty(size).unwrap();
-    let mut child = pair
-        .slave
-        .spawn_command(command(folder.path(), "xterm-256color", &[]))
-        .unwrap();
+    let mut child = pair.slave.spawn_command(command(folder.path(), "xterm-256color", &[])).unwrap();
     drop(pair.slave);
     let mut reader = pair.master.try_clone_reader().unwrap();
     let mut writer = pair.master.take_writer().unwrap();
@@ -465,19 +388,13 @@ fn a_line_that_drops_loses_nothing() {
         std::thread::sleep(Duration::from_millis(10));
     }
     let terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
-    terminal.wait("the offer", |screen| {
-        screen.contains("brings back its 1 change")
-    });
+    terminal.wait("the offer", |screen| screen.contains("brings back its 1 change"));
 }
 
 #[test]
 fn colours_can_be_turned_off() {
     let folder = folder();
-    let mut terminal = Terminal::start(
-        folder.path(),
-        "xterm-256color",
-        &["--color", "never", "--ascii"],
-    );
+    let mut terminal = Terminal::start(folder.path(), "xterm-256color", &["--color", "never", "--ascii"]);
     terminal.wait("the prompt", |screen| screen.trim_end().ends_with('>'));
     terminal.send("pairs\r");
     terminal.wait("the answer", |screen| screen.contains("slip+"));
@@ -486,10 +403,10 @@ fn colours_can_be_turned_off() {
     let bytes = terminal.bytes();
     let text = String::from_utf8_lossy(&bytes);
     // codes that move the cursor or set a mode are there, colours (they end in m) are not
-    let coloured = text.split("\u{1b}[").skip(1).any(|code| {
-        code.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';')
-            .starts_with('m')
-    });
+    let coloured = text
+        .split("\u{1b}[")
+        .skip(1)
+        .any(|code| code.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';').starts_with('m'));
     assert!(!coloured, "{text:?}");
     assert!(text.is_ascii());
 }

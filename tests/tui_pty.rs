@@ -38,12 +38,7 @@ impl Screen {
     fn spawn(mut command: CommandBuilder, width: u16, height: u16) -> Screen {
         let home = tempfile::tempdir().unwrap();
         let pair = native_pty_system()
-            .openpty(PtySize {
-                rows: height,
-                cols: width,
-                pixel_width: 0,
-                pixel_height: 0,
-            })
+            .openpty(PtySize { rows: height, cols: width, pixel_width: 0, pixel_height: 0 })
             .unwrap();
         for (name, folder) in [("XDG_STATE_HOME", "state"), ("XDG_CONFIG_HOME", "config")] {
             command.env(name, home.path().join(folder));
@@ -72,14 +67,7 @@ impl Screen {
                 seen.sixteen &= !buffer[..count].windows(4).any(|code| code == b"8;5;");
             }
         });
-        Screen {
-            master: pair.master,
-            child,
-            writer,
-            seen,
-            before,
-            _home: home,
-        }
+        Screen { master: pair.master, child, writer, seen, before, _home: home }
     }
 
     fn send(&mut self, keys: &str) {
@@ -124,20 +112,8 @@ impl Screen {
     }
 
     fn resize(&mut self, width: u16, height: u16) {
-        self.seen
-            .lock()
-            .unwrap()
-            .parser
-            .screen_mut()
-            .set_size(size(height), size(width));
-        self.master
-            .resize(PtySize {
-                rows: height,
-                cols: width,
-                pixel_width: 0,
-                pixel_height: 0,
-            })
-            .unwrap();
+        self.seen.lock().unwrap().parser.screen_mut().set_size(size(height), size(width));
+        self.master.resize(PtySize { rows: height, cols: width, pixel_width: 0, pixel_height: 0 }).unwrap();
     }
 
     fn signal(&self, name: &str) {
@@ -191,15 +167,7 @@ fn termios(master: &dyn MasterPty) -> String {
 fn start_vary_step_ray_resize_quit() {
     let mut screen = Screen::start(&["tui", "beam"], 80, 24);
     screen.wait("normal · 5 pivots");
-    assert!(
-        screen
-            .seen
-            .lock()
-            .unwrap()
-            .parser
-            .screen()
-            .alternate_screen()
-    );
+    assert!(screen.seen.lock().unwrap().parser.screen().alternate_screen());
     // sixteen colours, in their own codes
     assert!(screen.seen.lock().unwrap().sixteen);
     screen.send("\x1b[B\x1b[B[");
@@ -226,9 +194,7 @@ fn start_vary_step_ray_resize_quit() {
     screen.send("?");
     screen.wait("Keys");
     screen.send("\x1b");
-    screen.until("the end of the help", |screen| {
-        !screen.contents().contains("Keys")
-    });
+    screen.until("the end of the help", |screen| !screen.contents().contains("Keys"));
     screen.send("q");
     assert_eq!(screen.exit(), 0);
     screen.is_restored();
@@ -318,9 +284,7 @@ fn ctrl_z_gives_the_terminal_back_and_fg_takes_it_again() {
             thread::sleep(Duration::from_millis(10));
         }
         screen.signal("CONT");
-        screen.until("the panes", |screen| {
-            screen.alternate_screen() && screen.contents().contains("2 Parameters")
-        });
+        screen.until("the panes", |screen| screen.alternate_screen() && screen.contents().contains("2 Parameters"));
     }
     screen.send("+");
     screen.wait("f = 0.55");
@@ -366,11 +330,7 @@ fn keys_can_be_changed() {
     // the program gets another home than the one of `spawn`
     command.args([
         "-c",
-        &format!(
-            "XDG_CONFIG_HOME={} exec {} tui beam",
-            home.path().display(),
-            env!("CARGO_BIN_EXE_stickslip")
-        ),
+        &format!("XDG_CONFIG_HOME={} exec {} tui beam", home.path().display(), env!("CARGO_BIN_EXE_stickslip")),
     ]);
     let mut screen = Screen::spawn(command, 100, 24);
     screen.wait("normal");
@@ -384,10 +344,7 @@ fn keys_can_be_changed() {
 
 #[test]
 fn without_a_terminal_it_says_so() {
-    let output = Command::new(env!("CARGO_BIN_EXE_stickslip"))
-        .args(["tui", "beam"])
-        .output()
-        .unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_stickslip")).args(["tui", "beam"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("needs a terminal"));
     assert!(output.stdout.is_empty());
@@ -408,12 +365,7 @@ fn panics_while_the_panes_are_shown() {
 #[test]
 fn a_panic_leaves_the_terminal_as_it_was() {
     let mut command = CommandBuilder::new(std::env::current_exe().unwrap());
-    command.args([
-        "--exact",
-        "panics_while_the_panes_are_shown",
-        "--ignored",
-        "--nocapture",
-    ]);
+    command.args(["--exact", "panics_while_the_panes_are_shown", "--ignored", "--nocapture"]);
     command.env("STICKSLIP_TEST_PANIC", "1");
     // the message must not be scrolled away
     command.env("RUST_BACKTRACE", "0");

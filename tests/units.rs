@@ -29,11 +29,8 @@ fn converted(name: &str, parameters: &[(&str, (i32, i32))], units: (f64, f64)) -
     let mut json: Value = serde_json::from_str(embedded::text(name).unwrap()).unwrap();
     let by = |dimension| scale(dimension, units);
     for (name, parameter) in json["parameters"].as_object_mut().unwrap() {
-        let dimension = parameters
-            .iter()
-            .find(|(known, _)| known == name)
-            .unwrap_or_else(|| panic!("dimension of {name}"))
-            .1;
+        let dimension =
+            parameters.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("dimension of {name}")).1;
         for key in ["value", "min", "max", "step"] {
             multiply(&mut parameter[key], by(dimension));
         }
@@ -60,10 +57,7 @@ fn converted(name: &str, parameters: &[(&str, (i32, i32))], units: (f64, f64)) -
     };
     part("materials", &[("E", (1, -2))]);
     part("sections", &[("area", (0, 2)), ("inertia", (0, 4))]);
-    part(
-        "plates",
-        &[("origin", (0, 1)), ("size", (0, 1)), ("thickness", (0, 1))],
-    );
+    part("plates", &[("origin", (0, 1)), ("size", (0, 1)), ("thickness", (0, 1))]);
     part("springs", &[("stiffness", (1, -1))]);
     part("contacts", &[("gap", (0, 1)), ("cohesion", (1, 0))]);
     if let Some(nodes) = object.get_mut("nodes") {
@@ -74,11 +68,9 @@ fn converted(name: &str, parameters: &[(&str, (i32, i32))], units: (f64, f64)) -
             continue;
         }
         for item in case["items"].as_array_mut().unwrap() {
-            for (kind, key, dimension) in [
-                ("point", "force", (1, 0)),
-                ("traction", "value", (1, -1)),
-                ("line", "value", (1, -1)),
-            ] {
+            for (kind, key, dimension) in
+                [("point", "force", (1, 0)), ("traction", "value", (1, -1)), ("line", "value", (1, -1))]
+            {
                 if let Some(load) = item.get_mut(kind) {
                     multiply(&mut load[key], by(dimension));
                 }
@@ -91,13 +83,7 @@ fn converted(name: &str, parameters: &[(&str, (i32, i32))], units: (f64, f64)) -
 fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]]) {
     let original = Case::embedded(name);
     // From (m, kN): N and mm, MN and km, and an odd one that is no power of ten.
-    for units in [
-        (1e3, 1e3),
-        (1e-3, 1e-3),
-        (1.0 / 7.3, 39.37),
-        (1e6, 1.0),
-        (1.0, 1e-6),
-    ] {
+    for units in [(1e3, 1e3), (1e-3, 1e-3), (1.0 / 7.3, 39.37), (1e6, 1.0), (1.0, 1e-6)] {
         let other = Case::text(&converted(name, parameters, units));
         for rules in all_rules() {
             for set in sets {
@@ -108,18 +94,11 @@ fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]
                 let scaled: Vec<(&str, f64)> = set
                     .iter()
                     .map(|(name, value)| {
-                        let dimension = parameters
-                            .iter()
-                            .find(|(known, _)| known == name)
-                            .unwrap()
-                            .1;
+                        let dimension = parameters.iter().find(|(known, _)| known == name).unwrap().1;
                         (*name, value * scale(dimension, units))
                     })
                     .collect();
-                let (a, b) = (
-                    original.solve_under(set, rules),
-                    other.solve_under(&scaled, rules),
-                );
+                let (a, b) = (original.solve_under(set, rules), other.solve_under(&scaled, rules));
                 let what = format!("{name} {set:?} {units:?} {rules:?}");
                 assert_eq!(a.outcome, b.outcome, "{what}");
                 assert_eq!(a.marginal, b.marginal, "{what}");
@@ -135,11 +114,7 @@ fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]
                     assert_eq!(x.turned, y.turned, "{step}");
                     near(&step, y.p, x.p * force, 1e-8, top * force);
                 }
-                assert_eq!(
-                    a.ray.as_ref().map(|ray| ray.class),
-                    b.ray.as_ref().map(|ray| ray.class),
-                    "{what}"
-                );
+                assert_eq!(a.ray.as_ref().map(|ray| ray.class), b.ray.as_ref().map(|ray| ray.class), "{what}");
                 assert_eq!(states(&a), states(&b), "{what}");
                 let largest = |x: &[f64]| x.iter().fold(0f64, |a, b| a.max(b.abs()));
                 let forces = |answer: &stickslip::answer::record::Answer| {
@@ -158,12 +133,7 @@ fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]
                 };
                 for (what, x, y, by) in [
                     (format!("{what}: forces"), forces(&a), forces(&b), force),
-                    (
-                        format!("{what}: displacements"),
-                        lengths(&a),
-                        lengths(&b),
-                        length,
-                    ),
+                    (format!("{what}: displacements"), lengths(&a), lengths(&b), length),
                 ] {
                     let size = largest(&x).max(1e-300);
                     for (x, y) in x.iter().zip(&y) {
@@ -184,14 +154,7 @@ fn beams() {
     compare(
         "beam",
         &parameters,
-        &[
-            &[],
-            &[("F2", 40.0)],
-            &[("F2", 200.0)],
-            &[("F2", 300.3)],
-            &[("F2", 400.0)],
-            &[("f", 0.0)],
-        ],
+        &[&[], &[("F2", 40.0)], &[("F2", 200.0)], &[("F2", 300.3)], &[("F2", 400.0)], &[("f", 0.0)]],
     );
     compare("beam-limit", &parameters, &[&[]]);
     compare("beam-ray", &parameters, &[&[]]);
@@ -201,11 +164,7 @@ fn beams() {
 fn frames() {
     let parameters = [("f", NONE), ("H", FORCE)];
     compare("frame", &parameters, &[&[], &[("f", 0.1)], &[("f", 0.6)]]);
-    compare(
-        "frame-rotated",
-        &parameters,
-        &[&[], &[("f", 0.9)], &[("H", -60.0)]],
-    );
+    compare("frame-rotated", &parameters, &[&[], &[("f", 0.9)], &[("H", -60.0)]]);
 }
 
 #[test]
@@ -217,16 +176,7 @@ fn cantilever_with_gap() {
 #[test]
 fn blocks() {
     let parameters = [("f", NONE), ("H", FORCE)];
-    compare(
-        "block",
-        &parameters,
-        &[
-            &[],
-            &[("H", 0.3)],
-            &[("f", 0.2), ("H", 0.23)],
-            &[("H", 0.0)],
-        ],
-    );
+    compare("block", &parameters, &[&[], &[("H", 0.3)], &[("f", 0.2), ("H", 0.23)], &[("H", 0.0)]]);
     let parameters = [("f", NONE), ("G", FORCE), ("F", FORCE)];
     compare("slope", &parameters, &[&[], &[("F", 0.45)], &[("F", -0.3)]]);
 }
@@ -234,24 +184,12 @@ fn blocks() {
 #[test]
 fn plates() {
     let parameters = [("f", NONE), ("q", (1, -1)), ("T", (1, -1)), ("V", (1, -1))];
-    compare(
-        "plates-free",
-        &parameters,
-        &[
-            &[],
-            &[("f", 0.3), ("T", 60.00006)],
-            &[("f", 2.5), ("T", 404.0)],
-        ],
-    );
+    compare("plates-free", &parameters, &[&[], &[("f", 0.3), ("T", 60.00006)], &[("f", 2.5), ("T", 404.0)]]);
     compare("plates-hinged", &parameters, &[&[], &[("f", 0.8)]]);
     compare("plates-slide", &parameters, &[&[]]);
 }
 
 #[test]
 fn greco() {
-    compare(
-        "greco",
-        &[("f", NONE)],
-        &[&[], &[("f", 0.2)], &[("f", 3.0)]],
-    );
+    compare("greco", &[("f", NONE)], &[&[], &[("f", 0.2)], &[("f", 3.0)]]);
 }

@@ -13,12 +13,7 @@ use stickslip::lcp::ratio_test::TieRule;
 fn solve(matrix: Vec<Vec<f64>>, q: Vec<f64>, rule: Option<TieRule>) -> Run {
     let n = q.len();
     let scale = Scale::plain(&matrix);
-    let lcp = Lcp {
-        matrix,
-        q,
-        covering: vec![1.0; n],
-        scale,
-    };
+    let lcp = Lcp { matrix, q, covering: vec![1.0; n], scale };
     let rule = rule.unwrap_or_else(|| TieRule::Lexicographic((0..n).collect()));
     let mut engine = SchemeEngine::new(Arc::new(MirroredLcp::plain(&lcp)), rule);
     run(&mut engine, 10_000, &mut |_| ControlFlow::Continue(()))
@@ -26,11 +21,7 @@ fn solve(matrix: Vec<Vec<f64>>, q: Vec<f64>, rule: Option<TieRule>) -> Run {
 
 #[test]
 fn cottle_pang_stone_4_4_7_in_five_pivots() {
-    let m = vec![
-        vec![0.0, -1.0, 2.0],
-        vec![2.0, 0.0, -2.0],
-        vec![-1.0, 1.0, 0.0],
-    ];
+    let m = vec![vec![0.0, -1.0, 2.0], vec![2.0, 0.0, -2.0], vec![-1.0, 1.0, 0.0]];
     let run = solve(m, vec![-3.0, 6.0, -1.0], None);
     assert_eq!(run.outcome, Outcome::Normal { marginal: false });
     assert_eq!(run.pivots.len(), 5);
@@ -75,9 +66,7 @@ fn murty(n: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
                 .collect()
         })
         .collect();
-    let q = (1..=n)
-        .map(|i| -(n + 1 - i..=n).map(|j| 2f64.powi(j as i32)).sum::<f64>())
-        .collect();
+    let q = (1..=n).map(|i| -(n + 1 - i..=n).map(|j| 2f64.powi(j as i32)).sum::<f64>()).collect();
     (m, q)
 }
 
@@ -96,11 +85,7 @@ fn murty_takes_two_to_the_n_pivots() {
 
 #[test]
 fn cycling_under_first_row_ends_in_four_pivots_under_lexicographic() {
-    let m = vec![
-        vec![1.0, 2.0, 0.0],
-        vec![0.0, 1.0, 2.0],
-        vec![2.0, 0.0, 1.0],
-    ];
+    let m = vec![vec![1.0, 2.0, 0.0], vec![0.0, 1.0, 2.0], vec![2.0, 0.0, 1.0]];
     let run = solve(m.clone(), vec![-1.0; 3], Some(TieRule::FirstRow));
     assert_eq!(run.outcome, Outcome::Cycle);
     let run = solve(m, vec![-1.0; 3], None);
@@ -113,12 +98,6 @@ fn cycling_under_first_row_ends_in_four_pivots_under_lexicographic() {
 
 #[test]
 fn painleve_rod() {
-    assert!(matches!(
-        solve(vec![vec![-0.05]], vec![-1.0], None).outcome,
-        Outcome::Ray(_)
-    ));
-    assert_eq!(
-        solve(vec![vec![-0.05]], vec![1.0], None).outcome,
-        Outcome::Trivial
-    );
+    assert!(matches!(solve(vec![vec![-0.05]], vec![-1.0], None).outcome, Outcome::Ray(_)));
+    assert_eq!(solve(vec![vec![-0.05]], vec![1.0], None).outcome, Outcome::Trivial);
 }

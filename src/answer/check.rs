@@ -20,17 +20,10 @@ pub fn check_contact(
     state: &JointState,
     equilibrium: Option<f64>,
 ) -> Check {
-    let force = state
-        .force
-        .amax()
-        .max(numbers.load.amax())
-        .max(load_with_gaps(system, numbers).amax());
+    let force = state.force.amax().max(numbers.load.amax()).max(load_with_gaps(system, numbers).amax());
     let length = state.z.amax();
     let relative = |value: f64, size: f64| if size > 0.0 { value / size } else { value };
-    let mut check = Check {
-        equilibrium,
-        ..Check::default()
-    };
+    let mut check = Check { equilibrium, ..Check::default() };
     let mut couple = |x: f64, z: f64| {
         check.min_w = check.min_w.min(relative(x, force));
         check.min_z = check.min_z.min(relative(z, length));
@@ -71,11 +64,7 @@ pub fn check_plain(lcp: &MirroredLcp, point: &Point) -> Check {
     for i in 0..lcp.size() {
         let w = response[i] + lcp.q[i];
         // Each row is judged against the terms it sums.
-        let size = lcp.q[i].abs().max(
-            (0..lcp.size())
-                .map(|j| (matrix[(i, j)] * z[j]).abs())
-                .fold(0.0, f64::max),
-        );
+        let size = lcp.q[i].abs().max((0..lcp.size()).map(|j| (matrix[(i, j)] * z[j]).abs()).fold(0.0, f64::max));
         let w = if size > 0.0 { w / size } else { w };
         let z = if length > 0.0 { z[i] / length } else { 0.0 };
         check.min_w = check.min_w.min(w);
@@ -91,7 +80,5 @@ fn accepted(check: &Check) -> bool {
     check.min_w >= -TOLERANCE
         && check.min_z >= -TOLERANCE
         && check.complementarity <= TOLERANCE
-        && check
-            .equilibrium
-            .is_none_or(|residual| residual <= TOLERANCE)
+        && check.equilibrium.is_none_or(|residual| residual <= TOLERANCE)
 }

@@ -33,31 +33,16 @@ pub fn joint_state(
         Couple::Minus => contact.plus_row[contact.rows[row].pair].map_or(1.0, |plus| scale[plus]),
         _ => scale[row],
     };
-    let size: f64 = point
-        .z
-        .iter()
-        .enumerate()
-        .map(|(row, z)| column(row) * z.abs())
-        .sum();
+    let size: f64 = point.z.iter().enumerate().map(|(row, z)| column(row) * z.abs()).sum();
     let clean: Vec<f64> = point
         .z
         .iter()
         .enumerate()
-        .map(|(row, z)| {
-            if column(row) * z.abs() <= NOISE * size {
-                0.0
-            } else {
-                *z
-            }
-        })
+        .map(|(row, z)| if column(row) * z.abs() <= NOISE * size { 0.0 } else { *z })
         .collect();
     let z = contact.joint_displacements(system, &clean) * contact.length_unit;
     let force = &system.stiffness * &z + load_with_gaps(system, numbers);
-    JointState {
-        z,
-        force,
-        p: point.p * contact.force_unit,
-    }
+    JointState { z, force, p: point.p * contact.force_unit }
 }
 
 /// The pairs at a vertex. With p > 0 the forces include the covering (theory §4): x_n = λ_n + d_n p, bound =
@@ -69,11 +54,7 @@ pub fn pair_states(
     state: &JointState,
 ) -> Vec<PairState> {
     // What the joints would carry if gaps were closed by force tells the size of rounding where all else is zero.
-    let largest = state
-        .force
-        .amax()
-        .max(state.p)
-        .max(load_with_gaps(system, numbers).amax());
+    let largest = state.force.amax().max(state.p).max(load_with_gaps(system, numbers).amax());
     system
         .pairs
         .iter()
@@ -87,11 +68,7 @@ pub fn pair_states(
             let z_t = pair.tangential.map_or(0.0, |joint| state.z[joint]);
             let open = z_n > 0.0;
             // A released joint carries exactly nothing; what is left of λ there is rounding.
-            let x_n = if open {
-                0.0
-            } else {
-                drop_noise(state.force[i] + d_n * state.p, largest)
-            };
+            let x_n = if open { 0.0 } else { drop_noise(state.force[i] + d_n * state.p, largest) };
             let (bound, x_t) = match pair.law {
                 Law::Frictionless { .. } => (0.0, 0.0),
                 _ => {
@@ -100,8 +77,7 @@ pub fn pair_states(
                         _ => (x_n, numbers.cohesion[i]),
                     };
                     let f = numbers.friction[i];
-                    let bound =
-                        f * normal + extra + drop_noise(d_t - f * d_n, d_t.max(f * d_n)) * state.p;
+                    let bound = f * normal + extra + drop_noise(d_t - f * d_n, d_t.max(f * d_n)) * state.p;
                     let raw = pair.tangential.map_or(0.0, |joint| state.force[joint]);
                     let x_t = if z_t > 0.0 {
                         0.0 - bound
@@ -147,9 +123,5 @@ pub fn pair_states(
 }
 
 fn drop_noise(value: f64, size: f64) -> f64 {
-    if value.abs() <= NOISE * size {
-        0.0
-    } else {
-        value
-    }
+    if value.abs() <= NOISE * size { 0.0 } else { value }
 }

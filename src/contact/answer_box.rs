@@ -16,12 +16,7 @@ pub(crate) struct Boxes {
 
 /// Every answer has zᵀλ ≤ 0, so zᵀR z ≤ −zᵀq: an ellipsoid about z₀/2 with z₀ = −R⁻¹q. Its box, widened a little; `None`
 /// where R is not safely positive definite.
-pub(crate) fn ellipsoid(
-    system: &ContactSystem,
-    sizes: &Sizes,
-    joints: &[usize],
-    constants: &[f64],
-) -> Option<Boxes> {
+pub(crate) fn ellipsoid(system: &ContactSystem, sizes: &Sizes, joints: &[usize], constants: &[f64]) -> Option<Boxes> {
     let k = joints.len();
     if k == 0 {
         return None; // no joints: nothing to box, and an empty matrix has no eigenvalues

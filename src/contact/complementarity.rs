@@ -91,11 +91,7 @@ pub struct ContactLcp {
 
 /// Largest power of two not above `value`; 1 for zero.
 fn power_of_two(value: f64) -> f64 {
-    if value > 0.0 && value.is_finite() {
-        2f64.powi(value.log2().floor() as i32)
-    } else {
-        1.0
-    }
+    if value > 0.0 && value.is_finite() { 2f64.powi(value.log2().floor() as i32) } else { 1.0 }
 }
 
 /// RF − R·(g, 0): the forces in the joints of the main system, gaps closed by force.
@@ -136,14 +132,9 @@ pub fn contact_lcp_like(
 ) -> Result<ContactLcp, CoveringError> {
     let load = load_with_gaps(system, numbers);
     let pairs = &system.pairs;
-    let normals: Vec<usize> = (0..pairs.len())
-        .filter(|&i| !matches!(pairs[i].law, Law::Bound { .. }))
-        .collect();
-    let tangentials: Vec<(usize, usize)> = pairs
-        .iter()
-        .enumerate()
-        .filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint)))
-        .collect();
+    let normals: Vec<usize> = (0..pairs.len()).filter(|&i| !matches!(pairs[i].law, Law::Bound { .. })).collect();
+    let tangentials: Vec<(usize, usize)> =
+        pairs.iter().enumerate().filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint))).collect();
 
     let stiffness_unit = earlier.map_or_else(
         || power_of_two(system.stiffness.diagonal().amax()),
@@ -161,20 +152,14 @@ pub fn contact_lcp_like(
     }
     for &(i, joint) in &tangentials {
         let bound = friction_of(i) * load[i] + extra(i);
-        largest = largest
-            .max((bound + load[joint]).abs())
-            .max((bound - load[joint]).abs());
+        largest = largest.max((bound + load[joint]).abs()).max((bound - load[joint]).abs());
     }
     let force_unit = power_of_two(largest);
     let length_unit = force_unit / stiffness_unit;
 
     let count = normals.len() + tangentials.len();
     let joint_of = |row: usize| {
-        if row < normals.len() {
-            normals[row]
-        } else {
-            tangentials[row - normals.len()].1
-        }
+        if row < normals.len() { normals[row] } else { tangentials[row - normals.len()].1 }
     };
     let column_scale = match earlier {
         Some(earlier) => {
@@ -203,11 +188,8 @@ pub fn contact_lcp_like(
     let mut row_scale = vec![0.0; count];
     let mut mirrors: Vec<Option<Mirror>> = vec![None; count];
     let rows = earlier.map_or_else(|| rows(system), |earlier| earlier.rows.clone());
-    let (mut normal_row, mut plus_row, mut minus_row) = (
-        vec![None; pairs.len()],
-        vec![None; pairs.len()],
-        vec![None; pairs.len()],
-    );
+    let (mut normal_row, mut plus_row, mut minus_row) =
+        (vec![None; pairs.len()], vec![None; pairs.len()], vec![None; pairs.len()]);
     for (row, &i) in normals.iter().enumerate() {
         q[row] = load[i] / force_unit;
         d[row] = 1.0;
@@ -227,9 +209,7 @@ pub fn contact_lcp_like(
         };
         let minus = f * load[i] + extra(i) - load[joint].abs();
         if d[row] == 0.0 && minus < 0.0 {
-            return Err(CoveringError::WeightWithoutFriction {
-                pair: pairs[i].id.clone(),
-            });
+            return Err(CoveringError::WeightWithoutFriction { pair: pairs[i].id.clone() });
         }
         // 2(d_τ − f d_n) of each covering, without the rounding of the difference.
         let mirror_covering = match (bound_law, covering) {
@@ -254,10 +234,7 @@ pub fn contact_lcp_like(
         covering: d,
         whole: (0..count).collect(),
         mirrors,
-        scale: Scale {
-            row: row_scale,
-            column: (0..count).map(|row| column_scale[joint_of(row)]).collect(),
-        },
+        scale: Scale { row: row_scale, column: (0..count).map(|row| column_scale[joint_of(row)]).collect() },
         whole_size: rows.len(),
     };
     Ok(ContactLcp {
@@ -275,16 +252,10 @@ pub fn contact_lcp_like(
 impl ContactLcp {
     /// The tie rule over the rows of this LCP.
     pub fn tie_rule(&self, tie_break: TieBreak) -> TieRule {
-        let normals = self
-            .rows
-            .iter()
-            .filter(|row| row.couple == Couple::Normal)
-            .count();
+        let normals = self.rows.iter().filter(|row| row.couple == Couple::Normal).count();
         let n = self.rows.len();
         match tie_break {
-            TieBreak::Lexicographic => {
-                TieRule::Lexicographic((normals..n).chain(0..normals).collect())
-            }
+            TieBreak::Lexicographic => TieRule::Lexicographic((normals..n).chain(0..normals).collect()),
             TieBreak::Natural => TieRule::Lexicographic((0..n).collect()),
             TieBreak::FirstRow => TieRule::FirstRow,
             TieBreak::Random(seed) => TieRule::Random(seed),

@@ -81,24 +81,13 @@ pub fn critical_friction(
     let m = system.pair_count();
     let exact = m <= EXACT_PAIRS;
     let mut search = Search::new(system, friction, observer);
-    let ended = if exact {
-        search.all(&mut Vec::with_capacity(m))
-    } else {
-        search.sample(samples, seed)
-    };
+    let ended = if exact { search.all(&mut Vec::with_capacity(m)) } else { search.sample(samples, seed) };
     let complete = ended.is_continue();
     let examined = search.examined;
     CriticalFriction {
         value: search.best.as_ref().map(|best| best.0),
         scheme: search.best.map(|best| best.1),
-        coverage: if exact {
-            Coverage::Exact
-        } else {
-            Coverage::Sampled {
-                seed,
-                count: examined,
-            }
-        },
+        coverage: if exact { Coverage::Exact } else { Coverage::Sampled { seed, count: examined } },
         examined,
         singular: search.singular,
         complete,
@@ -134,11 +123,7 @@ impl<'a> Search<'a> {
             .collect();
         let scaled = DMatrix::from_fn(k, k, |i, j| {
             let entry = system.stiffness[(i, j)] / root[i] / root[j];
-            if entry.abs() <= NO_COUPLING {
-                0.0
-            } else {
-                entry
-            }
+            if entry.abs() <= NO_COUPLING { 0.0 } else { entry }
         });
         let (at_0, at_1) = (friction(0.0), friction(1.0));
         let m = system.pair_count();
@@ -160,10 +145,7 @@ impl<'a> Search<'a> {
                         // The sign of a slip without friction does not matter.
                         vec![PairScheme::STICK, PairScheme::SLIP_PLUS, PairScheme::OPEN]
                     }
-                    Law::Coulomb { .. } => [PairScheme::STICK, PairScheme::OPEN]
-                        .into_iter()
-                        .chain(slips)
-                        .collect(),
+                    Law::Coulomb { .. } => [PairScheme::STICK, PairScheme::OPEN].into_iter().chain(slips).collect(),
                 })
                 .collect(),
             observer,
@@ -202,10 +184,7 @@ impl<'a> Search<'a> {
                 .map(|pair| {
                     if random.random::<f64>() < share {
                         // Every pair has choices.
-                        self.choices[pair]
-                            .choose(&mut random)
-                            .copied()
-                            .unwrap_or(PairScheme::STICK)
+                        self.choices[pair].choose(&mut random).copied().unwrap_or(PairScheme::STICK)
                     } else {
                         PairScheme::STICK
                     }
@@ -280,11 +259,7 @@ impl<'a> Search<'a> {
                 let column = rows[j].0;
                 let friction = pair.map_or(0.0, |pair| {
                     let f = factor(pair);
-                    if f == 0.0 {
-                        0.0
-                    } else {
-                        sign * f * self.scaled[(pair, column)]
-                    }
+                    if f == 0.0 { 0.0 } else { sign * f * self.scaled[(pair, column)] }
                 });
                 self.scaled[(joint, column)] + friction
             })
@@ -298,9 +273,7 @@ impl<'a> Search<'a> {
         if lu.determinant() < 0.0 {
             return Root::At(0.0);
         }
-        let growing: Vec<usize> = (0..k)
-            .filter(|i| rows[*i].1.is_some_and(|pair| self.growth[pair] != 0.0))
-            .collect();
+        let growing: Vec<usize> = (0..k).filter(|i| rows[*i].1.is_some_and(|pair| self.growth[pair] != 0.0)).collect();
         if growing.is_empty() {
             return Root::None;
         }
@@ -310,9 +283,7 @@ impl<'a> Search<'a> {
         // det(A + s B) = det A · det(1 + s C), C = B A⁻¹ on the growing rows.
         let growth = DMatrix::from_fn(growing.len(), k, |i, j| {
             let (_, pair, sign) = rows[growing[i]];
-            pair.map_or(0.0, |pair| {
-                sign * self.growth[pair] * self.scaled[(pair, rows[j].0)]
-            })
+            pair.map_or(0.0, |pair| sign * self.growth[pair] * self.scaled[(pair, rows[j].0)])
         });
         let c = growth * DMatrix::from_fn(k, growing.len(), |i, j| inverse[(i, growing[j])]);
         // 1/s is at most the spectral radius.

@@ -5,9 +5,7 @@ use crate::contact::whole::tests::coulomb;
 
 fn critical(system: &ContactSystem) -> CriticalFriction {
     let m = system.pair_count();
-    critical_friction(system, &|f| vec![f; m], 4000, 1, &mut |_| {
-        ControlFlow::Continue(())
-    })
+    critical_friction(system, &|f| vec![f; m], 4000, 1, &mut |_| ControlFlow::Continue(()))
 }
 
 /// Stiffness of the unit square element, E = 1, ν = 0, t = 1, top fixed, condensed to its bottom nodes (0,0) and
@@ -68,20 +66,16 @@ fn rounding_of_a_coupling_is_no_critical_friction() {
 fn large_problems_are_sampled() {
     // Ten copies of the one-pair problem, one of them with f_crit = 1.25.
     let m = 10;
-    let system = coulomb(DMatrix::from_fn(2 * m, 2 * m, |i, j| {
-        match (i < m, j < m) {
-            _ if i % m != j % m => 0.0,
-            (true, true) => 1.0,
-            (false, false) if i == m + 3 => 1.25,
-            (false, false) => 1.5,
-            _ => -1.0,
-        }
+    let system = coulomb(DMatrix::from_fn(2 * m, 2 * m, |i, j| match (i < m, j < m) {
+        _ if i % m != j % m => 0.0,
+        (true, true) => 1.0,
+        (false, false) if i == m + 3 => 1.25,
+        (false, false) => 1.5,
+        _ => -1.0,
     }));
     let got = critical(&system);
     assert!((got.value.unwrap() - 1.25).abs() < 1e-9, "{got:?}");
     assert!(matches!(got.coverage, Coverage::Sampled { seed: 1, .. }));
-    let stopped = critical_friction(&system, &|f| vec![f; m], 4000, 1, &mut |_| {
-        ControlFlow::Break(())
-    });
+    let stopped = critical_friction(&system, &|f| vec![f; m], 4000, 1, &mut |_| ControlFlow::Break(()));
     assert!(!stopped.complete);
 }

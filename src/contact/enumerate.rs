@@ -81,21 +81,13 @@ pub struct TooManyPairs {
 
 /// The states that a pair can be in.
 fn choices(system: &ContactSystem, numbers: &ContactNumbers, pair: usize) -> Vec<PairScheme> {
-    let closed = [
-        PairScheme::STICK,
-        PairScheme::SLIP_PLUS,
-        PairScheme::SLIP_MINUS,
-    ];
+    let closed = [PairScheme::STICK, PairScheme::SLIP_PLUS, PairScheme::SLIP_MINUS];
     match system.pairs[pair].law {
         Law::Frictionless { .. } => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
         Law::Bound { .. } => closed.to_vec(),
-        Law::Coulomb { .. } if numbers.cohesion[pair] > 0.0 => closed
-            .into_iter()
-            .chain(closed.map(|scheme| PairScheme {
-                open: true,
-                ..scheme
-            }))
-            .collect(),
+        Law::Coulomb { .. } if numbers.cohesion[pair] > 0.0 => {
+            closed.into_iter().chain(closed.map(|scheme| PairScheme { open: true, ..scheme })).collect()
+        }
         Law::Coulomb { .. } => closed.into_iter().chain([PairScheme::OPEN]).collect(),
     }
 }
@@ -170,13 +162,7 @@ impl<'a> Search<'a> {
         }
         let mut bounds: Vec<(f64, f64)> = joints
             .iter()
-            .map(|joint| {
-                if *joint < m {
-                    (0.0, f64::INFINITY)
-                } else {
-                    (f64::NEG_INFINITY, f64::INFINITY)
-                }
-            })
+            .map(|joint| if *joint < m { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, f64::INFINITY) })
             .collect();
         let sizes = Sizes::new(system, numbers);
         let extent = ellipsoid(system, &sizes, &joints, &constants).map(|boxes| {
@@ -185,8 +171,7 @@ impl<'a> Search<'a> {
             }
             boxes.extent
         });
-        let choices: Vec<Vec<PairScheme>> =
-            (0..m).map(|pair| choices(system, numbers, pair)).collect();
+        let choices: Vec<Vec<PairScheme>> = (0..m).map(|pair| choices(system, numbers, pair)).collect();
         let total = choices.iter().map(|c| c.len() as u64).product();
         Self {
             system,
@@ -198,14 +183,7 @@ impl<'a> Search<'a> {
             extent,
             choices,
             root: Level { first: 0, rows },
-            found: Enumeration {
-                answers: Vec::new(),
-                visited: 0,
-                cut: 0,
-                total,
-                undecided: 0,
-                complete: false,
-            },
+            found: Enumeration { answers: Vec::new(), visited: 0, cut: 0, total, undecided: 0, complete: false },
         }
     }
 
@@ -226,10 +204,7 @@ impl<'a> Search<'a> {
             scheme.push(choice);
             let next = level.and_then(|level| self.decide(level, pair, choice));
             let last = pair + 1 == self.choices.len();
-            let result = if next
-                .as_ref()
-                .is_some_and(|next| self.hopeless(next, scheme))
-            {
+            let result = if next.as_ref().is_some_and(|next| self.hopeless(next, scheme)) {
                 if last {
                     self.found.visited += 1;
                 } else {
@@ -268,11 +243,7 @@ impl<'a> Search<'a> {
         if tangential && slip != 0.0 {
             // x^± = 0: λ_τ ± (f λ_n + c) = 0; λ_n = 0 where open.
             let f = if choice.open { 0.0 } else { f };
-            let mut equation: Row = row(n + 1)
-                .iter()
-                .zip(row(n))
-                .map(|(t, n)| t + slip * f * n)
-                .collect();
+            let mut equation: Row = row(n + 1).iter().zip(row(n)).map(|(t, n)| t + slip * f * n).collect();
             equation[width - 1] += slip * fixed_bound(self.system, self.numbers, pair);
             let size = root(n + 1) * (root(n + 1) + f * root(n));
             equations.push((n + 1, equation, size));
@@ -290,11 +261,8 @@ impl<'a> Search<'a> {
                 (&*second, column(n + 1), &mut *first, column(n))
             };
             let pivot = lead[lead_at];
-            let (lead_size, follow_size) = if normal_first {
-                (*first_size, *second_size)
-            } else {
-                (*second_size, *first_size)
-            };
+            let (lead_size, follow_size) =
+                if normal_first { (*first_size, *second_size) } else { (*second_size, *first_size) };
             if pivot.abs() <= SINGULAR * lead_size {
                 return None;
             }
@@ -310,18 +278,10 @@ impl<'a> Search<'a> {
             let mut z_follow: Row = follow.iter().map(|x| -x / pivot_of_follow).collect();
             z_follow[follow_at] = 0.0;
             let coupling = lead[follow_at];
-            let mut z_lead: Row = lead
-                .iter()
-                .zip(&z_follow)
-                .map(|(x, z)| -(x + coupling * z) / pivot)
-                .collect();
+            let mut z_lead: Row = lead.iter().zip(&z_follow).map(|(x, z)| -(x + coupling * z) / pivot).collect();
             z_lead[lead_at] = 0.0;
             z_lead[follow_at] = 0.0;
-            displacement = if normal_first {
-                [Some(z_lead), Some(z_follow)]
-            } else {
-                [Some(z_follow), Some(z_lead)]
-            };
+            displacement = if normal_first { [Some(z_lead), Some(z_follow)] } else { [Some(z_follow), Some(z_lead)] };
         } else if let [(joint, equation, size)] = &equations[..] {
             let pivot = equation[column(*joint)];
             if pivot.abs() <= SINGULAR * size {
@@ -378,8 +338,7 @@ impl<'a> Search<'a> {
         // Largest value of Σ (factor · row) + fixed is below −(LOOSE · size)?
         let fails = |terms: &[(usize, f64)], fixed: f64, size: f64| {
             let mut largest = fixed;
-            let entry =
-                |column: usize| -> f64 { terms.iter().map(|(i, f)| f * row(*i)[column]).sum() };
+            let entry = |column: usize| -> f64 { terms.iter().map(|(i, f)| f * row(*i)[column]).sum() };
             for (column, (low, high)) in bounds.iter().enumerate() {
                 let a = entry(column);
                 // Not 0 · ∞.
@@ -401,9 +360,7 @@ impl<'a> Search<'a> {
             let f = friction(self.system, self.numbers, pair);
             let fixed = fixed_bound(self.system, self.numbers, pair);
             let moves = |i: usize, sign: f64| {
-                extent.is_some_and(|extent| {
-                    fails(&[(i, sign)], 0.0, extent / self.sizes.root[self.joints[i]])
-                })
+                extent.is_some_and(|extent| fails(&[(i, sign)], 0.0, extent / self.sizes.root[self.joints[i]]))
             };
             if state.open {
                 if moves(n, 1.0) {
@@ -432,11 +389,7 @@ impl<'a> Search<'a> {
     fn released(&self, pair: usize, scheme: PairScheme) -> impl Iterator<Item = usize> {
         let n = self.offsets[pair];
         let tangential = self.offsets[pair + 1] - n == 2 && scheme.tangential != Tangential::Stick;
-        scheme
-            .open
-            .then_some(n)
-            .into_iter()
-            .chain(tangential.then_some(n + 1))
+        scheme.open.then_some(n).into_iter().chain(tangential.then_some(n + 1))
     }
 
     /// Solves a complete scheme afresh and keeps it if it is an answer.
@@ -454,23 +407,12 @@ impl<'a> Search<'a> {
         if violation > LOOSE {
             return;
         }
-        let exact = match exact_check(self.system, self.numbers, scheme, &mut |_| {
-            ControlFlow::Continue(())
-        })
-        .finding
-        {
+        let exact = match exact_check(self.system, self.numbers, scheme, &mut |_| ControlFlow::Continue(())).finding {
             Finding::Proved { .. } => Some(true),
-            Finding::Refuted { .. }
-            | Finding::Singular {
-                consistent: false, ..
-            } => Some(false),
+            Finding::Refuted { .. } | Finding::Singular { consistent: false, .. } => Some(false),
             _ => None,
         };
-        let accepted = if continuum {
-            ACCEPTED_CONTINUUM
-        } else {
-            ACCEPTED
-        };
+        let accepted = if continuum { ACCEPTED_CONTINUUM } else { ACCEPTED };
         if violation > accepted && exact != Some(true) {
             if exact.is_none() {
                 self.found.undecided += 1;
@@ -500,25 +442,15 @@ impl<'a> Search<'a> {
             }
             known.exact |= exact;
         } else {
-            self.found.answers.push(EnumeratedAnswer {
-                schemes: vec![scheme],
-                state,
-                exact,
-                continuum,
-                violation,
-            });
+            self.found.answers.push(EnumeratedAnswer { schemes: vec![scheme], state, exact, continuum, violation });
         }
     }
 
     fn same(&self, a: &JointState, b: &JointState) -> bool {
-        let size = self
-            .sizes
-            .displacement(&a.z)
-            .max(self.sizes.displacement(&b.z));
+        let size = self.sizes.displacement(&a.z).max(self.sizes.displacement(&b.z));
         let still = a.z.amax() == 0.0 && b.z.amax() == 0.0;
-        let moved = (0..self.system.joint_count())
-            .map(|j| ((a.z[j] - b.z[j]) * self.sizes.root[j]).abs())
-            .fold(0.0, f64::max);
+        let moved =
+            (0..self.system.joint_count()).map(|j| ((a.z[j] - b.z[j]) * self.sizes.root[j]).abs()).fold(0.0, f64::max);
         let force = (&a.force - &b.force).amax();
         (still || moved <= SAME * size) && force <= SAME * self.sizes.force
     }

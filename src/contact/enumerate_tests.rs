@@ -54,10 +54,7 @@ fn unit_square_has_three_answers_above_its_critical_friction() {
     let slip = got
         .answers
         .iter()
-        .find(|a| {
-            a.schemes
-                .contains(&vec![PairScheme::SLIP_MINUS, PairScheme::SLIP_PLUS])
-        })
+        .find(|a| a.schemes.contains(&vec![PairScheme::SLIP_MINUS, PairScheme::SLIP_PLUS]))
         .expect("slip (−, +)");
     for i in 0..2 {
         assert!((slip.state.z[2 + i].abs() - 0.52).abs() < 1e-12);
@@ -96,9 +93,7 @@ fn at_the_limit_there_is_a_continuum() {
 #[test]
 fn too_many_pairs_are_refused() {
     let system = coulomb(DMatrix::identity(22, 22));
-    let got = enumerate(&system, &plain(0.5, &[0.0; 22]), &mut |_| {
-        ControlFlow::Continue(())
-    });
+    let got = enumerate(&system, &plain(0.5, &[0.0; 22]), &mut |_| ControlFlow::Continue(()));
     assert_eq!(got, Err(TooManyPairs { found: 11 }));
 }
 
@@ -112,16 +107,8 @@ fn stops_when_told() {
 
 /// Lemke's answer by the tableau, in f64.
 fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64>> {
-    let lcp = whole_lcp::<f64>(&WholeInput {
-        system,
-        numbers,
-        covering: Covering::Cohesive,
-    });
-    let run = run(
-        &mut Tableau::new(&lcp, tangential_first(system)),
-        2000,
-        &mut |_| ControlFlow::Continue(()),
-    );
+    let lcp = whole_lcp::<f64>(&WholeInput { system, numbers, covering: Covering::Cohesive });
+    let run = run(&mut Tableau::new(&lcp, tangential_first(system)), 2000, &mut |_| ControlFlow::Continue(()));
     if !matches!(run.outcome, Outcome::Normal { .. } | Outcome::Trivial) {
         assert!(matches!(run.outcome, Outcome::Ray(_)), "{:?}", run.outcome);
         return None;
@@ -139,12 +126,7 @@ fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64
 }
 
 /// Random R = AᵀA (integers with ties, or reals), `loose` rows fewer than needed.
-fn random_problem(
-    random: &mut ChaCha8Rng,
-    m: usize,
-    ties: bool,
-    loose: usize,
-) -> (ContactSystem, ContactNumbers) {
+fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> (ContactSystem, ContactNumbers) {
     let k = 2 * m;
     let mut number = |range: i32| {
         if ties {
@@ -181,21 +163,9 @@ fn finds_the_answer_of_the_tableau() {
         assert!(got.complete && got.undecided == 0, "case {case}");
         let sizes = Sizes::new(&system, &numbers);
         let size = sizes.displacement(&z);
-        assert!(
-            got.answers
-                .iter()
-                .any(|a| (&a.state.z - &z).amax() < 1e-6 * size),
-            "case {case}: {z} {got:?}"
-        );
-        if !got
-            .answers
-            .iter()
-            .any(|a| a.continuum || a.schemes.len() > 1)
-        {
-            assert!(
-                got.answers.len() % 2 == 1,
-                "case {case}: an even number of answers"
-            );
+        assert!(got.answers.iter().any(|a| (&a.state.z - &z).amax() < 1e-6 * size), "case {case}: {z} {got:?}");
+        if !got.answers.iter().any(|a| a.continuum || a.schemes.len() > 1) {
+            assert!(got.answers.len() % 2 == 1, "case {case}: an even number of answers");
         }
     }
 }
@@ -218,11 +188,7 @@ fn loose_parts_never_contradict_the_tableau() {
 }
 
 /// Pairs of all laws; R without the tangential joints of frictionless pairs.
-fn random_mixture(
-    random: &mut ChaCha8Rng,
-    m: usize,
-    ties: bool,
-) -> (ContactSystem, ContactNumbers) {
+fn random_mixture(random: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
     let (mut system, mut numbers) = random_problem(random, m, ties, 0);
     let zero = crate::model::parameter::Number::Value(0.0);
     let mut keep: Vec<usize> = (0..m).collect();
@@ -236,15 +202,9 @@ fn random_mixture(
                 continue;
             }
             1 => {
-                system.pairs[pair].law = Law::Bound {
-                    bound: zero.clone(),
-                };
+                system.pairs[pair].law = Law::Bound { bound: zero.clone() };
                 numbers.bound[pair] = f64::from(random.random_range(0..3));
-                (
-                    numbers.friction[pair],
-                    numbers.cohesion[pair],
-                    numbers.gap[pair],
-                ) = (0.0, 0.0, 0.0);
+                (numbers.friction[pair], numbers.cohesion[pair], numbers.gap[pair]) = (0.0, 0.0, 0.0);
             }
             _ => numbers.cohesion[pair] = f64::from(random.random_range(0..2)),
         }
@@ -265,12 +225,7 @@ fn finds_the_answer_of_the_tableau_for_mixed_laws() {
         let got = all(&system, &numbers);
         assert!(got.complete && got.undecided == 0, "case {case}");
         let size = Sizes::new(&system, &numbers).displacement(&z);
-        assert!(
-            got.answers
-                .iter()
-                .any(|a| (&a.state.z - &z).amax() < 1e-6 * size),
-            "case {case}: {z} {got:?}"
-        );
+        assert!(got.answers.iter().any(|a| (&a.state.z - &z).amax() < 1e-6 * size), "case {case}: {z} {got:?}");
     }
 }
 

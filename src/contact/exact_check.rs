@@ -132,11 +132,7 @@ impl Forms<'_> {
         let (mut coefficients, scale) = clear_denominators(&row);
         // The row has at least its constant.
         let constant = coefficients.pop().unwrap_or_default();
-        Form {
-            coefficients,
-            constant,
-            scale,
-        }
+        Form { coefficients, constant, scale }
     }
 
     fn normal(&self, pair: usize) -> Form {
@@ -147,10 +143,7 @@ impl Forms<'_> {
     fn reserve(&self, pair: usize, side: f64) -> Form {
         let f = friction(self.system, self.numbers, pair);
         let tangential = tangential_joint(self.system, pair);
-        self.form(
-            &[(tangential, side), (pair, f)],
-            fixed_bound(self.system, self.numbers, pair),
-        )
+        self.form(&[(tangential, side), (pair, f)], fixed_bound(self.system, self.numbers, pair))
     }
 }
 
@@ -162,17 +155,14 @@ pub fn exact_check(
     scheme: &[PairScheme],
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ExactCheck {
-    let opens =
-        |pair: usize| scheme[pair].open && !matches!(system.pairs[pair].law, Law::Bound { .. });
+    let opens = |pair: usize| scheme[pair].open && !matches!(system.pairs[pair].law, Law::Bound { .. });
     let slip = |pair: usize| match system.pairs[pair].law {
         Law::Frictionless { .. } => 0.0,
         Law::Coulomb { .. } | Law::Bound { .. } => scheme[pair].tangential.sign(),
     };
     let m = system.pair_count();
     let normals = (0..m).filter(|pair| opens(*pair));
-    let tangentials = (0..m)
-        .filter(|pair| slip(*pair) != 0.0)
-        .map(|pair| tangential_joint(system, pair));
+    let tangentials = (0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| tangential_joint(system, pair));
     let forms = Forms {
         system,
         numbers,
@@ -183,41 +173,21 @@ pub fn exact_check(
     let equations: Vec<Form> = (0..m)
         .filter(|pair| opens(*pair))
         .map(|pair| forms.normal(pair))
-        .chain(
-            (0..m)
-                .filter(|pair| slip(*pair) != 0.0)
-                .map(|pair| forms.reserve(pair, slip(pair))),
-        )
+        .chain((0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| forms.reserve(pair, slip(pair))))
         .collect();
     let rhs: Vec<BigInt> = equations.iter().map(|form| -&form.constant).collect();
-    let matrix: Vec<Vec<BigInt>> = equations
-        .into_iter()
-        .map(|form| form.coefficients)
-        .collect();
-    let ended = |finding| ExactCheck {
-        finding,
-        released,
-        signs: 0,
-    };
+    let matrix: Vec<Vec<BigInt>> = equations.into_iter().map(|form| form.coefficients).collect();
+    let ended = |finding| ExactCheck { finding, released, signs: 0 };
     let solution = match rational_solve::solve(&matrix, &rhs, &mut |share| progress(0.9 * share)) {
         RationalSolution::Unique(solution) => solution,
         RationalSolution::Singular { rank, particular } => {
-            return ended(Finding::Singular {
-                rank,
-                consistent: particular.is_some(),
-            });
+            return ended(Finding::Singular { rank, consistent: particular.is_some() });
         }
         RationalSolution::Interrupted => return ended(Finding::Interrupted),
         RationalSolution::Unlucky => return ended(Finding::Failed),
     };
 
-    let mut signs = Signs {
-        system,
-        forms: &forms,
-        solution,
-        told: 0,
-        notable: Vec::new(),
-    };
+    let mut signs = Signs { system, forms: &forms, solution, told: 0, notable: Vec::new() };
     for (pair, state) in scheme.iter().enumerate() {
         signs.pair(pair, opens(pair), slip(pair), state.tangential);
         if progress(0.9 + 0.1 * (pair + 1) as f64 / m as f64).is_break() {
@@ -225,16 +195,9 @@ pub fn exact_check(
         }
     }
     let signs_told = signs.told;
-    let (violations, zeros): (Vec<_>, Vec<_>) = signs
-        .notable
-        .into_iter()
-        .partition(|sign| sign.sign == Ordering::Less);
+    let (violations, zeros): (Vec<_>, Vec<_>) = signs.notable.into_iter().partition(|sign| sign.sign == Ordering::Less);
     ExactCheck {
-        finding: if violations.is_empty() {
-            Finding::Proved { zeros }
-        } else {
-            Finding::Refuted { violations }
-        },
+        finding: if violations.is_empty() { Finding::Proved { zeros } } else { Finding::Refuted { violations } },
         released,
         signs: signs_told,
     }
@@ -258,10 +221,7 @@ impl Signs<'_> {
             .map(|(c, n)| c * n)
             .sum();
         let denominator = &self.solution.denominator;
-        (
-            sum + &form.constant * denominator,
-            &form.scale * denominator,
-        )
+        (sum + &form.constant * denominator, &form.scale * denominator)
     }
 
     fn tell(&mut self, pair: usize, quantity: Quantity, (over, under): (BigInt, BigInt)) {
@@ -297,16 +257,10 @@ impl Signs<'_> {
         if matches!(law, Law::Frictionless { .. }) {
             return;
         }
-        let plus = (tangential != Tangential::SlipPlus)
-            .then(|| self.value(&self.forms.reserve(pair, 1.0)));
-        let minus = (tangential != Tangential::SlipMinus)
-            .then(|| self.value(&self.forms.reserve(pair, -1.0)));
+        let plus = (tangential != Tangential::SlipPlus).then(|| self.value(&self.forms.reserve(pair, 1.0)));
+        let minus = (tangential != Tangential::SlipMinus).then(|| self.value(&self.forms.reserve(pair, -1.0)));
         // Both reserves are zero: r_f = 0, and the slip is free in sign.
-        let free = slip != 0.0
-            && [&plus, &minus]
-                .into_iter()
-                .flatten()
-                .all(|(over, _)| over.is_zero());
+        let free = slip != 0.0 && [&plus, &minus].into_iter().flatten().all(|(over, _)| over.is_zero());
         if free {
             self.told += 2;
             return;

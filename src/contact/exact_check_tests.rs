@@ -18,9 +18,7 @@ fn three_answers_of_one_pair_are_proved_and_the_fourth_scheme_refuted() {
         assert!(matches!(got.finding, Finding::Proved { .. }), "{got:?}");
     }
     let got = check(&system, &numbers, &[PairScheme::SLIP_MINUS]);
-    let Finding::Refuted { violations } = got.finding else {
-        panic!()
-    };
+    let Finding::Refuted { violations } = got.finding else { panic!() };
     assert!(violations.iter().any(|v| v.id == "c1" && v.value < 0.0));
 }
 
@@ -28,22 +26,14 @@ fn three_answers_of_one_pair_are_proved_and_the_fourth_scheme_refuted() {
 fn sliding_beam_is_singular_and_inconsistent() {
     let system = beam();
     let got = check(&system, &beam_numbers(181.0), &[PairScheme::SLIP_PLUS; 6]);
-    assert_eq!(
-        got.finding,
-        Finding::Singular {
-            rank: 5,
-            consistent: false
-        }
-    );
+    assert_eq!(got.finding, Finding::Singular { rank: 5, consistent: false });
     let mut scheme = [PairScheme::STICK; 6];
     scheme[..3].fill(PairScheme::SLIP_PLUS);
     let got = check(&system, &beam_numbers(100.0), &scheme);
     assert!(matches!(got.finding, Finding::Proved { .. }));
     scheme[2] = PairScheme::STICK;
     let got = check(&system, &beam_numbers(100.0), &scheme);
-    let Finding::Refuted { violations } = got.finding else {
-        panic!()
-    };
+    let Finding::Refuted { violations } = got.finding else { panic!() };
     assert_eq!(violations[0].id, "c3");
     assert_eq!(violations[0].quantity, Quantity::XPlus);
     assert!((violations[0].value + 10.0).abs() < 1e-12);
@@ -53,9 +43,7 @@ fn sliding_beam_is_singular_and_inconsistent() {
 fn stops_when_told() {
     let system = beam();
     let numbers = beam_numbers(100.0);
-    let got = exact_check(&system, &numbers, &[PairScheme::OPEN; 6], &mut |_| {
-        ControlFlow::Break(())
-    });
+    let got = exact_check(&system, &numbers, &[PairScheme::OPEN; 6], &mut |_| ControlFlow::Break(()));
     assert_eq!(got.finding, Finding::Interrupted);
 }
 

@@ -28,9 +28,7 @@ pub enum GivenError {
         largest: f64,
     },
     /// A kernel vector that is none.
-    #[error(
-        "kernel[{index}] is no motion without force: R z is {residual:.3e} of the largest stiffness times |z|"
-    )]
+    #[error("kernel[{index}] is no motion without force: R z is {residual:.3e} of the largest stiffness times |z|")]
     NoKernel {
         /// Which one.
         index: usize,
@@ -38,9 +36,7 @@ pub enum GivenError {
         residual: f64,
     },
     /// A load acts on a tangential motion of frictionless pairs that nothing resists.
-    #[error(
-        "load case {case} pushes frictionless pair {pair} along a tangential motion that nothing resists"
-    )]
+    #[error("load case {case} pushes frictionless pair {pair} along a tangential motion that nothing resists")]
     Unheld {
         /// Load case.
         case: String,
@@ -77,18 +73,14 @@ impl ReleasedTangentials {
 ///
 /// # Errors
 /// See [`GivenError`].
-pub fn given_system(
-    given: &GivenContactSystem,
-) -> Result<(ContactSystem, ReleasedTangentials), GivenError> {
+pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, ReleasedTangentials), GivenError> {
     let m = given.pairs.len();
     let read = |i: usize, j: usize| 0.5 * (given.stiffness[i][j] + given.stiffness[j][i]);
     let full = DMatrix::from_fn(2 * m, 2 * m, read);
     let largest_entry = full.amax();
     let eigen = eigen(full.clone());
-    let (smallest, largest) = eigen
-        .eigenvalues
-        .iter()
-        .fold((0f64, 0f64), |(a, b), &value| (a.min(value), b.max(value)));
+    let (smallest, largest) =
+        eigen.eigenvalues.iter().fold((0f64, 0f64), |(a, b), &value| (a.min(value), b.max(value)));
     if smallest < -NEGATIVE * largest {
         return Err(GivenError::Indefinite { smallest, largest });
     }
@@ -98,19 +90,12 @@ pub fn given_system(
                 let z = DVector::from_column_slice(motion);
                 let force = (&full * &z).amax();
                 // A stiffness of zero resists nothing: 0 / 0 is no residual.
-                let residual = if force == 0.0 && z.amax() > 0.0 {
-                    0.0
-                } else {
-                    force / (largest_entry * z.amax())
-                };
+                let residual = if force == 0.0 && z.amax() > 0.0 { 0.0 } else { force / (largest_entry * z.amax()) };
                 if residual.is_nan() || residual > GIVEN_KERNEL {
                     return Err(GivenError::NoKernel { index, residual });
                 }
             }
-            kernel
-                .iter()
-                .map(|motion| DVector::from_column_slice(motion))
-                .collect()
+            kernel.iter().map(|motion| DVector::from_column_slice(motion)).collect()
         }
         None => (0..2 * m)
             .filter(|&k| eigen.eigenvalues[k] <= KERNEL * largest)
@@ -119,18 +104,10 @@ pub fn given_system(
     };
     let full = project(&full, &orthonormal(&motions, 2 * m));
 
-    let released: Vec<usize> = (0..m)
-        .filter(|&i| matches!(given.laws[i], Law::Frictionless { .. }))
-        .collect();
-    let kept: Vec<usize> = (0..m)
-        .chain((0..m).filter(|i| !released.contains(i)).map(|i| m + i))
-        .collect();
-    let own = DMatrix::from_fn(released.len(), released.len(), |a, b| {
-        full[(m + released[a], m + released[b])]
-    });
-    let coupling = DMatrix::from_fn(released.len(), kept.len(), |a, b| {
-        full[(m + released[a], kept[b])]
-    });
+    let released: Vec<usize> = (0..m).filter(|&i| matches!(given.laws[i], Law::Frictionless { .. })).collect();
+    let kept: Vec<usize> = (0..m).chain((0..m).filter(|i| !released.contains(i)).map(|i| m + i)).collect();
+    let own = DMatrix::from_fn(released.len(), released.len(), |a, b| full[(m + released[a], m + released[b])]);
+    let coupling = DMatrix::from_fn(released.len(), kept.len(), |a, b| full[(m + released[a], kept[b])]);
     let (inverse, free) = pseudo_inverse(&own, largest);
     let mut stiffness = DMatrix::from_fn(kept.len(), kept.len(), |a, b| full[(kept[a], kept[b])]);
     stiffness -= coupling.transpose() * &inverse * &coupling;
@@ -144,24 +121,16 @@ pub fn given_system(
         let unheld = free.transpose() * &tangential;
         if unheld.amax() > 1e-9 * size {
             let worst = tangential.iamax();
-            return Err(GivenError::Unheld {
-                case: load.name.clone(),
-                pair: given.pairs[released[worst]].clone(),
-            });
+            return Err(GivenError::Unheld { case: load.name.clone(), pair: given.pairs[released[worst]].clone() });
         }
-        let vector = DVector::from_fn(kept.len(), |a, _| load.vector[kept[a]])
-            - coupling.transpose() * (&inverse * &tangential);
-        loads.push(JointLoad {
-            name: load.name.clone(),
-            vector,
-        });
+        let vector =
+            DVector::from_fn(kept.len(), |a, _| load.vector[kept[a]]) - coupling.transpose() * (&inverse * &tangential);
+        loads.push(JointLoad { name: load.name.clone(), vector });
         released_loads.push(tangential);
     }
     // Motions of the kept joints alone that cost nothing: those of the whole, restricted.
-    let restricted: Vec<DVector<f64>> = motions
-        .iter()
-        .map(|motion| DVector::from_fn(kept.len(), |a, _| motion[kept[a]]))
-        .collect();
+    let restricted: Vec<DVector<f64>> =
+        motions.iter().map(|motion| DVector::from_fn(kept.len(), |a, _| motion[kept[a]])).collect();
     let kernel = orthonormal(&restricted, kept.len());
     let stiffness = project(&stiffness, &kernel);
     let mut next = m;
@@ -179,21 +148,8 @@ pub fn given_system(
             }
         })
         .collect();
-    let recovery = ReleasedTangentials {
-        pairs: released,
-        flexibility: -inverse,
-        coupling,
-        loads: released_loads,
-    };
-    Ok((
-        ContactSystem {
-            pairs,
-            stiffness,
-            loads,
-            kernel,
-        },
-        recovery,
-    ))
+    let recovery = ReleasedTangentials { pairs: released, flexibility: -inverse, coupling, loads: released_loads };
+    Ok((ContactSystem { pairs, stiffness, loads, kernel }, recovery))
 }
 
 /// Orthonormal basis of the span of some vectors of length n; nearly dependent ones count once.
@@ -215,11 +171,7 @@ pub fn orthonormal(vectors: &[DVector<f64>], n: usize) -> DMatrix<f64> {
             basis.push(rest / left);
         }
     }
-    if basis.is_empty() {
-        DMatrix::zeros(n, 0)
-    } else {
-        DMatrix::from_columns(&basis)
-    }
+    if basis.is_empty() { DMatrix::zeros(n, 0) } else { DMatrix::from_columns(&basis) }
 }
 
 /// (I − ZZᵀ) R (I − ZZᵀ), exactly symmetric.
@@ -235,10 +187,7 @@ pub fn project(stiffness: &DMatrix<f64>, kernel: &DMatrix<f64>) -> DMatrix<f64> 
 /// Eigenvalues and eigenvectors; an empty matrix has none.
 fn eigen(matrix: DMatrix<f64>) -> SymmetricEigen<f64, nalgebra::Dyn> {
     if matrix.is_empty() {
-        return SymmetricEigen {
-            eigenvalues: DVector::zeros(0),
-            eigenvectors: matrix,
-        };
+        return SymmetricEigen { eigenvalues: DVector::zeros(0), eigenvectors: matrix };
     }
     SymmetricEigen::new(matrix)
 }
@@ -257,10 +206,6 @@ fn pseudo_inverse(matrix: &DMatrix<f64>, largest: f64) -> (DMatrix<f64>, DMatrix
             free.push(vector.into_owned());
         }
     }
-    let free = if free.is_empty() {
-        DMatrix::zeros(n, 0)
-    } else {
-        DMatrix::from_columns(&free)
-    };
+    let free = if free.is_empty() { DMatrix::zeros(n, 0) } else { DMatrix::from_columns(&free) };
     (inverse, free)
 }

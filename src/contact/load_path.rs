@@ -18,21 +18,14 @@ pub fn is_answer(lcp: &MirroredLcp, basis: &Basis) -> bool {
     let Some(point) = vertex(lcp, basis) else {
         return false;
     };
-    let force = lcp
-        .q
-        .amax()
-        .max(point.w.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
+    let force = lcp.q.amax().max(point.w.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
     let length = point.z.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     point.w.iter().all(|w| *w >= -1e-11 * force) && point.z.iter().all(|z| *z >= -1e-11 * length)
 }
 
 /// The dimensionless LCP of base + t · increment: q is that of `numbers`, the covering that of the increment of the
 /// load (t in the user's units of the increment's factor).
-pub fn path_lcp(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    increment: &DVector<f64>,
-) -> ContactLcp {
+pub fn path_lcp(system: &ContactSystem, numbers: &ContactNumbers, increment: &DVector<f64>) -> ContactLcp {
     let mut reference = numbers.clone();
     if load_with_gaps(system, numbers).amax() == 0.0 {
         reference.load = increment.clone();

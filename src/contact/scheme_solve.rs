@@ -59,30 +59,16 @@ impl Sizes {
         let spare = if largest > 0.0 { largest } else { 1.0 };
         let constants = joint_constants::<f64>(system, numbers);
         let fixed = (0..system.pair_count()).map(|pair| fixed_bound(system, numbers, pair));
-        let force = constants
-            .into_iter()
-            .chain(fixed)
-            .fold(0.0, |a: f64, x| a.max(x.abs()));
+        let force = constants.into_iter().chain(fixed).fold(0.0, |a: f64, x| a.max(x.abs()));
         Self {
-            root: (0..k)
-                .map(|j| {
-                    if diagonal(j) > 0.0 {
-                        diagonal(j)
-                    } else {
-                        spare
-                    }
-                })
-                .collect(),
+            root: (0..k).map(|j| if diagonal(j) > 0.0 { diagonal(j) } else { spare }).collect(),
             force: if force > 0.0 { force } else { 1.0 },
         }
     }
 
     /// Largest √R_jj |z_j| (1 where nothing moves).
     pub(crate) fn displacement(&self, z: &DVector<f64>) -> f64 {
-        let size = z
-            .iter()
-            .zip(&self.root)
-            .fold(0.0, |a: f64, (z, root)| a.max((z * root).abs()));
+        let size = z.iter().zip(&self.root).fold(0.0, |a: f64, (z, root)| a.max((z * root).abs()));
         if size > 0.0 { size } else { 1.0 }
     }
 }
@@ -93,52 +79,34 @@ fn state(system: &ContactSystem, constants: &[f64], z: DVector<f64>) -> JointSta
 }
 
 /// Solves the equations of `scheme` (one entry per pair).
-pub fn solve_scheme(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    scheme: &[PairScheme],
-) -> SchemeSolution {
+pub fn solve_scheme(system: &ContactSystem, numbers: &ContactNumbers, scheme: &[PairScheme]) -> SchemeSolution {
     let sizes = Sizes::new(system, numbers);
     let constants = joint_constants::<f64>(system, numbers);
     let m = system.pair_count();
-    let open =
-        |pair: usize| scheme[pair].open && !matches!(system.pairs[pair].law, Law::Bound { .. });
+    let open = |pair: usize| scheme[pair].open && !matches!(system.pairs[pair].law, Law::Bound { .. });
     let slip = |pair: usize| match system.pairs[pair].law {
         Law::Frictionless { .. } => 0.0,
         Law::Coulomb { .. } | Law::Bound { .. } => scheme[pair].tangential.sign(),
     };
     let normals: Vec<usize> = (0..m).filter(|pair| open(*pair)).collect();
     let slipping: Vec<usize> = (0..m).filter(|pair| slip(*pair) != 0.0).collect();
-    let released: Vec<usize> = normals
-        .iter()
-        .copied()
-        .chain(slipping.iter().map(|pair| tangential_joint(system, *pair)))
-        .collect();
+    let released: Vec<usize> =
+        normals.iter().copied().chain(slipping.iter().map(|pair| tangential_joint(system, *pair))).collect();
     let affine = |terms: &[(usize, f64)], fixed: f64| Affine {
         // Unknowns are √R_jj z_j.
         coefficients: DVector::from_iterator(
             released.len(),
             released.iter().map(|k| {
-                terms
-                    .iter()
-                    .map(|(joint, factor)| factor * system.stiffness[(*joint, *k)])
-                    .sum::<f64>()
+                terms.iter().map(|(joint, factor)| factor * system.stiffness[(*joint, *k)]).sum::<f64>()
                     / sizes.root[*k]
             }),
         ),
-        constant: fixed
-            + terms
-                .iter()
-                .map(|(joint, a)| a * constants[*joint])
-                .sum::<f64>(),
+        constant: fixed + terms.iter().map(|(joint, a)| a * constants[*joint]).sum::<f64>(),
     };
     let normal = |pair: usize| affine(&[(pair, 1.0)], 0.0);
     let reserve = |pair: usize, side: f64| {
         affine(
-            &[
-                (tangential_joint(system, pair), side),
-                (pair, friction(system, numbers, pair)),
-            ],
+            &[(tangential_joint(system, pair), side), (pair, friction(system, numbers, pair))],
             fixed_bound(system, numbers, pair),
         )
     };
@@ -147,14 +115,11 @@ pub fn solve_scheme(
         .iter()
         .map(|pair| (normal(*pair), sizes.root[*pair]))
         .chain(slipping.iter().map(|pair| {
-            let size = sizes.root[tangential_joint(system, *pair)]
-                + friction(system, numbers, *pair) * sizes.root[*pair];
+            let size =
+                sizes.root[tangential_joint(system, *pair)] + friction(system, numbers, *pair) * sizes.root[*pair];
             (reserve(*pair, slip(*pair)), size)
         }))
-        .map(|(row, size)| Affine {
-            coefficients: row.coefficients / size,
-            constant: row.constant / size,
-        })
+        .map(|(row, size)| Affine { coefficients: row.coefficients / size, constant: row.constant / size })
         .collect();
     let k = released.len();
     let matrix = DMatrix::from_fn(k, k, |i, j| equations[i].coefficients[j]);
@@ -202,22 +167,16 @@ pub fn solve_scheme(
     let bounds: Vec<(f64, f64)> = normals
         .iter()
         .map(|_| (0.0, f64::INFINITY))
-        .chain(slipping.iter().map(|pair| {
-            if slip(*pair) > 0.0 {
-                (0.0, f64::INFINITY)
-            } else {
-                (f64::NEG_INFINITY, 0.0)
-            }
-        }))
+        .chain(slipping.iter().map(
+            |pair| {
+                if slip(*pair) > 0.0 { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, 0.0) }
+            },
+        ))
         .collect();
     // Unknown shift from the particular solution along the null space keeps the equations exactly solvable.
     feasible(&svd, cut, &particular, &bounds, &inequalities, sizes.force).map_or_else(
         |undecided| {
-            if undecided {
-                SchemeSolution::Undecided
-            } else {
-                SchemeSolution::Nothing
-            }
+            if undecided { SchemeSolution::Undecided } else { SchemeSolution::Nothing }
         },
         |y| SchemeSolution::Continuum(spread(&y)),
     )
@@ -244,10 +203,7 @@ fn feasible(
         .collect();
     let size = particular.amax().max(force.sqrt() * f64::EPSILON);
     let mut problem = Problem::new(OptimizationDirection::Minimize);
-    let shifts: Vec<_> = null
-        .iter()
-        .map(|_| problem.add_var(0.0, (f64::NEG_INFINITY, f64::INFINITY)))
-        .collect();
+    let shifts: Vec<_> = null.iter().map(|_| problem.add_var(0.0, (f64::NEG_INFINITY, f64::INFINITY))).collect();
     // Slack of one billionth: rounding must not make a degenerate scheme infeasible.
     for (j, (low, high)) in bounds.iter().enumerate() {
         let row: Vec<_> = shifts.iter().zip(&null).map(|(s, n)| (*s, n[j])).collect();
@@ -260,11 +216,7 @@ fn feasible(
     }
     for inequality in inequalities {
         let a = &inequality.coefficients;
-        let row: Vec<_> = shifts
-            .iter()
-            .zip(&null)
-            .map(|(s, n)| (*s, a.dot(n) * size / force))
-            .collect();
+        let row: Vec<_> = shifts.iter().zip(&null).map(|(s, n)| (*s, a.dot(n) * size / force)).collect();
         let value = (a.dot(particular) + inequality.constant) / force;
         problem.add_constraint(&row, ComparisonOp::Ge, -value - 1e-9);
     }
@@ -302,16 +254,9 @@ pub fn law_violation(system: &ContactSystem, numbers: &ContactNumbers, state: &J
         }
         let tangential = tangential_joint(system, pair);
         let bound = friction(system, numbers, pair) * x_n + fixed_bound(system, numbers, pair);
-        let (plus, minus) = (
-            bound + state.force[tangential],
-            bound - state.force[tangential],
-        );
+        let (plus, minus) = (bound + state.force[tangential], bound - state.force[tangential]);
         let slip = z(tangential);
-        worst = worst
-            .max(-x(plus))
-            .max(-x(minus))
-            .max(x(plus).min(slip))
-            .max(x(minus).min(-slip));
+        worst = worst.max(-x(plus)).max(-x(minus)).max(x(plus).min(slip)).max(x(minus).min(-slip));
     }
     worst
 }

@@ -34,28 +34,13 @@ pub struct PairScheme {
 
 impl PairScheme {
     /// Both joints on.
-    pub const STICK: PairScheme = PairScheme {
-        open: false,
-        tangential: Tangential::Stick,
-    };
+    pub const STICK: PairScheme = PairScheme { open: false, tangential: Tangential::Stick };
     /// Closed, slips along +t.
-    pub const SLIP_PLUS: PairScheme = PairScheme {
-        open: false,
-        tangential: Tangential::SlipPlus,
-    };
+    pub const SLIP_PLUS: PairScheme = PairScheme { open: false, tangential: Tangential::SlipPlus };
     /// Closed, slips along −t.
-    pub const SLIP_MINUS: PairScheme = PairScheme {
-        open: false,
-        tangential: Tangential::SlipMinus,
-    };
+    pub const SLIP_MINUS: PairScheme = PairScheme { open: false, tangential: Tangential::SlipMinus };
     /// Open, the tangential joint released too.
-    pub const OPEN: PairScheme = PairScheme {
-        open: true,
-        tangential: Tangential::SlipPlus,
-    };
+    pub const OPEN: PairScheme = PairScheme { open: true, tangential: Tangential::SlipPlus };
     /// Open, held by cohesion.
-    pub const OPEN_STICK: PairScheme = PairScheme {
-        open: true,
-        tangential: Tangential::Stick,
-    };
+    pub const OPEN_STICK: PairScheme = PairScheme { open: true, tangential: Tangential::Stick };
 }

@@ -58,9 +58,7 @@ impl ContactSystem {
     /// every zero test that is relative to √R_ii would fail. The kernel is given a basis that contains it.
     pub fn settle(&mut self) {
         let k = self.joint_count();
-        let free: Vec<usize> = (0..k)
-            .filter(|&i| 1.0 - self.kernel.row(i).norm_squared() <= FREE)
-            .collect();
+        let free: Vec<usize> = (0..k).filter(|&i| 1.0 - self.kernel.row(i).norm_squared() <= FREE).collect();
         if free.is_empty() {
             return;
         }
@@ -71,10 +69,8 @@ impl ContactSystem {
             rest.row_mut(i).fill(0.0);
         }
         let svd = rest.svd(true, false);
-        let mut columns: Vec<DVector<f64>> = free
-            .iter()
-            .map(|&i| DVector::from_fn(k, |j, _| f64::from(i == j)))
-            .collect();
+        let mut columns: Vec<DVector<f64>> =
+            free.iter().map(|&i| DVector::from_fn(k, |j, _| f64::from(i == j))).collect();
         if let Some(u) = svd.u {
             // The rest of the basis is orthonormal too: its singular values are 1 or 0.
             columns.extend(

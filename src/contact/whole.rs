@@ -44,10 +44,7 @@ pub fn rows(system: &ContactSystem) -> Vec<RowMeaning> {
     };
     let normal: fn(&Law) -> bool = |law| !matches!(law, Law::Bound { .. });
     let tangential: fn(&Law) -> bool = |law| !matches!(law, Law::Frictionless { .. });
-    of(Couple::Normal, normal)
-        .chain(of(Couple::Plus, tangential))
-        .chain(of(Couple::Minus, tangential))
-        .collect()
+    of(Couple::Normal, normal).chain(of(Couple::Plus, tangential)).chain(of(Couple::Minus, tangential)).collect()
 }
 
 /// Row of R of the tangential joint of a pair that has one by its law.
@@ -55,9 +52,7 @@ pub fn rows(system: &ContactSystem) -> Vec<RowMeaning> {
 /// # Panics
 /// If a Coulomb or bound pair has no tangential joint: a [`ContactSystem`] is never built so.
 pub(crate) fn tangential_joint(system: &ContactSystem, pair: usize) -> usize {
-    system.pairs[pair]
-        .tangential
-        .expect("a coulomb or bound pair has a tangential joint")
+    system.pairs[pair].tangential.expect("a coulomb or bound pair has a tangential joint")
 }
 
 /// f of a pair as its law uses it: 0 for frictionless and bound pairs.
@@ -79,9 +74,7 @@ pub(crate) fn fixed_bound(system: &ContactSystem, numbers: &ContactNumbers, pair
 
 /// The quantities of a row as a combination of joints: Σ factor·λ_joint + fixed.
 fn combination<T: Scalar>(input: &WholeInput, row: RowMeaning) -> (Vec<(usize, T)>, T) {
-    let WholeInput {
-        system, numbers, ..
-    } = *input;
+    let WholeInput { system, numbers, .. } = *input;
     let pair = row.pair;
     let side = match row.couple {
         Couple::Normal => return (vec![(pair, T::one())], T::zero()),
@@ -99,13 +92,7 @@ fn combination<T: Scalar>(input: &WholeInput, row: RowMeaning) -> (Vec<(usize, T
 /// R in another number type, exactly where that type can.
 fn stiffness_in<T: Scalar>(system: &ContactSystem) -> Vec<Vec<T>> {
     let k = system.joint_count();
-    (0..k)
-        .map(|i| {
-            (0..k)
-                .map(|j| T::from_f64(system.stiffness[(i, j)]))
-                .collect()
-        })
-        .collect()
+    (0..k).map(|i| (0..k).map(|j| T::from_f64(system.stiffness[(i, j)])).collect()).collect()
 }
 
 /// RF − R·(g, 0): the joint forces of the main system with all gaps closed by force.
@@ -131,8 +118,7 @@ fn constants_with<T: Scalar>(
     (0..system.joint_count())
         .map(|i| {
             let load = T::from_f64(numbers.load[i]);
-            gaps.iter()
-                .fold(load, |sum, (k, gap)| sum.sub(&stiffness(i, *k).mul(gap)))
+            gaps.iter().fold(load, |sum, (k, gap)| sum.sub(&stiffness(i, *k).mul(gap)))
         })
         .collect()
 }
@@ -144,14 +130,9 @@ pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
 
 /// Forms the LCP with an R of its own, one row per joint, in place of that of the system.
 pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T> {
-    let WholeInput {
-        system,
-        numbers,
-        covering,
-    } = *input;
+    let WholeInput { system, numbers, covering } = *input;
     let rows = rows(system);
-    let combinations: Vec<(Vec<(usize, T)>, T)> =
-        rows.iter().map(|row| combination(input, *row)).collect();
+    let combinations: Vec<(Vec<(usize, T)>, T)> = rows.iter().map(|row| combination(input, *row)).collect();
     let joint = |row: &RowMeaning| match row.couple {
         Couple::Normal => row.pair,
         Couple::Plus | Couple::Minus => tangential_joint(system, row.pair),
@@ -162,11 +143,7 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
         .iter()
         .map(|(terms, _)| {
             let responses: Vec<T> = (0..system.joint_count())
-                .map(|j| {
-                    terms.iter().fold(T::zero(), |sum, (i, factor)| {
-                        sum.add(&factor.mul(&stiffness[*i][j]))
-                    })
-                })
+                .map(|j| terms.iter().fold(T::zero(), |sum, (i, factor)| sum.add(&factor.mul(&stiffness[*i][j]))))
                 .collect();
             rows.iter()
                 .map(|column| match column.couple {
@@ -178,25 +155,16 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
         .collect();
     let q = combinations
         .iter()
-        .map(|(terms, fixed)| {
-            terms.iter().fold(fixed.clone(), |sum, (i, factor)| {
-                sum.add(&factor.mul(&constants[*i]))
-            })
-        })
+        .map(|(terms, fixed)| terms.iter().fold(fixed.clone(), |sum, (i, factor)| sum.add(&factor.mul(&constants[*i]))))
         .collect();
-    let cover = rows
-        .iter()
-        .map(|row| covering_entry::<T>(input, *row, covering))
-        .collect();
+    let cover = rows.iter().map(|row| covering_entry::<T>(input, *row, covering)).collect();
     let root = |i: usize| system.stiffness[(i, i)].max(0.0).sqrt();
     let scale = Scale {
         row: rows
             .iter()
             .map(|row| match row.couple {
                 Couple::Normal => root(row.pair),
-                Couple::Plus | Couple::Minus => {
-                    friction(system, numbers, row.pair) * root(row.pair) + root(joint(row))
-                }
+                Couple::Plus | Couple::Minus => friction(system, numbers, row.pair) * root(row.pair) + root(joint(row)),
             })
             .collect(),
         column: rows
@@ -207,12 +175,7 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
             })
             .collect(),
     };
-    Lcp {
-        matrix,
-        q,
-        covering: cover,
-        scale,
-    }
+    Lcp { matrix, q, covering: cover, scale }
 }
 
 /// d_n or d_τ of a row (theory §4, "Coverings").

@@ -22,11 +22,7 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
         pairs: (0..m)
             .map(|i| ContactPair {
                 id: format!("c{}", i + 1),
-                law: Law::Coulomb {
-                    friction: zero(),
-                    cohesion: zero(),
-                    gap: zero(),
-                },
+                law: Law::Coulomb { friction: zero(), cohesion: zero(), gap: zero() },
                 position: None,
                 tangential: Some(m + i),
             })
@@ -90,11 +86,7 @@ fn bar_on_six_supports_in_both_number_types() {
     ] {
         let numbers = beam_numbers(pull);
         for covering in Covering::ALL {
-            let input = WholeInput {
-                system: &system,
-                numbers: &numbers,
-                covering,
-            };
+            let input = WholeInput { system: &system, numbers: &numbers, covering };
             let d_t = match covering {
                 Covering::Cohesive => 1.3,
                 Covering::Ones => 1.0,
@@ -109,9 +101,7 @@ fn bar_on_six_supports_in_both_number_types() {
 fn check<T: Scalar>(input: &WholeInput, expected: Option<[f64; 6]>, d_t: f64) {
     let lcp = whole_lcp::<T>(input);
     let rule = tangential_first(input.system);
-    let run = run(&mut Tableau::new(&lcp, rule), 100, &mut |_| {
-        ControlFlow::Continue(())
-    });
+    let run = run(&mut Tableau::new(&lcp, rule), 100, &mut |_| ControlFlow::Continue(()));
     match expected {
         Some(slip) => {
             assert!(matches!(run.outcome, Outcome::Normal { .. }));
@@ -130,34 +120,13 @@ fn check<T: Scalar>(input: &WholeInput, expected: Option<[f64; 6]>, d_t: f64) {
 
 #[test]
 fn laws_mix() {
-    let mut system = coulomb(DMatrix::from_fn(5, 5, |i, j| {
-        if i == j { 2.0 } else { 0.1 * (i + j) as f64 }
-    }));
+    let mut system = coulomb(DMatrix::from_fn(5, 5, |i, j| if i == j { 2.0 } else { 0.1 * (i + j) as f64 }));
     let zero = Number::Value(0.0);
-    let pair = |id: &str, law, tangential| ContactPair {
-        id: id.into(),
-        law,
-        position: None,
-        tangential,
-    };
+    let pair = |id: &str, law, tangential| ContactPair { id: id.into(), law, position: None, tangential };
     system.pairs = vec![
         pair("a", Law::Frictionless { gap: zero.clone() }, None),
-        pair(
-            "b",
-            Law::Bound {
-                bound: zero.clone(),
-            },
-            Some(3),
-        ),
-        pair(
-            "c",
-            Law::Coulomb {
-                friction: zero.clone(),
-                cohesion: zero.clone(),
-                gap: zero,
-            },
-            Some(4),
-        ),
+        pair("b", Law::Bound { bound: zero.clone() }, Some(3)),
+        pair("c", Law::Coulomb { friction: zero.clone(), cohesion: zero.clone(), gap: zero }, Some(4)),
     ];
     let numbers = ContactNumbers {
         friction: vec![0.0, 0.0, 0.5],
@@ -166,34 +135,13 @@ fn laws_mix() {
         bound: vec![0.0, 3.0, 0.0],
         load: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
     };
-    let lcp = whole_lcp::<f64>(&WholeInput {
-        system: &system,
-        numbers: &numbers,
-        covering: Covering::Cohesive,
-    });
+    let lcp = whole_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
     let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();
     use Couple::*;
-    assert_eq!(
-        kinds,
-        [
-            (0, Normal),
-            (2, Normal),
-            (1, Plus),
-            (2, Plus),
-            (1, Minus),
-            (2, Minus)
-        ]
-    );
+    assert_eq!(kinds, [(0, Normal), (2, Normal), (1, Plus), (2, Plus), (1, Minus), (2, Minus)]);
     let r = |i: usize, j: usize| system.stiffness[(i, j)];
     let v = |i: usize| numbers.load[i] - r(i, 0);
-    let expected = [
-        v(0),
-        v(2),
-        3.0 + v(3),
-        0.25 + 0.5 * v(2) + v(4),
-        3.0 - v(3),
-        0.25 + 0.5 * v(2) - v(4),
-    ];
+    let expected = [v(0), v(2), 3.0 + v(3), 0.25 + 0.5 * v(2) + v(4), 3.0 - v(3), 0.25 + 0.5 * v(2) - v(4)];
     for (q, e) in lcp.q.iter().zip(expected) {
         assert!((q - e).abs() < 1e-14);
     }
@@ -218,12 +166,7 @@ fn p_at_the_limit_of_the_bar() {
                 r[(i, i)] += 0.7 * stiffness;
             }
             for e in n..k - 1 {
-                for (i, j, sign) in [
-                    (e, e, 1.0),
-                    (e + 1, e + 1, 1.0),
-                    (e, e + 1, -1.0),
-                    (e + 1, e, -1.0),
-                ] {
+                for (i, j, sign) in [(e, e, 1.0), (e + 1, e + 1, 1.0), (e, e + 1, -1.0), (e + 1, e, -1.0)] {
                     r[(i, j)] += sign * stiffness;
                 }
             }
@@ -239,22 +182,15 @@ fn p_at_the_limit_of_the_bar() {
                 load[n] = -pull;
                 let numbers = plain(0.3, &load);
                 for (covering, d_t) in Covering::ALL.into_iter().zip([1.3, 1.0, 0.3]) {
-                    let lcp = whole_lcp::<f64>(&WholeInput {
-                        system: &system,
-                        numbers: &numbers,
-                        covering,
-                    });
-                    let got = run(
-                        &mut Tableau::new(&lcp, tangential_first(&system)),
-                        200,
-                        &mut |_| ControlFlow::Continue(()),
-                    );
+                    let lcp = whole_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering });
+                    let got =
+                        run(
+                            &mut Tableau::new(&lcp, tangential_first(&system)),
+                            200,
+                            &mut |_| ControlFlow::Continue(()),
+                        );
                     let expected = (pull - limit) / (n as f64 * d_t);
-                    assert!(
-                        matches!(got.outcome, Outcome::Ray(_)),
-                        "{spacing} {n} {covering}: {:?}",
-                        got.outcome
-                    );
+                    assert!(matches!(got.outcome, Outcome::Ray(_)), "{spacing} {n} {covering}: {:?}", got.outcome);
                     assert!(
                         (got.point.p / expected - 1.0).abs() < tolerance,
                         "{spacing} {n} {covering} {excess}: {} {expected}",
@@ -262,30 +198,14 @@ fn p_at_the_limit_of_the_bar() {
                     );
                 }
                 let below = ContactNumbers {
-                    load: DVector::from_fn(k, |i, _| {
-                        if i == n {
-                            -limit * (1.0 - excess)
-                        } else {
-                            numbers.load[i]
-                        }
-                    }),
+                    load: DVector::from_fn(k, |i, _| if i == n { -limit * (1.0 - excess) } else { numbers.load[i] }),
                     ..numbers
                 };
-                let lcp = whole_lcp::<f64>(&WholeInput {
-                    system: &system,
-                    numbers: &below,
-                    covering: Covering::Cohesive,
-                });
-                let got = run(
-                    &mut Tableau::new(&lcp, tangential_first(&system)),
-                    200,
-                    &mut |_| ControlFlow::Continue(()),
-                );
-                assert!(
-                    matches!(got.outcome, Outcome::Normal { marginal: false }),
-                    "{:?}",
-                    got.outcome
-                );
+                let lcp =
+                    whole_lcp::<f64>(&WholeInput { system: &system, numbers: &below, covering: Covering::Cohesive });
+                let got =
+                    run(&mut Tableau::new(&lcp, tangential_first(&system)), 200, &mut |_| ControlFlow::Continue(()));
+                assert!(matches!(got.outcome, Outcome::Normal { marginal: false }), "{:?}", got.outcome);
             }
         }
     }
@@ -296,9 +216,7 @@ fn random_contact(random: &mut rand_chacha::ChaCha8Rng, m: usize, contrast: f64)
     use rand::Rng;
     let k = 2 * m;
     let a = DMatrix::from_fn(k, k, |_, _| random.random_range(-1.0..1.0));
-    let scale = DMatrix::from_diagonal(&DVector::from_fn(k, |_, _| {
-        contrast.powf(random.random_range(0.0..0.5))
-    }));
+    let scale = DMatrix::from_diagonal(&DVector::from_fn(k, |_, _| contrast.powf(random.random_range(0.0..0.5))));
     let r = &scale * (&a * a.transpose() + DMatrix::identity(k, k) * 0.1) * &scale;
     coulomb((&r + r.transpose()) * 0.5)
 }
@@ -318,16 +236,9 @@ fn exact_engine_solves_stiffness_contrasts() {
         let system = random_contact(&mut random, m, 1e9);
         let load: Vec<f64> = (0..2 * m).map(|_| random.random_range(-1.0..1.0)).collect();
         let numbers = plain([0.3, 1.0, 4.0][case % 3], &load);
-        let got = run_exact(&WholeInput {
-            system: &system,
-            numbers: &numbers,
-            covering: Covering::Cohesive,
-        });
+        let got = run_exact(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
         assert!(
-            matches!(
-                got.outcome,
-                Outcome::Trivial | Outcome::Normal { marginal: false }
-            ),
+            matches!(got.outcome, Outcome::Trivial | Outcome::Normal { marginal: false }),
             "case {case}: {:?}",
             got.outcome
         );
@@ -358,16 +269,11 @@ fn engines_agree(problems: usize, most_pairs: usize) {
             numbers.gap[i] = 0.25 * f64::from(random.random_range(0..2));
         }
         for covering in Covering::ALL {
-            let input = WholeInput {
-                system: &system,
-                numbers: &numbers,
-                covering,
-            };
-            let rounded = run(
-                &mut Tableau::new(&whole_lcp::<f64>(&input), tangential_first(&system)),
-                5000,
-                &mut |_| ControlFlow::Continue(()),
-            );
+            let input = WholeInput { system: &system, numbers: &numbers, covering };
+            let rounded =
+                run(&mut Tableau::new(&whole_lcp::<f64>(&input), tangential_first(&system)), 5000, &mut |_| {
+                    ControlFlow::Continue(())
+                });
             let exact = run_exact(&input);
             let kind = |ray: bool, answer: bool| (ray, answer);
             let rounded_kind = kind(
@@ -378,26 +284,11 @@ fn engines_agree(problems: usize, most_pairs: usize) {
                 matches!(exact.outcome, Outcome::Ray(_)),
                 matches!(exact.outcome, Outcome::Normal { .. } | Outcome::Trivial),
             );
-            assert_eq!(
-                rounded_kind, exact_kind,
-                "case {case} {covering}: {:?}",
-                rounded.outcome
-            );
-            assert!(
-                exact_kind.1 || covering != Covering::Cohesive,
-                "case {case}"
-            );
-            let size = exact
-                .point
-                .z
-                .iter()
-                .map(|z| Scalar::to_f64(z).abs())
-                .fold(1e-3, f64::max);
+            assert_eq!(rounded_kind, exact_kind, "case {case} {covering}: {:?}", rounded.outcome);
+            assert!(exact_kind.1 || covering != Covering::Cohesive, "case {case}");
+            let size = exact.point.z.iter().map(|z| Scalar::to_f64(z).abs()).fold(1e-3, f64::max);
             for (a, b) in rounded.point.z.iter().zip(&exact.point.z) {
-                assert!(
-                    (a - Scalar::to_f64(b)).abs() < 1e-6 * size,
-                    "case {case} {covering}"
-                );
+                assert!((a - Scalar::to_f64(b)).abs() < 1e-6 * size, "case {case} {covering}");
             }
         }
     }
@@ -427,11 +318,7 @@ fn exact_engine_with_sixty_pairs() {
         let load: Vec<f64> = (0..2 * m).map(|_| random.random_range(-1.0..1.0)).collect();
         let numbers = plain(f, &load);
         let start = std::time::Instant::now();
-        let got = run_exact(&WholeInput {
-            system: &system,
-            numbers: &numbers,
-            covering: Covering::Cohesive,
-        });
+        let got = run_exact(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
         let outcome = format!("{:?}", got.outcome);
         std::io::Write::write_all(
             &mut std::io::stderr(),

@@ -75,17 +75,9 @@ struct Motions<'a> {
 }
 
 /// Looks for a certificate; `hint` is a motion near which it may lie (the direction of a ray).
-pub fn certify(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    hint: Option<&DVector<f64>>,
-) -> Option<Certificate> {
-    let motions = Motions {
-        system,
-        z: clean(&releasable_kernel(system)),
-        bounds: bounds(system, numbers),
-        load: &numbers.load,
-    };
+pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, hint: Option<&DVector<f64>>) -> Option<Certificate> {
+    let motions =
+        Motions { system, z: clean(&releasable_kernel(system)), bounds: bounds(system, numbers), load: &numbers.load };
     if motions.z.ncols() == 0 || motions.load.amax() == 0.0 {
         return None;
     }
@@ -93,14 +85,10 @@ pub fn certify(
     // The plain hint first: a lift-off or overturning mode is its own proof.
     let plain = hint.map(|hint| motions.z.transpose() * hint);
     let near = hint.and_then(|hint| motions.least_power(Some(hint)));
-    [plain, near]
-        .into_iter()
-        .flatten()
-        .find_map(|y| motions.verify(&y, inward.as_ref()))
-        .or_else(|| {
-            let y = motions.least_power(None)?;
-            motions.verify(&y, inward.as_ref())
-        })
+    [plain, near].into_iter().flatten().find_map(|y| motions.verify(&y, inward.as_ref())).or_else(|| {
+        let y = motions.least_power(None)?;
+        motions.verify(&y, inward.as_ref())
+    })
 }
 
 impl Motions<'_> {
@@ -119,9 +107,8 @@ impl Motions<'_> {
         let size = self.load.amax();
         let mut problem = Problem::new(direction);
         let cost = self.z.transpose() * self.load / size;
-        let y: Vec<Variable> = (0..self.z.ncols())
-            .map(|k| problem.add_var(if power { cost[k] } else { 0.0 }, (-limit, limit)))
-            .collect();
+        let y: Vec<Variable> =
+            (0..self.z.ncols()).map(|k| problem.add_var(if power { cost[k] } else { 0.0 }, (-limit, limit))).collect();
         let s = slack.then(|| problem.add_var(1.0, (0.0, 1.0)));
         for (i, bounds) in self.bounds.iter().enumerate() {
             let normal = self.row(i);
@@ -131,11 +118,7 @@ impl Motions<'_> {
                 continue;
             }
             let terms = |row: &[f64], sign: f64| -> Vec<(Variable, f64)> {
-                y.iter()
-                    .zip(row)
-                    .filter(|(_, v)| **v != 0.0)
-                    .map(|(y, v)| (*y, sign * v))
-                    .collect()
+                y.iter().zip(row).filter(|(_, v)| **v != 0.0).map(|(y, v)| (*y, sign * v)).collect()
             };
             let (f, c, unilateral) = match *bounds {
                 Bounds::Cone(f, c) => (f, c, true),
@@ -166,10 +149,9 @@ impl Motions<'_> {
 
     fn solve(problem: &Problem, y: &[Variable]) -> Option<DVector<f64>> {
         match run(problem) {
-            Ok(SolveOutcome::Solution(solution)) => Some(DVector::from_iterator(
-                y.len(),
-                y.iter().map(|y| solution.var_value(*y)),
-            )),
+            Ok(SolveOutcome::Solution(solution)) => {
+                Some(DVector::from_iterator(y.len(), y.iter().map(|y| solution.var_value(*y))))
+            }
             // Infeasible, interrupted or a numerical failure: nothing is proposed.
             _ => None,
         }
@@ -185,8 +167,7 @@ impl Motions<'_> {
             if along.amax() == 0.0 {
                 return None;
             }
-            let terms: Vec<(Variable, f64)> =
-                y.iter().copied().zip(along.iter().copied()).collect();
+            let terms: Vec<(Variable, f64)> = y.iter().copied().zip(along.iter().copied()).collect();
             problem.add_constraint(terms.as_slice(), ComparisonOp::Eq, along.norm_squared());
         }
         Self::solve(&problem, &y)
@@ -205,11 +186,7 @@ impl Motions<'_> {
         for (i, bounds) in self.bounds.iter().enumerate() {
             let tangential = self.system.pairs[i].tangential;
             let rows = [Some(i), tangential];
-            if rows
-                .into_iter()
-                .flatten()
-                .all(|joint| self.z.row(joint).amax() == 0.0)
-            {
+            if rows.into_iter().flatten().all(|joint| self.z.row(joint).amax() == 0.0) {
                 continue;
             }
             let slip = tangential.map_or(0.0, |joint| zeta[joint].abs());
@@ -261,9 +238,7 @@ impl Motions<'_> {
             .load
             .iter()
             .zip(f64_zeta.iter())
-            .fold((0.0, 0.0), |(power, terms), (load, zeta)| {
-                (power - load * zeta, terms + (load * zeta).abs())
-            });
+            .fold((0.0, 0.0), |(power, terms), (load, zeta)| (power - load * zeta, terms + (load * zeta).abs()));
         let mut dissipation = 0.0;
         let mut add = |joint: usize, zeta: &BigRational| -> Option<()> {
             surplus -= exact(self.load[joint])? * zeta;
@@ -307,11 +282,7 @@ impl Motions<'_> {
             return None;
         }
         let largest = f64_zeta.amax();
-        Some(Certificate {
-            direction: f64_zeta / largest,
-            power: power / largest,
-            dissipation: dissipation / largest,
-        })
+        Some(Certificate { direction: f64_zeta / largest, power: power / largest, dissipation: dissipation / largest })
     }
 }
 
@@ -341,11 +312,7 @@ pub fn balanced_multipliers(
             }
         };
         for (i, bounds) in bounds(system, numbers).into_iter().enumerate() {
-            let lowest = if matches!(bounds, Bounds::Band(_)) {
-                f64::NEG_INFINITY
-            } else {
-                0.0
-            };
+            let lowest = if matches!(bounds, Bounds::Band(_)) { f64::NEG_INFINITY } else { 0.0 };
             let normal = problem.add_var(0.0, (lowest, f64::INFINITY));
             put(normal, i);
             let Some(joint) = system.pairs[i].tangential else {
@@ -383,11 +350,7 @@ pub fn balanced_multipliers(
     let low = end(OptimizationDirection::Minimize)?;
     let high = end(OptimizationDirection::Maximize)?;
     let far = |value: f64| {
-        if value.abs() >= 0.999 * FAR {
-            value.signum() * f64::INFINITY
-        } else {
-            value
-        }
+        if value.abs() >= 0.999 * FAR { value.signum() * f64::INFINITY } else { value }
     };
     Some([far(low), far(high)])
 }

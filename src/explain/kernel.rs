@@ -7,9 +7,8 @@ use crate::model::pair::Law;
 
 /// Motions of the releasable joints that cost no energy: the kernel of R without what bound pairs hold.
 pub fn releasable_kernel(system: &ContactSystem) -> DMatrix<f64> {
-    let held: Vec<usize> = (0..system.pairs.len())
-        .filter(|&i| matches!(system.pairs[i].law, Law::Bound { .. }))
-        .collect();
+    let held: Vec<usize> =
+        (0..system.pairs.len()).filter(|&i| matches!(system.pairs[i].law, Law::Bound { .. })).collect();
     let kernel = &system.kernel;
     if held.is_empty() || kernel.ncols() == 0 {
         return kernel.clone();
@@ -25,11 +24,7 @@ pub fn releasable_kernel(system: &ContactSystem) -> DMatrix<f64> {
         .filter(|&k| svd.singular_values[k] <= 1e-8)
         .map(|k| kernel * v_t.row(k).transpose())
         .collect();
-    if free.is_empty() {
-        DMatrix::zeros(kernel.nrows(), 0)
-    } else {
-        DMatrix::from_columns(&free)
-    }
+    if free.is_empty() { DMatrix::zeros(kernel.nrows(), 0) } else { DMatrix::from_columns(&free) }
 }
 
 /// Without entries that are rounding noise beside the largest of their column: they would only blur motions that are
@@ -38,10 +33,7 @@ pub fn clean(kernel: &DMatrix<f64>) -> DMatrix<f64> {
     let mut clean = kernel.clone();
     for mut column in clean.column_iter_mut() {
         let noise = 1e-13 * column.amax();
-        column
-            .iter_mut()
-            .filter(|v| v.abs() <= noise)
-            .for_each(|v| *v = 0.0);
+        column.iter_mut().filter(|v| v.abs() <= noise).for_each(|v| *v = 0.0);
     }
     clean
 }

@@ -22,11 +22,7 @@ pub struct LoosePart {
 impl LoosePart {
     /// "`upper` can slide along x, lift off and turn; only contact holds it".
     pub fn sentence(&self) -> String {
-        format!(
-            "{} can {}; only contact holds it",
-            self.name,
-            list(&self.motions)
-        )
+        format!("{} can {}; only contact holds it", self.name, list(&self.motions))
     }
 }
 
@@ -37,11 +33,8 @@ pub fn loose_parts(structure: &Structure, main: &MainSystem) -> Vec<LoosePart> {
     let mut found: Vec<LoosePart> = Vec::new();
     for motion in main.kernel_motions() {
         let opens = joints.iter().take(m).any(|joint| {
-            let z: f64 = joint
-                .terms
-                .iter()
-                .map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1])
-                .sum();
+            let z: f64 =
+                joint.terms.iter().map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1]).sum();
             z.abs() > 1e-9
         });
         let rigid = parts(structure, &motion.u).unwrap_or_default();
@@ -52,27 +45,17 @@ pub fn loose_parts(structure: &Structure, main: &MainSystem) -> Vec<LoosePart> {
                     RigidMotion::Translation(u) => {
                         let axis = direction_word(*u);
                         let axis = axis.trim_start_matches(['+', '-']);
-                        if opens {
-                            format!("lift off along {axis}")
-                        } else {
-                            format!("slide along {axis}")
-                        }
+                        if opens { format!("lift off along {axis}") } else { format!("slide along {axis}") }
                     }
                     RigidMotion::Rotation { centre, .. } => {
                         format!("turn about ({}, {})", short(centre[0]), short(centre[1]))
                     }
                 },
             ),
-            [] => (
-                "the structure".to_owned(),
-                "move as an internal mechanism".to_owned(),
-            ),
+            [] => ("the structure".to_owned(), "move as an internal mechanism".to_owned()),
             several => {
                 let names: Vec<String> = several.iter().map(|part| part.name.clone()).collect();
-                (
-                    list(&names),
-                    "move against each other as a mechanism".to_owned(),
-                )
+                (list(&names), "move against each other as a mechanism".to_owned())
             }
         };
         match found.iter_mut().find(|part| part.name == name) {
@@ -81,10 +64,7 @@ pub fn loose_parts(structure: &Structure, main: &MainSystem) -> Vec<LoosePart> {
                     part.motions.push(words);
                 }
             }
-            None => found.push(LoosePart {
-                name,
-                motions: vec![words],
-            }),
+            None => found.push(LoosePart { name, motions: vec![words] }),
         }
     }
     found

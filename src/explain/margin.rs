@@ -68,12 +68,7 @@ pub struct FinalScheme<'a> {
 
 /// Basic variables that may not become negative: not the reserves and slips of open pairs without cohesion.
 fn watched(scheme: &FinalScheme) -> Vec<Variable> {
-    let FinalScheme {
-        contact,
-        numbers,
-        basis,
-        ..
-    } = scheme;
+    let FinalScheme { contact, numbers, basis, .. } = scheme;
     super::vertex::basics(&contact.lcp, basis)
         .into_iter()
         .filter(|variable| {
@@ -81,8 +76,7 @@ fn watched(scheme: &FinalScheme) -> Vec<Variable> {
                 return false;
             };
             let meaning = contact.rows[*row];
-            let open = contact.normal_row[meaning.pair]
-                .is_some_and(|row| basis.z.binary_search(&row).is_ok());
+            let open = contact.normal_row[meaning.pair].is_some_and(|row| basis.z.binary_search(&row).is_ok());
             let loose = open && numbers.cohesion[meaning.pair] == 0.0;
             !loose || meaning.couple == Couple::Normal
         })
@@ -108,11 +102,7 @@ fn what(scheme: &FinalScheme, variable: Variable) -> (usize, &'static str) {
 
 fn turn(scheme: &FinalScheme, at: f64, variable: Variable) -> Turn {
     let (pair, what) = what(scheme, variable);
-    Turn {
-        at,
-        pair: scheme.system.pairs[pair].id.clone(),
-        what: what.to_owned(),
-    }
+    Turn { at, pair: scheme.system.pairs[pair].id.clone(), what: what.to_owned() }
 }
 
 /// Margins in the factor of a load case whose RF per unit is `unit`.
@@ -160,16 +150,10 @@ pub fn load_margin(
         let step = value / rate;
         let at = present - step;
         // A difference of equals is no factor of 1e-15.
-        let at = if at.abs() <= 1e-12 * present.abs().max(step.abs()) {
-            0.0
-        } else {
-            at
-        };
+        let at = if at.abs() <= 1e-12 * present.abs().max(step.abs()) { 0.0 } else { at };
         let own = what(scheme, variable).0 == pair;
         let sooner = |slot: &mut Option<Turn>, up: bool| {
-            let earlier = slot
-                .as_ref()
-                .is_none_or(|found| if up { at < found.at } else { at > found.at });
+            let earlier = slot.as_ref().is_none_or(|found| if up { at < found.at } else { at > found.at });
             if earlier {
                 *slot = Some(turn(scheme, at, variable));
             }
@@ -207,8 +191,7 @@ pub fn friction_margin(
     let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let (force, length) = (largest(&now.w), largest(&now.z));
     let worst = |parameter: f64, own: bool| -> Option<(f64, Variable)> {
-        let lcp: Result<ContactLcp, CoveringError> =
-            contact_lcp(scheme.system, &at(parameter), Covering::Ones);
+        let lcp: Result<ContactLcp, CoveringError> = contact_lcp(scheme.system, &at(parameter), Covering::Ones);
         let lcp = lcp.ok()?;
         let point = lcp.in_units(&vertex(&lcp.lcp, scheme.basis)?);
         watched
@@ -228,8 +211,7 @@ pub fn friction_margin(
         let mut good = present;
         for k in 1..=GRID {
             let next = present + (target - present) * k as f64 / GRID as f64;
-            let fails =
-                |parameter: f64| worst(parameter, own).is_none_or(|(least, _)| least < -AT_LIMIT);
+            let fails = |parameter: f64| worst(parameter, own).is_none_or(|(least, _)| least < -AT_LIMIT);
             if fails(next) {
                 let mut bad = next;
                 for _ in 0..60 {

@@ -53,10 +53,8 @@ struct Member {
 
 fn members(structure: &Structure) -> Vec<Member> {
     let nodes_of = |elements: std::ops::Range<usize>| {
-        let mut nodes: Vec<usize> = structure.elements[elements]
-            .iter()
-            .flat_map(|element| element.nodes.iter().copied())
-            .collect();
+        let mut nodes: Vec<usize> =
+            structure.elements[elements].iter().flat_map(|element| element.nodes.iter().copied()).collect();
         nodes.sort_unstable();
         nodes.dedup();
         nodes
@@ -65,36 +63,19 @@ fn members(structure: &Structure) -> Vec<Member> {
         .bars
         .iter()
         .map(|bar| (&bar.id, &bar.elements))
-        .chain(
-            structure
-                .plates
-                .iter()
-                .map(|plate| (&plate.id, &plate.elements)),
-        )
-        .map(|(id, elements)| Member {
-            id: format!("`{id}`"),
-            nodes: nodes_of(elements.clone()),
-        })
+        .chain(structure.plates.iter().map(|plate| (&plate.id, &plate.elements)))
+        .map(|(id, elements)| Member { id: format!("`{id}`"), nodes: nodes_of(elements.clone()) })
         .collect();
     let mut named = vec![false; structure.elements.len()];
-    for elements in structure
-        .bars
-        .iter()
-        .map(|bar| &bar.elements)
-        .chain(structure.plates.iter().map(|plate| &plate.elements))
+    for elements in
+        structure.bars.iter().map(|bar| &bar.elements).chain(structure.plates.iter().map(|plate| &plate.elements))
     {
         named[elements.clone()].fill(true);
     }
     for (index, element) in structure.elements.iter().enumerate() {
         if !named[index] {
-            let first = element
-                .nodes
-                .first()
-                .map_or("", |&n| &structure.nodes[n].id);
-            all.push(Member {
-                id: format!("the element at {first}"),
-                nodes: element.nodes.clone(),
-            });
+            let first = element.nodes.first().map_or("", |&n| &structure.nodes[n].id);
+            all.push(Member { id: format!("the element at {first}"), nodes: element.nodes.clone() });
         }
     }
     all
@@ -107,9 +88,7 @@ fn size(structure: &Structure) -> f64 {
             .nodes
             .iter()
             .map(|node| node.position[axis])
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         high - low
     };
     if structure.nodes.is_empty() {
@@ -127,15 +106,9 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
     }
     let joints = joints(&structure.pairs);
     let at = |motion: &Motion, joint: usize| -> f64 {
-        joints[joint]
-            .terms
-            .iter()
-            .map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1])
-            .sum()
+        joints[joint].terms.iter().map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1]).sum()
     };
-    let b = DMatrix::from_fn(joints.len(), motions.len(), |joint, k| {
-        at(&motions[k], joint)
-    });
+    let b = DMatrix::from_fn(joints.len(), motions.len(), |joint, k| at(&motions[k], joint));
     let amounts = b.clone().svd(true, true).solve(direction, 1e-12).ok()?;
     if (&b * &amounts - direction).amax() > 1e-6 * direction.amax() {
         return None;
@@ -149,19 +122,13 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
         }
     }
     let parts = parts(structure, &displacements).unwrap_or_default();
-    Some(Mode {
-        displacements,
-        parts,
-    })
+    Some(Mode { displacements, parts })
 }
 
 /// The parts that move, each rigid; `None` where one of them is not.
 pub fn parts(structure: &Structure, displacements: &[[f64; 3]]) -> Option<Vec<PartMotion>> {
     let extent = size(structure);
-    let largest = displacements
-        .iter()
-        .map(|u| u[0].hypot(u[1]))
-        .fold(0.0, f64::max);
+    let largest = displacements.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
     if largest == 0.0 {
         return Some(Vec::new());
     }
@@ -170,10 +137,7 @@ pub fn parts(structure: &Structure, displacements: &[[f64; 3]]) -> Option<Vec<Pa
     let members = members(structure);
     for (index, member) in members.iter().enumerate() {
         let rigid = fit(structure, &member.nodes, displacements, 1e-6 * largest)?;
-        let moved = member
-            .nodes
-            .iter()
-            .any(|&n| displacements[n][0].hypot(displacements[n][1]) > STILL * largest);
+        let moved = member.nodes.iter().any(|&n| displacements[n][0].hypot(displacements[n][1]) > STILL * largest);
         if !moved {
             continue;
         }
@@ -191,14 +155,8 @@ pub fn parts(structure: &Structure, displacements: &[[f64; 3]]) -> Option<Vec<Pa
         groups
             .into_iter()
             .map(|(rigid, group)| {
-                let names: Vec<String> = group
-                    .iter()
-                    .map(|&member| members[member].id.clone())
-                    .collect();
-                PartMotion {
-                    name: part_name(&names, members.len()),
-                    motion: describe(rigid, extent, largest),
-                }
+                let names: Vec<String> = group.iter().map(|&member| members[member].id.clone()).collect();
+                PartMotion { name: part_name(&names, members.len()), motion: describe(rigid, extent, largest) }
             })
             .collect(),
     )
@@ -208,12 +166,7 @@ fn part_name(names: &[String], all: usize) -> String {
     if names.len() == all && all > 1 {
         "the whole structure".to_owned()
     } else if names.len() > 4 {
-        format!(
-            "{} to {} ({} members)",
-            names[0],
-            names[names.len() - 1],
-            names.len()
-        )
+        format!("{} to {} ({} members)", names[0], names[names.len() - 1], names.len())
     } else {
         list(names)
     }
@@ -235,19 +188,12 @@ fn fit(structure: &Structure, nodes: &[usize], u: &[[f64; 3]], tolerance: f64) -
     let angle = if inertia > 0.0 { moment / inertia } else { 0.0 };
     for &n in nodes {
         let arm = [x(n)[0] - centre[0], x(n)[1] - centre[1]];
-        let error = [
-            u[n][0] - shift[0] + angle * arm[1],
-            u[n][1] - shift[1] - angle * arm[0],
-        ];
+        let error = [u[n][0] - shift[0] + angle * arm[1], u[n][1] - shift[1] - angle * arm[0]];
         if error[0].hypot(error[1]) > tolerance {
             return None;
         }
     }
-    Some([
-        shift[0] + angle * centre[1],
-        shift[1] - angle * centre[0],
-        angle,
-    ])
+    Some([shift[0] + angle * centre[1], shift[1] - angle * centre[0], angle])
 }
 
 fn describe([x, y, angle]: [f64; 3], extent: f64, largest: f64) -> RigidMotion {
@@ -255,17 +201,10 @@ fn describe([x, y, angle]: [f64; 3], extent: f64, largest: f64) -> RigidMotion {
         return RigidMotion::Translation([x, y]);
     }
     let tidy = |value: f64| {
-        if value.abs() <= 1e-6 * extent {
-            0.0
-        } else {
-            value
-        }
+        if value.abs() <= 1e-6 * extent { 0.0 } else { value }
     };
     // u = (x − θ Y, y + θ X) is zero at the centre.
-    RigidMotion::Rotation {
-        centre: [tidy(-y / angle), tidy(x / angle)],
-        angle,
-    }
+    RigidMotion::Rotation { centre: [tidy(-y / angle), tidy(x / angle)], angle }
 }
 
 /// `+x`, `-y`, `(0.995, 0.0998)`.
@@ -287,33 +226,21 @@ impl PartMotion {
     pub fn words(&self) -> String {
         match &self.motion {
             RigidMotion::Translation(u) => {
-                format!(
-                    "rigid translation of {} along {}",
-                    self.name,
-                    direction_word(*u)
-                )
+                format!("rigid translation of {} along {}", self.name, direction_word(*u))
             }
             RigidMotion::Rotation { centre, angle } => format!(
                 "rotation of {} about ({}, {}), {}",
                 self.name,
                 coordinate(centre[0]),
                 coordinate(centre[1]),
-                if *angle > 0.0 {
-                    "counter-clockwise"
-                } else {
-                    "clockwise"
-                }
+                if *angle > 0.0 { "counter-clockwise" } else { "clockwise" }
             ),
         }
     }
 }
 
 fn coordinate(value: f64) -> String {
-    if value == 0.0 {
-        "0.0".to_owned()
-    } else {
-        short(value)
-    }
+    if value == 0.0 { "0.0".to_owned() } else { short(value) }
 }
 
 /// What a direction does to the pairs: "all pairs slip +", "base[0] to base[3] open".
@@ -322,9 +249,7 @@ pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<Strin
     let mut kinds: HashMap<&str, Vec<usize>> = HashMap::new();
     for i in 0..system.pairs.len() {
         let z_n = direction[i];
-        let z_t = system.pairs[i]
-            .tangential
-            .map_or(0.0, |joint| direction[joint]);
+        let z_t = system.pairs[i].tangential.map_or(0.0, |joint| direction[joint]);
         let kind = if z_n > STILL * largest {
             "open"
         } else if z_n < -STILL * largest {

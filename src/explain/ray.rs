@@ -103,62 +103,35 @@ pub fn classify(
             grows(contact.plus_row[i]) && grows(contact.minus_row[i])
         });
         if pair.is_some() {
-            return (
-                DVector::zeros(system.joint_count()),
-                RayClass::Artefact,
-                pair,
-            );
+            return (DVector::zeros(system.joint_count()), RayClass::Artefact, pair);
         }
     }
     let largest = joints.amax();
-    let mut direction = if largest > 0.0 {
-        joints / largest
-    } else {
-        joints
-    };
+    let mut direction = if largest > 0.0 { joints / largest } else { joints };
     // Entries that are rounding noise; 0 − 0 leaves no −0 in results.
-    direction
-        .iter_mut()
-        .filter(|z| z.abs() <= 1e-11)
-        .for_each(|z| *z = 0.0);
+    direction.iter_mut().filter(|z| z.abs() <= 1e-11).for_each(|z| *z = 0.0);
     let kernel = releasable_kernel(system);
     if kernel.ncols() == 0 {
         return (direction, RayClass::Fault, None);
     }
     let inside = &kernel * (kernel.transpose() * &direction);
-    let costs_nothing =
-        direction.amax() > 0.0 && (&inside - &direction).norm() <= NO_ENERGY * direction.norm();
+    let costs_nothing = direction.amax() > 0.0 && (&inside - &direction).norm() <= NO_ENERGY * direction.norm();
     let (power, terms) = power(&numbers.load, &inside);
-    let class = if costs_nothing && power > NO_POWER * terms {
-        RayClass::Mechanism
-    } else {
-        RayClass::NoEquilibrium
-    };
+    let class = if costs_nothing && power > NO_POWER * terms { RayClass::Mechanism } else { RayClass::NoEquilibrium };
     (direction, class, None)
 }
 
 /// −RF·z̄ and the sum of the sizes of its terms.
 fn power(load: &DVector<f64>, z: &DVector<f64>) -> (f64, f64) {
-    load.iter()
-        .zip(z.iter())
-        .fold((0.0, 0.0), |(sum, terms), (a, b)| {
-            (sum - a * b, terms + (a * b).abs())
-        })
+    load.iter().zip(z.iter()).fold((0.0, 0.0), |(sum, terms), (a, b)| (sum - a * b, terms + (a * b).abs()))
 }
 
 /// Class, direction, mode and power; nothing proved yet.
 pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64) -> RayReport {
-    let Subject {
-        system,
-        numbers,
-        cases,
-        structure,
-    } = *subject;
+    let Subject { system, numbers, cases, structure } = *subject;
     let (direction, class, artefact) = classify(system, numbers, contact, ray);
     let moves = matches!(class, RayClass::Mechanism | RayClass::NoEquilibrium);
-    let mode = structure
-        .filter(|_| moves)
-        .and_then(|(structure, main)| mode(structure, main, &direction));
+    let mode = structure.filter(|_| moves).and_then(|(structure, main)| mode(structure, main, &direction));
     let powers = if moves {
         system
             .loads
@@ -167,11 +140,7 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
             .map(|(load, (case, factor))| {
                 let (power, _) = power(&load.vector, &direction);
                 let noise = power.abs() <= 1e-12 * load.vector.amax();
-                CasePower {
-                    case: case.clone(),
-                    factor: *factor,
-                    power: if noise { 0.0 } else { factor * power },
-                }
+                CasePower { case: case.clone(), factor: *factor, power: if noise { 0.0 } else { factor * power } }
             })
             .collect()
     } else {
@@ -200,20 +169,15 @@ pub fn certify_ray(report: &mut RayReport, subject: &Subject) -> bool {
     report.certificate = certify(subject.system, subject.numbers, Some(&report.direction));
     if let Some(certificate) = &report.certificate {
         report.verdict = Some(Verdict::Certified);
-        report.certificate_mode = subject
-            .structure
-            .and_then(|(structure, main)| mode(structure, main, &certificate.direction));
+        report.certificate_mode =
+            subject.structure.and_then(|(structure, main)| mode(structure, main, &certificate.direction));
         return true;
     }
     report.verdict = Some(Verdict::Undecided);
     let none = DVector::zeros(subject.numbers.load.len());
-    report.balanced = super::certificate::balanced_multipliers(
-        subject.system,
-        subject.numbers,
-        &subject.numbers.load,
-        &none,
-    )
-    .is_some();
+    report.balanced =
+        super::certificate::balanced_multipliers(subject.system, subject.numbers, &subject.numbers.load, &none)
+            .is_some();
     false
 }
 
@@ -225,12 +189,7 @@ pub fn report(
     ray: &RayDirection,
     p: f64,
 ) -> Ray {
-    let subject = Subject {
-        system,
-        numbers,
-        cases: &[],
-        structure: None,
-    };
+    let subject = Subject { system, numbers, cases: &[], structure: None };
     let mut report = look(&subject, contact, ray, p);
     certify_ray(&mut report, &subject);
     report.record(system, Covering::default())
@@ -238,9 +197,7 @@ pub fn report(
 
 /// Goes through all working schemes where they are few; `None` where they are many or the search was stopped.
 pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> {
-    let Subject {
-        system, numbers, ..
-    } = *subject;
+    let Subject { system, numbers, .. } = *subject;
     if system.pairs.len() > MOST_PAIRS {
         return None;
     }
@@ -259,11 +216,7 @@ pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> 
         return None;
     }
     let found = enumerate(system, numbers, &mut |_| {
-        if watch.stop() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })
     .ok()?;
     found.complete.then_some(found)
@@ -274,65 +227,36 @@ pub fn add_remedies(report: &mut RayReport, subject: &Subject, solves: Try, watc
     if report.class != RayClass::Mechanism {
         return;
     }
-    let parts = report
-        .mode
-        .as_ref()
-        .map_or(&[][..], |mode| mode.parts.as_slice());
-    report.remedies = remedies(
-        subject.system,
-        subject.numbers,
-        subject.cases,
-        parts,
-        solves,
-        watch,
-    );
+    let parts = report.mode.as_ref().map_or(&[][..], |mode| mode.parts.as_slice());
+    report.remedies = remedies(subject.system, subject.numbers, subject.cases, parts, solves, watch);
 }
 
 impl RayReport {
     /// The motion in words.
     pub fn mode_words(&self, system: &ContactSystem) -> String {
         if let Some(pair) = self.artefact {
-            return format!(
-                "no motion: z+ and z- of pair {} grow together",
-                system.pairs[pair].id
-            );
+            return format!("no motion: z+ and z- of pair {} grow together", system.pairs[pair].id);
         }
-        let parts: Vec<String> = self
-            .mode
-            .iter()
-            .flat_map(|mode| &mode.parts)
-            .map(super::mode::PartMotion::words)
-            .collect();
+        let parts: Vec<String> =
+            self.mode.iter().flat_map(|mode| &mode.parts).map(super::mode::PartMotion::words).collect();
         let mut pairs = pair_words(system, &self.direction);
         if self.class == RayClass::Mechanism
             && let [only] = pairs.as_slice()
             && parts.is_empty()
-            && let Some(names) = only
-                .strip_suffix(" slip +")
-                .or(only.strip_suffix(" slip -"))
+            && let Some(names) = only.strip_suffix(" slip +").or(only.strip_suffix(" slip -"))
         {
             let sign = &only[only.len() - 1..];
             pairs = vec![format!("slip {sign} of {names}")];
         }
-        let pairs = if pairs.is_empty() {
-            "no relative motion of the pairs".to_owned()
-        } else {
-            pairs.join("; ")
-        };
-        if parts.is_empty() {
-            pairs
-        } else {
-            format!("{}: {pairs}", parts.join("; "))
-        }
+        let pairs = if pairs.is_empty() { "no relative motion of the pairs".to_owned() } else { pairs.join("; ") };
+        if parts.is_empty() { pairs } else { format!("{}: {pairs}", parts.join("; ")) }
     }
 
     /// What the ray means, in sentences.
     pub fn explanation(&self, system: &ContactSystem, covering: Covering) -> String {
         match self.class {
             RayClass::Artefact => {
-                let pair = self
-                    .artefact
-                    .map_or(String::new(), |pair| format!(" {}", system.pairs[pair].id));
+                let pair = self.artefact.map_or(String::new(), |pair| format!(" {}", system.pairs[pair].id));
                 let cause = if covering == Covering::Ones {
                     "With friction above 1, covering `ones` takes more friction from every pair than it gives \
                      ((1 − f)p)"
@@ -376,9 +300,7 @@ impl RayReport {
             Covering::Ones => format!("an extra p = {p} in every contact force and every reserve"),
         };
         let mut text = if self.class == RayClass::Mechanism {
-            format!(
-                "The motion costs no energy and the loads do work on it; only {missing} would just hold it."
-            )
+            format!("The motion costs no energy and the loads do work on it; only {missing} would just hold it.")
         } else {
             format!(
                 "The run found no state that obeys the laws of contact with less than {missing}; its direction is no pure \
@@ -415,19 +337,12 @@ impl RayReport {
             .iter()
             .filter(|power| power.power != 0.0)
             .map(|power| {
-                let word = if power.power > 0.0 {
-                    "drives"
-                } else {
-                    "resists"
-                };
+                let word = if power.power > 0.0 { "drives" } else { "resists" };
                 format!("`{}` {word} it ({})", power.case, digits(power.power))
             })
             .collect();
         if self.class == RayClass::Mechanism && !powers.is_empty() {
-            text += &format!(
-                " Work of the loads per unit of the motion: {}.",
-                list(&powers)
-            );
+            text += &format!(" Work of the loads per unit of the motion: {}.", list(&powers));
         }
         text + &sentence(&self.remedies)
     }
@@ -457,9 +372,7 @@ impl RayReport {
 /// The ray of a bare LCP; `verdict` where its answers were enumerated.
 pub fn plain_report(p: f64, verdict: Verdict) -> Ray {
     let proof = match verdict {
-        Verdict::Proved => {
-            "Proved: every complementary basis was tried in exact arithmetic, none is an answer."
-        }
+        Verdict::Proved => "Proved: every complementary basis was tried in exact arithmetic, none is an answer.",
         _ => "For a general M this proves nothing about whether one exists.",
     };
     Ray {

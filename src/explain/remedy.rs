@@ -71,16 +71,11 @@ pub fn remedies(
             part: part.name.clone(),
             against: match &part.motion {
                 RigidMotion::Translation(u) => {
-                    format!(
-                        "along {}",
-                        direction_word(*u).trim_start_matches(['+', '-'])
-                    )
+                    format!("along {}", direction_word(*u).trim_start_matches(['+', '-']))
                 }
-                RigidMotion::Rotation { centre, .. } => format!(
-                    "against turning about ({}, {})",
-                    short(centre[0]),
-                    short(centre[1])
-                ),
+                RigidMotion::Rotation { centre, .. } => {
+                    format!("against turning about ({}, {})", short(centre[0]), short(centre[1]))
+                }
             },
         })
         .collect();
@@ -102,30 +97,17 @@ fn is_balanced(system: &ContactSystem, numbers: &ContactNumbers) -> bool {
     balanced_multipliers(system, numbers, &numbers.load, &none).is_some()
 }
 
-fn friction(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    solves: Try,
-    watch: &dyn Watch,
-) -> Option<Remedy> {
-    let coulomb: Vec<usize> = (0..system.pairs.len())
-        .filter(|&i| matches!(system.pairs[i].law, Law::Coulomb { .. }))
-        .collect();
+fn friction(system: &ContactSystem, numbers: &ContactNumbers, solves: Try, watch: &dyn Watch) -> Option<Remedy> {
+    let coulomb: Vec<usize> =
+        (0..system.pairs.len()).filter(|&i| matches!(system.pairs[i].law, Law::Coulomb { .. })).collect();
     let first = numbers.friction[*coulomb.first()?];
     let equal = coulomb.iter().all(|&i| numbers.friction[i] == first);
-    let largest = coulomb
-        .iter()
-        .map(|&i| numbers.friction[i])
-        .fold(0.0, f64::max);
+    let largest = coulomb.iter().map(|&i| numbers.friction[i]).fold(0.0, f64::max);
     let multiplier = !equal && largest > 0.0;
     let with = |value: f64| {
         let mut changed = numbers.clone();
         for &i in &coulomb {
-            changed.friction[i] = if multiplier {
-                value * numbers.friction[i]
-            } else {
-                value
-            };
+            changed.friction[i] = if multiplier { value * numbers.friction[i] } else { value };
         }
         changed
     };
@@ -136,11 +118,7 @@ fn friction(
     let mut high = if low > 0.0 { 2.0 * low } else { 0.125 };
     while !is_balanced(system, &with(high)) {
         if high >= MOST_FRICTION || watch.stop() {
-            return Some(Remedy::Friction {
-                needed: None,
-                multiplier,
-                tried: false,
-            });
+            return Some(Remedy::Friction { needed: None, multiplier, tried: false });
         }
         low = high;
         high = (2.0 * high).min(MOST_FRICTION);
@@ -156,11 +134,7 @@ fn friction(
             low = middle;
         }
     }
-    Some(Remedy::Friction {
-        needed: Some(high),
-        multiplier,
-        tried: solves(&with(high * (1.0 + INSIDE)), None),
-    })
+    Some(Remedy::Friction { needed: Some(high), multiplier, tried: solves(&with(high * (1.0 + INSIDE)), None) })
 }
 
 fn load(
@@ -181,11 +155,7 @@ fn load(
         return None;
     }
     // The end that is nearer to the present factor, and a little inside.
-    let (end, other) = if factor > between[1] {
-        (between[1], between[0])
-    } else {
-        (between[0], between[1])
-    };
+    let (end, other) = if factor > between[1] { (between[1], between[0]) } else { (between[0], between[1]) };
     let width = (end - other).abs().min(end.abs().max(f64::MIN_POSITIVE));
     let inside = end + (other - end).signum() * INSIDE * width;
     let mut changed = numbers.clone();
@@ -213,18 +183,12 @@ impl Remedy {
     pub fn words(&self) -> String {
         match self {
             Remedy::Restraint { part, against } => {
-                format!(
-                    "a restraint of {part} {against} (stops this motion; that no other follows is not proved)"
-                )
+                format!("a restraint of {part} {against} (stops this motion; that no other follows is not proved)")
             }
             Remedy::Friction { needed: None, .. } => {
                 "no friction up to 1000 (none gives forces that balance the loads)".to_owned()
             }
-            Remedy::Friction {
-                needed: Some(needed),
-                multiplier,
-                tried,
-            } => {
+            Remedy::Friction { needed: Some(needed), multiplier, tried } => {
                 let what = if *multiplier {
                     format!("{} times the friction", digits(*needed))
                 } else {
@@ -237,12 +201,7 @@ impl Remedy {
                 };
                 format!("{what} ({proof})")
             }
-            Remedy::Load {
-                case,
-                present,
-                between: [low, high],
-                tried,
-            } => {
+            Remedy::Load { case, present, between: [low, high], tried } => {
                 let what = if *present > *high {
                     format!("a factor of `{case}` below {}", digits(*high))
                 } else {

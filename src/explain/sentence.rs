@@ -33,18 +33,8 @@ struct Scheme {
 }
 
 /// The records of a contact run; p in the user's units.
-pub fn pivot_records(
-    pivots: &[Pivot],
-    contact: &ContactLcp,
-    system: &ContactSystem,
-) -> Vec<PivotRecord> {
-    let mut schemes = vec![
-        Scheme {
-            open: false,
-            tangential: Tangential::Stick
-        };
-        system.pairs.len()
-    ];
+pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSystem) -> Vec<PivotRecord> {
+    let mut schemes = vec![Scheme { open: false, tangential: Tangential::Stick }; system.pairs.len()];
     pivots
         .iter()
         .map(|pivot| {
@@ -63,11 +53,7 @@ pub fn pivot_records(
                 entering: contact.name(pivot.entering, system),
                 leaving: contact.name(pivot.leaving, system),
                 p: pivot.p_after * unit,
-                ties: pivot
-                    .ties
-                    .iter()
-                    .map(|&tie| contact.name(tie, system))
-                    .collect(),
+                ties: pivot.ties.iter().map(|&tie| contact.name(tie, system)).collect(),
                 turned,
                 sentence,
             }
@@ -76,12 +62,7 @@ pub fn pivot_records(
 }
 
 /// Applies the entering variable to the working scheme.
-fn turn(
-    schemes: &mut [Scheme],
-    entering: Variable,
-    contact: &ContactLcp,
-    system: &ContactSystem,
-) -> Option<Turned> {
+fn turn(schemes: &mut [Scheme], entering: Variable, contact: &ContactLcp, system: &ContactSystem) -> Option<Turned> {
     let (row, released) = match entering {
         Variable::P => return None,
         Variable::Z(row) => (row, true),
@@ -90,11 +71,7 @@ fn turn(
     let meaning = contact.rows[row];
     let scheme = &mut schemes[meaning.pair];
     let frictionless = matches!(system.pairs[meaning.pair].law, Law::Frictionless { .. });
-    let closed_word = if frictionless {
-        "closed"
-    } else {
-        scheme.tangential.word()
-    };
+    let closed_word = if frictionless { "closed" } else { scheme.tangential.word() };
     let (joint, from, to) = match (meaning.couple, released) {
         (Couple::Normal, true) => {
             scheme.open = true;
@@ -114,12 +91,7 @@ fn turn(
             (TurnedJoint::Tangential, from, scheme.tangential.word())
         }
     };
-    Some(Turned {
-        pair: system.pairs[meaning.pair].id.clone(),
-        joint,
-        from: from.to_owned(),
-        to: to.to_owned(),
-    })
+    Some(Turned { pair: system.pairs[meaning.pair].id.clone(), joint, from: from.to_owned(), to: to.to_owned() })
 }
 
 struct Sentence<'a> {
@@ -139,11 +111,7 @@ impl Sentence<'_> {
                 .filter(|&&tie| tie != pivot.leaving)
                 .map(|&tie| self.contact.name(tie, self.system))
                 .collect();
-            let tied = if others.is_empty() {
-                String::new()
-            } else {
-                format!(" (tied with {})", list(&others))
-            };
+            let tied = if others.is_empty() { String::new() } else { format!(" (tied with {})", list(&others)) };
             return format!(
                 "p enters at {}, the least that keeps every pair closed and sticking; {}{tied}",
                 short(self.after),
@@ -166,31 +134,17 @@ impl Sentence<'_> {
             (TurnedJoint::Tangential, _, true) => format!("open pair {pair} slides -"),
         };
         if self.ended {
-            return format!(
-                "{change}; p falls from {} to 0: the answer is reached",
-                short(self.before)
-            );
+            return format!("{change}; p falls from {} to 0: the answer is reached", short(self.before));
         }
         let unchanged = (self.after - self.before).abs() <= 1e-12 * self.before.abs();
         let course = if unchanged {
             format!("p stays at {}", short(self.after))
         } else if self.after < self.before {
-            format!(
-                "p falls from {} to {}",
-                short(self.before),
-                short(self.after)
-            )
+            format!("p falls from {} to {}", short(self.before), short(self.after))
         } else {
-            format!(
-                "p rises from {} to {}",
-                short(self.before),
-                short(self.after)
-            )
+            format!("p rises from {} to {}", short(self.before), short(self.after))
         };
-        format!(
-            "{change}; {course}, where {}",
-            self.limit(pivot.leaving, schemes)
-        )
+        format!("{change}; {course}, where {}", self.limit(pivot.leaving, schemes))
     }
 
     /// What happens to the leaving variable.
@@ -222,15 +176,9 @@ pub fn plain_records(pivots: &[Pivot], names: &[String]) -> Vec<PivotRecord> {
         .map(|pivot| {
             let (entering, leaving) = (name(pivot.entering), name(pivot.leaving));
             let sentence = if pivot.step == 0 {
-                format!(
-                    "p enters at {}; {leaving} is the row that needs it",
-                    short(pivot.p_after)
-                )
+                format!("p enters at {}; {leaving} is the row that needs it", short(pivot.p_after))
             } else if pivot.leaving == Variable::P {
-                format!(
-                    "{entering} enters; p falls from {} to 0",
-                    short(pivot.p_before)
-                )
+                format!("{entering} enters; p falls from {} to 0", short(pivot.p_before))
             } else {
                 format!(
                     "{entering} enters; p goes from {} to {}, where {leaving} reaches zero",

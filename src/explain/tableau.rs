@@ -45,11 +45,7 @@ pub enum NoDictionary {
 ///
 /// # Errors
 /// See [`NoDictionary`].
-pub fn dictionary(
-    naming: &Naming,
-    pivots: &[Pivot],
-    step: Option<usize>,
-) -> Result<Dictionary, NoDictionary> {
+pub fn dictionary(naming: &Naming, pivots: &[Pivot], step: Option<usize>) -> Result<Dictionary, NoDictionary> {
     let lcp = naming.lcp();
     let n = lcp.whole_size;
     if n > MOST_ROWS {
@@ -67,21 +63,11 @@ pub fn dictionary(
         .collect();
     let columns: Vec<Point> = nonbasic
         .iter()
-        .map(|variable| {
-            direction(lcp, &basis, *variable).map(|ray| Point {
-                z: ray.z,
-                w: ray.w,
-                p: ray.p,
-            })
-        })
+        .map(|variable| direction(lcp, &basis, *variable).map(|ray| Point { z: ray.z, w: ray.w, p: ray.p }))
         .collect::<Option<_>>()
         .ok_or(NoDictionary::Singular)?;
     let clean = |value: f64, size: f64| {
-        if value.abs() <= 1e-13 * size {
-            0.0
-        } else {
-            value
-        }
+        if value.abs() <= 1e-13 * size { 0.0 } else { value }
     };
     let rates = basic
         .iter()
@@ -90,27 +76,18 @@ pub fn dictionary(
                 .iter()
                 .zip(&columns)
                 .map(|(variable, column)| {
-                    let largest = basic
-                        .iter()
-                        .map(|v| value(column, *v).abs())
-                        .fold(0.0, f64::max);
+                    let largest = basic.iter().map(|v| value(column, *v).abs()).fold(0.0, f64::max);
                     clean(value(column, *row), largest) * naming.unit(*row) / naming.unit(*variable)
                 })
                 .collect()
         })
         .collect();
-    let largest = basic
-        .iter()
-        .map(|v| value(&point, *v).abs())
-        .fold(0.0, f64::max);
+    let largest = basic.iter().map(|v| value(&point, *v).abs()).fold(0.0, f64::max);
     let next = pivots.get(done);
     let names = |variables: &[Variable]| variables.iter().map(|v| naming.name(*v)).collect();
     Ok(Dictionary {
         step: done.checked_sub(1),
-        values: basic
-            .iter()
-            .map(|v| clean(value(&point, *v), largest) * naming.unit(*v))
-            .collect(),
+        values: basic.iter().map(|v| clean(value(&point, *v), largest) * naming.unit(*v)).collect(),
         basic: names(&basic),
         nonbasic: names(&nonbasic),
         rates,

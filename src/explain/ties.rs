@@ -55,12 +55,8 @@ pub fn rule_words(tie_break: TieBreak, contact: bool) -> String {
         (TieBreak::Lexicographic, true) => {
             "lexicographic: p first, then as if every x+ and x- had a little more than every x_n"
         }
-        (TieBreak::Natural, true) => {
-            "natural: p first, then lexicographic in the order x_n, x+, x-"
-        }
-        (TieBreak::Lexicographic | TieBreak::Natural, false) => {
-            "lexicographic: p first, then the order of the rows"
-        }
+        (TieBreak::Natural, true) => "natural: p first, then lexicographic in the order x_n, x+, x-",
+        (TieBreak::Lexicographic | TieBreak::Natural, false) => "lexicographic: p first, then the order of the rows",
         (TieBreak::FirstRow, _) => "first-row: the first tied row of the tableau; may cycle",
         (TieBreak::Random(_), _) => "random: a tied row drawn with the seed",
     };
@@ -100,10 +96,7 @@ pub fn ties(naming: &Naming, pivots: &[Pivot], last: &Point, tie_break: TieBreak
             } else {
                 zero_basics(lcp, &basis, &vertex(lcp, &basis)?)
             };
-            (!zeros.is_empty()).then(|| Degenerate {
-                step,
-                zeros: names(&zeros),
-            })
+            (!zeros.is_empty()).then(|| Degenerate { step, zeros: names(&zeros) })
         })
         .collect();
     TieReport {

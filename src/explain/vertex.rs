@@ -59,12 +59,8 @@ pub fn value(point: &Point, variable: Variable) -> f64 {
 
 /// The basic variables: w, then z, then p.
 pub fn basics(lcp: &MirroredLcp, basis: &Basis) -> Vec<Variable> {
-    let w = (0..lcp.whole_size)
-        .filter(|i| basis.active.binary_search(i).is_err())
-        .map(Variable::W);
-    w.chain(basis.z.iter().map(|i| Variable::Z(*i)))
-        .chain(basis.p.then_some(Variable::P))
-        .collect()
+    let w = (0..lcp.whole_size).filter(|i| basis.active.binary_search(i).is_err()).map(Variable::W);
+    w.chain(basis.z.iter().map(|i| Variable::Z(*i))).chain(basis.p.then_some(Variable::P)).collect()
 }
 
 /// The basic variables that are zero at this vertex.

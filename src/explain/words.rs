@@ -15,11 +15,7 @@ pub fn short(value: f64) -> String {
         return text;
     }
     let trimmed = text.trim_end_matches('0');
-    if trimmed.ends_with('.') {
-        format!("{trimmed}0")
-    } else {
-        trimmed.to_owned()
-    }
+    if trimmed.ends_with('.') { format!("{trimmed}0") } else { trimmed.to_owned() }
 }
 
 /// `a`, `a and b`, `a, b and c`.

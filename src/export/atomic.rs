@@ -20,14 +20,8 @@ pub struct WriteError {
 ///
 /// # Errors
 /// Whatever the system or `content` says; then `path` is as it was.
-pub fn write(
-    path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), WriteError> {
-    replace(path, content).map_err(|source| WriteError {
-        path: path.to_owned(),
-        source,
-    })
+pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
+    replace(path, content).map_err(|source| WriteError { path: path.to_owned(), source })
 }
 
 /// Why no temporary file can be made in `folder`, without the name of that file, which says nothing and differs from run
@@ -71,9 +65,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder
-        .tempfile_in(folder)
-        .map_err(|error| refusal(folder, &error))?;
+    let mut file = builder.tempfile_in(folder).map_err(|error| refusal(folder, &error))?;
     {
         let mut out = BufWriter::new(file.as_file_mut());
         content(&mut out)?;

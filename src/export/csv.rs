@@ -15,10 +15,7 @@ enum Field<'a> {
 /// Writes the pairs.
 pub fn pairs(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Empty, Number, Text};
-    head(
-        out,
-        "id,law,state,held,x_n,x_t,z_n,z_t,bound,reserve_plus,reserve_minus,x,y",
-    )?;
+    head(out, "id,law,state,held,x_n,x_t,z_n,z_t,bound,reserve_plus,reserve_minus,x,y")?;
     for pair in &answer.pairs {
         let place = |i: usize| pair.position.map_or(Empty, |at| Number(at[i]));
         row(
@@ -46,10 +43,7 @@ pub fn pairs(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
 /// Writes the pivots; several tied rows stand in one field, separated by blanks.
 pub fn pivots(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Count, Empty, Number, Text};
-    head(
-        out,
-        "step,entering,leaving,p,ties,pair,joint,from,to,sentence",
-    )?;
+    head(out, "step,entering,leaving,p,ties,pair,joint,from,to,sentence")?;
     for pivot in &answer.pivots {
         let ties = pivot.ties.join(" ");
         let turned = pivot.turned.as_ref();
@@ -81,15 +75,7 @@ pub fn displacements(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Number, Text};
     head(out, "node,ux,uy,rz")?;
     for node in answer.displacements.iter().flatten() {
-        row(
-            out,
-            &[
-                Text(&node.node),
-                Number(node.ux),
-                Number(node.uy),
-                Number(node.rz),
-            ],
-        )?;
+        row(out, &[Text(&node.node), Number(node.ux), Number(node.uy), Number(node.rz)])?;
     }
     Ok(())
 }
@@ -121,15 +107,7 @@ pub fn reactions(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Number, Text};
     head(out, "node,fx,fy,m")?;
     for reaction in answer.reactions.iter().flatten() {
-        row(
-            out,
-            &[
-                Text(&reaction.node),
-                Number(reaction.fx),
-                Number(reaction.fy),
-                Number(reaction.m),
-            ],
-        )?;
+        row(out, &[Text(&reaction.node), Number(reaction.fx), Number(reaction.fy), Number(reaction.m)])?;
     }
     Ok(())
 }

@@ -14,16 +14,8 @@ use crate::model::parameter::ParameterValues;
 /// `solution` are absent and `ray` is null; at a ray the displacements, members and reactions are absent; for a
 /// contact system or a bare LCP they always are. `timings` only on request: two runs of one scenario are then
 /// the same to the byte.
-pub fn result(
-    answer: &Answer,
-    scenario_name: &str,
-    parameters: &ParameterValues,
-    timings: bool,
-) -> Value {
-    let failed = matches!(
-        answer.outcome,
-        OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed
-    );
+pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues, timings: bool) -> Value {
+    let failed = matches!(answer.outcome, OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed);
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| {
         object.insert(key.to_owned(), value);
@@ -33,10 +25,7 @@ pub fn result(
     put("parameters", value(parameters));
     put("outcome", value(&answer.outcome));
     put("marginal", answer.marginal.into());
-    let ray = answer
-        .ray
-        .as_ref()
-        .filter(|_| answer.outcome == OutcomeKind::Ray);
+    let ray = answer.ray.as_ref().filter(|_| answer.outcome == OutcomeKind::Ray);
     put("ray", value(&ray));
     put("p", value(&answer.p));
     put("covering", answer.covering.as_str().into());

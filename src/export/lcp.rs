@@ -9,23 +9,10 @@ use crate::lcp::problem::Lcp;
 /// A variable's name as an id of the format: `x+[joint[0]]` becomes `x_plus_joint_0`, `1` becomes `w_1`.
 fn id(name: &str) -> String {
     let spelled = name.replace('+', "_plus").replace("x-", "x_minus");
-    let plain: String = spelled
-        .chars()
-        .map(|c| {
-            if c.is_ascii_alphanumeric() || c == '-' {
-                c
-            } else {
-                '_'
-            }
-        })
-        .collect();
+    let plain: String = spelled.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
     let words: Vec<&str> = plain.split('_').filter(|word| !word.is_empty()).collect();
     let id = words.join("_");
-    if id.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        id
-    } else {
-        format!("w_{id}")
-    }
+    if id.starts_with(|c: char| c.is_ascii_alphabetic()) { id } else { format!("w_{id}") }
 }
 
 /// The LCP as a `stickslip/1` scenario with the source `lcp`: it loads and solves as it is.
@@ -67,18 +54,11 @@ mod tests {
     #[test]
     fn the_scenario_loads_to_the_same_lcp() {
         let matrix = vec![vec![2.0, 1.0 / 3.0], vec![-1e-17, 1.5]];
-        let lcp = Lcp {
-            scale: Scale::plain(&matrix),
-            matrix,
-            q: vec![-1.0, 0.1],
-            covering: vec![1.0, 1.7],
-        };
+        let lcp = Lcp { scale: Scale::plain(&matrix), matrix, q: vec![-1.0, 0.1], covering: vec![1.0, 1.7] };
         let names = ["x_n[c1]", "x-[joint[0]]"].map(str::to_owned);
         let text = scenario(&lcp, &names, "two rows").to_string();
         let loaded = load_text("two", &text, None).expect("a scenario");
-        let Source::Lcp(given) = loaded.source else {
-            panic!("an lcp")
-        };
+        let Source::Lcp(given) = loaded.source else { panic!("an lcp") };
         assert_eq!(given.matrix, lcp.matrix);
         assert_eq!(given.covering, Some(lcp.covering));
         assert_eq!(given.names, ["x_n_c1", "x_minus_joint_0"]);

@@ -49,13 +49,8 @@ fn an_answer_has_the_documented_keys() {
     assert_eq!(result["parameters"]["F2"], 100.0);
     assert_eq!(result["outcome"], "normal");
     assert_eq!(result["ray"], Value::Null);
-    assert_eq!(
-        keys(&result["attempts"][0]),
-        ["covering", "tie_break", "engine", "outcome"]
-    );
-    let pivot = [
-        "step", "entering", "leaving", "p", "ties", "turned", "sentence",
-    ];
+    assert_eq!(keys(&result["attempts"][0]), ["covering", "tie_break", "engine", "outcome"]);
+    let pivot = ["step", "entering", "leaving", "p", "ties", "turned", "sentence"];
     assert_eq!(keys(&result["pivots"][1]), pivot);
     assert_eq!(result["pivots"][0]["turned"], Value::Null);
     let turned = &result["pivots"][1]["turned"];
@@ -78,18 +73,9 @@ fn an_answer_has_the_documented_keys() {
     assert_eq!(keys(&result["pairs"][0]), pair);
     assert_eq!(result["pairs"][5]["state"], "slip+");
     assert_eq!(result["pairs"][0]["held"], Value::Null);
-    assert_eq!(
-        keys(&result["check"]),
-        ["min_w", "min_z", "complementarity", "equilibrium", "passed"]
-    );
-    assert_eq!(
-        keys(&result["displacements"][0]),
-        ["node", "ux", "uy", "rz"]
-    );
-    assert_eq!(
-        keys(&result["members"][0]),
-        ["bar", "element", "start", "end"]
-    );
+    assert_eq!(keys(&result["check"]), ["min_w", "min_z", "complementarity", "equilibrium", "passed"]);
+    assert_eq!(keys(&result["displacements"][0]), ["node", "ux", "uy", "rz"]);
+    assert_eq!(keys(&result["members"][0]), ["bar", "element", "start", "end"]);
     assert_eq!(keys(&result["members"][0]["start"]), ["N", "Q", "M"]);
     assert_eq!(keys(&result["size"]), ["unknowns", "free", "pairs", "lcp"]);
     // −0 is no result.
@@ -100,10 +86,7 @@ fn an_answer_has_the_documented_keys() {
 fn timings_only_on_request() {
     let result = json::result(&beam(0.3, 100.0), "beam", &parameters(), true);
     assert_eq!(keys(&result).last(), Some(&"timings"));
-    assert_eq!(
-        keys(&result["timings"]),
-        ["factor", "condense", "lemke", "total"]
-    );
+    assert_eq!(keys(&result["timings"]), ["factor", "condense", "lemke", "total"]);
 }
 
 #[test]
@@ -112,15 +95,10 @@ fn a_ray_has_the_last_vertex_but_no_displacements() {
     // Even if someone left them there.
     answer.displacements = Some(Vec::new());
     let result = json::result(&answer, "beam", &parameters(), false);
-    let expected: Vec<&str> = ANSWER
-        .into_iter()
-        .filter(|key| !["displacements", "members", "reactions"].contains(key))
-        .collect();
+    let expected: Vec<&str> =
+        ANSWER.into_iter().filter(|key| !["displacements", "members", "reactions"].contains(key)).collect();
     assert_eq!(keys(&result), expected);
-    assert_eq!(
-        keys(&result["ray"]),
-        ["class", "verdict", "p", "direction", "mode", "explanation"]
-    );
+    assert_eq!(keys(&result["ray"]), ["class", "verdict", "p", "direction", "mode", "explanation"]);
     assert_eq!(result["ray"]["class"], "mechanism");
     assert_eq!(result["ray"]["verdict"], "certified");
     assert_eq!(keys(&result["ray"]["direction"][0]), ["pair", "z_n", "z_t"]);
@@ -134,14 +112,7 @@ fn a_failure_has_neither_pairs_nor_ray() {
         (OutcomeKind::Breakdown, "breakdown"),
         (OutcomeKind::CheckFailed, "check-failed"),
     ] {
-        let answer = Answer {
-            outcome,
-            solution: Some(PlainSolution {
-                z: vec![0.0],
-                w: vec![0.0],
-            }),
-            ..beam_ray()
-        };
+        let answer = Answer { outcome, solution: Some(PlainSolution { z: vec![0.0], w: vec![0.0] }), ..beam_ray() };
         let result = json::result(&answer, "beam", &parameters(), false);
         assert_eq!(result["outcome"], word);
         assert_eq!(result["ray"], Value::Null);
@@ -159,29 +130,15 @@ fn a_bare_lcp_has_a_solution_and_no_structure() {
         displacements: None,
         members: None,
         reactions: None,
-        solution: Some(PlainSolution {
-            z: vec![0.0, 1.0, 3.0],
-            w: vec![2.0, -0.0, 0.0],
-        }),
-        check: Check {
-            equilibrium: None,
-            ..Check::default()
-        },
-        size: Size {
-            unknowns: None,
-            free: None,
-            pairs: 0,
-            lcp: 3,
-        },
+        solution: Some(PlainSolution { z: vec![0.0, 1.0, 3.0], w: vec![2.0, -0.0, 0.0] }),
+        check: Check { equilibrium: None, ..Check::default() },
+        size: Size { unknowns: None, free: None, pairs: 0, lcp: 3 },
         covering: "ones".into(),
         ..beam(0.3, 100.0)
     };
     let result = json::result(&answer, "cps", &ParameterValues::new(), false);
     assert_eq!(result["pairs"], Value::Array(Vec::new()));
-    assert_eq!(
-        result["solution"].to_string(),
-        r#"{"z":[0.0,1.0,3.0],"w":[2.0,0.0,0.0]}"#
-    );
+    assert_eq!(result["solution"].to_string(), r#"{"z":[0.0,1.0,3.0],"w":[2.0,0.0,0.0]}"#);
     assert_eq!(result["check"]["equilibrium"], Value::Null);
     assert_eq!(keys(&result["size"]), ["pairs", "lcp"]);
     for absent in ["displacements", "members", "reactions"] {

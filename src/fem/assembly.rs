@@ -49,9 +49,7 @@ pub fn assemble(
             // Every dof has its diagonal entry, also where nothing is attached.
             (0..dofs.count()).for_each(&mut *count);
             for index in 0..structure.elements.len() {
-                element_dofs(index, &mut |at| {
-                    lower(at, &mut |_, column, _, _| count(column))
-                });
+                element_dofs(index, &mut |at| lower(at, &mut |_, column, _, _| count(column)));
             }
             for spring in &structure.springs {
                 lower(&spring_dofs(spring.node), &mut |_, column, _, _| {
@@ -98,11 +96,7 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
         };
         for load in &case.loads {
             match *load {
-                Load::Nodal {
-                    node,
-                    force,
-                    moment,
-                } => {
+                Load::Nodal { node, force, moment } => {
                     add(node, Component::X, force[0]);
                     add(node, Component::Y, force[1]);
                     if !add(node, Component::R, moment) {

@@ -37,15 +37,9 @@ impl Dofs {
                 first as u32
             })
             .collect();
-        let frame_nodes_only_hinged = std::iter::zip(&frame, &has_rotation)
-            .filter(|(frame, rotation)| **frame && !**rotation)
-            .count();
-        Dofs {
-            first,
-            has_rotation,
-            count,
-            frame_nodes_only_hinged,
-        }
+        let frame_nodes_only_hinged =
+            std::iter::zip(&frame, &has_rotation).filter(|(frame, rotation)| **frame && !**rotation).count();
+        Dofs { first, has_rotation, count, frame_nodes_only_hinged }
     }
 
     /// Number of base dofs.
@@ -96,8 +90,7 @@ impl Dofs {
     /// Node of each base dof.
     pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
         let components = self.has_rotation.iter().enumerate();
-        components
-            .flat_map(|(node, &rotation)| std::iter::repeat_n(node, if rotation { 3 } else { 2 }))
+        components.flat_map(|(node, &rotation)| std::iter::repeat_n(node, if rotation { 3 } else { 2 }))
     }
 
     /// Which base dofs are rotations.
@@ -122,10 +115,7 @@ pub(super) fn root(parent: &mut [u32], mut at: usize) -> usize {
 }
 
 /// The (side, (base dof, coefficient)) of a joint, zero coefficients left out; side 0 is `node`.
-pub fn joint_dofs<'a>(
-    joint: &'a Joint,
-    dofs: &'a Dofs,
-) -> impl Iterator<Item = (usize, (usize, f64))> + 'a {
+pub fn joint_dofs<'a>(joint: &'a Joint, dofs: &'a Dofs) -> impl Iterator<Item = (usize, (usize, f64))> + 'a {
     joint
         .terms
         .iter()

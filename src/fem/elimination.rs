@@ -50,11 +50,7 @@ impl Elimination {
     ///
     /// # Errors
     /// All joints that depend on supports, ties and earlier joints.
-    pub fn new(
-        structure: &Structure,
-        dofs: &Dofs,
-        joints: &[Joint],
-    ) -> Result<Elimination, Vec<DependentJoint>> {
+    pub fn new(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Elimination, Vec<DependentJoint>> {
         let (class, held) = classes(structure, dofs);
         let is_class = |dof: usize| class[dof] as usize == dof && !held[dof];
         let free = (0..dofs.count()).filter(|&dof| is_class(dof)).count();
@@ -90,11 +86,7 @@ impl Elimination {
         for (&dof, row) in &reduction.slaves {
             sum_of.insert(dof, sums.len() as u32);
             sums.push(Sum {
-                free: row
-                    .terms
-                    .iter()
-                    .map(|(&other, &a)| (master[other as usize], -a))
-                    .collect(),
+                free: row.terms.iter().map(|(&other, &a)| (master[other as usize], -a)).collect(),
                 joints: row.joints.iter().map(|(&j, &a)| (j, a)).collect(),
             });
         }
@@ -110,15 +102,7 @@ impl Elimination {
                 }
             })
             .collect();
-        Ok(Elimination {
-            rows,
-            sums,
-            class,
-            held,
-            free,
-            masters: masters as usize,
-            joints: joints.len(),
-        })
+        Ok(Elimination { rows, sums, class, held, free, masters: masters as usize, joints: joints.len() })
     }
 
     /// Unknowns after supports and ties, before the joints.
@@ -162,9 +146,7 @@ impl Elimination {
             Row::Sum(sum) => (None, Some(&self.sums[*sum as usize])),
         };
         let many = sum.into_iter().flat_map(|sum| &sum.free);
-        single
-            .into_iter()
-            .chain(many.map(|&(v, a)| (v as usize, a)))
+        single.into_iter().chain(many.map(|&(v, a)| (v as usize, a)))
     }
 
     /// Entries of a row of G: (joint, coefficient).
@@ -201,9 +183,7 @@ fn classes(structure: &Structure, dofs: &Dofs) -> (Vec<u32>, Vec<bool>) {
             }
         }
     }
-    let class: Vec<u32> = (0..dofs.count())
-        .map(|dof| root(&mut parent, dof) as u32)
-        .collect();
+    let class: Vec<u32> = (0..dofs.count()).map(|dof| root(&mut parent, dof) as u32).collect();
     let mut held_class = vec![false; dofs.count()];
     for support in &structure.supports {
         // A support of a rotation that does not exist holds nothing.

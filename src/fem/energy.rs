@@ -6,11 +6,7 @@ impl MainSystem {
     /// F·u of all load cases under the given factors.
     pub fn work(&self, factors: &[f64], u: &Displacements) -> f64 {
         let u = self.dofs.gather(&u.0);
-        self.f
-            .iter()
-            .zip(factors)
-            .map(|(f, factor)| factor * f.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>())
-            .sum()
+        self.f.iter().zip(factors).map(|(f, factor)| factor * f.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>()).sum()
     }
 
     /// U = ½ uᵀ K u.

@@ -71,9 +71,7 @@ pub enum MainSystemError {
         doing: &'static str,
     },
     /// An eigenvalue problem did not converge.
-    #[error(
-        "the eigenvalues of the contact stiffness matrix did not converge: check units and stiffnesses"
-    )]
+    #[error("the eigenvalues of the contact stiffness matrix did not converge: check units and stiffnesses")]
     NoConvergence,
     /// The watcher asked to stop.
     #[error("interrupted")]
@@ -179,13 +177,9 @@ impl fmt::Display for Holder {
             Holder::Support { node, component } => {
                 write!(f, "the support at {node} in {}", component_word(*component))
             }
-            Holder::Tie { nodes, component } => write!(
-                f,
-                "the tie of {} and {} in {}",
-                nodes[0],
-                nodes[1],
-                component_word(*component)
-            ),
+            Holder::Tie { nodes, component } => {
+                write!(f, "the tie of {} and {} in {}", nodes[0], nodes[1], component_word(*component))
+            }
             Holder::Joint { pair, direction } => {
                 write!(f, "the {} joint of {pair}", direction_word(*direction))
             }
@@ -195,12 +189,7 @@ impl fmt::Display for Holder {
 
 impl fmt::Display for DependentJoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "the {} joint of {} is already held by ",
-            direction_word(self.direction),
-            self.pair_id
-        )?;
+        write!(f, "the {} joint of {} is already held by ", direction_word(self.direction), self.pair_id)?;
         for (i, holder) in self.holders.iter().enumerate() {
             let glue = match i {
                 0 => "",

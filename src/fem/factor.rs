@@ -74,17 +74,9 @@ impl Factor {
     ) -> Result<Factor, FactorError> {
         if k_m.order() == 0 {
             // Everything is held. One idle unknown spares all that follows the empty case.
-            *k_m = SymmetricSparse {
-                column_start: vec![0, 1],
-                rows: vec![0],
-                values: vec![1.0],
-            };
+            *k_m = SymmetricSparse { column_start: vec![0, 1], rows: vec![0], values: vec![1.0] };
         }
-        let idle = Places {
-            node: &[0],
-            coordinates: &[[0.0; 2]],
-            last: &[false],
-        };
+        let idle = Places { node: &[0], coordinates: &[[0.0; 2]], last: &[false] };
         let places = if places.node.is_empty() { idle } else { places };
         let n = k_m.order();
         let scale = k_m.scale_to_unit_diagonal();
@@ -106,13 +98,7 @@ impl Factor {
         let order = n + joints;
         let same: Vec<u32> = (0..order as u32).collect();
         let symbolic = factorize_symbolic_cholesky(
-            SymbolicSparseColMatRef::new_checked(
-                order,
-                order,
-                &matrix.column_start,
-                None,
-                &matrix.rows,
-            ),
+            SymbolicSparseColMatRef::new_checked(order, order, &matrix.column_start, None, &matrix.rows),
             Side::Lower,
             // With `Identity` faer takes the lower triangle for the upper one.
             SymmetricOrdering::Custom(PermRef::new_checked(&same, &same, order)),
@@ -134,12 +120,7 @@ impl Factor {
         begin.push(order as u32);
         let supernodes = Supernodes::new(n, begin, |s| structure.supernode(s).pattern());
         drop(symbolic);
-        let mut factor = Factor {
-            supernodes,
-            scale,
-            position,
-            joints,
-        };
+        let mut factor = Factor { supernodes, scale, position, joints };
         let needed = factor.bytes_needed();
         if available_memory().is_some_and(|available| needed > available) {
             return Err(too_large(needed).into());
@@ -213,25 +194,16 @@ impl Factor {
             }
             (0..n).for_each(|i| x[(i, 0)] /= largest);
         }
-        let v: Vec<f64> = self
-            .position
-            .iter()
-            .map(|&at| x[(at as usize, 0)])
-            .collect();
+        let v: Vec<f64> = self.position.iter().map(|&at| x[(at as usize, 0)]).collect();
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let residual = norm(&k_m.times(&v));
         let is_null = !positive || residual <= RESIDUAL * norm(&k_m.times_absolute(&v));
-        Ok(is_null.then(|| {
-            std::iter::zip(&v, &self.scale)
-                .map(|(v, s)| v * s)
-                .collect()
-        }))
+        Ok(is_null.then(|| std::iter::zip(&v, &self.scale).map(|(v, s)| v * s).collect()))
     }
 
     /// D − Cᵀ K_m⁻¹ C, exactly symmetric.
     pub fn schur(&self, mut d: DMatrix<f64>) -> DMatrix<f64> {
-        self.supernodes
-            .each_schur_entry(|i, j, value| d[(i, j)] += value);
+        self.supernodes.each_schur_entry(|i, j, value| d[(i, j)] += value);
         d.fill_upper_triangle_with_lower_triangle();
         d
     }
@@ -260,11 +232,8 @@ impl Factor {
             }
         }
         let rows = n + self.joints;
-        self.supernodes
-            .forward(MatMut::from_row_major_slice_mut(&mut x, rows, cases));
-        DMatrix::from_fn(self.joints, cases, |joint, case| {
-            -x[(n + joint) * cases + case]
-        })
+        self.supernodes.forward(MatMut::from_row_major_slice_mut(&mut x, rows, cases));
+        DMatrix::from_fn(self.joints, cases, |joint, case| -x[(n + joint) * cases + case])
     }
 }
 

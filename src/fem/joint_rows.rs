@@ -67,12 +67,7 @@ pub struct JointReduction {
 impl JointReduction {
     /// Adds a row, or gives the reduced row back if nothing is left of it.
     pub fn add(&mut self, mut row: JointRow) -> Result<(), JointRow> {
-        let hit: Vec<u32> = row
-            .terms
-            .keys()
-            .copied()
-            .filter(|class| self.slaves.contains_key(class))
-            .collect();
+        let hit: Vec<u32> = row.terms.keys().copied().filter(|class| self.slaves.contains_key(class)).collect();
         for class in hit {
             // Present by the filter above; slaves' rows hold no slaves.
             let Some(factor) = row.terms.remove(&class) else {
@@ -93,16 +88,10 @@ impl JointReduction {
             })
         };
         let node_side = best(
-            &mut row
-                .terms
-                .iter()
-                .filter(|(class, _)| row.node_side.contains(class))
-                .map(|(&class, &a)| (class, a)),
+            &mut row.terms.iter().filter(|(class, _)| row.node_side.contains(class)).map(|(&class, &a)| (class, a)),
         )
         .filter(|(_, a)| a.abs() >= PREFER_NODE_SIDE * largest);
-        let Some((pivot, a)) =
-            node_side.or_else(|| best(&mut row.terms.iter().map(|(&c, &a)| (c, a))))
-        else {
+        let Some((pivot, a)) = node_side.or_else(|| best(&mut row.terms.iter().map(|(&c, &a)| (c, a)))) else {
             return Err(row);
         };
         row.terms.remove(&pivot);
@@ -178,12 +167,8 @@ pub fn holders(
                 && tied(&b)
             {
                 for &component in &tie.components {
-                    let used = joint_dofs(joint, dofs)
-                        .any(|(_, (dof, _))| dofs.of(a, component) == Some(dof));
-                    let holder = Holder::Tie {
-                        nodes: [a, b].map(|n| structure.nodes[n].id.clone()),
-                        component,
-                    };
+                    let used = joint_dofs(joint, dofs).any(|(_, (dof, _))| dofs.of(a, component) == Some(dof));
+                    let holder = Holder::Tie { nodes: [a, b].map(|n| structure.nodes[n].id.clone()), component };
                     if used && !holders.contains(&holder) {
                         holders.push(holder);
                     }
@@ -191,10 +176,11 @@ pub fn holders(
             }
         }
     }
-    holders.extend(involved[1..].iter().map(|other| Holder::Joint {
-        pair: structure.pairs[other.pair].id.clone(),
-        direction: other.direction,
-    }));
+    holders.extend(
+        involved[1..]
+            .iter()
+            .map(|other| Holder::Joint { pair: structure.pairs[other.pair].id.clone(), direction: other.direction }),
+    );
     if holders.is_empty() {
         // A chain of several ties: name the first tie that has the node.
         let node = joint.terms[0].0;

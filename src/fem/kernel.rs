@@ -33,13 +33,7 @@ pub struct RigidKernel {
 pub fn mutual_displacements(joints: &[Joint], u: &[[f64; 3]]) -> DVector<f64> {
     DVector::from_iterator(
         joints.len(),
-        joints.iter().map(|joint| {
-            joint
-                .terms
-                .iter()
-                .map(|(node, a)| a[0] * u[*node][0] + a[1] * u[*node][1])
-                .sum()
-        }),
+        joints.iter().map(|joint| joint.terms.iter().map(|(node, a)| a[0] * u[*node][0] + a[1] * u[*node][1]).sum()),
     )
 }
 
@@ -54,10 +48,7 @@ pub fn rigid_kernel(
 ) -> Result<RigidKernel, MainSystemError> {
     let (k, r) = (joints.len(), motions.len());
     if r == 0 {
-        return Ok(RigidKernel {
-            z: DMatrix::zeros(k, 0),
-            coefficients: DMatrix::zeros(0, 0),
-        });
+        return Ok(RigidKernel { z: DMatrix::zeros(k, 0), coefficients: DMatrix::zeros(0, 0) });
     }
     let mut traces = DMatrix::zeros(k, r);
     for (i, motion) in motions.iter().enumerate() {
@@ -76,10 +67,7 @@ pub fn rigid_kernel(
     for (mut column, sigma) in std::iter::zip(coefficients.column_iter_mut(), &svd.sigma) {
         column /= *sigma;
     }
-    Ok(RigidKernel {
-        z: svd.u.columns(0, r).into_owned(),
-        coefficients,
-    })
+    Ok(RigidKernel { z: svd.u.columns(0, r).into_owned(), coefficients })
 }
 
 fn add_scaled(sum: &mut [[f64; 3]], factor: f64, u: &[[f64; 3]]) {

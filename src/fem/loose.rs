@@ -38,20 +38,13 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> Vec<Motion> {
     let clusters = parts.clusters(structure);
     let mut motions = Vec::new();
     for cluster in clusters {
-        let null_space = if 3 * cluster.parts.len() <= MANY {
-            cluster.null_space(structure, dofs, &parts)
-        } else {
-            None
-        };
+        let null_space =
+            if 3 * cluster.parts.len() <= MANY { cluster.null_space(structure, dofs, &parts) } else { None };
         match null_space {
             Some(space) => motions.extend(space),
             None => {
                 let (merged, cluster) = cluster.with_whole_groups(structure);
-                motions.extend(
-                    cluster
-                        .null_space(structure, dofs, &merged)
-                        .unwrap_or_default(),
-                );
+                motions.extend(cluster.null_space(structure, dofs, &merged).unwrap_or_default());
             }
         }
     }
@@ -134,11 +127,7 @@ impl Parts {
             parts.push(turns.len() as u32);
             turns.push(false);
         }
-        Parts {
-            at_node,
-            turning,
-            turns,
-        }
+        Parts { at_node, turning, turns }
     }
 
     /// Parts linked by pins and ties.
@@ -222,11 +211,7 @@ impl Cluster {
             turning[node] = Some(number[group]);
         }
         let parts = (0..turns.len() as u32).collect();
-        let merged = Parts {
-            at_node,
-            turning,
-            turns,
-        };
+        let merged = Parts { at_node, turning, turns };
         (merged, Cluster { parts, ..self })
     }
 
@@ -234,13 +219,9 @@ impl Cluster {
     fn null_space(&self, structure: &Structure, dofs: &Dofs, parts: &Parts) -> Option<Vec<Motion>> {
         let place = |node: usize| structure.nodes[node].position;
         let count = self.nodes.len() as f64;
-        let centre: [f64; 2] =
-            std::array::from_fn(|c| self.nodes.iter().map(|&n| place(n)[c]).sum::<f64>() / count);
-        let size = self
-            .nodes
-            .iter()
-            .map(|&n| (place(n)[0] - centre[0]).hypot(place(n)[1] - centre[1]))
-            .fold(0.0, f64::max);
+        let centre: [f64; 2] = std::array::from_fn(|c| self.nodes.iter().map(|&n| place(n)[c]).sum::<f64>() / count);
+        let size =
+            self.nodes.iter().map(|&n| (place(n)[0] - centre[0]).hypot(place(n)[1] - centre[1])).fold(0.0, f64::max);
         let size = if size > 0.0 { size } else { 1.0 };
 
         // Columns: translations and scaled rotation of each part, in the order x, y, r of the first part, …
@@ -323,11 +304,7 @@ impl Cluster {
                     let terms = with_node(node, c).unwrap_or_default();
                     terms.into_iter().map(|(i, a)| a * q[i]).sum::<f64>()
                 };
-                u[node] = [
-                    component(Component::X),
-                    component(Component::Y),
-                    component(Component::R) / size,
-                ];
+                u[node] = [component(Component::X), component(Component::Y), component(Component::R) / size];
             }
             Motion { u, internal: false }
         });
@@ -352,8 +329,7 @@ fn null_basis(rows: &[Vec<(usize, f64)>], columns: usize) -> Option<DMatrix<f64>
     // Gauss–Jordan on the vectors, pivots from the left.
     let mut done = 0;
     for column in 0..columns {
-        let Some(best) = (done..basis.len())
-            .max_by(|&a, &b| basis[a][column].abs().total_cmp(&basis[b][column].abs()))
+        let Some(best) = (done..basis.len()).max_by(|&a, &b| basis[a][column].abs().total_cmp(&basis[b][column].abs()))
         else {
             break;
         };

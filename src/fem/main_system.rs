@@ -90,28 +90,17 @@ impl MainSystem {
     /// # Errors
     /// Dependent joints, a mechanism, an element without shape, a moment where nothing turns, too large,
     /// interrupted: see [`MainSystemError`].
-    pub fn new(
-        structure: &Structure,
-        joints: &[Joint],
-        watch: &dyn Watch,
-    ) -> Result<MainSystem, MainSystemError> {
+    pub fn new(structure: &Structure, joints: &[Joint], watch: &dyn Watch) -> Result<MainSystem, MainSystemError> {
         let clock = Instant::now();
-        watch.progress(
-            &format!("assembling {} elements", structure.elements.len()),
-            0.0,
-        );
+        watch.progress(&format!("assembling {} elements", structure.elements.len()), 0.0);
         let dofs = Dofs::new(structure);
-        let elimination =
-            Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
+        let elimination = Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
         let f = load_vectors(structure, &dofs)?;
         let k = assemble(structure, &dofs, &|| watch.stop())?;
         let motions = loose_motions(structure, &dofs);
         let rigid = kernel::rigid_kernel(structure, joints, &motions)?;
         let mut main = main_matrices(&k, &elimination);
-        let mut seconds = Seconds {
-            assemble: clock.elapsed().as_secs_f64(),
-            ..Seconds::default()
-        };
+        let mut seconds = Seconds { assemble: clock.elapsed().as_secs_f64(), ..Seconds::default() };
 
         let clock = Instant::now();
         let mut last = vec![false; elimination.masters()];
@@ -129,21 +118,14 @@ impl MainSystem {
             }
         }
         let coordinates: Vec<[f64; 2]> = structure.nodes.iter().map(|node| node.position).collect();
-        let places = Places {
-            node: &node,
-            coordinates: &coordinates,
-            last: &last,
-        };
-        let factor =
-            Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch).map_err(|error| {
-                match error {
-                    FactorError::Other(error) => error,
-                    FactorError::Singular(v) => {
-                        let u = elimination.expand(&v, &vec![0.0; joints.len()]);
-                        kernel::mechanism(structure, &dofs.scatter(&u))
-                    }
-                }
-            })?;
+        let places = Places { node: &node, coordinates: &coordinates, last: &last };
+        let factor = Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch).map_err(|error| match error {
+            FactorError::Other(error) => error,
+            FactorError::Singular(v) => {
+                let u = elimination.expand(&v, &vec![0.0; joints.len()]);
+                kernel::mechanism(structure, &dofs.scatter(&u))
+            }
+        })?;
         drop(main.k_m);
         seconds.factor = clock.elapsed().as_secs_f64();
 
@@ -190,8 +172,7 @@ impl MainSystem {
         watch: &dyn Watch,
     ) -> Result<SymmetricSparse, MainSystemError> {
         let dofs = Dofs::new(structure);
-        let elimination =
-            Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
+        let elimination = Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
         let k = assemble(structure, &dofs, &|| watch.stop())?;
         Ok(main_matrices(&k, &elimination).k_m)
     }
@@ -202,12 +183,8 @@ impl MainSystem {
         if suspects.is_empty() {
             return Ok(());
         }
-        let scale: Vec<f64> = self
-            .k
-            .diagonal()
-            .into_iter()
-            .map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 })
-            .collect();
+        let scale: Vec<f64> =
+            self.k.diagonal().into_iter().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 }).collect();
         let norm = |v: Vec<f64>| {
             let scaled = std::iter::zip(v, &scale).map(|(v, s)| (v * s).powi(2));
             scaled.sum::<f64>().sqrt()
@@ -282,12 +259,7 @@ impl MainSystem {
     }
 
     /// Nodal forces K u − F − Bᵀ λ on the base dofs: what supports and ties have to give.
-    pub(super) fn unbalanced(
-        &self,
-        u: &Displacements,
-        lambda: &DVector<f64>,
-        factors: &[f64],
-    ) -> Vec<f64> {
+    pub(super) fn unbalanced(&self, u: &Displacements, lambda: &DVector<f64>, factors: &[f64]) -> Vec<f64> {
         let mut forces = self.k.times(&self.dofs.gather(&u.0));
         for (f, factor) in std::iter::zip(&self.f, factors) {
             for (force, f) in std::iter::zip(&mut forces, f) {
@@ -348,22 +320,11 @@ impl MainSystem {
         // Index 0: forces, 1: moments.
         let mut scale = [0.0_f64; 2];
         for dof in 0..self.dofs.count() {
-            let load: f64 = std::iter::zip(&self.f, factors)
-                .map(|(f, factor)| f[dof] * factor)
-                .sum();
-            let reaction = if self.elimination.is_held(dof) {
-                unbalanced[dof]
-            } else {
-                0.0
-            };
-            let largest = [
-                load,
-                joint_forces[dof],
-                reaction,
-                LOST_IN_ROUNDING * terms[dof],
-            ]
-            .into_iter()
-            .fold(0.0, |m: f64, x| m.max(x.abs()));
+            let load: f64 = std::iter::zip(&self.f, factors).map(|(f, factor)| f[dof] * factor).sum();
+            let reaction = if self.elimination.is_held(dof) { unbalanced[dof] } else { 0.0 };
+            let largest = [load, joint_forces[dof], reaction, LOST_IN_ROUNDING * terms[dof]]
+                .into_iter()
+                .fold(0.0, |m: f64, x| m.max(x.abs()));
             let kind = usize::from(rotation[dof]);
             scale[kind] = scale[kind].max(largest);
         }
@@ -379,10 +340,7 @@ impl MainSystem {
 
     /// Numbers of unknowns.
     pub fn size(&self) -> Unknowns {
-        Unknowns {
-            all: self.dofs.unknowns(),
-            free: self.elimination.free(),
-        }
+        Unknowns { all: self.dofs.unknowns(), free: self.elimination.free() }
     }
 
     /// Time spent.

@@ -6,16 +6,12 @@ use std::fs::read_to_string;
 /// `None` where the system does not tell (other than Linux).
 pub fn available_memory() -> Option<u64> {
     let system = meminfo_available(&read_to_string("/proc/meminfo").ok()?)?;
-    let limit = read_to_string("/sys/fs/cgroup/memory.max")
-        .ok()
-        .and_then(|text| text.trim().parse::<u64>().ok());
+    let limit = read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse::<u64>().ok());
     Some(limit.map_or(system, |limit| limit.min(system)))
 }
 
 fn meminfo_available(text: &str) -> Option<u64> {
-    let line = text
-        .lines()
-        .find(|line| line.starts_with("MemAvailable:"))?;
+    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
     let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kibibytes * 1024)
 }

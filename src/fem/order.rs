@@ -34,11 +34,7 @@ pub struct Places<'a> {
 ///
 /// # Errors
 /// Out of memory; interrupted.
-pub fn elimination_order(
-    k: &SymmetricSparse,
-    places: Places,
-    watch: &dyn Watch,
-) -> Result<Vec<u32>, MainSystemError> {
+pub fn elimination_order(k: &SymmetricSparse, places: Places, watch: &dyn Watch) -> Result<Vec<u32>, MainSystemError> {
     let n = k.order();
     let groups = Groups::new(places);
     let mut dissection = Dissection {
@@ -99,12 +95,7 @@ impl Groups {
                 next[group as usize] += 1;
             }
         }
-        Groups {
-            start,
-            rows,
-            points,
-            of_row,
-        }
+        Groups { start, rows, points, of_row }
     }
 }
 
@@ -124,8 +115,7 @@ impl Neighbors {
             for &column in &groups.rows[groups.start[group]..groups.start[group + 1]] {
                 for (row, _) in k.column(column as usize) {
                     let other = groups.of_row[row];
-                    if [NONE, group as u32].contains(&other) || seen[other as usize] == group as u32
-                    {
+                    if [NONE, group as u32].contains(&other) || seen[other as usize] == group as u32 {
                         continue;
                     }
                     seen[other as usize] = group as u32;
@@ -149,10 +139,7 @@ impl Neighbors {
                 next[from as usize] += 1;
             }
         }
-        Neighbors {
-            start,
-            groups: neighbors,
-        }
+        Neighbors { start, groups: neighbors }
     }
 
     fn of(&self, group: u32) -> &[u32] {
@@ -181,20 +168,13 @@ struct Dissection<'a> {
 
 impl Dissection<'_> {
     /// Appends the order of some groups; `expected`: how many groups a cut across either axis will take.
-    fn dissect(
-        &mut self,
-        members: &mut [u32],
-        mut expected: [f64; 2],
-    ) -> Result<(), MainSystemError> {
+    fn dissect(&mut self, members: &mut [u32], mut expected: [f64; 2]) -> Result<(), MainSystemError> {
         if members.len() <= LEAF {
             return self.order_leaf(members);
         }
         check_stop(self.watch)?;
         let (done, all) = (self.out.len(), self.side.len());
-        self.watch.progress(
-            &format!("ordering, {done} of {all} nodes"),
-            done as f64 / all as f64,
-        );
+        self.watch.progress(&format!("ordering, {done} of {all} nodes"), done as f64 / all as f64);
         let half = members.len() / 2;
         let mut axis = usize::from(expected[1] < expected[0]);
         let mut cut = self.split(members, axis);
@@ -252,15 +232,9 @@ impl Dissection<'_> {
         }
         let touches = |&group: &u32| {
             let neighbors = self.neighbors.of(group);
-            neighbors
-                .iter()
-                .any(|&other| self.side[other as usize] == Side::Far)
+            neighbors.iter().any(|&other| self.side[other as usize] == Side::Far)
         };
-        let cut = near
-            .iter()
-            .copied()
-            .filter(|group| touches(group))
-            .collect();
+        let cut = near.iter().copied().filter(|group| touches(group)).collect();
         for &group in far {
             self.side[group as usize] = Side::Elsewhere;
         }
@@ -269,9 +243,7 @@ impl Dissection<'_> {
 
     /// Approximate minimum degree of a few groups.
     fn order_leaf(&mut self, members: &[u32]) -> Result<(), MainSystemError> {
-        let out_of_memory = || MainSystemError::OutOfMemory {
-            doing: "ordering the unknowns",
-        };
+        let out_of_memory = || MainSystemError::OutOfMemory { doing: "ordering the unknowns" };
         for (number, &group) in members.iter().enumerate() {
             self.number[group as usize] = number as u32;
         }
@@ -279,11 +251,7 @@ impl Dissection<'_> {
         for &group in members {
             let from = rows.len();
             let inside = self.neighbors.of(group).iter();
-            rows.extend(
-                inside
-                    .map(|&other| self.number[other as usize])
-                    .filter(|&number| number != NONE),
-            );
+            rows.extend(inside.map(|&other| self.number[other as usize]).filter(|&number| number != NONE));
             rows[from..].sort_unstable();
             let mut kept = from;
             for i in from..rows.len() {
@@ -310,8 +278,7 @@ impl Dissection<'_> {
             MemStack::new(&mut memory),
         )
         .map_err(|_| out_of_memory())?;
-        self.out
-            .extend(order.into_iter().map(|i| members[i as usize]));
+        self.out.extend(order.into_iter().map(|i| members[i as usize]));
         Ok(())
     }
 }

@@ -52,12 +52,7 @@ pub struct Reaction {
 
 impl MainSystem {
     /// N, Q, M at both ends of every bar element under Σ factor·F and the displacements `u`.
-    pub fn member_forces(
-        &self,
-        structure: &Structure,
-        u: &Displacements,
-        factors: &[f64],
-    ) -> Vec<MemberForces> {
+    pub fn member_forces(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberForces> {
         let mut line = vec![[0.0; 2]; structure.elements.len()];
         for (case, factor) in std::iter::zip(&structure.load_cases, factors) {
             for load in &case.loads {
@@ -71,17 +66,8 @@ impl MainSystem {
         for (bar, data) in structure.bars.iter().enumerate() {
             for (position, index) in data.elements.clone().enumerate() {
                 let ends = bar_end_forces(structure, index, u, line[index]);
-                let [start, end] = ends.map(|[normal, shear, moment]| EndForces {
-                    normal,
-                    shear,
-                    moment,
-                });
-                members.push(MemberForces {
-                    bar,
-                    element: position,
-                    start,
-                    end,
-                });
+                let [start, end] = ends.map(|[normal, shear, moment]| EndForces { normal, shear, moment });
+                members.push(MemberForces { bar, element: position, start, end });
             }
         }
         members
@@ -89,14 +75,10 @@ impl MainSystem {
 
     /// Stresses at the centres of all quads.
     pub fn quad_stresses(&self, structure: &Structure, u: &Displacements) -> Vec<QuadStress> {
-        let quads = structure
-            .elements
-            .iter()
-            .enumerate()
-            .filter_map(|(index, element)| match &element.kind {
-                ElementKind::Quad { plane, .. } => Some((index, element, *plane)),
-                _ => None,
-            });
+        let quads = structure.elements.iter().enumerate().filter_map(|(index, element)| match &element.kind {
+            ElementKind::Quad { plane, .. } => Some((index, element, *plane)),
+            _ => None,
+        });
         quads
             .map(|(index, element, plane)| {
                 let d = quad4::elasticity(&structure.materials[element.material], plane);
@@ -146,11 +128,7 @@ impl MainSystem {
         for (dof, force) in forces.iter().enumerate() {
             if self.elimination.is_held(dof) {
                 // A held class has a support, hence a taker.
-                let at = if supported[dof] {
-                    dof
-                } else {
-                    taker[self.elimination.class(dof)]
-                };
+                let at = if supported[dof] { dof } else { taker[self.elimination.class(dof)] };
                 reaction[at] += force;
             }
         }
@@ -172,12 +150,7 @@ impl MainSystem {
 }
 
 /// (N, Q, M) at the start and end of a bar element; zeros for anything else.
-fn bar_end_forces(
-    structure: &Structure,
-    index: usize,
-    u: &Displacements,
-    line: [f64; 2],
-) -> [[f64; 3]; 2] {
+fn bar_end_forces(structure: &Structure, index: usize, u: &Displacements, line: [f64; 2]) -> [[f64; 3]; 2] {
     let element = &structure.elements[index];
     let material = &structure.materials[element.material];
     let Some(axis) = Axis::of(structure, element) else {
@@ -194,25 +167,10 @@ fn bar_end_forces(
         .collect();
     let e = material.youngs_modulus;
     match (&element.kind, &values[..]) {
-        (
-            ElementKind::Frame {
-                area,
-                inertia,
-                hinges,
-            },
-            &[a, b, c, d, f, g],
-        ) => frame::end_forces(
-            &axis,
-            e,
-            *area,
-            *inertia,
-            *hinges,
-            &[a, b, c, d, f, g],
-            line,
-        ),
-        (ElementKind::Truss { area }, &[a, b, c, d]) => {
-            truss::end_forces(&axis, e, *area, &[a, b, c, d], line)
+        (ElementKind::Frame { area, inertia, hinges }, &[a, b, c, d, f, g]) => {
+            frame::end_forces(&axis, e, *area, *inertia, *hinges, &[a, b, c, d, f, g], line)
         }
+        (ElementKind::Truss { area }, &[a, b, c, d]) => truss::end_forces(&axis, e, *area, &[a, b, c, d], line),
         _ => [[0.0; 3]; 2],
     }
 }
@@ -226,9 +184,5 @@ pub(super) fn mean_frame_length(structure: &Structure) -> f64 {
         .filter_map(|element| Axis::of(structure, element))
         .map(|axis| axis.length)
         .collect();
-    if lengths.is_empty() {
-        1.0
-    } else {
-        lengths.iter().sum::<f64>() / lengths.len() as f64
-    }
+    if lengths.is_empty() { 1.0 } else { lengths.iter().sum::<f64>() / lengths.len() as f64 }
 }

@@ -35,11 +35,7 @@ impl SymmetricSparse {
             next[column] += 1;
         })?;
         drop(next);
-        let mut matrix = SymmetricSparse {
-            column_start: vec![0; n + 1],
-            rows: Vec::new(),
-            values: Vec::new(),
-        };
+        let mut matrix = SymmetricSparse { column_start: vec![0; n + 1], rows: Vec::new(), values: Vec::new() };
         // First pass: sort each column and sum in place; then copy to exact size.
         let mut kept = vec![0_u32; n];
         for column in 0..n {
@@ -55,11 +51,7 @@ impl SymmetricSparse {
                     entries[last] = entries[i];
                 }
             }
-            kept[column] = if entries.is_empty() {
-                0
-            } else {
-                last as u32 + 1
-            };
+            kept[column] = if entries.is_empty() { 0 } else { last as u32 + 1 };
             matrix.column_start[column + 1] = matrix.column_start[column] + kept[column];
         }
         let count = matrix.column_start[n] as usize;
@@ -83,8 +75,7 @@ impl SymmetricSparse {
     /// Entries (row, value) of a column, row ≥ column.
     pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.column_start[column] as usize..self.column_start[column + 1] as usize;
-        std::iter::zip(&self.rows[range.clone()], &self.values[range])
-            .map(|(&row, &value)| (row as usize, value))
+        std::iter::zip(&self.rows[range.clone()], &self.values[range]).map(|(&row, &value)| (row as usize, value))
     }
 
     /// The diagonal; zero where there is no entry.
@@ -99,17 +90,8 @@ impl SymmetricSparse {
 
     /// S A S with S the powers of two nearest to 1/√A_ii (1 where A_ii is not positive); returns the diagonal of S.
     pub fn scale_to_unit_diagonal(&mut self) -> Vec<f64> {
-        let scale: Vec<f64> = self
-            .diagonal()
-            .into_iter()
-            .map(|d| {
-                if d > 0.0 {
-                    (-0.5 * d.log2()).round().exp2()
-                } else {
-                    1.0
-                }
-            })
-            .collect();
+        let scale: Vec<f64> =
+            self.diagonal().into_iter().map(|d| if d > 0.0 { (-0.5 * d.log2()).round().exp2() } else { 1.0 }).collect();
         for column in 0..self.order() {
             let range = self.column_start[column] as usize..self.column_start[column + 1] as usize;
             for at in range {
@@ -164,13 +146,7 @@ mod tests {
 
     #[test]
     fn repeated_terms_are_summed() {
-        let terms = [
-            (0, 0, 1.0),
-            (2, 0, -1.0),
-            (1, 1, 4.0),
-            (2, 0, 0.5),
-            (2, 2, 3.0),
-        ];
+        let terms = [(0, 0, 1.0), (2, 0, -1.0), (1, 1, 4.0), (2, 0, 0.5), (2, 2, 3.0)];
         let matrix = SymmetricSparse::from_terms::<()>(
             3,
             |count| terms.iter().for_each(|&(_, j, _)| count(j)),
@@ -189,10 +165,7 @@ mod tests {
         assert_eq!(matrix.to_dense(), dense);
         assert_eq!(matrix.rows.len(), 4);
         assert_eq!(matrix.times(&[1.0, 2.0, 3.0]), vec![-0.5, 8.0, 8.5]);
-        assert_eq!(
-            matrix.times_absolute(&[1.0, -2.0, 3.0]),
-            vec![2.5, 8.0, 9.5]
-        );
+        assert_eq!(matrix.times_absolute(&[1.0, -2.0, 3.0]), vec![2.5, 8.0, 9.5]);
         assert_eq!(matrix.diagonal(), vec![1.0, 4.0, 3.0]);
     }
 }

@@ -11,9 +11,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::error::MainSystemError;
@@ -51,11 +49,7 @@ pub struct Supernodes {
 
 impl Supernodes {
     /// Structure only: first columns of the supernodes (and the order at the end) and the pattern of each.
-    pub fn new<'a>(
-        eliminated: usize,
-        begin: Vec<u32>,
-        pattern: impl Fn(usize) -> &'a [u32],
-    ) -> Supernodes {
+    pub fn new<'a>(eliminated: usize, begin: Vec<u32>, pattern: impl Fn(usize) -> &'a [u32]) -> Supernodes {
         let count = begin.len() - 1;
         let (mut pattern_start, mut value_start) = (vec![0], vec![0]);
         let mut rows = Vec::with_capacity((0..count).map(|s| pattern(s).len()).sum());
@@ -67,14 +61,7 @@ impl Supernodes {
             values += width * (width + pattern(s).len());
             value_start.push(values);
         }
-        Supernodes {
-            eliminated,
-            begin,
-            pattern_start,
-            rows,
-            value_start,
-            values: Vec::new(),
-        }
+        Supernodes { eliminated, begin, pattern_start, rows, value_start, values: Vec::new() }
     }
 
     /// Entries stored.
@@ -100,9 +87,7 @@ impl Supernodes {
 
     /// Columns of the supernode that are eliminated.
     fn active(&self, s: usize) -> usize {
-        self.eliminated
-            .saturating_sub(self.begin(s))
-            .min(self.width(s))
+        self.eliminated.saturating_sub(self.begin(s)).min(self.width(s))
     }
 
     fn pattern(&self, s: usize) -> &[u32] {
@@ -118,16 +103,13 @@ impl Supernodes {
     /// Rows of the block below the eliminated columns, in the whole matrix; ascending.
     fn below(&self, s: usize) -> impl Iterator<Item = usize> + '_ {
         let begin = self.begin(s);
-        (begin + self.active(s)..begin + self.width(s))
-            .chain(self.pattern(s).iter().map(|&row| row as usize))
+        (begin + self.active(s)..begin + self.width(s)).chain(self.pattern(s).iter().map(|&row| row as usize))
     }
 
     /// How many of the rows of [`Supernodes::below`] are less than `limit`.
     fn below_until(&self, s: usize, limit: usize) -> usize {
         let end = self.begin(s) + self.width(s);
-        let own = end
-            .min(limit)
-            .saturating_sub(self.begin(s) + self.active(s));
+        let own = end.min(limit).saturating_sub(self.begin(s) + self.active(s));
         let pattern = self.pattern(s);
         own + pattern.partition_point(|&row| (row as usize) < limit)
     }
@@ -146,9 +128,7 @@ impl Supernodes {
         let out_of_memory = || MainSystemError::OutOfMemory { doing: DOING };
         let length = self.stored();
         self.values.clear();
-        self.values
-            .try_reserve_exact(length)
-            .map_err(|_| out_of_memory())?;
+        self.values.try_reserve_exact(length).map_err(|_| out_of_memory())?;
         self.values.resize(length, 0.0);
         let request = cholesky_in_place_scratch::<f64>(PANEL, PAR, Default::default());
         let mut memory = MemBuffer::try_new(request).map_err(|_| out_of_memory())?;
@@ -167,8 +147,7 @@ impl Supernodes {
             buffer: Vec::new(),
             since: 0,
         };
-        let cost =
-            |s: usize| self.width(s) as f64 * (self.width(s) + self.pattern(s).len()).pow(2) as f64;
+        let cost = |s: usize| self.width(s) as f64 * (self.width(s) + self.pattern(s).len()).pow(2) as f64;
         let total: f64 = (0..count).map(cost).sum();
         let costs: Vec<f64> = (0..count).map(cost).collect();
         let (mut spent, mut told) = (0.0, 0.0);
@@ -185,10 +164,7 @@ impl Supernodes {
             if spent >= told + 0.01 * total {
                 told = spent;
                 let done = self.begin(s + 1).min(self.eliminated);
-                watch.progress(
-                    &format!("{DOING}, {done} of {} unknowns", self.eliminated),
-                    spent / total,
-                );
+                watch.progress(&format!("{DOING}, {done} of {} unknowns", self.eliminated), spent / total);
                 check_stop(watch)?;
             }
         }
@@ -217,12 +193,7 @@ impl Supernodes {
     }
 
     /// Subtracts the products of all descendants that reach into the columns of `s`.
-    fn collect(
-        &mut self,
-        s: usize,
-        work: &mut Work,
-        watch: &dyn Watch,
-    ) -> Result<(), MainSystemError> {
+    fn collect(&mut self, s: usize, work: &mut Work, watch: &dyn Watch) -> Result<(), MainSystemError> {
         let end = self.begin(s + 1);
         let height = self.width(s) + self.pattern(s).len();
         let (before, own) = self.values.split_at_mut(self.value_start[s]);
@@ -232,10 +203,7 @@ impl Supernodes {
             descendant = work.next[d];
             let pattern = &self.rows[self.pattern_start[d]..self.pattern_start[d + 1]];
             let width = (self.begin[d + 1] - self.begin[d]) as usize;
-            let active = self
-                .eliminated
-                .saturating_sub(self.begin[d] as usize)
-                .min(width);
+            let active = self.eliminated.saturating_sub(self.begin[d] as usize).min(width);
             let block = MatRef::from_column_major_slice(
                 &before[self.value_start[d]..self.value_start[d + 1]],
                 width + pattern.len(),
@@ -248,8 +216,7 @@ impl Supernodes {
             while at < to {
                 let rows = pattern.len() - at;
                 let strip = (PIECE / (rows * active)).clamp(8, PANEL).min(to - at);
-                work.buffer
-                    .resize((rows * strip).max(work.buffer.len()), 0.0);
+                work.buffer.resize((rows * strip).max(work.buffer.len()), 0.0);
                 let product = &mut work.buffer[..rows * strip];
                 matmul(
                     MatMut::from_column_major_slice_mut(product, rows, strip),
@@ -296,13 +263,8 @@ impl Supernodes {
             let size = PANEL.min(active - at);
             let (panel, mut rest) = block.as_mut().get_mut(at.., at..).split_at_col_mut(size);
             let (mut top, mut bottom) = panel.split_at_row_mut(size);
-            let factorized = cholesky_in_place(
-                top.as_mut(),
-                Default::default(),
-                PAR,
-                MemStack::new(memory),
-                Default::default(),
-            );
+            let factorized =
+                cholesky_in_place(top.as_mut(), Default::default(), PAR, MemStack::new(memory), Default::default());
             if factorized.is_err() {
                 return Ok(false);
             }
@@ -312,12 +274,9 @@ impl Supernodes {
             let mut column = 0;
             while column < columns {
                 let rows = bottom.nrows() - column;
-                let strip = (PIECE / (rows * size))
-                    .clamp(8, PANEL)
-                    .min(columns - column);
+                let strip = (PIECE / (rows * size)).clamp(8, PANEL).min(columns - column);
                 matmul(
-                    rest.as_mut()
-                        .get_mut(size + column.., column..column + strip),
+                    rest.as_mut().get_mut(size + column.., column..column + strip),
                     Accum::Add,
                     bottom.as_ref().get(column.., ..),
                     bottom.as_ref().get(column..column + strip, ..).transpose(),

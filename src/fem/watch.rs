@@ -5,9 +5,5 @@ use crate::watch::Watch;
 
 /// Interrupted, if the watcher says so.
 pub(super) fn check_stop(watch: &dyn Watch) -> Result<(), MainSystemError> {
-    if watch.stop() {
-        Err(MainSystemError::Interrupted)
-    } else {
-        Ok(())
-    }
+    if watch.stop() { Err(MainSystemError::Interrupted) } else { Ok(()) }
 }

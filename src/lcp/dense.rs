@@ -13,14 +13,7 @@ pub(crate) fn compute_sequentially() {
 }
 
 /// target += left · right; all column-major: rows × columns, rows × k, k × columns.
-pub(crate) fn add_product(
-    target: &mut [f64],
-    left: &[f64],
-    right: &[f64],
-    rows: usize,
-    columns: usize,
-    k: usize,
-) {
+pub(crate) fn add_product(target: &mut [f64], left: &[f64], right: &[f64], rows: usize, columns: usize, k: usize) {
     if rows == 0 || columns == 0 || k == 0 {
         return;
     }
@@ -63,10 +56,7 @@ impl Factor {
     pub(crate) fn new(matrix: DMatrix<f64>) -> Factor {
         let n = matrix.nrows();
         let view = MatRef::from_column_major_slice(matrix.as_slice(), n, n);
-        Factor {
-            lu: view.partial_piv_lu(),
-            matrix,
-        }
+        Factor { lu: view.partial_piv_lu(), matrix }
     }
 
     /// Solves A X = B for all columns; `None` if not finite.
@@ -76,10 +66,7 @@ impl Factor {
             self.lu.solve_in_place(x.as_mut());
         }
         let solution = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| x[(i, j)]);
-        solution
-            .iter()
-            .all(|value| value.is_finite())
-            .then_some(solution)
+        solution.iter().all(|value| value.is_finite()).then_some(solution)
     }
 
     /// Solves A x = b with refinement (two steps for small systems, one for large ones), residuals in twice the
@@ -138,11 +125,7 @@ impl Split {
     fn new(value: f64) -> Split {
         let carried = 134_217_729.0 * value;
         let high = carried - (carried - value);
-        Split {
-            value,
-            high,
-            low: value - high,
-        }
+        Split { value, high, low: value - high }
     }
 
     /// Product and its rounding error (Dekker).
@@ -150,8 +133,7 @@ impl Split {
     fn times(&self, other: &Split) -> (f64, f64) {
         let product = self.value * other.value;
         let error =
-            ((self.high * other.high - product) + self.high * other.low + self.low * other.high)
-                + self.low * other.low;
+            ((self.high * other.high - product) + self.high * other.low + self.low * other.high) + self.low * other.low;
         (product, error)
     }
 }

@@ -79,9 +79,7 @@ impl Dictionary {
         let is_active = |whole: usize| basis.active.binary_search(&whole).is_ok();
         for i in 0..lcp.size() {
             let plain = is_active(lcp.whole[i]);
-            let mirrored = lcp.mirrors[i]
-                .as_ref()
-                .is_some_and(|mirror| is_active(mirror.whole));
+            let mirrored = lcp.mirrors[i].as_ref().is_some_and(|mirror| is_active(mirror.whole));
             if plain && mirrored {
                 return None;
             }
@@ -133,8 +131,7 @@ impl Dictionary {
                 *rate += increment(i);
             }
         }
-        self.entries
-            .exchange(None, c, &rates, &Combination::default(), 1.0);
+        self.entries.exchange(None, c, &rates, &Combination::default(), 1.0);
     }
 
     /// How often waiting elimination steps were multiplied out.
@@ -198,17 +195,13 @@ impl Dictionary {
     /// Value of the hidden member of the couple of row i; 0 where it has none.
     pub(crate) fn hidden_value(&self, lcp: &MirroredLcp, i: usize) -> f64 {
         let value = |row| self.value_of(Local::W(row));
-        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| {
-            mirror.reflect(i, value, self.value_of(Local::P), 1.0)
-        })
+        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| mirror.reflect(i, value, self.value_of(Local::P), 1.0))
     }
 
     /// Rate of the hidden member of the couple of row i along the column `c`; 0 where it has none.
     pub(crate) fn hidden_rate(&self, lcp: &MirroredLcp, i: usize, c: usize, rates: &[f64]) -> f64 {
         let rate = |row| self.rate(Local::W(row), c, rates);
-        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| {
-            mirror.reflect(i, rate, self.rate(Local::P, c, rates), 0.0)
-        })
+        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| mirror.reflect(i, rate, self.rate(Local::P, c, rates), 0.0))
     }
 
     /// Adds `factor` times the row of `variable` (the unit row if it is nonbasic) to a combination.
@@ -256,12 +249,8 @@ impl Dictionary {
         let pivot = column[r];
         self.advance(column, step);
         self.value[r] = step;
-        let combination = Combination {
-            rows: vec![(r, -1.0 / pivot)],
-            units: Vec::new(),
-        };
-        self.entries
-            .exchange(Some(r), c, column, &combination, 1.0 / pivot);
+        let combination = Combination { rows: vec![(r, -1.0 / pivot)], units: Vec::new() };
+        self.entries.exchange(Some(r), c, column, &combination, 1.0 / pivot);
         let (leaving, entering) = (self.row[r], self.column[c]);
         self.row[r] = entering;
         self.column[c] = leaving;
@@ -271,19 +260,11 @@ impl Dictionary {
 
     /// The entering w of column c is stopped by its own hidden mirror: the column now belongs to the mirror
     /// (w = 2 f w_n + b + e p − w'), which is zero.
-    pub(crate) fn pivot_hidden(
-        &mut self,
-        lcp: &MirroredLcp,
-        i: usize,
-        c: usize,
-        column: &[f64],
-        step: f64,
-    ) {
+    pub(crate) fn pivot_hidden(&mut self, lcp: &MirroredLcp, i: usize, c: usize, column: &[f64], step: f64) {
         let pivot = self.hidden_rate(lcp, i, c, column);
         let combination = self.hidden_row(lcp, i, -1.0 / pivot);
         self.advance(column, step);
-        self.entries
-            .exchange(None, c, column, &combination, 1.0 / pivot);
+        self.entries.exchange(None, c, column, &combination, 1.0 / pivot);
         if let Place::Column(z) = self.place_z[i] {
             self.entries.scale_column(z, -1.0);
         }
@@ -318,12 +299,8 @@ impl Dictionary {
     /// The active system of the present basis: rows with w nonbasic, columns of the basic z and of p.
     fn active(&self) -> (Vec<usize>, Vec<usize>, bool) {
         let is_column = |place: &Place| matches!(place, Place::Column(_));
-        let rows = (0..self.size)
-            .filter(|&i| is_column(&self.place_w[i]))
-            .collect();
-        let columns = (0..self.size)
-            .filter(|&i| !is_column(&self.place_z[i]))
-            .collect();
+        let rows = (0..self.size).filter(|&i| is_column(&self.place_w[i])).collect();
+        let columns = (0..self.size).filter(|&i| !is_column(&self.place_z[i])).collect();
         (rows, columns, !is_column(&self.place_p))
     }
 
@@ -342,11 +319,7 @@ impl Dictionary {
             Local::P => d[i],
             Local::W(_) => 0.0,
         };
-        let basic: Vec<Local> = columns
-            .iter()
-            .map(|&j| Local::Z(j))
-            .chain(with_p.then_some(Local::P))
-            .collect();
+        let basic: Vec<Local> = columns.iter().map(|&j| Local::Z(j)).chain(with_p.then_some(Local::P)).collect();
         let system = DMatrix::from_fn(s, s, |a, b| coefficient(rows[a], basic[b]));
         let width = self.size + 1;
         // 0 = system x_S + (nonbasic) x_N + q − w_A
@@ -356,8 +329,7 @@ impl Dictionary {
         });
         let constant = DVector::from_fn(s, |a, _| -q[rows[a]]);
         let factor = Factor::new(system);
-        let (Some(solution), Some(values)) = (factor.solve_many(&right), factor.solve(&constant))
-        else {
+        let (Some(solution), Some(values)) = (factor.solve_many(&right), factor.solve(&constant)) else {
             return false;
         };
         let mut t = vec![0.0; self.size * width];
@@ -377,9 +349,7 @@ impl Dictionary {
                 Place::Column(_) => None,
             })
             .collect();
-        let coupling = DMatrix::from_fn(inactive.len(), s, |a, b| {
-            coefficient(inactive[a].0, basic[b])
-        });
+        let coupling = DMatrix::from_fn(inactive.len(), s, |a, b| coefficient(inactive[a].0, basic[b]));
         let response = &coupling * &solution;
         let shift = &coupling * &values;
         for (a, &(i, r)) in inactive.iter().enumerate() {

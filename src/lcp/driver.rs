@@ -47,9 +47,5 @@ pub fn run<E: Engine>(
             }
         }
     };
-    Run {
-        outcome,
-        pivots: engine.pivots().to_vec(),
-        point: engine.point(),
-    }
+    Run { outcome, pivots: engine.pivots().to_vec(), point: engine.point() }
 }

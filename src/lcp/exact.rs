@@ -57,22 +57,10 @@ impl Exact {
                 let (mut matrix, scale) = clear_denominators(&all);
                 let covering = matrix.pop().unwrap_or_default();
                 let q = matrix.pop().unwrap_or_default();
-                WholeRow {
-                    matrix,
-                    q,
-                    covering,
-                    scale,
-                }
+                WholeRow { matrix, q, covering, scale }
             })
             .collect();
-        Self {
-            tableau: start(&lcp, &rule, precision),
-            lcp,
-            rows,
-            rule,
-            precision,
-            ended: None,
-        }
+        Self { tableau: start(&lcp, &rule, precision), lcp, rows, rule, precision, ended: None }
     }
 
     /// Bits that the numbers are carried with at present.
@@ -97,11 +85,7 @@ impl Exact {
     /// Solves the rows of the nonbasic w for the basic z and p; right-hand side −q, or minus the column of `moving`.
     fn basics(&self, moving: Option<Variable>) -> Option<Values> {
         let basic = self.tableau.basic();
-        let columns: Vec<Variable> = basic
-            .iter()
-            .copied()
-            .filter(|v| !matches!(v, Variable::W(_)))
-            .collect();
+        let columns: Vec<Variable> = basic.iter().copied().filter(|v| !matches!(v, Variable::W(_))).collect();
         let tight: Vec<usize> = self
             .tableau
             .nonbasic()
@@ -116,10 +100,8 @@ impl Exact {
             Variable::P => row.covering.clone(),
             Variable::W(_) => BigInt::zero(),
         };
-        let matrix: Vec<Vec<BigInt>> = tight
-            .iter()
-            .map(|i| columns.iter().map(|v| entry(&self.rows[*i], *v)).collect())
-            .collect();
+        let matrix: Vec<Vec<BigInt>> =
+            tight.iter().map(|i| columns.iter().map(|v| entry(&self.rows[*i], *v)).collect()).collect();
         let rhs: Vec<BigInt> = tight
             .iter()
             .map(|i| {
@@ -131,20 +113,13 @@ impl Exact {
                 }
             })
             .collect();
-        let RationalSolution::Unique(Quotients {
-            numerators,
-            denominator,
-        }) = solve(&matrix, &rhs, &mut |_| ControlFlow::Continue(()))
+        let RationalSolution::Unique(Quotients { numerators, denominator }) =
+            solve(&matrix, &rhs, &mut |_| ControlFlow::Continue(()))
         else {
             return None;
         };
         let n = self.lcp.size();
-        let mut values = Values {
-            z: vec![BigInt::zero(); n],
-            p: BigInt::zero(),
-            w: Vec::new(),
-            denominator,
-        };
+        let mut values = Values { z: vec![BigInt::zero(); n], p: BigInt::zero(), w: Vec::new(), denominator };
         for (variable, value) in columns.into_iter().zip(numerators) {
             match variable {
                 Variable::Z(j) => values.z[j] = value,
@@ -197,46 +172,28 @@ impl Exact {
     fn prove(&self, outcome: Outcome<Filtered>) -> Outcome<BigRational> {
         let failed = || {
             Outcome::Breakdown(
-                "the exact values of the last basis do not confirm the run (a prime divided a pivot)"
-                    .to_owned(),
+                "the exact values of the last basis do not confirm the run (a prime divided a pivot)".to_owned(),
             )
         };
         match outcome {
             Outcome::Trivial => Outcome::Trivial,
             Outcome::Normal { marginal } => match self.basics(None) {
-                Some(values)
-                    if values.holds()
-                        && values.complementary()
-                        && marginal != Zero::is_zero(&values.p) =>
-                {
+                Some(values) if values.holds() && values.complementary() && marginal != Zero::is_zero(&values.p) => {
                     Outcome::Normal { marginal }
                 }
                 _ => failed(),
             },
             Outcome::Ray(direction) => {
-                let (Some(vertex), Some(moving)) =
-                    (self.basics(None), self.basics(Some(direction.entering)))
-                else {
+                let (Some(vertex), Some(moving)) = (self.basics(None), self.basics(Some(direction.entering))) else {
                     return failed();
                 };
                 let Point { z, w, p } = self.rationals(&moving);
-                let small = self
-                    .lcp
-                    .q
-                    .iter()
-                    .map(|q| Scalar::to_f64(q).abs())
-                    .fold(0.0, f64::max)
-                    * MARGINAL;
+                let small = self.lcp.q.iter().map(|q| Scalar::to_f64(q).abs()).fold(0.0, f64::max) * MARGINAL;
                 let at = BigRational::new_raw(vertex.p.clone(), vertex.denominator.clone());
                 if !vertex.holds() || !moving.holds() || Scalar::to_f64(&at) <= 0.5 * small {
                     return failed();
                 }
-                Outcome::Ray(RayDirection {
-                    entering: direction.entering,
-                    z,
-                    w,
-                    p,
-                })
+                Outcome::Ray(RayDirection { entering: direction.entering, z, w, p })
             }
             Outcome::PivotLimit => Outcome::PivotLimit,
             Outcome::Cycle => Outcome::Cycle,
@@ -261,17 +218,12 @@ impl Values {
     }
 
     fn complementary(&self) -> bool {
-        self.z
-            .iter()
-            .zip(&self.w)
-            .all(|(z, w)| z.is_zero() || w.is_zero())
+        self.z.iter().zip(&self.w).all(|(z, w)| z.is_zero() || w.is_zero())
     }
 }
 
 fn start(lcp: &Lcp<BigRational>, rule: &TieRule, precision: u32) -> Tableau<Filtered> {
-    let convert = |v: &[BigRational]| -> Vec<Filtered> {
-        v.iter().map(|x| Filtered::new(x, precision)).collect()
-    };
+    let convert = |v: &[BigRational]| -> Vec<Filtered> { v.iter().map(|x| Filtered::new(x, precision)).collect() };
     let filtered = Lcp {
         matrix: lcp.matrix.iter().map(|row| convert(row)).collect(),
         q: convert(&lcp.q),
@@ -312,11 +264,7 @@ impl Engine for Exact {
     /// all values are zero.
     fn point(&self) -> Point<BigRational> {
         if self.pivots().is_empty() {
-            return Point {
-                z: vec![Zero::zero(); self.lcp.size()],
-                w: self.lcp.q.clone(),
-                p: Zero::zero(),
-            };
+            return Point { z: vec![Zero::zero(); self.lcp.size()], w: self.lcp.q.clone(), p: Zero::zero() };
         }
         match self.basics(None) {
             Some(values) => self.rationals(&values),

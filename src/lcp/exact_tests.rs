@@ -9,15 +9,7 @@ use crate::lcp::problem::Scale;
 
 fn problem(m: Vec<Vec<BigRational>>, q: Vec<BigRational>) -> Lcp<BigRational> {
     let n = q.len();
-    Lcp {
-        matrix: m,
-        q,
-        covering: vec![Scalar::one(); n],
-        scale: Scale {
-            row: vec![1.0; n],
-            column: vec![1.0; n],
-        },
-    }
+    Lcp { matrix: m, q, covering: vec![Scalar::one(); n], scale: Scale { row: vec![1.0; n], column: vec![1.0; n] } }
 }
 
 #[test]
@@ -29,15 +21,10 @@ fn same_run_as_the_rational_tableau() {
         // Integers (ties), thirds (denominators that are no powers of two), or any f64.
         let mut number = |range: i64| match case % 3 {
             0 => BigRational::from_integer(BigInt::from(random.random_range(-range..=range + 1))),
-            1 => BigRational::new(
-                BigInt::from(random.random_range(-range..=range + 1)),
-                BigInt::from(3),
-            ),
+            1 => BigRational::new(BigInt::from(random.random_range(-range..=range + 1)), BigInt::from(3)),
             _ => <BigRational as Scalar>::from_f64(random.random_range(-1.0..1.5) * range as f64),
         };
-        let m = (0..n)
-            .map(|_| (0..n).map(|_| number(2)).collect())
-            .collect();
+        let m = (0..n).map(|_| (0..n).map(|_| number(2)).collect()).collect();
         let q = (0..n).map(|_| number(3)).collect();
         let lcp = problem(m, q);
         let rule = match case % 5 {
@@ -52,10 +39,7 @@ fn same_run_as_the_rational_tableau() {
         assert_eq!(slow.point, fast.point, "case {case}");
         assert_eq!(slow.pivots.len(), fast.pivots.len());
         for (a, b) in slow.pivots.iter().zip(&fast.pivots) {
-            assert_eq!(
-                (a.entering, a.leaving, &a.ties),
-                (b.entering, b.leaving, &b.ties)
-            );
+            assert_eq!((a.entering, a.leaving, &a.ties), (b.entering, b.leaving, &b.ties));
             assert!((a.p_after - b.p_after).abs() <= 1e-12 * a.p_after.abs());
         }
         rays += usize::from(matches!(slow.outcome, Outcome::Ray(_)));

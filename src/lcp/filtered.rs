@@ -32,10 +32,7 @@ struct Bound {
 impl Bound {
     const ZERO: Bound = Bound { m: 0.0, e: 0 };
     /// Of a number of which nothing is known.
-    const INFINITE: Bound = Bound {
-        m: f64::INFINITY,
-        e: 0,
-    };
+    const INFINITE: Bound = Bound { m: f64::INFINITY, e: 0 };
 
     fn new(mut m: f64, mut e: i64) -> Self {
         if m == 0.0 || m.is_infinite() {
@@ -75,11 +72,7 @@ impl Bound {
         if other.is_zero() {
             return self;
         }
-        let (large, small) = if self.e >= other.e {
-            (self, other)
-        } else {
-            (other, self)
-        };
+        let (large, small) = if self.e >= other.e { (self, other) } else { (other, self) };
         let shift = (large.e - small.e).min(200) as i32;
         Bound::new((large.m + small.m * 2f64.powi(-shift)) * UP, large.e)
     }
@@ -106,11 +99,7 @@ pub struct Filtered {
 fn reduce(x: u128) -> u64 {
     let folded = (x & u128::from(PRIME)) + (x >> 61);
     let folded = (folded as u64 & PRIME) + (folded >> 61) as u64;
-    if folded >= PRIME {
-        folded - PRIME
-    } else {
-        folded
-    }
+    if folded >= PRIME { folded - PRIME } else { folded }
 }
 
 fn times(a: u64, b: u64) -> u64 {
@@ -137,11 +126,7 @@ fn inverted(a: u64) -> u64 {
 fn residue(a: &BigInt) -> u64 {
     // |a| < 2^61 fits.
     let r = (a % PRIME).to_i64().unwrap_or(0);
-    if r < 0 {
-        (r + PRIME as i64) as u64
-    } else {
-        r as u64
-    }
+    if r < 0 { (r + PRIME as i64) as u64 } else { r as u64 }
 }
 
 /// Upper (side 1) or lower (side −1) bound of |mantissa| · 2^exponent.
@@ -170,13 +155,8 @@ impl Filtered {
             precision,
         };
         if !odd.is_one() {
-            let divisor = Self {
-                residue: Some(residue(&odd)),
-                mantissa: odd,
-                exponent: 0,
-                radius: Bound::ZERO,
-                precision,
-            };
+            let divisor =
+                Self { residue: Some(residue(&odd)), mantissa: odd, exponent: 0, radius: Bound::ZERO, precision };
             number = number.div(&divisor);
         }
         number.tidy()
@@ -195,19 +175,13 @@ impl Filtered {
             self.radius = self.radius.plus(Bound::power_of_two(self.exponent));
         }
         if self.residue == Some(0) && !self.excludes_zero() {
-            return Self {
-                precision: self.precision,
-                ..Self::zero()
-            };
+            return Self { precision: self.precision, ..Self::zero() };
         }
         self
     }
 
     fn excludes_zero(&self) -> bool {
-        !self.mantissa.is_zero()
-            && self
-                .radius
-                .less_than(magnitude(&self.mantissa, self.exponent, -1.0))
+        !self.mantissa.is_zero() && self.radius.less_than(magnitude(&self.mantissa, self.exponent, -1.0))
     }
 
     fn upper(&self) -> Bound {
@@ -237,14 +211,8 @@ impl Filtered {
             }
             _ => None,
         };
-        Self {
-            mantissa,
-            exponent,
-            radius: a.radius.plus(b.radius),
-            residue,
-            precision: a.precision.max(b.precision),
-        }
-        .tidy()
+        Self { mantissa, exponent, radius: a.radius.plus(b.radius), residue, precision: a.precision.max(b.precision) }
+            .tidy()
     }
 
     fn is_exact_zero(&self) -> bool {
@@ -272,21 +240,11 @@ impl Scalar for Filtered {
     }
 
     fn zero() -> Self {
-        Self {
-            mantissa: BigInt::zero(),
-            exponent: 0,
-            radius: Bound::ZERO,
-            residue: Some(0),
-            precision: 64,
-        }
+        Self { mantissa: BigInt::zero(), exponent: 0, radius: Bound::ZERO, residue: Some(0), precision: 64 }
     }
 
     fn one() -> Self {
-        Self {
-            mantissa: BigInt::one(),
-            residue: Some(1),
-            ..Self::zero()
-        }
+        Self { mantissa: BigInt::one(), residue: Some(1), ..Self::zero() }
     }
 
     fn add(&self, other: &Self) -> Self {
@@ -300,10 +258,7 @@ impl Scalar for Filtered {
     fn mul(&self, other: &Self) -> Self {
         let precision = self.precision.max(other.precision);
         if self.is_exact_zero() || other.is_exact_zero() {
-            return Self {
-                precision,
-                ..Self::zero()
-            };
+            return Self { precision, ..Self::zero() };
         }
         let radius = if self.radius.is_zero() && other.radius.is_zero() {
             Bound::ZERO
@@ -326,27 +281,16 @@ impl Scalar for Filtered {
     fn div(&self, other: &Self) -> Self {
         let precision = self.precision.max(other.precision);
         if self.is_exact_zero() {
-            return Self {
-                precision,
-                ..Self::zero()
-            };
+            return Self { precision, ..Self::zero() };
         }
         let residue = match (self.residue, other.residue) {
             (Some(a), Some(b)) if b != 0 => Some(times(a, inverted(b))),
             _ => None,
         };
         if !other.excludes_zero() {
-            return Self {
-                mantissa: BigInt::zero(),
-                exponent: 0,
-                radius: Bound::INFINITE,
-                residue,
-                precision,
-            };
+            return Self { mantissa: BigInt::zero(), exponent: 0, radius: Bound::INFINITE, residue, precision };
         }
-        let shift = (i64::from(precision) + 2 + other.mantissa.bits() as i64
-            - self.mantissa.bits() as i64)
-            .max(0);
+        let shift = (i64::from(precision) + 2 + other.mantissa.bits() as i64 - self.mantissa.bits() as i64).max(0);
         let mantissa = (&self.mantissa << shift as u64) / &other.mantissa;
         let exponent = self.exponent - other.exponent - shift;
         // |a/b − ã/b̃| ≤ (r_a + |ã/b̃| r_b) / (|b̃| − r_b), and the quotient's own rounding.
@@ -361,28 +305,12 @@ impl Scalar for Filtered {
                 low
             } else {
                 let shift = (low.e - other.radius.e).min(200) as i32;
-                let rest =
-                    low.m * (1.0 - 4.0 * f64::EPSILON) - other.radius.m * 2f64.powi(-shift) * UP;
-                if rest <= 0.0 {
-                    Bound::ZERO
-                } else {
-                    Bound::new(rest * (1.0 - 4.0 * f64::EPSILON), low.e)
-                }
+                let rest = low.m * (1.0 - 4.0 * f64::EPSILON) - other.radius.m * 2f64.powi(-shift) * UP;
+                if rest <= 0.0 { Bound::ZERO } else { Bound::new(rest * (1.0 - 4.0 * f64::EPSILON), low.e) }
             };
-            if gap.is_zero() {
-                Bound::INFINITE
-            } else {
-                Bound::new(spread.m / gap.m * UP, spread.e - gap.e)
-            }
+            if gap.is_zero() { Bound::INFINITE } else { Bound::new(spread.m / gap.m * UP, spread.e - gap.e) }
         };
-        Self {
-            mantissa,
-            exponent,
-            radius: radius.plus(Bound::power_of_two(exponent)),
-            residue,
-            precision,
-        }
-        .tidy()
+        Self { mantissa, exponent, radius: radius.plus(Bound::power_of_two(exponent)), residue, precision }.tidy()
     }
 
     fn neg(&self) -> Self {
@@ -398,11 +326,7 @@ impl Scalar for Filtered {
             return Some(Ordering::Equal);
         }
         if self.excludes_zero() {
-            return Some(if self.mantissa.is_negative() {
-                Ordering::Less
-            } else {
-                Ordering::Greater
-            });
+            return Some(if self.mantissa.is_negative() { Ordering::Less } else { Ordering::Greater });
         }
         (self.residue == Some(0)).then_some(Ordering::Equal)
     }

@@ -13,11 +13,7 @@ fn holds(number: &Filtered, value: &BigRational) {
     // |value − midpoint| ≤ radius, in rationals.
     let power = |e: i64| {
         let two = BigInt::one() << e.unsigned_abs();
-        if e >= 0 {
-            BigRational::from_integer(two)
-        } else {
-            BigRational::new(BigInt::one(), two)
-        }
+        if e >= 0 { BigRational::from_integer(two) } else { BigRational::new(BigInt::one(), two) }
     };
     let middle = BigRational::from_integer(number.mantissa.clone()) * power(number.exponent);
     if number.radius.m.is_infinite() {
@@ -37,25 +33,17 @@ fn balls_hold_the_true_values() {
             let mut exact = vec![];
             let mut balls = vec![];
             for _ in 0..4 {
-                let x = rational(
-                    random.random_range(-1000..1000),
-                    random.random_range(1..500),
-                );
+                let x = rational(random.random_range(-1000..1000), random.random_range(1..500));
                 balls.push(Filtered::new(&x, precision));
                 exact.push(x);
             }
             for _ in 0..12 {
-                let (i, j) = (
-                    random.random_range(0..exact.len()),
-                    random.random_range(0..exact.len()),
-                );
+                let (i, j) = (random.random_range(0..exact.len()), random.random_range(0..exact.len()));
                 let (x, b) = match random.random_range(0..4) {
                     0 => (&exact[i] + &exact[j], balls[i].add(&balls[j])),
                     1 => (&exact[i] - &exact[j], balls[i].sub(&balls[j])),
                     2 => (&exact[i] * &exact[j], balls[i].mul(&balls[j])),
-                    _ if !Zero::is_zero(&exact[j]) => {
-                        (&exact[i] / &exact[j], balls[i].div(&balls[j]))
-                    }
+                    _ if !Zero::is_zero(&exact[j]) => (&exact[i] / &exact[j], balls[i].div(&balls[j])),
                     _ => continue,
                 };
                 holds(&b, &x);

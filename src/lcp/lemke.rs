@@ -51,20 +51,14 @@ impl SchemeEngine {
             p_per_force: if covering > 0.0 { rows / covering } else { 1.0 },
             p: 0.0,
         };
-        let seed = if let TieRule::Random(seed) = rule {
-            seed
-        } else {
-            0
-        };
+        let seed = if let TieRule::Random(seed) = rule { seed } else { 0 };
         SchemeEngine {
             rule,
             random: ChaCha8Rng::seed_from_u64(seed),
             pivots: Vec::new(),
             entering: None,
             ended: None,
-            table_row: (0..lcp.whole_size)
-                .map(|row| (Variable::W(row), row))
-                .collect(),
+            table_row: (0..lcp.whole_size).map(|row| (Variable::W(row), row)).collect(),
             bases: HashSet::new(),
             artefact_point: None,
             stand: Stand::new(Arc::clone(&lcp), Dictionary::new(&lcp), sizes),
@@ -84,10 +78,7 @@ impl SchemeEngine {
     /// After a normal or trivial end: the dictionary, standing on the answer, ready to follow changes of the load.
     /// `None` after any other end and under rules that a path does not use.
     pub fn into_parametric(self) -> Option<Parametric> {
-        let on_answer = matches!(
-            self.ended,
-            Some(Outcome::Trivial | Outcome::Normal { marginal: false })
-        );
+        let on_answer = matches!(self.ended, Some(Outcome::Trivial | Outcome::Normal { marginal: false }));
         match self.rule {
             TieRule::Lexicographic(order) if on_answer => Parametric::standing(self.stand, order),
             _ => None,
@@ -107,9 +98,8 @@ impl SchemeEngine {
     fn start(&mut self) -> Step<f64> {
         let lcp = Arc::clone(&self.stand.lcp);
         // q and d of all rows, mirrors included.
-        let mut rows: Vec<(Local, bool, f64, f64)> = (0..lcp.size())
-            .map(|i| (Local::W(i), false, lcp.q[i], lcp.covering[i]))
-            .collect();
+        let mut rows: Vec<(Local, bool, f64, f64)> =
+            (0..lcp.size()).map(|i| (Local::W(i), false, lcp.q[i], lcp.covering[i])).collect();
         for (i, mirror) in lcp.mirrors.iter().enumerate() {
             if let Some(mirror) = mirror {
                 let (q, d) = lcp.mirror_start(i, mirror);
@@ -124,21 +114,12 @@ impl SchemeEngine {
         if negative.iter().any(|row| row.3 <= 0.0) {
             return self.broken("the covering vector is zero in a row whose q is negative");
         }
-        let needed = negative
-            .iter()
-            .map(|row| -row.2 / row.3)
-            .fold(0.0, f64::max);
+        let needed = negative.iter().map(|row| -row.2 / row.3).fold(0.0, f64::max);
         self.stand.sizes.p = needed;
         let tied: Vec<Candidate> = negative
             .iter()
             .filter(|row| row.2 + row.3 * needed <= NOISE * (row.2.abs() + row.3 * needed))
-            .map(|row| Candidate {
-                variable: row.0,
-                hidden: row.1,
-                value: -row.2,
-                fall: row.3,
-                noise: 0.0,
-            })
+            .map(|row| Candidate { variable: row.0, hidden: row.1, value: -row.2, fall: row.3, noise: 0.0 })
             .collect();
         let c = lcp.size();
         self.stand.fetch(c);
@@ -149,10 +130,7 @@ impl SchemeEngine {
 
     /// Index of the tied candidate that leaves.
     fn choose(&mut self, tied: &[Candidate], at_start: bool) -> usize {
-        let names: Vec<Variable> = tied
-            .iter()
-            .map(|candidate| self.stand.name(candidate))
-            .collect();
+        let names: Vec<Variable> = tied.iter().map(|candidate| self.stand.name(candidate)).collect();
         let table_row = |name: Variable| self.table_row.get(&name).copied().unwrap_or(usize::MAX);
         let rows = self.stand.inverse_rows(tied, &table_row);
         let mut random = self.random.clone();
@@ -167,11 +145,7 @@ impl SchemeEngine {
         let name = self.stand.name(&leaving);
         let mut ties: Vec<Variable> = tied.iter().map(|tie| self.stand.name(tie)).collect();
         ties.sort_unstable();
-        let p_before = if self.pivots.is_empty() {
-            step
-        } else {
-            self.stand.p()
-        };
+        let p_before = if self.pivots.is_empty() { step } else { self.stand.p() };
         let slipping = match (leaving.variable, leaving.hidden) {
             (Local::W(i), true) => match self.stand.dictionary.place(Local::W(i)) {
                 Place::Column(j) if j != c => Some(i),
@@ -186,10 +160,7 @@ impl SchemeEngine {
             }
             None => self.stand.exchange(&leaving, c, step, tied),
         };
-        let p_after = self
-            .artefact_point
-            .as_ref()
-            .map_or_else(|| self.stand.p(), |point| point.p);
+        let p_after = self.artefact_point.as_ref().map_or_else(|| self.stand.p(), |point| point.p);
         self.pivots.push(Pivot {
             step: self.pivots.len(),
             entering,
@@ -228,12 +199,7 @@ impl SchemeEngine {
             }
         }
         self.artefact_point = Some(point);
-        self.ended = Some(Outcome::Ray(RayDirection {
-            entering: other,
-            z,
-            w: vec![0.0; n],
-            p: 0.0,
-        }));
+        self.ended = Some(Outcome::Ray(RayDirection { entering: other, z, w: vec![0.0; n], p: 0.0 }));
     }
 
     /// Whether this basis was met before (asked only where the rule may cycle).
@@ -292,8 +258,6 @@ impl Engine for SchemeEngine {
     }
 
     fn point(&self) -> Point {
-        self.artefact_point
-            .clone()
-            .unwrap_or_else(|| self.stand.point())
+        self.artefact_point.clone().unwrap_or_else(|| self.stand.point())
     }
 }

@@ -134,9 +134,6 @@ impl MirroredLcp {
 
     /// q of the mirror of row i, and its entry of the covering vector.
     pub(crate) fn mirror_start(&self, i: usize, mirror: &Mirror) -> (f64, f64) {
-        (
-            mirror.reflect(i, |row| self.q[row], 0.0, 1.0),
-            mirror.reflect(i, |row| self.covering[row], 1.0, 0.0),
-        )
+        (mirror.reflect(i, |row| self.q[row], 0.0, 1.0), mirror.reflect(i, |row| self.covering[row], 1.0, 0.0))
     }
 }

@@ -112,12 +112,7 @@ impl Parametric {
                 _ => None,
             })
             .collect();
-        Some(Parametric {
-            stand,
-            rule: TieRule::Lexicographic(order),
-            scheme,
-            driver: Local::P,
-        })
+        Some(Parametric { stand, rule: TieRule::Lexicographic(order), scheme, driver: Local::P })
     }
 
     /// Takes the next load increment after a path that ended at its target. q and the constants of the mirrors are those
@@ -146,11 +141,7 @@ impl Parametric {
     /// The scheme it stands on.
     pub fn basis(&self) -> Basis {
         let z: Vec<usize> = self.scheme.iter().copied().collect();
-        Basis {
-            active: z.clone(),
-            z,
-            p: false,
-        }
+        Basis { active: z.clone(), z, p: false }
     }
 
     /// All variables where it stands, as the kept dictionary holds them, refined from the data where rounding shows.
@@ -214,18 +205,9 @@ impl Parametric {
     }
 
     /// Makes the pivot; says what left.
-    fn exchange(
-        &mut self,
-        leaving: Candidate,
-        c: usize,
-        step: f64,
-        tied: &[Candidate],
-    ) -> Variable {
+    fn exchange(&mut self, leaving: Candidate, c: usize, step: f64, tied: &[Candidate]) -> Variable {
         let name = self.stand.name(&leaving);
-        self.driver = self
-            .stand
-            .exchange(&leaving, c, step, tied)
-            .unwrap_or(Local::P);
+        self.driver = self.stand.exchange(&leaving, c, step, tied).unwrap_or(Local::P);
         match name {
             Variable::W(k) => {
                 self.scheme.insert(k);
@@ -275,11 +257,7 @@ impl Parametric {
             }
             _ => faint,
         };
-        if rate.abs() <= NOISE * size {
-            0.0
-        } else {
-            rate
-        }
+        if rate.abs() <= NOISE * size { 0.0 } else { rate }
     }
 
     fn ray(&self, c: usize) -> RayDirection {
@@ -307,32 +285,16 @@ impl Parametric {
 
     /// Follows the path; `observer` is called after every pivot with t and may break. At the target it stands on the LCP
     /// of the target.
-    pub fn follow(
-        &mut self,
-        reach: Reach,
-        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Path {
+    pub fn follow(&mut self, reach: Reach, observer: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Path {
         let point = self.point_at(0.0).unwrap_or_else(|| self.stand.point());
-        let mut knots = Some(vec![Knot {
-            t: 0.0,
-            point,
-            leaving: Vec::new(),
-            scheme: self.scheme.iter().copied().collect(),
-        }]);
+        let mut knots =
+            Some(vec![Knot { t: 0.0, point, leaving: Vec::new(), scheme: self.scheme.iter().copied().collect() }]);
         let (end, pivots) = self.run(reach, &mut knots, observer);
-        Path {
-            knots: knots.unwrap_or_default(),
-            end,
-            pivots,
-        }
+        Path { knots: knots.unwrap_or_default(), end, pivots }
     }
 
     /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots.
-    pub fn walk(
-        &mut self,
-        reach: Reach,
-        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> (End, usize) {
+    pub fn walk(&mut self, reach: Reach, observer: &mut dyn FnMut(f64) -> ControlFlow<()>) -> (End, usize) {
         self.run(reach, &mut None, observer)
     }
 
@@ -373,8 +335,7 @@ impl Parametric {
         knots: &mut Option<Vec<Knot>>,
         met: &mut HashSet<(Vec<usize>, Variable)>,
     ) -> ControlFlow<End> {
-        let lost =
-            || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
+        let lost = || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
         let singular = "the equations of the working scheme are singular";
         if !self.stand.keep_true() {
             return ControlFlow::Break(End::Breakdown(singular.to_owned()));
@@ -388,9 +349,7 @@ impl Parametric {
         let (mut tied, mut step) = self.blocking(c);
         // Where the target comes before any row that blocks, no rate near the noise decides anything.
         let raw = self.stand.dictionary.rate(Local::P, c, &self.stand.column);
-        let ends_here = reach.target.is_finite()
-            && raw > 0.0
-            && (reach.target - self.stand.p()).max(0.0) / raw <= step;
+        let ends_here = reach.target.is_finite() && raw > 0.0 && (reach.target - self.stand.p()).max(0.0) / raw <= step;
         if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.confirm(c, &tied) {
             (tied, step) = self.blocking(c);
         }
@@ -414,11 +373,7 @@ impl Parametric {
             }
         }
         if tied.is_empty() {
-            return ControlFlow::Break(if t_rate > 0.0 {
-                End::Unbounded
-            } else {
-                End::Limit(self.ray(c))
-            });
+            return ControlFlow::Break(if t_rate > 0.0 { End::Unbounded } else { End::Limit(self.ray(c)) });
         }
         let leaving = tied[self.choose(&tied)];
         let name = self.exchange(leaving, c, step, &tied);
@@ -430,14 +385,8 @@ impl Parametric {
         if step > 0.0 {
             met.clear();
             if let Some(knots) = knots {
-                let point = vertex(&self.stand.lcp, &self.knot_basis(row))
-                    .unwrap_or_else(|| self.stand.point());
-                knots.push(Knot {
-                    t: point.p,
-                    point,
-                    leaving: vec![name],
-                    scheme: scheme(self),
-                });
+                let point = vertex(&self.stand.lcp, &self.knot_basis(row)).unwrap_or_else(|| self.stand.point());
+                knots.push(Knot { t: point.p, point, leaving: vec![name], scheme: scheme(self) });
             }
         } else {
             let scheme = scheme(self);
@@ -446,9 +395,7 @@ impl Parametric {
                 knot.scheme.clone_from(&scheme);
             }
             if !met.insert((scheme, name)) {
-                return ControlFlow::Break(End::Breakdown(
-                    "a working scheme came back at the same load".to_owned(),
-                ));
+                return ControlFlow::Break(End::Breakdown("a working scheme came back at the same load".to_owned()));
             }
         }
         ControlFlow::Continue(())
@@ -462,11 +409,6 @@ impl Parametric {
         };
         let mut point = self.point_at(end).unwrap_or_else(|| self.stand.point());
         point.p = end;
-        knots.push(Knot {
-            t: end,
-            point,
-            leaving: Vec::new(),
-            scheme: self.scheme.iter().copied().collect(),
-        });
+        knots.push(Knot { t: end, point, leaving: Vec::new(), scheme: self.scheme.iter().copied().collect() });
     }
 }

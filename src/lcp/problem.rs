@@ -24,10 +24,7 @@ impl Scale {
         Scale {
             row: matrix
                 .iter()
-                .map(|row| {
-                    row.iter()
-                        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
-                })
+                .map(|row| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs())))
                 .collect(),
             column: vec![1.0; matrix.len()],
         }

@@ -43,9 +43,7 @@ pub(crate) fn choose(
         return 0;
     }
     match rule {
-        TieRule::FirstRow => (0..names.len())
-            .min_by_key(|&k| rows[k].table_row())
-            .unwrap_or(0),
+        TieRule::FirstRow => (0..names.len()).min_by_key(|&k| rows[k].table_row()).unwrap_or(0),
         TieRule::Random(_) => {
             let mut sorted: Vec<usize> = (0..names.len()).collect();
             sorted.sort_unstable_by_key(|&k| names[k]);
@@ -56,27 +54,16 @@ pub(crate) fn choose(
                 return k;
             }
             if at_start {
-                let rank = |k: usize| {
-                    order
-                        .iter()
-                        .position(|&row| Variable::W(row) == names[k])
-                        .unwrap_or(0)
-                };
+                let rank = |k: usize| order.iter().position(|&row| Variable::W(row) == names[k]).unwrap_or(0);
                 return (0..names.len()).max_by_key(|&k| rank(k)).unwrap_or(0);
             }
             let mut left: Vec<usize> = (0..names.len()).collect();
             for &row in order {
                 let entries: Vec<(f64, f64)> = left.iter().map(|&k| rows[k].entry(row)).collect();
-                let smallest = entries
-                    .iter()
-                    .map(|entry| entry.0)
-                    .fold(f64::INFINITY, f64::min);
+                let smallest = entries.iter().map(|entry| entry.0).fold(f64::INFINITY, f64::min);
                 let size = entries.iter().map(|entry| entry.1).fold(0.0, f64::max);
                 let mut kept = entries.iter();
-                left.retain(|_| {
-                    kept.next()
-                        .is_some_and(|entry| entry.0 <= smallest + SAME * size)
-                });
+                left.retain(|_| kept.next().is_some_and(|entry| entry.0 <= smallest + SAME * size));
                 if left.len() == 1 {
                     break;
                 }

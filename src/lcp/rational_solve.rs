@@ -13,12 +13,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 use super::scalar::BigInt;
 
 /// Primes below 2⁶¹; another is taken when one divides a determinant.
-const PRIMES: [u64; 4] = [
-    (1 << 61) - 1,
-    (1 << 61) - 31,
-    (1 << 61) - 45,
-    (1 << 61) - 229,
-];
+const PRIMES: [u64; 4] = [(1 << 61) - 1, (1 << 61) - 31, (1 << 61) - 45, (1 << 61) - 229];
 
 /// x = numerators / denominator, denominator > 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,10 +52,7 @@ pub fn clear_denominators(row: &[BigRational]) -> (Vec<BigInt>, BigInt) {
             common *= missing.denom();
         }
     }
-    let whole = row
-        .iter()
-        .map(|entry| entry.numer() * (&common / entry.denom()))
-        .collect();
+    let whole = row.iter().map(|entry| entry.numer() * (&common / entry.denom())).collect();
     (whole, common)
 }
 
@@ -79,17 +71,8 @@ pub fn solve(
             Some(column) => matrix[row][column].clone(),
             None => rhs[row].clone(),
         };
-        let square: Vec<Vec<BigInt>> = basis
-            .rows
-            .iter()
-            .map(|row| {
-                basis
-                    .columns
-                    .iter()
-                    .map(|c| matrix[*row][*c].clone())
-                    .collect()
-            })
-            .collect();
+        let square: Vec<Vec<BigInt>> =
+            basis.rows.iter().map(|row| basis.columns.iter().map(|c| matrix[*row][*c].clone()).collect()).collect();
         let Some(lifting) = Lifting::new(square, prime) else {
             continue;
         };
@@ -97,11 +80,7 @@ pub fn solve(
         let shares = (dependent.len() + 1) as f64;
         // One solution, and every dependent column as a combination of the chosen ones.
         let mut solved = Vec::new();
-        let targets = dependent
-            .iter()
-            .copied()
-            .map(Some)
-            .chain(std::iter::once(None));
+        let targets = dependent.iter().copied().map(Some).chain(std::iter::once(None));
         for (done, target) in targets.enumerate() {
             let b: Vec<BigInt> = basis.rows.iter().map(|row| minor(target, *row)).collect();
             let mut part = |share: f64| progress((done as f64 + share) / shares);
@@ -114,21 +93,14 @@ pub fn solve(
         // All rows, not only the chosen ones.
         let holds = |target: Option<usize>, solution: &Quotients| {
             (0..k).all(|row| {
-                let sum: BigInt = basis
-                    .columns
-                    .iter()
-                    .zip(&solution.numerators)
-                    .map(|(c, n)| &matrix[row][*c] * n)
-                    .sum();
+                let sum: BigInt =
+                    basis.columns.iter().zip(&solution.numerators).map(|(c, n)| &matrix[row][*c] * n).sum();
                 sum == minor(target, row) * &solution.denominator
             })
         };
-        let (Some((_, particular)), true) = (
-            solved.pop(),
-            solved
-                .iter()
-                .all(|(target, solution)| holds(*target, solution)),
-        ) else {
+        let (Some((_, particular)), true) =
+            (solved.pop(), solved.iter().all(|(target, solution)| holds(*target, solution)))
+        else {
             // The rank is higher than it looks modulo this prime.
             continue;
         };
@@ -150,10 +122,7 @@ fn spread(solution: &Quotients, columns: &[usize], k: usize) -> Quotients {
     for (column, n) in columns.iter().zip(&solution.numerators) {
         numerators[*column] = n.clone();
     }
-    Quotients {
-        numerators,
-        denominator: solution.denominator.clone(),
-    }
+    Quotients { numerators, denominator: solution.denominator.clone() }
 }
 
 fn times(a: u64, b: u64, p: u64) -> u64 {
@@ -175,11 +144,7 @@ fn inverse(a: u64, p: u64) -> u64 {
 
 fn residue(a: &BigInt, p: u64) -> u64 {
     let r = a % BigInt::from(p);
-    let r = if r.is_negative() {
-        r + BigInt::from(p)
-    } else {
-        r
-    };
+    let r = if r.is_negative() { r + BigInt::from(p) } else { r };
     r.to_u64().unwrap_or(0) // 0 ≤ r < p fits
 }
 
@@ -191,15 +156,9 @@ struct Independent {
 /// Rows and columns of a largest minor that is nonzero modulo p.
 fn independent(matrix: &[Vec<BigInt>], p: u64) -> Independent {
     let k = matrix.len();
-    let mut a: Vec<Vec<u64>> = matrix
-        .iter()
-        .map(|row| row.iter().map(|x| residue(x, p)).collect())
-        .collect();
+    let mut a: Vec<Vec<u64>> = matrix.iter().map(|row| row.iter().map(|x| residue(x, p)).collect()).collect();
     let mut rows: Vec<usize> = (0..k).collect();
-    let mut found = Independent {
-        rows: Vec::new(),
-        columns: Vec::new(),
-    };
+    let mut found = Independent { rows: Vec::new(), columns: Vec::new() };
     for column in 0..k {
         let next = found.rows.len();
         let Some(pivot) = (next..k).find(|row| a[*row][column] != 0) else {
@@ -262,11 +221,7 @@ impl Lifting {
                 }
             }
         }
-        Some(Self {
-            matrix,
-            inverse: a.into_iter().map(|row| row[k..].to_vec()).collect(),
-            p,
-        })
+        Some(Self { matrix, inverse: a.into_iter().map(|row| row[k..].to_vec()).collect(), p })
     }
 
     /// inverse · b modulo p.
@@ -349,15 +304,9 @@ impl Lifting {
         let mut denominator = BigInt::one();
         let mut numerators: Vec<BigInt> = Vec::new();
         for digits in lifted {
-            let x = digits.iter().rev().fold(BigInt::zero(), |sum, digit| {
-                sum * prime + BigInt::from(*digit)
-            });
+            let x = digits.iter().rev().fold(BigInt::zero(), |sum, digit| sum * prime + BigInt::from(*digit));
             let residue = (x * &denominator) % &modulus;
-            let symmetric = if (&residue << 1u32) > modulus {
-                residue - &modulus
-            } else {
-                residue
-            };
+            let symmetric = if (&residue << 1u32) > modulus { residue - &modulus } else { residue };
             if symmetric.bits() <= half_bits {
                 numerators.push(symmetric);
                 continue;
@@ -372,19 +321,12 @@ impl Lifting {
             }
             numerators.push(n);
         }
-        Some(Quotients {
-            numerators,
-            denominator,
-        })
+        Some(Quotients { numerators, denominator })
     }
 
     fn verify(&self, solution: &Quotients, b: &[BigInt]) -> bool {
         self.matrix.iter().zip(b).all(|(row, b)| {
-            let sum: BigInt = row
-                .iter()
-                .zip(&solution.numerators)
-                .map(|(a, n)| a * n)
-                .sum();
+            let sum: BigInt = row.iter().zip(&solution.numerators).map(|(a, n)| a * n).sum();
             sum == b * &solution.denominator
         })
     }
@@ -407,11 +349,7 @@ fn rational(x: &BigInt, modulus: &BigInt, bits: u64) -> Option<(BigInt, BigInt)>
     if t1.is_zero() || t1.bits() > bits + 2 {
         return None;
     }
-    Some(if t1.is_negative() {
-        (-r1, -t1)
-    } else {
-        (r1, t1)
-    })
+    Some(if t1.is_negative() { (-r1, -t1) } else { (r1, t1) })
 }
 
 #[cfg(test)]

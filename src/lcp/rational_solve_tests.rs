@@ -10,9 +10,7 @@ fn go(matrix: &[Vec<BigInt>], rhs: &[BigInt]) -> RationalSolution {
 }
 
 fn integers(rows: &[&[i64]]) -> Vec<Vec<BigInt>> {
-    rows.iter()
-        .map(|row| row.iter().map(|x| BigInt::from(*x)).collect())
-        .collect()
+    rows.iter().map(|row| row.iter().map(|x| BigInt::from(*x)).collect()).collect()
 }
 
 fn quotient(solution: &Quotients, i: usize) -> BigRational {
@@ -24,9 +22,7 @@ fn two_by_two() {
     // 2x + y = 1, x + 3y = −4: x = 7/5, y = −9/5
     let a = integers(&[&[2, 1], &[1, 3]]);
     let b = [BigInt::from(1), BigInt::from(-4)];
-    let RationalSolution::Unique(solution) = go(&a, &b) else {
-        panic!()
-    };
+    let RationalSolution::Unique(solution) = go(&a, &b) else { panic!() };
     let fifth = |n: i64| BigRational::new(BigInt::from(n), BigInt::from(5));
     assert_eq!(quotient(&solution, 0), fifth(7));
     assert_eq!(quotient(&solution, 1), fifth(-9));
@@ -37,39 +33,22 @@ fn singular_systems_are_told_apart() {
     let a = integers(&[&[1, 2, 3], &[2, 4, 6], &[1, 0, 1]]);
     let b = |v: [i64; 3]| v.map(BigInt::from);
     match go(&a, &b([1, 2, 5])) {
-        RationalSolution::Singular {
-            rank: 2,
-            particular: Some(x),
-        } => {
+        RationalSolution::Singular { rank: 2, particular: Some(x) } => {
             let sum = quotient(&x, 0) + quotient(&x, 2);
             assert_eq!(sum, BigRational::from_integer(BigInt::from(5)));
         }
         other => panic!("{other:?}"),
     }
-    assert_eq!(
-        go(&a, &b([1, 3, 5])),
-        RationalSolution::Singular {
-            rank: 2,
-            particular: None
-        }
-    );
+    assert_eq!(go(&a, &b([1, 3, 5])), RationalSolution::Singular { rank: 2, particular: None });
     assert!(matches!(go(&[], &[]), RationalSolution::Unique(_)));
     let zero = integers(&[&[0]]);
-    assert_eq!(
-        go(&zero, &[BigInt::from(1)]),
-        RationalSolution::Singular {
-            rank: 0,
-            particular: None
-        }
-    );
+    assert_eq!(go(&zero, &[BigInt::from(1)]), RationalSolution::Singular { rank: 0, particular: None });
 }
 
 #[test]
 fn a_matrix_that_vanishes_modulo_the_first_prime() {
     let p = BigInt::from(PRIMES[0]);
-    let RationalSolution::Unique(x) = go(&[vec![p.clone()]], &[BigInt::one()]) else {
-        panic!()
-    };
+    let RationalSolution::Unique(x) = go(&[vec![p.clone()]], &[BigInt::one()]) else { panic!() };
     assert_eq!(quotient(&x, 0), BigRational::new(BigInt::one(), p));
 }
 
@@ -77,28 +56,16 @@ fn a_matrix_that_vanishes_modulo_the_first_prime() {
 fn agrees_with_elimination_in_rationals() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     for k in 1..10usize {
-        let a: Vec<Vec<BigInt>> = (0..k)
-            .map(|_| {
-                (0..k)
-                    .map(|_| BigInt::from(random.random::<i64>()) << 40u32)
-                    .collect()
-            })
-            .collect();
-        let b: Vec<BigInt> = (0..k)
-            .map(|_| BigInt::from(random.random::<i64>()))
-            .collect();
-        let RationalSolution::Unique(x) = go(&a, &b) else {
-            panic!()
-        };
+        let a: Vec<Vec<BigInt>> =
+            (0..k).map(|_| (0..k).map(|_| BigInt::from(random.random::<i64>()) << 40u32).collect()).collect();
+        let b: Vec<BigInt> = (0..k).map(|_| BigInt::from(random.random::<i64>())).collect();
+        let RationalSolution::Unique(x) = go(&a, &b) else { panic!() };
         // Gauss–Jordan in rationals.
         let mut rows: Vec<Vec<BigRational>> = a
             .iter()
             .zip(&b)
             .map(|(row, b)| {
-                row.iter()
-                    .chain(std::iter::once(b))
-                    .map(|x| BigRational::from_integer(x.clone()))
-                    .collect()
+                row.iter().chain(std::iter::once(b)).map(|x| BigRational::from_integer(x.clone())).collect()
             })
             .collect();
         for c in 0..k {
@@ -128,22 +95,11 @@ fn agrees_with_elimination_in_rationals() {
 fn hundred_and_twenty_unknowns() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let k = 120;
-    let a: Vec<Vec<BigInt>> = (0..k)
-        .map(|_| {
-            (0..k)
-                .map(|_| BigInt::from(random.random::<i128>() >> 8))
-                .collect()
-        })
-        .collect();
-    let b: Vec<BigInt> = (0..k)
-        .map(|_| BigInt::from(random.random::<i64>()))
-        .collect();
+    let a: Vec<Vec<BigInt>> =
+        (0..k).map(|_| (0..k).map(|_| BigInt::from(random.random::<i128>() >> 8)).collect()).collect();
+    let b: Vec<BigInt> = (0..k).map(|_| BigInt::from(random.random::<i64>())).collect();
     let start = std::time::Instant::now();
     assert!(matches!(go(&a, &b), RationalSolution::Unique(_)));
     assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
-    std::io::Write::write_all(
-        &mut std::io::stderr(),
-        format!("k = {k}: {:?}\n", start.elapsed()).as_bytes(),
-    )
-    .unwrap();
+    std::io::Write::write_all(&mut std::io::stderr(), format!("k = {k}: {:?}\n", start.elapsed()).as_bytes()).unwrap();
 }

@@ -150,11 +150,7 @@ pub fn ratio_to_f64(numerator: &BigInt, denominator: &BigInt) -> f64 {
     };
     let mantissa = quotient.to_f64().unwrap_or(f64::INFINITY);
     let magnitude = times_power_of_two(mantissa, -shift);
-    if numerator.is_negative() != denominator.is_negative() {
-        -magnitude
-    } else {
-        magnitude
-    }
+    if numerator.is_negative() != denominator.is_negative() { -magnitude } else { magnitude }
 }
 
 /// x · 2^e without intermediate overflow.

@@ -113,11 +113,8 @@ impl Stand {
 
     fn measure_rows(&mut self) {
         let size = self.dictionary.row.len();
-        self.row_sizes = RowSizes {
-            response: vec![0.0; size],
-            covering: vec![0.0; size],
-            displacement: vec![0.0; size],
-        };
+        self.row_sizes =
+            RowSizes { response: vec![0.0; size], covering: vec![0.0; size], displacement: vec![0.0; size] };
         for r in 0..size {
             self.measure_row(r);
         }
@@ -186,10 +183,7 @@ impl Stand {
     /// Σ column_k |z_k| over the basic z, with `values` per row.
     fn size_of(&self, values: &[f64]) -> f64 {
         let scales = self.row_sizes.displacement.iter();
-        scales
-            .zip(values)
-            .map(|(scale, value)| scale * value.abs())
-            .sum()
+        scales.zip(values).map(|(scale, value)| scale * value.abs()).sum()
     }
 
     /// Σ column_k |Δz_k| along column c, which was fetched last, the entering variable included.
@@ -214,11 +208,7 @@ impl Stand {
     /// gives to a row counts: a row that nothing but p moves would be told to fall otherwise.
     fn p_rate_size(&self, c: usize) -> f64 {
         let rate = self.dictionary.rate(Local::P, c, &self.column).abs();
-        if rate <= NOISE * self.rate_size(Local::P, self.rate_total(c), 0.0) {
-            rate / NOISE
-        } else {
-            rate
-        }
+        if rate <= NOISE * self.rate_size(Local::P, self.rate_total(c), 0.0) { rate / NOISE } else { rate }
     }
 
     /// Natural size of the value of a row, where Σ column_k |z_k| = `size`.
@@ -249,13 +239,7 @@ impl Stand {
             let (variable, value, fall) = (d.row[r], d.value[r].max(0.0), -self.column[r]);
             let noise = NOISE * self.value_size(variable, value_size, p);
             if value - fall * smallest <= noise {
-                rows.push(Candidate {
-                    variable,
-                    hidden: false,
-                    value,
-                    fall,
-                    noise,
-                });
+                rows.push(Candidate { variable, hidden: false, value, fall, noise });
             }
         }
         rows.append(&mut tied);
@@ -270,20 +254,12 @@ impl Stand {
         let (size, sizes) = (NOISE * self.rate_total(c), &self.row_sizes);
         let p_rate = NOISE * self.p_rate_size(c);
         ratios.clear();
-        ratios.extend(
-            self.column
-                .iter()
-                .zip(&d.value)
-                .zip(sizes.response.iter().zip(&sizes.covering))
-                .map(|((rate, value), (response, covering))| {
-                    let noise = response * size + covering * p_rate;
-                    if *rate < -noise {
-                        value.max(0.0) / -rate
-                    } else {
-                        f64::INFINITY
-                    }
-                }),
-        );
+        ratios.extend(self.column.iter().zip(&d.value).zip(sizes.response.iter().zip(&sizes.covering)).map(
+            |((rate, value), (response, covering))| {
+                let noise = response * size + covering * p_rate;
+                if *rate < -noise { value.max(0.0) / -rate } else { f64::INFINITY }
+            },
+        ));
         ratios.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
@@ -332,18 +308,8 @@ impl Stand {
 
     /// Exchanges the variable of column c with that of the leaving row; the entering variable takes the value `step`.
     /// Returns what grows next: the complement of what left (`None` after p).
-    pub(crate) fn exchange(
-        &mut self,
-        leaving: &Candidate,
-        c: usize,
-        step: f64,
-        tied: &[Candidate],
-    ) -> Option<Local> {
-        match (
-            leaving.variable,
-            leaving.hidden,
-            self.dictionary.place(leaving.variable),
-        ) {
+    pub(crate) fn exchange(&mut self, leaving: &Candidate, c: usize, step: f64, tied: &[Candidate]) -> Option<Local> {
+        match (leaving.variable, leaving.hidden, self.dictionary.place(leaving.variable)) {
             (Local::W(i), true, Place::Row(r)) => {
                 // Turning changes row r and the column of z_i, which is not the entering one.
                 let rate = self.dictionary.hidden_rate(&self.lcp, i, c, &self.column);
@@ -352,8 +318,7 @@ impl Stand {
                 self.pivot(r, c, step);
             }
             (Local::W(i), true, Place::Column(_)) => {
-                self.dictionary
-                    .pivot_hidden(&self.lcp, i, c, &self.column, step);
+                self.dictionary.pivot_hidden(&self.lcp, i, c, &self.column, step);
             }
             (_, _, Place::Row(r)) => self.pivot(r, c, step),
             (_, _, Place::Column(_)) => debug_assert!(false, "a blocking row is basic"),
@@ -380,11 +345,7 @@ impl Stand {
     pub(crate) fn point(&self) -> Point {
         let (d, lcp) = (&self.dictionary, &self.lcp);
         let n = lcp.whole_size;
-        let mut point = Point {
-            z: vec![0.0; n],
-            w: vec![0.0; n],
-            p: 0.0,
-        };
+        let mut point = Point { z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
         for (&local, &value) in d.row.iter().zip(&d.value) {
             match self.variable(local, false) {
                 Variable::W(k) => point.w[k] = value,
@@ -407,12 +368,7 @@ impl Stand {
         let (d, lcp) = (&self.dictionary, &self.lcp);
         let entering = self.variable(d.column[c], false);
         let n = lcp.whole_size;
-        let mut ray = RayDirection {
-            entering,
-            z: vec![0.0; n],
-            w: vec![0.0; n],
-            p: 0.0,
-        };
+        let mut ray = RayDirection { entering, z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
         let size = self.rate_total(c);
         let p_rate = self.p_rate_size(c);
         let mut put = |variable: Variable, rate: f64, noise: f64| {
@@ -425,11 +381,7 @@ impl Stand {
         };
         put(entering, 1.0, 0.0);
         for (&local, &rate) in d.row.iter().zip(&self.column) {
-            put(
-                self.variable(local, false),
-                rate,
-                NOISE * self.rate_size(local, size, p_rate),
-            );
+            put(self.variable(local, false), rate, NOISE * self.rate_size(local, size, p_rate));
         }
         for i in 0..lcp.size() {
             if lcp.mirrors[i].is_some() {

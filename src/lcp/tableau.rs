@@ -75,16 +75,10 @@ impl<T: Scalar> Tableau<T> {
             .zip(&lcp.covering)
             .map(|(row, d)| row.iter().chain(std::iter::once(d)).cloned().collect())
             .collect();
-        let ratios = || {
-            lcp.covering
-                .iter()
-                .zip(&lcp.scale.row)
-                .filter(|(_, row)| **row > 0.0)
-                .map(|(d, row)| d.to_f64() / row)
-        };
-        let (low, high) = ratios().fold((f64::INFINITY, 0.0f64), |(low, high), ratio| {
-            (low.min(ratio), high.max(ratio))
-        });
+        let ratios =
+            || lcp.covering.iter().zip(&lcp.scale.row).filter(|(_, row)| **row > 0.0).map(|(d, row)| d.to_f64() / row);
+        let (low, high) =
+            ratios().fold((f64::INFINITY, 0.0f64), |(low, high), ratio| (low.min(ratio), high.max(ratio)));
         let random = match rule {
             TieRule::Random(seed) => Some(ChaCha8Rng::seed_from_u64(seed)),
             _ => None,
@@ -95,10 +89,7 @@ impl<T: Scalar> Tableau<T> {
             rows,
             values: lcp.q.clone(),
             basic: (0..n).map(Variable::W).collect(),
-            nonbasic: (0..n)
-                .map(Variable::Z)
-                .chain(std::iter::once(Variable::P))
-                .collect(),
+            nonbasic: (0..n).map(Variable::Z).chain(std::iter::once(Variable::P)).collect(),
             entering: Variable::P,
             pivots: Vec::new(),
             seen: HashSet::new(),
@@ -167,16 +158,8 @@ impl<T: Scalar> Tableau<T> {
         let entering = self.nonbasic[column];
 
         let inverse = T::one().div(&self.rows[row][column]);
-        let mut solved: Vec<T> = self.rows[row]
-            .iter()
-            .map(|a| {
-                if a.is_zero() {
-                    T::zero()
-                } else {
-                    a.mul(&inverse).neg()
-                }
-            })
-            .collect();
+        let mut solved: Vec<T> =
+            self.rows[row].iter().map(|a| if a.is_zero() { T::zero() } else { a.mul(&inverse).neg() }).collect();
         let mut value = self.values[row].mul(&inverse).neg();
         if !T::is_exact() && !self.pivots.is_empty() && value.sign() == Some(Ordering::Less) {
             // The leaving variable was negative by rounding.
@@ -247,9 +230,7 @@ impl<T: Scalar> Tableau<T> {
     fn ray(&self, column: usize) -> Outcome<T> {
         let p = self.p_value();
         if p.to_f64() <= MARGINAL * self.largest_q {
-            return Outcome::Normal {
-                marginal: !p.is_zero(),
-            };
+            return Outcome::Normal { marginal: !p.is_zero() };
         }
         let n = self.lcp.size();
         let size = self.direction_size(column);
@@ -334,11 +315,7 @@ impl<T: Scalar> Engine for Tableau<T> {
 
     fn point(&self) -> Point<T> {
         let n = self.lcp.size();
-        let mut point = Point {
-            z: vec![T::zero(); n],
-            w: vec![T::zero(); n],
-            p: T::zero(),
-        };
+        let mut point = Point { z: vec![T::zero(); n], w: vec![T::zero(); n], p: T::zero() };
         for (variable, value) in self.basic.iter().zip(&self.values) {
             match variable {
                 Variable::W(i) => point.w[*i] = value.clone(),

@@ -23,10 +23,7 @@ pub(super) struct Size {
 impl<T: Scalar> Tableau<T> {
     /// Size of the vertex reached when the entering variable of column `column` has moved by `t`.
     pub(super) fn vertex_size(&self, column: usize, t: f64) -> Size {
-        let mut size = Size {
-            q: true,
-            ..Size::default()
-        };
+        let mut size = Size { q: true, ..Size::default() };
         for (row, variable) in self.basic.iter().enumerate() {
             let moved = self.values[row].to_f64().abs() + t * self.rows[row][column].to_f64().abs();
             self.count(&mut size, *variable, moved);
@@ -56,29 +53,18 @@ impl<T: Scalar> Tableau<T> {
     /// Largest amount of `variable` that counts as zero beside a direction or vertex of this size.
     pub(super) fn noise(&self, variable: Variable, size: Size) -> f64 {
         let q = |i: usize| {
-            if size.q {
-                self.lcp.q[i].to_f64().abs()
-            } else {
-                0.0
-            }
+            if size.q { self.lcp.q[i].to_f64().abs() } else { 0.0 }
         };
         NOISE
             * match variable {
-                Variable::W(i) => {
-                    self.lcp.scale.row[i] * size.z + self.lcp.covering[i].to_f64() * size.p + q(i)
-                }
+                Variable::W(i) => self.lcp.scale.row[i] * size.z + self.lcp.covering[i].to_f64() * size.p + q(i),
                 Variable::Z(k) => (size.z + self.weight_of_p * size.p) / self.lcp.scale.column[k],
                 Variable::P => size.z / self.weight_of_p + size.p,
             }
     }
 
     /// Sign of a number of `variable`; in f64 up to its noise.
-    pub(super) fn sign(
-        &self,
-        number: &T,
-        variable: Variable,
-        size: Size,
-    ) -> Result<Ordering, Undecided> {
+    pub(super) fn sign(&self, number: &T, variable: Variable, size: Size) -> Result<Ordering, Undecided> {
         let sign = number.sign().ok_or(Undecided(variable))?;
         if !T::is_exact() && number.to_f64().abs() <= self.noise(variable, size) {
             return Ok(Ordering::Equal);
@@ -135,11 +121,7 @@ impl<T: Scalar> Tableau<T> {
         // At the entry of p the pivots are d > 0, later a < 0: their sizes count.
         let size = |row: usize| {
             let a = &self.rows[row][column];
-            if self.pivots.is_empty() {
-                a.clone()
-            } else {
-                a.neg()
-            }
+            if self.pivots.is_empty() { a.clone() } else { a.neg() }
         };
         let (u_size, v_size) = (size(first), size(second));
         for &j in order {
@@ -193,12 +175,7 @@ impl<T: Scalar> Tableau<T> {
         Ok(best.map(|(_, rows)| rows))
     }
 
-    pub(super) fn compare_ratios(
-        &self,
-        a: &T,
-        b: &T,
-        variable: Variable,
-    ) -> Result<Ordering, Undecided> {
+    pub(super) fn compare_ratios(&self, a: &T, b: &T, variable: Variable) -> Result<Ordering, Undecided> {
         let order = a.compare(b).ok_or(Undecided(variable))?;
         if !T::is_exact() {
             let (a, b) = (a.to_f64(), b.to_f64());
@@ -241,8 +218,7 @@ impl<T: Scalar> Tableau<T> {
             let tied = match vertex {
                 None => ratio.compare(smallest).ok_or(Undecided(variable))? == Ordering::Equal,
                 Some(vertex) => {
-                    let left = (ratio.to_f64() - smallest.to_f64())
-                        * self.rows[*row][column].to_f64().abs();
+                    let left = (ratio.to_f64() - smallest.to_f64()) * self.rows[*row][column].to_f64().abs();
                     left <= self.noise(variable, vertex)
                 }
             };

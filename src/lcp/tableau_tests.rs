@@ -18,10 +18,7 @@ fn lcp<T: Scalar>(m: &[Vec<f64>], q: &[f64], d: &[f64]) -> Lcp<T> {
         q: convert(q),
         covering: convert(d),
         scale: Scale {
-            row: m
-                .iter()
-                .map(|row| row.iter().fold(0.0, |a: f64, x| a.max(x.abs())))
-                .collect(),
+            row: m.iter().map(|row| row.iter().fold(0.0, |a: f64, x| a.max(x.abs()))).collect(),
             column: vec![1.0; q.len()],
         },
     }
@@ -29,11 +26,7 @@ fn lcp<T: Scalar>(m: &[Vec<f64>], q: &[f64], d: &[f64]) -> Lcp<T> {
 
 fn solve<T: Scalar>(m: &[Vec<f64>], q: &[f64], rule: TieRule) -> Run<T> {
     let d = vec![1.0; q.len()];
-    run(
-        &mut Tableau::new(&lcp::<T>(m, q, &d), rule),
-        500,
-        &mut |_| ControlFlow::Continue(()),
-    )
+    run(&mut Tableau::new(&lcp::<T>(m, q, &d), rule), 500, &mut |_| ControlFlow::Continue(()))
 }
 
 fn natural(n: usize) -> TieRule {
@@ -58,12 +51,7 @@ fn zoo<T: Scalar>() {
     assert_eq!(z(&got).iter().sum::<f64>(), 1.0);
 
     // 4.4.23: bimatrix game, ray at the first pivot
-    let m = [
-        vec![0., 0., 10., 20.],
-        vec![0., 0., 30., 15.],
-        vec![10., 20., 0., 0.],
-        vec![30., 15., 0., 0.],
-    ];
+    let m = [vec![0., 0., 10., 20.], vec![0., 0., 30., 15.], vec![10., 20., 0., 0.], vec![30., 15., 0., 0.]];
     let got = solve::<T>(&m, &[-1.; 4], natural(4));
     assert!(matches!(got.outcome, Outcome::Ray(_)), "{:?}", got.outcome);
     assert_eq!(got.pivots.len(), 1);
@@ -82,9 +70,7 @@ fn zoo<T: Scalar>() {
                     .collect()
             })
             .collect();
-        let q: Vec<f64> = (1..=n)
-            .map(|i| -(n + 1 - i..=n).map(|j| 2f64.powi(j as i32)).sum::<f64>())
-            .collect();
+        let q: Vec<f64> = (1..=n).map(|i| -(n + 1 - i..=n).map(|j| 2f64.powi(j as i32)).sum::<f64>()).collect();
         let got = solve::<T>(&m, &q, natural(n));
         assert!(matches!(got.outcome, Outcome::Normal { marginal: false }));
         assert_eq!(got.pivots.len(), 1 << n);
@@ -142,9 +128,7 @@ fn a_ray_is_a_direction_of_the_problem() {
     // w̄ = M z̄ + d p̄ for the Painlevé rod: the reserve is lost whatever z.
     let m = [vec![-1.0, 0.5], vec![0.25, -2.0]];
     let got = solve::<BigRational>(&m, &[-1.0, -3.0], natural(2));
-    let Outcome::Ray(ray) = &got.outcome else {
-        panic!("{:?}", got.outcome)
-    };
+    let Outcome::Ray(ray) = &got.outcome else { panic!("{:?}", got.outcome) };
     let problem = lcp::<BigRational>(&m, &[-1.0, -3.0], &[1.0, 1.0]);
     for i in 0..2 {
         let mut w = problem.covering[i].mul(&ray.p);
@@ -158,16 +142,8 @@ fn a_ray_is_a_direction_of_the_problem() {
 /// A problem with small integers: ties everywhere.
 fn integer_problem(random: &mut ChaCha8Rng) -> (Vec<Vec<f64>>, Vec<f64>) {
     let n = random.random_range(1..=6);
-    let m = (0..n)
-        .map(|_| {
-            (0..n)
-                .map(|_| f64::from(random.random_range(-2..=3)))
-                .collect()
-        })
-        .collect();
-    let q = (0..n)
-        .map(|_| f64::from(random.random_range(-3..=2)))
-        .collect();
+    let m = (0..n).map(|_| (0..n).map(|_| f64::from(random.random_range(-2..=3))).collect()).collect();
+    let q = (0..n).map(|_| f64::from(random.random_range(-3..=2))).collect();
     (m, q)
 }
 
@@ -184,17 +160,9 @@ fn f64_and_rationals_make_the_same_pivots() {
         let a = solve::<f64>(&m, &q, rule.clone());
         let b = solve::<BigRational>(&m, &q, rule.clone());
         let word = |o: &str| o.split(['(', ' ']).next().unwrap_or("").to_owned();
-        assert_eq!(
-            word(&format!("{:?}", a.outcome)),
-            word(&format!("{:?}", b.outcome)),
-            "case {case}: {m:?} {q:?}"
-        );
-        let path = |pivots: &[Pivot]| {
-            pivots
-                .iter()
-                .map(|p| (p.entering, p.leaving, p.ties.clone()))
-                .collect::<Vec<_>>()
-        };
+        assert_eq!(word(&format!("{:?}", a.outcome)), word(&format!("{:?}", b.outcome)), "case {case}: {m:?} {q:?}");
+        let path =
+            |pivots: &[Pivot]| pivots.iter().map(|p| (p.entering, p.leaving, p.ties.clone())).collect::<Vec<_>>();
         assert_eq!(path(&a.pivots), path(&b.pivots), "case {case}: {m:?} {q:?}");
         if matches!(b.outcome, Outcome::Cycle | Outcome::PivotLimit) {
             assert!(!matches!(rule, TieRule::Lexicographic(_)));

@@ -81,12 +81,7 @@ impl UpdatedMatrix {
     }
 
     /// What the multipliers of the waiting steps for A x take from T x and x themselves.
-    fn start_multipliers(
-        &self,
-        v: &mut [f64],
-        stored: impl Fn(usize) -> f64,
-        x: impl Fn(usize) -> f64,
-    ) {
+    fn start_multipliers(&self, v: &mut [f64], stored: impl Fn(usize) -> f64, x: impl Fn(usize) -> f64) {
         for &(step, row, factor) in &self.from_rows {
             v[step] += factor * stored(row);
         }
@@ -159,10 +154,7 @@ impl UpdatedMatrix {
         let mut multipliers = vec![0.0; steps * columns.len()];
         for (k, &j) in columns.iter().enumerate() {
             let stored = self.stored(j);
-            block.extend(
-                rows.iter()
-                    .map(|&row| if self.cleared[row] { 0.0 } else { stored[row] }),
-            );
+            block.extend(rows.iter().map(|&row| if self.cleared[row] { 0.0 } else { stored[row] }));
             self.start_column_multipliers(&mut multipliers[steps * k..steps * (k + 1)], j);
         }
         self.finish_multipliers(&mut multipliers, columns.len());
@@ -171,29 +163,15 @@ impl UpdatedMatrix {
             waiting.extend(rows.iter().map(|&row| step[row]));
         }
         let (height, width) = (rows.len(), columns.len());
-        add_product(
-            &mut block,
-            &waiting,
-            &multipliers,
-            height,
-            width,
-            self.waiting,
-        );
+        add_product(&mut block, &waiting, &multipliers, height, width, self.waiting);
         block
     }
 
     /// Entry (row, j).
     pub(crate) fn entry(&self, row: usize, j: usize) -> f64 {
-        let kept = if self.cleared[row] {
-            0.0
-        } else {
-            self.stored(j)[row]
-        };
+        let kept = if self.cleared[row] { 0.0 } else { self.stored(j)[row] };
         let u = self.u[row..].iter().step_by(self.rows);
-        kept + u
-            .zip(self.column_multipliers(j))
-            .map(|(u, v)| u * v)
-            .sum::<f64>()
+        kept + u.zip(self.column_multipliers(j)).map(|(u, v)| u * v).sum::<f64>()
     }
 
     /// Σ x_j · column j over the given (j, x_j).
@@ -235,14 +213,7 @@ impl UpdatedMatrix {
 
     /// Adds `u` times the combination to all other columns, after clearing column `c`, which becomes `factor` · u;
     /// with `row`: clears this row first, and u counts as 1 in it. u stands for column c, whatever it held.
-    pub(crate) fn exchange(
-        &mut self,
-        row: Option<usize>,
-        c: usize,
-        u: &[f64],
-        combination: &Combination,
-        factor: f64,
-    ) {
+    pub(crate) fn exchange(&mut self, row: Option<usize>, c: usize, u: &[f64], combination: &Combination, factor: f64) {
         self.next_step(combination).copy_from_slice(u);
         self.t[c * self.rows..(c + 1) * self.rows].fill(0.0);
         self.from_units.retain(|&(_, column, _)| column != c);
@@ -273,11 +244,8 @@ impl UpdatedMatrix {
         let step = self.waiting;
         for i in 0..step {
             let u = &self.u[i * self.rows..(i + 1) * self.rows];
-            self.from_steps[step + self.limit * i] = combination
-                .rows
-                .iter()
-                .map(|&(row, factor)| factor * u[row])
-                .sum();
+            self.from_steps[step + self.limit * i] =
+                combination.rows.iter().map(|&(row, factor)| factor * u[row]).sum();
         }
         for &(row, factor) in &combination.rows {
             if !self.cleared[row] {
@@ -329,14 +297,7 @@ impl UpdatedMatrix {
         }
         self.flushes += 1;
         self.finish_multipliers(&mut v, self.columns);
-        add_product(
-            &mut self.t,
-            &self.u[..rows * steps],
-            &v,
-            rows,
-            self.columns,
-            steps,
-        );
+        add_product(&mut self.t, &self.u[..rows * steps], &v, rows, self.columns, steps);
         self.forget();
     }
 }

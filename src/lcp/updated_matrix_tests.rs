@@ -54,10 +54,7 @@ fn waiting_steps_read_as_if_made_at_once() {
             let (c, unit) = (rng.random_range(0..columns), rng.random_range(0..columns));
             let mut u = Vec::new();
             updated.column(c, &mut u);
-            let combination = Combination {
-                rows: vec![(r, -0.4), (other, 0.3)],
-                units: vec![(unit, 0.5)],
-            };
+            let combination = Combination { rows: vec![(r, -0.4), (other, 0.3)], units: vec![(unit, 0.5)] };
             match step % 5 {
                 0 => {
                     plain.replace_row(r, &combination);
@@ -90,9 +87,7 @@ fn waiting_steps_read_as_if_made_at_once() {
                 assert!((entry - expected).abs() <= 1e-13 * size);
             }
             let terms: Vec<(usize, f64)> = (0..7).map(|j| (j, 0.1 * j as f64 - 0.2)).collect();
-            let expected = terms.iter().fold(DVector::zeros(rows), |sum, &(j, x)| {
-                sum + plain.0.column(j) * x
-            });
+            let expected = terms.iter().fold(DVector::zeros(rows), |sum, &(j, x)| sum + plain.0.column(j) * x);
             let error = (DVector::from_vec(updated.combined(&terms)) - expected).amax();
             assert!(error <= 1e-13 * size, "step {step}: {error:e}");
             if size > 1e3 {

@@ -44,11 +44,7 @@ impl Basis {
                 Variable::P => p = true,
             }
         }
-        Basis {
-            z: z.into_iter().collect(),
-            active: active.into_iter().collect(),
-            p,
-        }
+        Basis { z: z.into_iter().collect(), active: active.into_iter().collect(), p }
     }
 }
 
@@ -83,11 +79,7 @@ impl<'a> Whole<'a> {
 
     fn parts(&self, k: usize) -> Parts {
         let (row, mirrored) = self.rows[k];
-        Parts {
-            row,
-            mirrored,
-            coupling: self.lcp.coupling(row),
-        }
+        Parts { row, mirrored, coupling: self.lcp.coupling(row) }
     }
 
     /// Entries of a column of M in the rows made of the given parts.
@@ -136,9 +128,7 @@ impl<'a> Whole<'a> {
         }
         let mut w = self.lcp.times(&primary);
         w += shift * &self.lcp.q + p * &self.lcp.covering;
-        let mut whole: Vec<f64> = (0..self.lcp.whole_size)
-            .map(|k| self.combine(k, |i| w[i], p, shift))
-            .collect();
+        let mut whole: Vec<f64> = (0..self.lcp.whole_size).map(|k| self.combine(k, |i| w[i], p, shift)).collect();
         for &k in &basis.active {
             whole[k] = 0.0;
         }

@@ -17,12 +17,8 @@ pub enum Side {
 
 impl Side {
     /// The words in files.
-    pub const WORDS: [(&'static str, Side); 4] = [
-        ("bottom", Side::Bottom),
-        ("top", Side::Top),
-        ("left", Side::Left),
-        ("right", Side::Right),
-    ];
+    pub const WORDS: [(&'static str, Side); 4] =
+        [("bottom", Side::Bottom), ("top", Side::Top), ("left", Side::Left), ("right", Side::Right)];
 
     /// Nodes of this edge, by increasing i or j.
     pub fn nodes(self, plate: &Plate) -> Vec<usize> {
@@ -39,10 +35,7 @@ impl Side {
     /// Unit normal of this edge, pointing out of the plate.
     pub fn outward_normal(self, plate: &Plate, nodes: &[Node]) -> [f64; 2] {
         let edge = self.nodes(plate);
-        let (from, to) = (
-            nodes[edge[0]].position,
-            nodes[edge[edge.len() - 1]].position,
-        );
+        let (from, to) = (nodes[edge[0]].position, nodes[edge[edge.len() - 1]].position);
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = along[0].hypot(along[1]);
         let along = [along[0] / length, along[1] / length];
@@ -78,32 +71,21 @@ mod tests {
             origin: [0.5, -1.0],
             rotation,
             x: GridLines::Graded(vec![0.0, 0.1, 0.4, 1.0, 2.5]),
-            y: GridLines::Uniform {
-                size: 2.0,
-                divisions: 3,
-            },
+            y: GridLines::Uniform { size: 2.0, divisions: 3 },
             thickness: 1.0,
             plane: Plane::Stress,
             material: 0,
         };
         let mut nodes = Vec::new();
-        let plate = Plate {
-            id: plate.id.clone(),
-            elements: 0..0,
-            nodes: plate.append_nodes(&mut nodes),
-        };
+        let plate = Plate { id: plate.id.clone(), elements: 0..0, nodes: plate.append_nodes(&mut nodes) };
         (nodes, plate)
     }
 
     #[test]
     fn edges_are_ordered_by_increasing_index() {
         let (nodes, plate) = graded(0.0);
-        let ids = |side: Side| -> Vec<&str> {
-            side.nodes(&plate)
-                .iter()
-                .map(|&node| nodes[node].id.as_str())
-                .collect()
-        };
+        let ids =
+            |side: Side| -> Vec<&str> { side.nodes(&plate).iter().map(|&node| nodes[node].id.as_str()).collect() };
         assert_eq!(ids(Side::Left), ["p[0,0]", "p[0,1]", "p[0,2]", "p[0,3]"]);
         assert_eq!(ids(Side::Top)[0], "p[0,3]");
         assert_eq!(ids(Side::Right)[3], "p[4,3]");
@@ -133,11 +115,8 @@ mod tests {
         }
         // Total = length; first moment about the start = L²/2, as of the uniform load itself.
         assert!((lengths.iter().sum::<f64>() - 2.5).abs() < 1e-14);
-        let moment: f64 = edge
-            .iter()
-            .zip(&lengths)
-            .map(|(&node, length)| (nodes[node].position[0] - 0.5) * length)
-            .sum();
+        let moment: f64 =
+            edge.iter().zip(&lengths).map(|(&node, length)| (nodes[node].position[0] - 0.5) * length).sum();
         assert!((moment - 2.5 * 2.5 / 2.0).abs() < 1e-14);
     }
 }

@@ -46,8 +46,7 @@ pub fn list() -> Vec<(&'static str, String)> {
         .iter()
         .map(|(name, text)| {
             // A test loads every one of them, so the title is always there.
-            let title =
-                load_text(name, text, None).map_or(String::new(), |scenario| scenario.title);
+            let title = load_text(name, text, None).map_or(String::new(), |scenario| scenario.title);
             (*name, title)
         })
         .collect()
@@ -55,10 +54,7 @@ pub fn list() -> Vec<(&'static str, String)> {
 
 /// The text of an embedded scenario.
 pub fn text(name: &str) -> Option<&'static str> {
-    SCENARIOS
-        .iter()
-        .find(|(known, _)| *known == name)
-        .map(|(_, text)| *text)
+    SCENARIOS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
 /// Loads an embedded scenario by its name.
@@ -84,10 +80,7 @@ mod tests {
                 Ok(scenario) => {
                     assert!(scenario.description.is_some(), "{name}");
                     for (parameter, of) in &scenario.parameters {
-                        assert!(
-                            of.about.is_some() && of.step.is_some(),
-                            "{name}: {parameter}"
-                        );
+                        assert!(of.about.is_some() && of.step.is_some(), "{name}: {parameter}");
                     }
                 }
                 Err(problems) => panic!("{problems}"),

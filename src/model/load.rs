@@ -50,9 +50,7 @@ pub fn load_text(name: &str, text: &str, path: Option<&Path>) -> Result<Scenario
 pub fn load_named_or_file(word: &str) -> Result<Scenario, Problems> {
     let path = Path::new(word);
     let looks_like_a_path = word.contains(['/', std::path::MAIN_SEPARATOR])
-        || path
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+        || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
     if !looks_like_a_path {
         if embedded::text(word).is_some() {
             return embedded::load(word);
@@ -68,13 +66,7 @@ fn unknown(word: &str) -> Problems {
     let names: Vec<&str> = embedded::names().collect();
     Problems::of_file(
         word,
-        format!(
-            "no embedded scenario and no file has this name{}",
-            decode::did_you_mean(word, names.iter().copied())
-        ),
-        format!(
-            "expected the path of a scenario file or one of {}",
-            names.join(", ")
-        ),
+        format!("no embedded scenario and no file has this name{}", decode::did_you_mean(word, names.iter().copied())),
+        format!("expected the path of a scenario file or one of {}", names.join(", ")),
     )
 }

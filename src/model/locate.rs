@@ -63,9 +63,8 @@ impl<'t> Document<'t> {
                 if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(text) {
                     let place = (error.line(), error.column());
                     let message = error.to_string();
-                    let message = message
-                        .strip_suffix(&format!(" at line {} column {}", place.0, place.1))
-                        .unwrap_or(&message);
+                    let message =
+                        message.strip_suffix(&format!(" at line {} column {}", place.0, place.1)).unwrap_or(&message);
                     // An overflowing number is JSON; its place is found by the typed reading.
                     if message != "number out of range" {
                         return Err(SyntaxError {
@@ -92,9 +91,11 @@ impl<'t> Document<'t> {
         while value.start() != offset {
             match value {
                 Value::Object(object) => {
-                    let Some(property) = object.properties.iter().find(|property| {
-                        (property.range.start..property.range.end).contains(&offset)
-                    }) else {
+                    let Some(property) = object
+                        .properties
+                        .iter()
+                        .find(|property| (property.range.start..property.range.end).contains(&offset))
+                    else {
                         break;
                     };
                     push_key(&mut path, property.name.as_str());
@@ -104,9 +105,7 @@ impl<'t> Document<'t> {
                     value = &property.value;
                 }
                 Value::Array(array) => {
-                    let index = array
-                        .elements
-                        .partition_point(|element| element.end() <= offset);
+                    let index = array.elements.partition_point(|element| element.end() <= offset);
                     let Some(element) = array.elements.get(index) else {
                         break;
                     };
@@ -174,10 +173,7 @@ pub fn key_start(property: &ObjectProp<'_>) -> usize {
 
 /// Appends a key to a JSON path: `.key`, or `["key"]` where the key is not a plain word.
 fn push_key(path: &mut String, key: &str) {
-    let plain = !key.is_empty()
-        && key
-            .chars()
-            .all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    let plain = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
     if !plain {
         path.push_str(&format!("[{key:?}]"));
     } else {
@@ -189,16 +185,11 @@ fn push_key(path: &mut String, key: &str) {
 }
 
 fn leads_to(child: &str, path: &str) -> bool {
-    path.strip_prefix(child)
-        .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    path.strip_prefix(child).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 fn offset_of_line(text: &str, line: usize, column: usize) -> usize {
-    let start: usize = text
-        .split_inclusive('\n')
-        .take(line.saturating_sub(1))
-        .map(str::len)
-        .sum();
+    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     (start + column.saturating_sub(1)).min(text.len())
 }
 
@@ -216,10 +207,7 @@ const SYNTAX: &str = "correct the JSON here, or just before this place";
 
 fn advice(kind: &ParseErrorKind, rest: &str) -> &'static str {
     match kind {
-        _ if ["NaN", "Infinity", "-Infinity", "nan", "inf", "-inf"]
-            .iter()
-            .any(|word| rest.starts_with(word)) =>
-        {
+        _ if ["NaN", "Infinity", "-Infinity", "nan", "inf", "-inf"].iter().any(|word| rest.starts_with(word)) => {
             "every number of a scenario is finite"
         }
         ParseErrorKind::CommentsNotAllowed => {
@@ -228,11 +216,10 @@ fn advice(kind: &ParseErrorKind, rest: &str) -> &'static str {
         ParseErrorKind::TrailingCommasNotAllowed => "remove the comma after the last entry",
         ParseErrorKind::ExpectedComma => "put a comma between the entries",
         ParseErrorKind::NonFiniteNumbersNotAllowed => "every number of a scenario is finite",
-        ParseErrorKind::SingleQuotedStringsNotAllowed
-        | ParseErrorKind::ExpectedStringObjectProperty => "write keys and words in \"…\"",
-        ParseErrorKind::MultipleRootJsonValues => {
-            "a scenario is one JSON object and nothing after it"
+        ParseErrorKind::SingleQuotedStringsNotAllowed | ParseErrorKind::ExpectedStringObjectProperty => {
+            "write keys and words in \"…\""
         }
+        ParseErrorKind::MultipleRootJsonValues => "a scenario is one JSON object and nothing after it",
         ParseErrorKind::UnterminatedArray => "close the list with `]`",
         ParseErrorKind::UnterminatedObject => "close the object with `}`",
         _ => SYNTAX,

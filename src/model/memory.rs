@@ -29,19 +29,14 @@ pub fn refusal(bytes: f64) -> Option<String> {
     let needs = format!("needs about {} of memory", readable(bytes));
     Some(match memory {
         Some(memory) => format!("{needs}, this machine has {}", readable(memory)),
-        None => format!(
-            "{needs}, more than the {} allowed",
-            readable(ASSUMED_MEMORY)
-        ),
+        None => format!("{needs}, more than the {} allowed", readable(ASSUMED_MEMORY)),
     })
 }
 
 /// Bytes of physical memory, where the system tells.
 fn physical_memory() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("MemTotal:"))?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
     let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024.0)
 }
@@ -50,17 +45,9 @@ fn readable(bytes: f64) -> String {
     let units = [("GiB", 1.0), ("TiB", 1024.0), ("PiB", 1024.0 * 1024.0)];
     let amount = bytes / GIB;
     // The largest unit that gives at least 1; GiB for anything smaller.
-    let (unit, size) = units
-        .into_iter()
-        .rev()
-        .find(|(_, size)| amount >= *size)
-        .unwrap_or(units[0]);
+    let (unit, size) = units.into_iter().rev().find(|(_, size)| amount >= *size).unwrap_or(units[0]);
     let amount = amount / size;
-    if amount < 1e4 {
-        format!("{amount:.1} {unit}")
-    } else {
-        format!("{amount:.1e} {unit}")
-    }
+    if amount < 1e4 { format!("{amount:.1} {unit}") } else { format!("{amount:.1e} {unit}") }
 }
 
 #[cfg(test)]
@@ -80,10 +67,6 @@ mod tests {
         assert_eq!(refusal(for_nodes(1000.0)), None);
         // Two unknowns to a node of a plate: 1e6 unknowns are welcome on 4 GiB, 1e8 on no desk.
         assert!(for_nodes(5e5) < 4.0 * GIB && for_nodes(5e7) > 100.0 * GIB);
-        assert!(
-            refusal(for_nodes(1e12))
-                .unwrap()
-                .starts_with("needs about 2.7 PiB")
-        );
+        assert!(refusal(for_nodes(1e12)).unwrap().starts_with("needs about 2.7 PiB"));
     }
 }

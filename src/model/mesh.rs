@@ -29,9 +29,9 @@ impl GridLines {
 
     fn distances(&self) -> Vec<f64> {
         match self {
-            GridLines::Uniform { size, divisions } => (0..=*divisions)
-                .map(|line| size * (line as f64 / *divisions as f64))
-                .collect(),
+            GridLines::Uniform { size, divisions } => {
+                (0..=*divisions).map(|line| size * (line as f64 / *divisions as f64)).collect()
+            }
             GridLines::Graded(lines) => lines.clone(),
         }
     }
@@ -73,10 +73,7 @@ impl PlateGrid {
             let first = nodes.len();
             nodes.extend(xs.iter().enumerate().map(|(i, x)| Node {
                 id: format!("{}[{i},{j}]", self.id),
-                position: [
-                    self.origin[0] + cosine * x - sine * y,
-                    self.origin[1] + sine * x + cosine * y,
-                ],
+                position: [self.origin[0] + cosine * x - sine * y, self.origin[1] + sine * x + cosine * y],
             }));
             grid.push((first..nodes.len()).collect());
         }
@@ -84,21 +81,14 @@ impl PlateGrid {
     }
 
     /// Appends the elements, row by row from the bottom, and returns their range.
-    pub fn append_elements(
-        &self,
-        grid: &[Vec<usize>],
-        elements: &mut Vec<Element>,
-    ) -> Range<usize> {
+    pub fn append_elements(&self, grid: &[Vec<usize>], elements: &mut Vec<Element>) -> Range<usize> {
         let first = elements.len();
         for rows in grid.windows(2) {
             for (lower, upper) in rows[0].windows(2).zip(rows[1].windows(2)) {
                 elements.push(Element {
                     nodes: vec![lower[0], lower[1], upper[1], upper[0]],
                     material: self.material,
-                    kind: ElementKind::Quad {
-                        thickness: self.thickness,
-                        plane: self.plane,
-                    },
+                    kind: ElementKind::Quad { thickness: self.thickness, plane: self.plane },
                 });
             }
         }
@@ -142,11 +132,7 @@ mod tests {
         let (mut nodes, mut elements) = (Vec::new(), Vec::new());
         let grid = plate.append_nodes(&mut nodes);
         assert_eq!(nodes.len() as f64, plate.node_count());
-        let plate = Plate {
-            id: plate.id.clone(),
-            elements: plate.append_elements(&grid, &mut elements),
-            nodes: grid,
-        };
+        let plate = Plate { id: plate.id.clone(), elements: plate.append_elements(&grid, &mut elements), nodes: grid };
         (nodes, plate, elements)
     }
 
@@ -194,11 +180,8 @@ mod tests {
 
     #[test]
     fn graded_lines_are_taken_as_given() {
-        let (nodes, plate, elements) = grid(
-            0.0,
-            GridLines::Graded(vec![0.0, 0.1, 0.3, 1.0]),
-            GridLines::Graded(vec![0.0, 2.0]),
-        );
+        let (nodes, plate, elements) =
+            grid(0.0, GridLines::Graded(vec![0.0, 0.1, 0.3, 1.0]), GridLines::Graded(vec![0.0, 2.0]));
         assert_eq!(nodes[plate.nodes[1][2]].position, [1.3, 4.0]);
         assert_eq!(elements.len(), 3);
     }

@@ -39,11 +39,9 @@ impl Law {
     /// Its numbers, each ≥ 0, with their keys in files.
     pub fn numbers(&self) -> Vec<(&'static str, &Number)> {
         match self {
-            Law::Coulomb {
-                friction,
-                cohesion,
-                gap,
-            } => vec![("friction", friction), ("cohesion", cohesion), ("gap", gap)],
+            Law::Coulomb { friction, cohesion, gap } => {
+                vec![("friction", friction), ("cohesion", cohesion), ("gap", gap)]
+            }
             Law::Frictionless { gap } => vec![("gap", gap)],
             Law::Bound { bound } => vec![("bound", bound)],
         }
@@ -110,14 +108,8 @@ pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
         direction: JointDirection::Normal,
         terms: row(pair, pair.normal),
     });
-    let tangentials = pairs
-        .iter()
-        .enumerate()
-        .filter(|(_, pair)| !matches!(pair.law, Law::Frictionless { .. }))
-        .map(|(index, pair)| Joint {
-            pair: index,
-            direction: JointDirection::Tangential,
-            terms: row(pair, pair.tangent()),
-        });
+    let tangentials = pairs.iter().enumerate().filter(|(_, pair)| !matches!(pair.law, Law::Frictionless { .. })).map(
+        |(index, pair)| Joint { pair: index, direction: JointDirection::Tangential, terms: row(pair, pair.tangent()) },
+    );
     normals.chain(tangentials).collect()
 }

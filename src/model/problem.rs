@@ -33,11 +33,7 @@ pub struct Problems {
 
 impl Problems {
     /// One problem of the file as a whole, without a place in its text.
-    pub fn of_file(
-        file: impl Into<String>,
-        message: impl Into<String>,
-        help: impl Into<String>,
-    ) -> Self {
+    pub fn of_file(file: impl Into<String>, message: impl Into<String>, help: impl Into<String>) -> Self {
         Problems {
             file: file.into(),
             problems: vec![Problem {

@@ -67,11 +67,7 @@ pub struct Rules {
 impl Rules {
     /// Covering, tie-break and engine as they are written.
     pub fn words(&self) -> [String; 3] {
-        [
-            self.covering.to_string(),
-            self.tie_break.to_string(),
-            self.engine.to_string(),
-        ]
+        [self.covering.to_string(), self.tie_break.to_string(), self.engine.to_string()]
     }
 
     /// Whether covering and tie-break are the defaults: only then a failed run is retried (theory §4).
@@ -89,8 +85,7 @@ impl Covering {
 
 impl TieBreak {
     /// Accepted words.
-    pub const WORDS: &'static str =
-        "lexicographic, natural, first-row or random:SEED (e.g. random:7)";
+    pub const WORDS: &'static str = "lexicographic, natural, first-row or random:SEED (e.g. random:7)";
 }
 
 impl Engine {
@@ -136,11 +131,7 @@ impl FromStr for Covering {
             "cohesive" => Ok(Covering::Cohesive),
             "ones" => Ok(Covering::Ones),
             "weight" => Ok(Covering::Weight),
-            _ => Err(UnknownChoice {
-                what: "covering",
-                word: word.into(),
-                expected: Covering::WORDS,
-            }),
+            _ => Err(UnknownChoice { what: "covering", word: word.into(), expected: Covering::WORDS }),
         }
     }
 }
@@ -148,11 +139,7 @@ impl FromStr for Covering {
 impl FromStr for TieBreak {
     type Err = UnknownChoice;
     fn from_str(word: &str) -> Result<Self, UnknownChoice> {
-        let unknown = || UnknownChoice {
-            what: "tie-break",
-            word: word.into(),
-            expected: TieBreak::WORDS,
-        };
+        let unknown = || UnknownChoice { what: "tie-break", word: word.into(), expected: TieBreak::WORDS };
         match word {
             "lexicographic" => Ok(TieBreak::Lexicographic),
             "natural" => Ok(TieBreak::Natural),
@@ -172,11 +159,7 @@ impl FromStr for Engine {
             "scheme" => Ok(Engine::Scheme),
             "tableau" => Ok(Engine::Tableau),
             "exact" => Ok(Engine::Exact),
-            _ => Err(UnknownChoice {
-                what: "engine",
-                word: word.into(),
-                expected: Engine::WORDS,
-            }),
+            _ => Err(UnknownChoice { what: "engine", word: word.into(), expected: Engine::WORDS }),
         }
     }
 }

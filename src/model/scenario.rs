@@ -126,12 +126,7 @@ pub struct Scenario {
 impl Scenario {
     /// A problem of this scenario that only a later stage could find, placed at a JSON path such as those in
     /// [`Places`] (at the nearest place around it if the path leads nowhere).
-    pub fn problem_at(
-        &self,
-        path: &str,
-        message: impl Into<String>,
-        help: impl Into<String>,
-    ) -> Problems {
+    pub fn problem_at(&self, path: &str, message: impl Into<String>, help: impl Into<String>) -> Problems {
         let mut problems = Problems::of_file(self.name.as_str(), message, help);
         // The text was parsed when it was loaded.
         if let Ok(document) = Document::parse(&self.text) {
@@ -159,35 +154,18 @@ impl Scenario {
             return None;
         }
         let laws: Vec<(&str, &Law)> = match &self.source {
-            Source::Structure(structure) => structure
-                .pairs
-                .iter()
-                .map(|pair| (pair.id.as_str(), &pair.law))
-                .collect(),
-            Source::ContactSystem(system) => system
-                .pairs
-                .iter()
-                .map(String::as_str)
-                .zip(&system.laws)
-                .collect(),
+            Source::Structure(structure) => structure.pairs.iter().map(|pair| (pair.id.as_str(), &pair.law)).collect(),
+            Source::ContactSystem(system) => system.pairs.iter().map(String::as_str).zip(&system.laws).collect(),
             Source::Lcp(_) => Vec::new(),
         };
         laws.into_iter().find_map(|(id, law)| {
-            let (what, _) = law
-                .numbers()
-                .into_iter()
-                .find(|(_, number)| number.parameter() == Some(parameter))?;
-            Some(format!(
-                "{parameter} is the {what} of {id} and must not be negative, found {value}"
-            ))
+            let (what, _) = law.numbers().into_iter().find(|(_, number)| number.parameter() == Some(parameter))?;
+            Some(format!("{parameter} is the {what} of {id} and must not be negative, found {value}"))
         })
     }
 
     /// Every parameter at the value of the file.
     pub fn parameter_values(&self) -> ParameterValues {
-        self.parameters
-            .iter()
-            .map(|(name, parameter)| (name.clone(), parameter.value))
-            .collect()
+        self.parameters.iter().map(|(name, parameter)| (name.clone(), parameter.value)).collect()
     }
 }

@@ -3,10 +3,7 @@
 //! The decoder reads the tree by hand, to collect all problems with their places; these types only say the same once
 //! more in a form from which a schema can be made. The tests hold the two together, key by key.
 
-#![expect(
-    dead_code,
-    reason = "the types are only looked at: the schema is made of them"
-)]
+#![expect(dead_code, reason = "the types are only looked at: the schema is made of them")]
 
 use std::collections::BTreeMap;
 
@@ -533,9 +530,7 @@ fn without_null(schema: &mut Schema) {
 
 /// The schema, JSON Schema draft 2020-12.
 pub fn schema() -> Value {
-    let mut schema = SchemaSettings::draft2020_12()
-        .into_generator()
-        .into_root_schema_for::<Scenario>();
+    let mut schema = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<Scenario>();
     RecursiveTransform(without_null).transform(&mut schema);
     let Value::Object(mut rules) = schema.to_value() else {
         return Value::Bool(true); // a type with fields never is

@@ -38,19 +38,10 @@ fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
             return false;
         }
     }
-    schema.as_object().is_none_or(|rules| {
-        rules
-            .iter()
-            .all(|(rule, with)| obeys(root, rules, (rule, with), value))
-    })
+    schema.as_object().is_none_or(|rules| rules.iter().all(|(rule, with)| obeys(root, rules, (rule, with), value)))
 }
 
-fn obeys(
-    root: &Value,
-    rules: &Map<String, Value>,
-    (rule, with): (&str, &Value),
-    value: &Value,
-) -> bool {
+fn obeys(root: &Value, rules: &Map<String, Value>, (rule, with): (&str, &Value), value: &Value) -> bool {
     let ways = || with.as_array().expect("a list of schemas").iter();
     let number = value.as_f64();
     match rule {
@@ -73,15 +64,9 @@ fn obeys(
                 .filter(|(key, _)| !known.is_some_and(|known| known.contains_key(*key)))
                 .all(|(_, value)| with.as_bool().unwrap_or_else(|| fits(root, with, value)))
         }),
-        "items" => value
-            .as_array()
-            .is_none_or(|list| list.iter().all(|value| fits(root, with, value))),
-        "minItems" => value
-            .as_array()
-            .is_none_or(|list| list.len() as u64 >= with.as_u64().expect("a count")),
-        "maxItems" => value
-            .as_array()
-            .is_none_or(|list| list.len() as u64 <= with.as_u64().expect("a count")),
+        "items" => value.as_array().is_none_or(|list| list.iter().all(|value| fits(root, with, value))),
+        "minItems" => value.as_array().is_none_or(|list| list.len() as u64 >= with.as_u64().expect("a count")),
+        "maxItems" => value.as_array().is_none_or(|list| list.len() as u64 <= with.as_u64().expect("a count")),
         "exclusiveMinimum" => number.is_none_or(|number| number > with.as_f64().expect("a number")),
         "minimum" => number.is_none_or(|number| number >= with.as_f64().expect("a number")),
         "maximum" => number.is_none_or(|number| number <= with.as_f64().expect("a number")),
@@ -125,10 +110,7 @@ fn what_the_decoder_refuses_does_not_fit() {
             value[key] = with.clone();
         }
         assert!(!fits(&schema, &schema, &value), "{change}");
-        assert!(
-            load_text("t", &value.to_string(), None).is_err(),
-            "{change}"
-        );
+        assert!(load_text("t", &value.to_string(), None).is_err(), "{change}");
     }
 }
 
@@ -159,24 +141,16 @@ fn schema_keys(root: &Value, schema: &Value, value: &Value) -> Option<BTreeSet<S
     }
     let deeper = match value {
         Value::Object(object) => object.iter().find_map(|(key, value)| {
-            let next = properties
-                .and_then(|known| known.get(key))
-                .or_else(|| schema.get("additionalProperties"))?;
+            let next = properties.and_then(|known| known.get(key)).or_else(|| schema.get("additionalProperties"))?;
             schema_keys(root, next, value)
         }),
-        Value::Array(list) => list
-            .iter()
-            .find_map(|value| schema_keys(root, schema.get("items")?, value)),
+        Value::Array(list) => list.iter().find_map(|value| schema_keys(root, schema.get("items")?, value)),
         _ => None,
     };
     deeper.or_else(|| {
-        ["oneOf", "anyOf"].iter().find_map(|way| {
-            schema
-                .get(*way)?
-                .as_array()?
-                .iter()
-                .find_map(|way| schema_keys(root, way, value))
-        })
+        ["oneOf", "anyOf"]
+            .iter()
+            .find_map(|way| schema.get(*way)?.as_array()?.iter().find_map(|way| schema_keys(root, way, value)))
     })
 }
 
@@ -185,7 +159,8 @@ fn schema_and_decoder_know_the_same_keys() {
     let schema = schema();
     let unknown = json!({ "zzz": 0 });
     let load = |kind: &str| json!({ "loads": { "w": { "items": [{ kind: { "zzz": 0 } }] } } });
-    let system = |stiffness: Value| json!({ "contact_system": { "pairs": ["c"], "loads": {}, "stiffness": stiffness } });
+    let system =
+        |stiffness: Value| json!({ "contact_system": { "pairs": ["c"], "loads": {}, "stiffness": stiffness } });
     let mut places = vec![
         json!({ "zzz": 0, "nodes": {} }),
         json!({ "units": unknown, "nodes": {} }),
@@ -199,9 +174,7 @@ fn schema_and_decoder_know_the_same_keys() {
         system(unknown.clone()),
         json!({ "lcp": unknown }),
     ];
-    for list in [
-        "bars", "plates", "quads", "ties", "supports", "springs", "contacts",
-    ] {
+    for list in ["bars", "plates", "quads", "ties", "supports", "springs", "contacts"] {
         places.push(json!({ list: [unknown] }));
     }
     for kind in ["point", "traction", "line"] {
@@ -213,9 +186,6 @@ fn schema_and_decoder_know_the_same_keys() {
     }
     let kinds = decoder_keys(&json!({ "loads": { "w": { "items": [unknown] } } }));
     for kind in kinds {
-        assert!(
-            schema_keys(&schema, &schema, &load(&kind)).is_some(),
-            "{kind}"
-        );
+        assert!(schema_keys(&schema, &schema, &load(&kind)).is_some(), "{kind}");
     }
 }

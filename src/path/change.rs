@@ -31,11 +31,7 @@ pub fn changes(before: &[PairState], after: &[PairState]) -> Vec<Change> {
         .zip(after)
         .filter_map(|(before, after)| {
             let (from, to) = (word(before), word(after));
-            (from != to).then(|| Change {
-                pair: after.id.clone(),
-                from,
-                to,
-            })
+            (from != to).then(|| Change { pair: after.id.clone(), from, to })
         })
         .collect()
 }
@@ -58,23 +54,11 @@ pub fn sentence(changes: &[Change]) -> String {
                 .map(|change| change.pair.clone())
                 .collect();
             let one = pairs.len() == 1;
-            let subject = if one {
-                format!("pair {}", pairs[0])
-            } else {
-                format!("pairs {}", list(&pairs))
-            };
+            let subject = if one { format!("pair {}", pairs[0]) } else { format!("pairs {}", list(&pairs)) };
             let s = |verb: &str| {
-                if one {
-                    format!("{verb}s")
-                } else {
-                    verb.to_owned()
-                }
+                if one { format!("{verb}s") } else { verb.to_owned() }
             };
-            let closes = if from.starts_with("open") {
-                format!("{} and ", s("close"))
-            } else {
-                String::new()
-            };
+            let closes = if from.starts_with("open") { format!("{} and ", s("close")) } else { String::new() };
             let verb = match to {
                 "stick" => format!("{closes}{}", s("stick")),
                 "slip+" => format!("{closes}{} +", s("slip")),
@@ -85,11 +69,7 @@ pub fn sentence(changes: &[Change]) -> String {
                 other if from.starts_with("open") => {
                     format!("{} from {from} to {other}", s("go"))
                 }
-                other => format!(
-                    "{} ({})",
-                    s("open"),
-                    other.trim_start_matches("open ").trim_matches(['(', ')'])
-                ),
+                other => format!("{} ({})", s("open"), other.trim_start_matches("open ").trim_matches(['(', ')'])),
             };
             format!("{subject} {verb}")
         })
@@ -102,24 +82,13 @@ mod tests {
     use super::{Change, sentence};
 
     fn change(pair: &str, from: &str, to: &str) -> Change {
-        Change {
-            pair: pair.into(),
-            from: from.into(),
-            to: to.into(),
-        }
+        Change { pair: pair.into(), from: from.into(), to: to.into() }
     }
 
     #[test]
     fn changes_of_one_kind_share_a_sentence() {
-        let changes = [
-            change("c1", "stick", "slip+"),
-            change("c2", "stick", "slip+"),
-            change("c3", "open", "stick"),
-        ];
-        assert_eq!(
-            sentence(&changes),
-            "pairs c1 and c2 slip +; pair c3 closes and sticks"
-        );
+        let changes = [change("c1", "stick", "slip+"), change("c2", "stick", "slip+"), change("c3", "open", "stick")];
+        assert_eq!(sentence(&changes), "pairs c1 and c2 slip +; pair c3 closes and sticks");
         assert_eq!(sentence(&changes[..1]), "pair c1 slips +");
     }
 }

@@ -95,9 +95,9 @@ impl FrictionPath {
         let name = &self.name;
         match self.end {
             FrictionEnd::Target => format!("the target {name} = {at} is reached"),
-            FrictionEnd::NoAnswer => format!(
-                "the answer that was followed ends at {name} = {at}, and no other was found beyond"
-            ),
+            FrictionEnd::NoAnswer => {
+                format!("the answer that was followed ends at {name} = {at}, and no other was found beyond")
+            }
         }
     }
 }
@@ -148,10 +148,9 @@ pub fn trace(
 ) -> Result<FrictionPath, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
     let (rates, factor_rates) = number_rates(prepared, system, name);
-    let moves_others = [&rates.cohesion, &rates.gap, &rates.bound]
-        .iter()
-        .any(|list| list.iter().any(|rate| *rate != 0.0))
-        || factor_rates.iter().any(|rate| *rate != 0.0);
+    let moves_others =
+        [&rates.cohesion, &rates.gap, &rates.bound].iter().any(|list| list.iter().any(|rate| *rate != 0.0))
+            || factor_rates.iter().any(|rate| *rate != 0.0);
     if moves_others {
         return Err(PathError::Mixed {
             name: name.to_owned(),
@@ -186,11 +185,7 @@ pub fn trace(
         None => {
             let found = cold(system, &follower.numbers(start), watch)?;
             let how = found.how().to_owned();
-            found.basis.ok_or(PathError::NoStart {
-                name: name.to_owned(),
-                at: start,
-                how,
-            })?
+            found.basis.ok_or(PathError::NoStart { name: name.to_owned(), at: start, how })?
         }
     };
     follower.follow(&mut path, basis, to, watch)?;
@@ -208,23 +203,9 @@ impl Follower<'_> {
         let numbers = self.numbers(value);
         let contact = contact_lcp(self.system, &numbers, Covering::Ones).ok()?;
         let point = vertex(&contact.lcp, basis)?;
-        let lcp = rate_lcp(
-            self.system,
-            &numbers,
-            &contact,
-            &point,
-            &self.rates,
-            self.sign,
-        );
+        let lcp = rate_lcp(self.system, &numbers, &contact, &point, &self.rates, self.sign);
         let slope = rate(&lcp, basis)?;
-        let mut place = Place {
-            value,
-            margins: Vec::new(),
-            slopes: Vec::new(),
-            numbers,
-            contact,
-            point,
-        };
+        let mut place = Place { value, margins: Vec::new(), slopes: Vec::new(), numbers, contact, point };
         let largest = |values: &[f64]| {
             let size = values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             if size > 0.0 { size } else { 1.0 }
@@ -245,34 +226,23 @@ impl Follower<'_> {
             place.margins.push(margin);
             place.slopes.push(slope);
         }
-        (place.margins.iter().chain(&place.slopes))
-            .all(|value| value.is_finite())
-            .then_some(place)
+        (place.margins.iter().chain(&place.slopes)).all(|value| value.is_finite()).then_some(place)
     }
 
     fn pairs(&self, place: &Place) -> Vec<PairState> {
         let state = state_of(self.system, &place.numbers, &place.contact, &place.point);
         let mut pairs = pair_states(self.system, &place.numbers, &place.contact, &state);
-        self.prepared
-            .add_released_slips(&mut pairs, &place.numbers, &self.factors, &state);
+        self.prepared.add_released_slips(&mut pairs, &place.numbers, &self.factors, &state);
         pairs
     }
 
-    fn follow(
-        &self,
-        path: &mut FrictionPath,
-        mut basis: Basis,
-        to: f64,
-        watch: &dyn Watch,
-    ) -> Result<(), PathError> {
+    fn follow(&self, path: &mut FrictionPath, mut basis: Basis, to: f64, watch: &dyn Watch) -> Result<(), PathError> {
         let singular = |at: f64| PathError::Breakdown {
             name: self.name.to_owned(),
             at,
             why: "the equations of the working scheme are singular".to_owned(),
         };
-        let mut here = self
-            .place(path.start, &basis)
-            .ok_or_else(|| singular(path.start))?;
+        let mut here = self.place(path.start, &basis).ok_or_else(|| singular(path.start))?;
         // The start may stand exactly on a limit.
         if let Ok(next) = self.scheme_beyond(&here, &basis)
             && let Some(place) = self.place(here.value, &next)
@@ -305,18 +275,11 @@ impl Follower<'_> {
                     });
                 }
             }
-            let merged = path
-                .breakpoints
-                .last()
-                .is_none_or(|last| last.value != from);
+            let merged = path.breakpoints.last().is_none_or(|last| last.value != from);
             match path.intervals.last_mut() {
                 // Nothing that a pair shows changed here.
                 Some(last) if merged => last.to = reached.value,
-                _ => path.intervals.push(Interval {
-                    from,
-                    to: reached.value,
-                    pairs: pairs.clone(),
-                }),
+                _ => path.intervals.push(Interval { from, to: reached.value, pairs: pairs.clone() }),
             }
             before = Some(pairs);
             if reached.value == to {
@@ -333,8 +296,7 @@ impl Follower<'_> {
             here = match next {
                 Some(next) => {
                     basis = next;
-                    self.place(reached.value, &basis)
-                        .ok_or_else(|| singular(reached.value))?
+                    self.place(reached.value, &basis).ok_or_else(|| singular(reached.value))?
                 }
                 None => {
                     let beyond = self.beside(reached.value, to);
@@ -364,34 +326,19 @@ impl Follower<'_> {
     /// A value a little further on.
     fn beside(&self, value: f64, to: f64) -> f64 {
         let beyond = value + self.sign * BEYOND * value.abs().max(1e-3);
-        if self.sign > 0.0 {
-            beyond.min(to)
-        } else {
-            beyond.max(to)
-        }
+        if self.sign > 0.0 { beyond.min(to) } else { beyond.max(to) }
     }
 
     fn differs(&self, a: &Place, b: &Place) -> bool {
-        let z = |place: &Place| {
-            place
-                .contact
-                .joint_displacements(self.system, &place.point.z)
-                * place.contact.length_unit
-        };
+        let z =
+            |place: &Place| place.contact.joint_displacements(self.system, &place.point.z) * place.contact.length_unit;
         let (a, b) = (z(a), z(b));
         (&a - &b).amax() > 1e-6 * a.amax().max(b.amax())
     }
 
     /// The scheme just beyond a place, from the LCP of the rates there.
     fn scheme_beyond(&self, place: &Place, basis: &Basis) -> Result<Basis, ()> {
-        let lcp = rate_lcp(
-            self.system,
-            &place.numbers,
-            &place.contact,
-            &place.point,
-            &self.rates,
-            self.sign,
-        );
+        let lcp = rate_lcp(self.system, &place.numbers, &place.contact, &place.point, &self.rates, self.sign);
         let order = order(&place.contact);
         let mut engine = Parametric::new(Arc::new(lcp), basis, order).ok_or(())?;
         let reach = Reach {
@@ -424,20 +371,13 @@ impl Follower<'_> {
             if left == 0.0 {
                 return Ok(here);
             }
-            watch.progress(
-                &format!("{} = {}", self.name, short(here.value)),
-                1.0 - left / span,
-            );
+            watch.progress(&format!("{} = {}", self.name, short(here.value)), 1.0 - left / span);
             if watch.stop() {
                 return Err(PathError::Interrupted);
             }
             let length = step.min(left);
             let at = |s: f64| {
-                if s * length >= left {
-                    to
-                } else {
-                    here.value + self.sign * s * length
-                }
+                if s * length >= left { to } else { here.value + self.sign * s * length }
             };
             let (middle, end) = (self.place(at(0.5), basis), self.place(at(1.0), basis));
             let (Some(middle), Some(end)) = (middle, end) else {
@@ -447,21 +387,14 @@ impl Follower<'_> {
                 }
                 continue;
             };
-            let cubics: Vec<Cubic> = (0..here.margins.len())
-                .map(|k| Cubic::new(&here, &end, k, length))
-                .collect();
-            let faithful = cubics
-                .iter()
-                .zip(&middle.margins)
-                .all(|(cubic, margin)| (cubic.at(0.5) - margin).abs() <= FAITHFUL);
+            let cubics: Vec<Cubic> = (0..here.margins.len()).map(|k| Cubic::new(&here, &end, k, length)).collect();
+            let faithful =
+                cubics.iter().zip(&middle.margins).all(|(cubic, margin)| (cubic.at(0.5) - margin).abs() <= FAITHFUL);
             if !faithful && length > least {
                 step = 0.5 * length;
                 continue;
             }
-            let first = cubics
-                .iter()
-                .filter_map(Cubic::first_negative)
-                .fold(f64::INFINITY, f64::min);
+            let first = cubics.iter().filter_map(Cubic::first_negative).fold(f64::INFINITY, f64::min);
             if first > 1.0 {
                 path.samples.push((end.value, self.pairs(&end)));
                 here = end;
@@ -502,15 +435,8 @@ impl Follower<'_> {
     /// The zero between a place where all is well and one where some variables are negative, by the Illinois method
     /// on the least of those.
     fn zero(&self, good: &Place, bad: Place, basis: &Basis) -> Place {
-        let fallen: Vec<usize> = (0..bad.margins.len())
-            .filter(|&k| bad.margins[k] < -ZERO)
-            .collect();
-        let least = |place: &Place| {
-            fallen
-                .iter()
-                .map(|&k| place.margins[k])
-                .fold(f64::INFINITY, f64::min)
-        };
+        let fallen: Vec<usize> = (0..bad.margins.len()).filter(|&k| bad.margins[k] < -ZERO).collect();
+        let least = |place: &Place| fallen.iter().map(|&k| place.margins[k]).fold(f64::INFINITY, f64::min);
         let (mut a, mut b) = (good.value, bad.value);
         let (mut f_a, mut f_b) = (least(good).max(0.0), least(&bad));
         let mut best = bad;
@@ -521,11 +447,7 @@ impl Follower<'_> {
             }
             let secant = b - f_b * (b - a) / (f_b - f_a);
             let inside = (secant - a) * (secant - b) < 0.0;
-            let x = if round % 3 == 2 || !inside {
-                0.5 * (a + b)
-            } else {
-                secant
-            };
+            let x = if round % 3 == 2 || !inside { 0.5 * (a + b) } else { secant };
             if x == a || x == b {
                 break;
             }
@@ -559,10 +481,7 @@ struct Cubic {
 
 impl Cubic {
     fn new(a: &Place, b: &Place, k: usize, length: f64) -> Cubic {
-        Cubic {
-            values: [a.margins[k], b.margins[k]],
-            slopes: [a.slopes[k] * length, b.slopes[k] * length],
-        }
+        Cubic { values: [a.margins[k], b.margins[k]], slopes: [a.slopes[k] * length, b.slopes[k] * length] }
     }
 
     fn at(&self, s: f64) -> f64 {
@@ -578,15 +497,8 @@ impl Cubic {
         let cube = 2.0 * (a - b) + da + db;
         let square = 3.0 * (b - a) - 2.0 * da - db;
         let root = (square * square - 3.0 * cube * da).max(0.0).sqrt();
-        let mut places = [
-            (-square + root) / (3.0 * cube),
-            (-square - root) / (3.0 * cube),
-        ];
+        let mut places = [(-square + root) / (3.0 * cube), (-square - root) / (3.0 * cube)];
         places.sort_by(f64::total_cmp);
-        places
-            .into_iter()
-            .filter(|s| *s > 0.0 && *s < 1.0)
-            .chain([1.0])
-            .find(|&s| self.at(s) < -ZERO)
+        places.into_iter().filter(|s| *s > 0.0 && *s < 1.0).chain([1.0]).find(|&s| self.at(s) < -ZERO)
     }
 }

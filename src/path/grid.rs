@@ -66,19 +66,12 @@ impl Axis {
     /// A step that is zero or leads away; too many points.
     pub fn stepped(name: &str, from: f64, to: f64, step: f64) -> Result<Axis, GridError> {
         let range = format!("{name}={from}:{to}:{step}");
-        if step == 0.0
-            || (to - from) * step < 0.0
-            || !(from.is_finite() && to.is_finite() && step.is_finite())
-        {
-            return Err(GridError::Range(format!(
-                "{range}: a step of {step} does not lead from {from} to {to}"
-            )));
+        if step == 0.0 || (to - from) * step < 0.0 || !(from.is_finite() && to.is_finite() && step.is_finite()) {
+            return Err(GridError::Range(format!("{range}: a step of {step} does not lead from {from} to {to}")));
         }
         let steps = ((to - from) / step + 1e-9).floor();
         if steps >= MOST {
-            return Err(GridError::Range(format!(
-                "{range} has more than {MOST} points"
-            )));
+            return Err(GridError::Range(format!("{range} has more than {MOST} points")));
         }
         let count = steps as usize;
         let values = (0..=count)
@@ -93,11 +86,7 @@ impl Axis {
                 }
             })
             .collect();
-        Ok(Axis {
-            name: name.to_owned(),
-            values,
-            range,
-        })
+        Ok(Axis { name: name.to_owned(), values, range })
     }
 
     /// `count` values from `from` to `to`, both included.
@@ -107,9 +96,7 @@ impl Axis {
     pub fn counted(name: &str, from: f64, to: f64, count: usize) -> Result<Axis, GridError> {
         let range = format!("{name}={from}..{to}/{count}");
         if count == 0 || count as f64 > MOST || !(from.is_finite() && to.is_finite()) {
-            return Err(GridError::Range(format!(
-                "{range}: expected 1 to {MOST} points"
-            )));
+            return Err(GridError::Range(format!("{range}: expected 1 to {MOST} points")));
         }
         let last = (count - 1).max(1) as f64;
         let values = (0..count)
@@ -119,11 +106,7 @@ impl Axis {
                 k => tidy(from + (to - from) * (k as f64 / last), (to - from) / last),
             })
             .collect();
-        Ok(Axis {
-            name: name.to_owned(),
-            values,
-            range,
-        })
+        Ok(Axis { name: name.to_owned(), values, range })
     }
 
     /// Reads `f=0:1:0.05`, `f=0..1/21` or `f=0.3`.
@@ -131,28 +114,23 @@ impl Axis {
     /// # Errors
     /// See [`GridError`].
     pub fn parse(text: &str) -> Result<Axis, GridError> {
-        let (name, range) = text
-            .split_once('=')
-            .ok_or_else(|| GridError::Form(text.to_owned()))?;
+        let (name, range) = text.split_once('=').ok_or_else(|| GridError::Form(text.to_owned()))?;
         let name = name.trim();
         let number = |word: &str| -> Result<f64, GridError> {
             word.trim()
                 .parse()
                 .ok()
                 .filter(|value: &f64| value.is_finite())
-                .ok_or_else(|| GridError::Number {
-                    word: word.trim().to_owned(),
-                    whole: text.to_owned(),
-                })
+                .ok_or_else(|| GridError::Number { word: word.trim().to_owned(), whole: text.to_owned() })
         };
         if let Some((from, rest)) = range.split_once("..") {
             let (to, count) = match rest.split_once('/') {
                 Some((to, count)) => (
                     to,
-                    count.trim().parse().map_err(|_| GridError::Number {
-                        word: count.trim().to_owned(),
-                        whole: text.to_owned(),
-                    })?,
+                    count
+                        .trim()
+                        .parse()
+                        .map_err(|_| GridError::Number { word: count.trim().to_owned(), whole: text.to_owned() })?,
                 ),
                 None => (rest, POINTS),
             };
@@ -184,38 +162,24 @@ impl Grid {
     /// Unknown parameters, the same twice, none or more than [`AXES`], values that a parameter cannot take.
     pub fn new(scenario: &Scenario, axes: Vec<Axis>) -> Result<Grid, GridError> {
         if axes.is_empty() || axes.len() > AXES {
-            return Err(GridError::Axes(format!(
-                "a sweep varies one to {AXES} parameters, found {}",
-                axes.len()
-            )));
+            return Err(GridError::Axes(format!("a sweep varies one to {AXES} parameters, found {}", axes.len())));
         }
         for (k, axis) in axes.iter().enumerate() {
             if !scenario.parameters.contains_key(&axis.name) {
                 let known: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
                 return Err(GridError::Unknown {
                     name: axis.name.clone(),
-                    known: if known.is_empty() {
-                        "no parameters".to_owned()
-                    } else {
-                        known.join(", ")
-                    },
+                    known: if known.is_empty() { "no parameters".to_owned() } else { known.join(", ") },
                 });
             }
             if axes[..k].iter().any(|other| other.name == axis.name) {
                 return Err(GridError::Axes(format!("{} is varied twice", axis.name)));
             }
-            if let Some(refusal) = axis
-                .values
-                .iter()
-                .find_map(|value| scenario.refusal(&axis.name, *value))
-            {
+            if let Some(refusal) = axis.values.iter().find_map(|value| scenario.refusal(&axis.name, *value)) {
                 return Err(GridError::Range(refusal));
             }
         }
-        let points = axes
-            .iter()
-            .map(|axis| axis.values.len() as f64)
-            .product::<f64>();
+        let points = axes.iter().map(|axis| axis.values.len() as f64).product::<f64>();
         if points > 1e12 {
             return Err(GridError::Axes(format!("{points:e} points are too many")));
         }
@@ -269,10 +233,8 @@ impl std::str::FromStr for Shard {
     fn from_str(text: &str) -> Result<Shard, String> {
         let wrong = || format!("`{text}` is no shard: expected K/N with 1 ≤ K ≤ N, e.g. 3/16");
         let (number, of) = text.split_once('/').ok_or_else(wrong)?;
-        let shard = Shard {
-            number: number.trim().parse().map_err(|_| wrong())?,
-            of: of.trim().parse().map_err(|_| wrong())?,
-        };
+        let shard =
+            Shard { number: number.trim().parse().map_err(|_| wrong())?, of: of.trim().parse().map_err(|_| wrong())? };
         if shard.number == 0 || shard.number > shard.of {
             return Err(wrong());
         }
@@ -300,22 +262,9 @@ mod tests {
         assert_eq!(axis.values, [-0.2, -0.1, 0.0, 0.1, 0.2]);
         let axis = Axis::parse("f=1:0:-0.25").expect("a range");
         assert_eq!(axis.values, [1.0, 0.75, 0.5, 0.25, 0.0]);
-        assert_eq!(
-            Axis::parse("f=0..1/3").expect("a range").values,
-            [0.0, 0.5, 1.0]
-        );
+        assert_eq!(Axis::parse("f=0..1/3").expect("a range").values, [0.0, 0.5, 1.0]);
         assert_eq!(Axis::parse("f=2").expect("a value").values, [2.0]);
-        for wrong in [
-            "f",
-            "f=",
-            "f=1:2",
-            "f=1:2:-1",
-            "f=0:1:0",
-            "f=0:1e9:1e-9",
-            "f=a..b",
-            "f=0..1/0",
-            "f=nan",
-        ] {
+        for wrong in ["f", "f=", "f=1:2", "f=1:2:-1", "f=0:1:0", "f=0:1e9:1e-9", "f=a..b", "f=0..1/0", "f=nan"] {
             assert!(Axis::parse(wrong).is_err(), "{wrong}");
         }
     }

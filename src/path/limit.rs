@@ -42,10 +42,7 @@ pub fn limit(
     name: &str,
     watch: &dyn Watch,
 ) -> Result<Limit, PathError> {
-    let reach = LoadReach {
-        to: None,
-        through: false,
-    };
+    let reach = LoadReach { to: None, through: false };
     let path = trace(prepared, scenario, values, solved, name, reach, watch)?;
     let present = path.parameter.value(&factors(prepared, values));
     let factor = path.limit();
@@ -59,9 +56,7 @@ pub fn limit(
         confirmed: false,
         path,
     };
-    let (Some(factor), LoadEnd::Limit(direction), Some(system)) =
-        (factor, &limit.path.end, prepared.system())
-    else {
+    let (Some(factor), LoadEnd::Limit(direction), Some(system)) = (factor, &limit.path.end, prepared.system()) else {
         return Ok(limit);
     };
     let size = factor.abs().max(f64::MIN_POSITIVE);

@@ -39,26 +39,16 @@ impl LoadParameter {
     ///
     /// # Errors
     /// An unknown name; a parameter that moves the laws of contact too.
-    pub fn find(
-        prepared: &Prepared,
-        scenario: &Scenario,
-        name: &str,
-    ) -> Result<LoadParameter, PathError> {
+    pub fn find(prepared: &Prepared, scenario: &Scenario, name: &str) -> Result<LoadParameter, PathError> {
         let system = prepared.system().ok_or(PathError::Plain("trace"))?;
         if let Some(case) = prepared.cases.iter().position(|(known, _)| known == name) {
-            return Ok(LoadParameter {
-                name: name.to_owned(),
-                cases: vec![case],
-            });
+            return Ok(LoadParameter { name: name.to_owned(), cases: vec![case] });
         }
-        let cases: Vec<usize> = (0..prepared.cases.len())
-            .filter(|&case| prepared.cases[case].1.parameter() == Some(name))
-            .collect();
+        let cases: Vec<usize> =
+            (0..prepared.cases.len()).filter(|&case| prepared.cases[case].1.parameter() == Some(name)).collect();
         let law = system.pairs.iter().find_map(|pair| {
             let numbers = pair.law.numbers();
-            let (what, _) = numbers
-                .into_iter()
-                .find(|(_, number)| number.parameter() == Some(name))?;
+            let (what, _) = numbers.into_iter().find(|(_, number)| number.parameter() == Some(name))?;
             Some(format!("it is the {what} of pair {}", pair.id))
         });
         if let Some(why) = law {
@@ -67,21 +57,12 @@ impl LoadParameter {
             } else {
                 " and the factor of a load case as well; give them parameters of their own"
             };
-            return Err(PathError::Mixed {
-                name: name.to_owned(),
-                why: format!("{why}{rest}"),
-            });
+            return Err(PathError::Mixed { name: name.to_owned(), why: format!("{why}{rest}") });
         }
         if cases.is_empty() {
-            return Err(PathError::Unknown {
-                name: name.to_owned(),
-                known: known(prepared, scenario),
-            });
+            return Err(PathError::Unknown { name: name.to_owned(), known: known(prepared, scenario) });
         }
-        Ok(LoadParameter {
-            name: name.to_owned(),
-            cases,
-        })
+        Ok(LoadParameter { name: name.to_owned(), cases })
     }
 
     /// Its present value.
@@ -92,26 +73,18 @@ impl LoadParameter {
 
     /// RF per unit of it.
     fn direction(&self, system: &ContactSystem) -> DVector<f64> {
-        self.cases.iter().fold(
-            DVector::zeros(system.joint_count()),
-            |sum: DVector<f64>, &case| sum + &system.loads[case].vector,
-        )
+        self.cases
+            .iter()
+            .fold(DVector::zeros(system.joint_count()), |sum: DVector<f64>, &case| sum + &system.loads[case].vector)
     }
 }
 
 /// The names that `trace` takes.
 pub fn known(prepared: &Prepared, scenario: &Scenario) -> String {
-    let cases: Vec<&str> = prepared
-        .cases
-        .iter()
-        .map(|(name, _)| name.as_str())
-        .collect();
+    let cases: Vec<&str> = prepared.cases.iter().map(|(name, _)| name.as_str()).collect();
     let parameters: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
-    let mut text = if cases.is_empty() {
-        "no load cases".to_owned()
-    } else {
-        format!("load cases {}", cases.join(", "))
-    };
+    let mut text =
+        if cases.is_empty() { "no load cases".to_owned() } else { format!("load cases {}", cases.join(", ")) };
     if !parameters.is_empty() {
         text.push_str(&format!("; parameters {}", parameters.join(", ")));
     }
@@ -240,22 +213,11 @@ pub fn trace(
         }
     };
     let target = reach.to.map_or(f64::INFINITY, |to| (to - start).abs());
-    let path = engine.follow(
-        Reach {
-            target,
-            through: reach.through,
-            pivots: PIVOTS,
-        },
-        &mut |t| {
-            let fraction = if target.is_finite() { t / target } else { 0.0 };
-            watch.progress(&format!("{name} = {}", short(start + sign * t)), fraction);
-            if watch.stop() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        },
-    );
+    let path = engine.follow(Reach { target, through: reach.through, pivots: PIVOTS }, &mut |t| {
+        let fraction = if target.is_finite() { t / target } else { 0.0 };
+        watch.progress(&format!("{name} = {}", short(start + sign * t)), fraction);
+        if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
     let at = start + sign * path.knots.last().map_or(0.0, |knot| knot.t);
     let end = match &path.end {
         End::Target => LoadEnd::Target,
@@ -272,22 +234,14 @@ pub fn trace(
             });
         }
         End::Breakdown(why) => {
-            return Err(PathError::Breakdown {
-                name: name.to_owned(),
-                at,
-                why: why.clone(),
-            });
+            return Err(PathError::Breakdown { name: name.to_owned(), at, why: why.clone() });
         }
     };
     let mut followed = LoadPath {
         parameter,
         start,
         from_zero,
-        factors: path
-            .knots
-            .iter()
-            .map(|knot| start + sign * knot.t)
-            .collect(),
+        factors: path.knots.iter().map(|knot| start + sign * knot.t).collect(),
         pairs: Vec::new(),
         breakpoints: Vec::new(),
         end,
@@ -323,16 +277,9 @@ fn engine_of(contact: &ContactLcp, basis: Option<&Basis>) -> Option<Parametric> 
 /// a + s (b − a), exact at both ends; zero where both are.
 fn between(a: &Point, b: &Point, s: f64) -> Point {
     let mix = |a: &[f64], b: &[f64]| -> Vec<f64> {
-        a.iter()
-            .zip(b)
-            .map(|(a, b)| if s == 1.0 { *b } else { a + s * (b - a) })
-            .collect()
+        a.iter().zip(b).map(|(a, b)| if s == 1.0 { *b } else { a + s * (b - a) }).collect()
     };
-    Point {
-        z: mix(&a.z, &b.z),
-        w: mix(&a.w, &b.w),
-        p: a.p + s * (b.p - a.p),
-    }
+    Point { z: mix(&a.z, &b.z), w: mix(&a.w, &b.w), p: a.p + s * (b.p - a.p) }
 }
 
 impl LoadPath {
@@ -365,12 +312,7 @@ impl LoadPath {
         &self.contact
     }
 
-    fn pairs_of(
-        &self,
-        prepared: &Prepared,
-        system: &ContactSystem,
-        point: &Point,
-    ) -> Vec<PairState> {
+    fn pairs_of(&self, prepared: &Prepared, system: &ContactSystem, point: &Point) -> Vec<PairState> {
         let factor = self.start + self.sign * point.p;
         let numbers = self.numbers(factor);
         let state = state_of(system, &numbers, &self.contact, point);
@@ -396,11 +338,7 @@ impl LoadPath {
         let point = match segment {
             Some([a, b]) => {
                 let length = b.t - a.t;
-                let s = if length == 0.0 {
-                    0.0
-                } else {
-                    (t - a.t) / length
-                };
+                let s = if length == 0.0 { 0.0 } else { (t - a.t) / length };
                 between(&a.point, &b.point, s)
             }
             _ => knots.first().filter(|only| only.t == t)?.point.clone(),
@@ -441,10 +379,7 @@ impl LoadPath {
     /// Pairs and breakpoints from the knots.
     fn describe(&mut self, prepared: &Prepared, system: &ContactSystem) {
         let knots = &self.path.knots;
-        self.pairs = knots
-            .iter()
-            .map(|knot| self.pairs_of(prepared, system, &knot.point))
-            .collect();
+        self.pairs = knots.iter().map(|knot| self.pairs_of(prepared, system, &knot.point)).collect();
         let mut halfway: Vec<Vec<PairState>> = knots
             .windows(2)
             .map(|ends| {
@@ -452,10 +387,7 @@ impl LoadPath {
                 self.pairs_of(prepared, system, &point)
             })
             .collect();
-        halfway.extend(
-            self.after_last()
-                .map(|point| self.pairs_of(prepared, system, &point)),
-        );
+        halfway.extend(self.after_last().map(|point| self.pairs_of(prepared, system, &point)));
         for (k, after) in halfway.iter().enumerate() {
             let before = match k {
                 0 => &self.pairs[0],
@@ -485,9 +417,9 @@ impl LoadPath {
                 "turning point at {name} = {at}: the path goes on with a falling load only; beyond it the structure \
                  jumps to another answer or has none (`--through` follows the path)"
             ),
-            LoadEnd::Limit(_) => format!(
-                "limit load: beyond {name} = {at} nothing resists the motion in which the path ends"
-            ),
+            LoadEnd::Limit(_) => {
+                format!("limit load: beyond {name} = {at} nothing resists the motion in which the path ends")
+            }
             LoadEnd::Unbounded => {
                 format!("beyond {name} = {at} nothing changes any more, however large the load")
             }

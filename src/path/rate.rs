@@ -13,17 +13,9 @@ use crate::solve::Prepared;
 use crate::solve::numbers::numbers_by;
 
 /// d(numbers)/dθ and d(factors)/dθ for a parameter θ: numbers are θ itself or do not depend on it.
-pub(crate) fn number_rates(
-    prepared: &Prepared,
-    system: &ContactSystem,
-    name: &str,
-) -> (ContactNumbers, Vec<f64>) {
+pub(crate) fn number_rates(prepared: &Prepared, system: &ContactSystem, name: &str) -> (ContactNumbers, Vec<f64>) {
     let is = |number: &Number| f64::from(number.parameter() == Some(name));
-    let factors: Vec<f64> = prepared
-        .cases
-        .iter()
-        .map(|(_, factor)| is(factor))
-        .collect();
+    let factors: Vec<f64> = prepared.cases.iter().map(|(_, factor)| is(factor)).collect();
     (numbers_by(system, &factors, &is), factors)
 }
 

@@ -85,10 +85,8 @@ impl PathRecord {
             .samples
             .iter()
             .map(|(value, pairs)| {
-                let at_break = path
-                    .breakpoints
-                    .iter()
-                    .find(|breakpoint| breakpoint.value == *value && last != Some(*value));
+                let at_break =
+                    path.breakpoints.iter().find(|breakpoint| breakpoint.value == *value && last != Some(*value));
                 last = Some(*value);
                 PathPlace {
                     stage: None,
@@ -136,10 +134,7 @@ impl PathRecord {
     /// Index of the case that a plot of a history has as abscissa: the one whose factor wanders farthest.
     pub fn widest_case(&self) -> Option<usize> {
         let way = |case: usize| -> f64 {
-            self.places
-                .windows(2)
-                .map(|ends| (ends[1].factors[case] - ends[0].factors[case]).abs())
-                .sum()
+            self.places.windows(2).map(|ends| (ends[1].factors[case] - ends[0].factors[case]).abs()).sum()
         };
         (0..self.cases.len()).max_by(|&a, &b| way(a).total_cmp(&way(b)).then(b.cmp(&a)))
     }

@@ -59,22 +59,11 @@ pub fn sensitivity(
     values: &crate::model::parameter::ParameterValues,
 ) -> Result<Sensitivity, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("sensitivity"))?;
-    let (
-        Trace::Contact {
-            contact, numbers, ..
-        },
-        Some(basis),
-    ) = (&solved.trace, final_basis(solved))
-    else {
-        return Err(PathError::Missing(
-            "there is no answer whose derivatives could be taken".to_owned(),
-        ));
+    let (Trace::Contact { contact, numbers, .. }, Some(basis)) = (&solved.trace, final_basis(solved)) else {
+        return Err(PathError::Missing("there is no answer whose derivatives could be taken".to_owned()));
     };
-    let singular = || {
-        PathError::Missing(
-            "the equations of the final scheme are singular: there are no derivatives".to_owned(),
-        )
-    };
+    let singular =
+        || PathError::Missing("the equations of the final scheme are singular: there are no derivatives".to_owned());
     // Afresh, forces included: a warm answer keeps only its displacements.
     let point = vertex(&contact.lcp, &basis).ok_or_else(singular)?;
     let mut parameters = Vec::new();
@@ -83,11 +72,7 @@ pub fn sensitivity(
         let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
-        let state = JointState {
-            force: &system.stiffness * &z + load_with_gaps(system, &rates),
-            z,
-            p: 0.0,
-        };
+        let state = JointState { force: &system.stiffness * &z + load_with_gaps(system, &rates), z, p: 0.0 };
         // The released slips are linear in all of this, so their rates follow from the rates.
         let mut shown = solved.answer.pairs.clone();
         prepared.add_released_slips(&mut shown, &rates, &factor_rates, &state);
@@ -117,20 +102,12 @@ pub fn sensitivity(
             pairs,
         });
     }
-    Ok(Sensitivity {
-        parameters,
-        on_limit: on_limit(&solved.answer.pairs),
-    })
+    Ok(Sensitivity { parameters, on_limit: on_limit(&solved.answer.pairs) })
 }
 
 /// Pairs that stand exactly between two states.
 pub fn on_limit(pairs: &[PairState]) -> Vec<String> {
-    let largest = |value: fn(&PairState) -> f64| {
-        pairs
-            .iter()
-            .map(|pair| value(pair).abs())
-            .fold(0.0, f64::max)
-    };
+    let largest = |value: fn(&PairState) -> f64| pairs.iter().map(|pair| value(pair).abs()).fold(0.0, f64::max);
     let force = largest(|pair| pair.x_n).max(largest(|pair| pair.x_t));
     pairs
         .iter()

@@ -159,11 +159,7 @@ pub fn follow_factors(
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let mut walk = Walk::start(prepared, system, values, watch)?;
     let mut history = History {
-        cases: prepared
-            .cases
-            .iter()
-            .map(|(name, _)| name.clone())
-            .collect(),
+        cases: prepared.cases.iter().map(|(name, _)| name.clone()).collect(),
         stages: Vec::new(),
         end: HistoryEnd::Complete,
     };
@@ -172,11 +168,7 @@ pub fn follow_factors(
         let (stage, limit) = walk.stage(target, &report)?;
         history.stages.push(stage);
         if let Some((t, collapse)) = limit {
-            history.end = HistoryEnd::Limit {
-                stage: index,
-                t,
-                collapse: Box::new(collapse),
-            };
+            history.end = HistoryEnd::Limit { stage: index, t, collapse: Box::new(collapse) };
             break;
         }
     }
@@ -200,15 +192,9 @@ impl History {
     /// The pairs at place t of a stage; z_t is the total slip. `None` beyond the end.
     pub fn pairs_at(&self, stage: usize, t: f64) -> Option<Vec<PairState>> {
         let moments = &self.stages.get(stage)?.moments;
-        let ends = moments
-            .windows(2)
-            .find(|ends| (ends[0].t..=ends[1].t).contains(&t))?;
+        let ends = moments.windows(2).find(|ends| (ends[0].t..=ends[1].t).contains(&t))?;
         let length = ends[1].t - ends[0].t;
-        let s = if length == 0.0 {
-            1.0
-        } else {
-            (t - ends[0].t) / length
-        };
+        let s = if length == 0.0 { 1.0 } else { (t - ends[0].t) / length };
         let mix = |a: f64, b: f64| if s == 1.0 { b } else { a + s * (b - a) };
         Some(
             ends[0]
@@ -264,11 +250,7 @@ impl<'a> Walk<'a> {
         let numbers = contact_numbers(system, &none, values);
         let found = cold(system, &numbers, watch)?;
         if found.basis.is_none() {
-            return Err(PathError::NoStart {
-                name: "all loads".to_owned(),
-                at: 0.0,
-                how: found.how().to_owned(),
-            });
+            return Err(PathError::NoStart { name: "all loads".to_owned(), at: 0.0, how: found.how().to_owned() });
         }
         let mut state = state_of(system, &numbers, &found.contact, &found.point);
         // Nothing has moved along the contacts yet.
@@ -279,23 +261,17 @@ impl<'a> Walk<'a> {
         }
         let mut pairs = pair_states(system, &numbers, &found.contact, &state);
         prepared.add_released_slips(&mut pairs, &numbers, &none, &state);
-        Ok(Walk {
-            prepared,
-            system,
-            numbers,
-            watch,
-            factors: none,
-            z: state.z,
-            force: state.force,
-            pairs,
-        })
+        Ok(Walk { prepared, system, numbers, watch, factors: none, z: state.z, force: state.force, pairs })
     }
 
     fn load(&self, factors: &[f64]) -> DVector<f64> {
-        self.system.loads.iter().zip(factors).fold(
-            DVector::zeros(self.system.joint_count()),
-            |sum: DVector<f64>, (load, factor)| sum + *factor * &load.vector,
-        )
+        self.system
+            .loads
+            .iter()
+            .zip(factors)
+            .fold(DVector::zeros(self.system.joint_count()), |sum: DVector<f64>, (load, factor)| {
+                sum + *factor * &load.vector
+            })
     }
 
     /// z_τ alone.
@@ -316,16 +292,10 @@ impl<'a> Walk<'a> {
 
     /// The present scheme in increments: the open pairs, everything else at rest.
     fn rest_basis(&self, contact: &ContactLcp) -> Basis {
-        let mut open: Vec<usize> = (0..self.system.pairs.len())
-            .filter(|&i| self.z[i] > 0.0)
-            .filter_map(|i| contact.normal_row[i])
-            .collect();
+        let mut open: Vec<usize> =
+            (0..self.system.pairs.len()).filter(|&i| self.z[i] > 0.0).filter_map(|i| contact.normal_row[i]).collect();
         open.sort_unstable();
-        Basis {
-            active: open.clone(),
-            z: open,
-            p: false,
-        }
+        Basis { active: open.clone(), z: open, p: false }
     }
 
     /// Follows one stage; the place and the collapse where it ends in a limit.
@@ -336,10 +306,7 @@ impl<'a> Walk<'a> {
     ) -> Result<(StageResult, Option<(f64, Ray)>), PathError> {
         let from = self.factors.clone();
         let at = |t: f64| -> Vec<f64> {
-            from.iter()
-                .zip(target)
-                .map(|(a, b)| if t == 1.0 { *b } else { a + t * (b - a) })
-                .collect()
+            from.iter().zip(target).map(|(a, b)| if t == 1.0 { *b } else { a + t * (b - a) }).collect()
         };
         let slips_before: Vec<f64> = self.pairs.iter().map(|pair| pair.z_t).collect();
         let mut result = StageResult {
@@ -362,29 +329,16 @@ impl<'a> Walk<'a> {
             let numbers = self.numbers_at(&at(t), &committed);
             let contact = path_lcp(self.system, &numbers, &increment);
             let basis = self.rest_basis(&contact);
-            let stretch = Stretch {
-                contact,
-                committed,
-                start: t,
-            };
+            let stretch = Stretch { contact, committed, start: t };
             let order = order(&stretch.contact);
-            let Some(mut engine) = Parametric::new(Arc::clone(&stretch.contact.lcp), &basis, order)
-            else {
+            let Some(mut engine) = Parametric::new(Arc::clone(&stretch.contact.lcp), &basis, order) else {
                 return Err(self.breakdown(t, "the equations of the open pairs are singular"));
             };
-            let reach = Reach {
-                target: 1.0 - t,
-                through: false,
-                pivots: PIVOTS,
-            };
+            let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
             let watch = self.watch;
             let path = engine.follow(reach, &mut |along| {
                 watch.progress("stages", report(t + along));
-                if watch.stop() {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
+                if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
             result.pivots += path.pivots;
             let cut = self.cut(&stretch, &path.knots);
@@ -394,11 +348,7 @@ impl<'a> Walk<'a> {
                 let place = if whole { 1.0 } else { stretch.start + knot.t };
                 self.take(&stretch, place, &at(place), &knot.point, &mut result, false);
             }
-            let here = if cut.is_none() && path.end == End::Target {
-                1.0
-            } else {
-                stretch.start + path.knots[last].t
-            };
+            let here = if cut.is_none() && path.end == End::Target { 1.0 } else { stretch.start + path.knots[last].t };
             if cut.is_some() {
                 if here <= t {
                     return Err(self.breakdown(t, "the slips turn back at once"));
@@ -411,11 +361,9 @@ impl<'a> Walk<'a> {
                 End::Target => {}
                 End::Limit(direction) => {
                     let numbers = self.numbers_at(&at(t + 1e-6), &stretch.committed);
-                    let mut collapse =
-                        ray::report(self.system, &numbers, &stretch.contact, &direction, 0.0);
+                    let mut collapse = ray::report(self.system, &numbers, &stretch.contact, &direction, 0.0);
                     collapse.explanation =
-                        "The loads of this stage cannot be reached: nothing resists this motion."
-                            .to_owned();
+                        "The loads of this stage cannot be reached: nothing resists this motion.".to_owned();
                     limit = Some((t, collapse));
                     break;
                 }
@@ -431,22 +379,13 @@ impl<'a> Walk<'a> {
             }
         }
         self.changes(&mut result);
-        result.slip = self
-            .pairs
-            .iter()
-            .zip(&slips_before)
-            .map(|(pair, before)| pair.z_t - before)
-            .collect();
+        result.slip = self.pairs.iter().zip(&slips_before).map(|(pair, before)| pair.z_t - before).collect();
         self.balance(&mut result);
         Ok((result, limit))
     }
 
     fn breakdown(&self, t: f64, why: &str) -> PathError {
-        PathError::Breakdown {
-            name: "place in the stage".to_owned(),
-            at: t,
-            why: why.to_owned(),
-        }
+        PathError::Breakdown { name: "place in the stage".to_owned(), at: t, why: why.to_owned() }
     }
 
     fn moment(&self, t: f64, jump: bool) -> Moment {
@@ -478,12 +417,7 @@ impl<'a> Walk<'a> {
                 return false;
             };
             let here = &knots[k];
-            let largest = here
-                .point
-                .z
-                .iter()
-                .chain(&next.point.z)
-                .fold(0.0, |a: f64, b| a.max(b.abs()));
+            let largest = here.point.z.iter().chain(&next.point.z).fold(0.0, |a: f64, b| a.max(b.abs()));
             (0..contact.rows.len()).any(|row| {
                 let meaning = contact.rows[row];
                 if meaning.couple == Couple::Normal {
@@ -491,11 +425,9 @@ impl<'a> Walk<'a> {
                 }
                 // The slip of an open pair that nothing holds may turn as it likes.
                 let free = contact.normal_row[meaning.pair].is_some_and(|normal| {
-                    here.scheme.binary_search(&normal).is_ok()
-                        && self.numbers.cohesion[meaning.pair] == 0.0
+                    here.scheme.binary_search(&normal).is_ok() && self.numbers.cohesion[meaning.pair] == 0.0
                 });
-                let scale =
-                    contact.plus_row[meaning.pair].map_or(1.0, |plus| lcp.scale.column[plus]);
+                let scale = contact.plus_row[meaning.pair].map_or(1.0, |plus| lcp.scale.column[plus]);
                 !free && scale * (next.point.z[row] - here.point.z[row]) < -NOISE * scale * largest
             })
         })
@@ -514,17 +446,13 @@ impl<'a> Walk<'a> {
         let numbers = self.numbers_at(factors, &stretch.committed);
         let state = state_of(self.system, &numbers, &stretch.contact, point);
         let mut pairs = pair_states(self.system, &numbers, &stretch.contact, &state);
-        let total = JointState {
-            z: &state.z + &stretch.committed,
-            ..state
-        };
+        let total = JointState { z: &state.z + &stretch.committed, ..state };
         for (pair, shown) in self.system.pairs.iter().zip(&mut pairs) {
             if let Some(joint) = pair.tangential {
                 shown.z_t = total.z[joint];
             }
         }
-        self.prepared
-            .add_released_slips(&mut pairs, &numbers, factors, &total);
+        self.prepared.add_released_slips(&mut pairs, &numbers, factors, &total);
         self.factors = factors.to_vec();
         self.z = total.z;
         self.force = total.force;
@@ -534,29 +462,15 @@ impl<'a> Walk<'a> {
     }
 
     /// No way leads on from here: the answer just beyond, in increments from the present slip.
-    fn jump(
-        &mut self,
-        at: &dyn Fn(f64) -> Vec<f64>,
-        t: f64,
-        result: &mut StageResult,
-    ) -> Result<f64, PathError> {
+    fn jump(&mut self, at: &dyn Fn(f64) -> Vec<f64>, t: f64, result: &mut StageResult) -> Result<f64, PathError> {
         let beyond = (t + BEYOND).min(1.0);
         let committed = self.tangential();
         let numbers = self.numbers_at(&at(beyond), &committed);
-        let Cold {
-            contact,
-            basis,
-            point,
-            outcome: _,
-        } = cold(self.system, &numbers, self.watch)?;
+        let Cold { contact, basis, point, outcome: _ } = cold(self.system, &numbers, self.watch)?;
         if basis.is_none() {
             return Err(self.breakdown(t, "the structure jumps, and no state to jump to was found"));
         }
-        let stretch = Stretch {
-            contact,
-            committed,
-            start: t,
-        };
+        let stretch = Stretch { contact, committed, start: t };
         self.take(&stretch, beyond, &at(beyond), &point, result, true);
         Ok(beyond)
     }
@@ -574,11 +488,7 @@ impl<'a> Walk<'a> {
         let Geometry::Structure { main, .. } = &self.prepared.geometry else {
             return None;
         };
-        let state = JointState {
-            z: moment.z.clone(),
-            force: moment.force.clone(),
-            p: 0.0,
-        };
+        let state = JointState { z: moment.z.clone(), force: moment.force.clone(), p: 0.0 };
         Some(main.displacements(&moment.factors, &dislocation(&self.numbers, &state)))
     }
 
@@ -614,11 +524,7 @@ impl<'a> Walk<'a> {
             energy.stored = stored - first;
             before = Some((moment, u));
         }
-        let largest = energy
-            .work
-            .abs()
-            .max(energy.stored.abs())
-            .max(result.dissipated.abs());
+        let largest = energy.work.abs().max(energy.stored.abs()).max(result.dissipated.abs());
         let left = (energy.work - energy.stored - result.dissipated).abs();
         energy.residual = if largest > 0.0 { left / largest } else { 0.0 };
         result.energy = Some(energy);

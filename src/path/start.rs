@@ -22,9 +22,7 @@ pub enum PathError {
     #[error("a bare LCP has no loads and no friction: `{0}` needs contact pairs")]
     Plain(&'static str),
     /// Neither a load case nor a parameter that can be followed.
-    #[error(
-        "nothing to follow: `{name}` is no load case and no parameter of one; there are {known}"
-    )]
+    #[error("nothing to follow: `{name}` is no load case and no parameter of one; there are {known}")]
     Unknown {
         /// As given.
         name: String,
@@ -43,9 +41,7 @@ pub enum PathError {
     #[error("{0}")]
     Target(String),
     /// The case does not act on any pair.
-    #[error(
-        "load case {0} presses and pushes no contact pair: the state of the pairs does not depend on it"
-    )]
+    #[error("load case {0} presses and pushes no contact pair: the state of the pairs does not depend on it")]
     Idle(String),
     /// No answer to start from.
     #[error("there is no answer to start from: at {name} = {at} the run ended {how}")]
@@ -106,30 +102,17 @@ impl Cold {
 }
 
 /// Solves under the default rules.
-pub(crate) fn cold(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    watch: &dyn Watch,
-) -> Result<Cold, PathError> {
+pub(crate) fn cold(system: &ContactSystem, numbers: &ContactNumbers, watch: &dyn Watch) -> Result<Cold, PathError> {
     // The default covering fits all numbers.
-    let contact = contact_lcp(system, numbers, Covering::Cohesive)
-        .map_err(|error| PathError::Target(error.to_string()))?;
-    let run = run_scheme(
-        &contact.lcp,
-        contact.tie_rule(TieBreak::Lexicographic),
-        watch,
-    );
+    let contact =
+        contact_lcp(system, numbers, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
+    let run = run_scheme(&contact.lcp, contact.tie_rule(TieBreak::Lexicographic), watch);
     let basis = match run.outcome {
         Outcome::Interrupted => return Err(PathError::Interrupted),
         Outcome::Trivial | Outcome::Normal { marginal: false } => Some(Basis::after(&run.pivots)),
         _ => None,
     };
-    Ok(Cold {
-        contact,
-        basis,
-        point: run.point,
-        outcome: run.outcome,
-    })
+    Ok(Cold { contact, basis, point: run.point, outcome: run.outcome })
 }
 
 /// The final scheme of a solved state; `None` where it is no answer, or one that only just is (marginal).
@@ -137,44 +120,24 @@ pub(crate) fn cold(
 /// It is read from the pivots of the run, or, where the answer was reached on another way (warm, enumerated), from
 /// what is released at its vertex.
 pub fn final_basis(solved: &Solved) -> Option<Basis> {
-    let Trace::Contact {
-        contact,
-        pivots,
-        last,
-        ..
-    } = &solved.trace
-    else {
+    let Trace::Contact { contact, pivots, last, .. } = &solved.trace else {
         return None;
     };
     if !solved.answer.is_answer() || solved.answer.marginal {
         return None;
     }
     let released: Vec<usize> = (0..last.z.len()).filter(|&row| last.z[row] > 0.0).collect();
-    let from_vertex = Basis {
-        active: released.clone(),
-        z: released,
-        p: false,
-    };
-    [Basis::after(pivots), from_vertex]
-        .into_iter()
-        .find(|basis| {
-            !basis.p
-                && basis.z == basis.active
-                && is_answer(&contact.lcp, basis)
-                && is_at(contact, basis, last)
-        })
+    let from_vertex = Basis { active: released.clone(), z: released, p: false };
+    [Basis::after(pivots), from_vertex].into_iter().find(|basis| {
+        !basis.p && basis.z == basis.active && is_answer(&contact.lcp, basis) && is_at(contact, basis, last)
+    })
 }
 
 /// Whether the vertex of the scheme is this point (where there are several answers it may be another one).
 fn is_at(contact: &ContactLcp, basis: &Basis, point: &Point) -> bool {
     let largest = point.z.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    vertex(&contact.lcp, basis).is_some_and(|found| {
-        found
-            .z
-            .iter()
-            .zip(&point.z)
-            .all(|(a, b)| (a - b).abs() <= 1e-6 * largest)
-    })
+    vertex(&contact.lcp, basis)
+        .is_some_and(|found| found.z.iter().zip(&point.z).all(|(a, b)| (a - b).abs() <= 1e-6 * largest))
 }
 
 /// A point of a path over the joints: t is no covering, so nothing of it is added to the forces.
@@ -184,9 +147,6 @@ pub(crate) fn state_of(
     contact: &ContactLcp,
     point: &Point,
 ) -> JointState {
-    let point = Point {
-        p: 0.0,
-        ..point.clone()
-    };
+    let point = Point { p: 0.0, ..point.clone() };
     joint_state(system, numbers, contact, &point)
 }

@@ -99,8 +99,7 @@ impl Hash {
 
     fn add(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            self.0 = (self.0 ^ u128::from(*byte))
-                .wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+            self.0 = (self.0 ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
         }
     }
 }
@@ -144,12 +143,7 @@ impl Sweep<'_> {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.name.clone(),
             hash: format!("{:032x}", hash.0),
-            grid: self
-                .grid
-                .axes
-                .iter()
-                .map(|axis| axis.range.clone())
-                .collect(),
+            grid: self.grid.axes.iter().map(|axis| axis.range.clone()).collect(),
             points: self.grid.len(),
             shard: self.shard,
         }
@@ -180,12 +174,7 @@ impl Sweep<'_> {
             "max_x_n_pair",
             "failure",
         ];
-        self.grid
-            .axes
-            .iter()
-            .map(|axis| axis.name.clone())
-            .chain(own.map(str::to_owned))
-            .collect()
+        self.grid.axes.iter().map(|axis| axis.name.clone()).chain(own.map(str::to_owned)).collect()
     }
 
     /// Solves the points of the shard after the first `found` and writes their rows to `out`, flushed as they come.
@@ -193,32 +182,16 @@ impl Sweep<'_> {
     ///
     /// # Errors
     /// Where `out` cannot be written.
-    pub fn run(
-        &self,
-        found: usize,
-        out: &mut dyn Write,
-        watch: &dyn Watch,
-    ) -> std::io::Result<Done> {
+    pub fn run(&self, found: usize, out: &mut dyn Write, watch: &dyn Watch) -> std::io::Result<Done> {
         let points = self.shard.points(self.grid.len());
-        let mut done = Done {
-            written: 0,
-            found,
-            total: points.len(),
-            answers: 0,
-        };
+        let mut done = Done { written: 0, found, total: points.len(), answers: 0 };
         let start = Instant::now();
         let mut next = points.start + found;
         while next < points.end && !watch.stop() {
             let end = (next + CHUNK).min(points.end);
             let rows: Vec<Option<Row>> = (next..end)
                 .into_par_iter()
-                .map(|index| {
-                    if watch.stop() {
-                        None
-                    } else {
-                        self.row(index, watch)
-                    }
-                })
+                .map(|index| if watch.stop() { None } else { self.row(index, watch) })
                 .collect();
             for row in rows.iter().map_while(Option::as_ref) {
                 out.write_all(row.line.as_bytes())?;
@@ -233,12 +206,7 @@ impl Sweep<'_> {
             next = end;
             let ready = done.found + done.written;
             watch.progress(
-                &progress(
-                    ready,
-                    done.total,
-                    done.written,
-                    start.elapsed().as_secs_f64(),
-                ),
+                &progress(ready, done.total, done.written, start.elapsed().as_secs_f64()),
                 ready as f64 / done.total as f64,
             );
         }
@@ -249,10 +217,7 @@ impl Sweep<'_> {
     pub fn key(&self, index: usize) -> String {
         let values = self.grid.point(index);
         match self.format {
-            Format::Csv => values
-                .iter()
-                .map(|value| format!("{},", number(*value)))
-                .collect(),
+            Format::Csv => values.iter().map(|value| format!("{},", number(*value))).collect(),
             Format::Json => {
                 let fields: Vec<String> = self
                     .grid
@@ -273,9 +238,7 @@ impl Sweep<'_> {
         for (axis, value) in self.grid.axes.iter().zip(&point) {
             values.insert(axis.name.clone(), *value);
         }
-        let solved =
-            self.prepared
-                .solve_briefly(self.scenario, &values, self.rules, &StopOnly(watch));
+        let solved = self.prepared.solve_briefly(self.scenario, &values, self.rules, &StopOnly(watch));
         let (fields, is_answer) = match solved {
             Ok(solved) => (fields(&solved.answer), solved.answer.is_answer()),
             Err(error) if error.is_interrupted() => return None,
@@ -295,8 +258,7 @@ impl Sweep<'_> {
             }
             Format::Json => {
                 let names = self.columns();
-                let object: Map<String, Value> =
-                    names[point.len()..].iter().cloned().zip(fields).collect();
+                let object: Map<String, Value> = names[point.len()..].iter().cloned().zip(fields).collect();
                 let text = Value::Object(object).to_string();
                 format!("{}{}\n", self.key(index), text.trim_start_matches('{'))
             }
@@ -315,16 +277,8 @@ pub(super) fn preamble(header: &Header, format: Format, columns: &[String]) -> S
 }
 
 fn progress(ready: usize, total: usize, written: usize, seconds: f64) -> String {
-    let rate = if seconds > 0.0 {
-        written as f64 / seconds
-    } else {
-        0.0
-    };
-    let left = if rate > 0.0 {
-        (total - ready) as f64 / rate
-    } else {
-        0.0
-    };
+    let rate = if seconds > 0.0 { written as f64 / seconds } else { 0.0 };
+    let left = if rate > 0.0 { (total - ready) as f64 / rate } else { 0.0 };
     let left = match left as u64 {
         0..=119 => format!("{left:.0} s"),
         120..=7199 => format!("{:.0} min", left / 60.0),
@@ -342,10 +296,7 @@ fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) if text.contains([',', '"', '\n', '\r']) => {
-            format!(
-                "\"{}\"",
-                text.replace('"', "\"\"").replace(['\n', '\r'], " ")
-            )
+            format!("\"{}\"", text.replace('"', "\"\"").replace(['\n', '\r'], " "))
         }
         Value::String(text) => text.clone(),
         other => other.to_string(),
@@ -354,35 +305,16 @@ fn cell(value: &Value) -> String {
 
 /// The columns after the parameters.
 fn fields(answer: &Answer) -> Vec<Value> {
-    let is_state = matches!(
-        answer.outcome,
-        OutcomeKind::Trivial | OutcomeKind::Normal | OutcomeKind::Ray
-    );
+    let is_state = matches!(answer.outcome, OutcomeKind::Trivial | OutcomeKind::Normal | OutcomeKind::Ray);
     let has_pairs = is_state && !answer.pairs.is_empty();
     let count = |state: State| {
-        if has_pairs {
-            json!(
-                answer
-                    .pairs
-                    .iter()
-                    .filter(|pair| pair.state == state)
-                    .count()
-            )
-        } else {
-            Value::Null
-        }
+        if has_pairs { json!(answer.pairs.iter().filter(|pair| pair.state == state).count()) } else { Value::Null }
     };
     let largest = |value: &dyn Fn(usize) -> f64| -> [Value; 2] {
         if !has_pairs {
             return [Value::Null, Value::Null];
         }
-        let best = (0..answer.pairs.len()).fold(0, |best, k| {
-            if value(k).abs() > value(best).abs() {
-                k
-            } else {
-                best
-            }
-        });
+        let best = (0..answer.pairs.len()).fold(0, |best, k| if value(k).abs() > value(best).abs() { k } else { best });
         [json!(value(best)), json!(answer.pairs[best].id)]
     };
     let [slip, slip_pair] = largest(&|k| answer.pairs[k].z_t);
@@ -390,15 +322,8 @@ fn fields(answer: &Answer) -> Vec<Value> {
     let [force, force_pair] = largest(&|k| answer.pairs[k].x_n);
     vec![
         json!(answer.outcome),
-        answer
-            .ray
-            .as_ref()
-            .map_or(Value::Null, |ray| json!(ray.class)),
-        if is_state {
-            json!(answer.p)
-        } else {
-            Value::Null
-        },
+        answer.ray.as_ref().map_or(Value::Null, |ray| json!(ray.class)),
+        if is_state { json!(answer.p) } else { Value::Null },
         json!(answer.pivots.len()),
         count(State::Open),
         count(State::Stick),
@@ -411,9 +336,6 @@ fn fields(answer: &Answer) -> Vec<Value> {
         gap_pair,
         force,
         force_pair,
-        answer
-            .failure
-            .as_ref()
-            .map_or(Value::Null, |why| json!(why)),
+        answer.failure.as_ref().map_or(Value::Null, |why| json!(why)),
     ]
 }

@@ -43,9 +43,7 @@ pub enum SweepFileError {
         expected: String,
     },
     /// A row that does not stand where it should.
-    #[error(
-        "{path}: row {row} is not the one of this place in the sweep; remove the file and begin again"
-    )]
+    #[error("{path}: row {row} is not the one of this place in the sweep; remove the file and begin again")]
     Row {
         /// The file.
         path: PathBuf,
@@ -61,29 +59,20 @@ pub enum SweepFileError {
 }
 
 fn io(path: &Path) -> impl Fn(std::io::Error) -> SweepFileError + '_ {
-    move |error| SweepFileError::Io {
-        path: path.to_owned(),
-        error,
-    }
+    move |error| SweepFileError::Io { path: path.to_owned(), error }
 }
 
 /// Reads the header line.
 fn read_header(path: &Path, line: &str) -> Result<(Header, Format), SweepFileError> {
-    let no = |why: String| SweepFileError::NoSweep {
-        path: path.to_owned(),
-        why,
-    };
+    let no = |why: String| SweepFileError::NoSweep { path: path.to_owned(), why };
     let (text, format) = match line.strip_prefix("# ") {
         Some(text) => (text, Format::Csv),
         None => (line, Format::Json),
     };
-    let header: Header = serde_json::from_str(text.trim_end())
-        .map_err(|error| no(format!("its first line is no header ({error})")))?;
+    let header: Header =
+        serde_json::from_str(text.trim_end()).map_err(|error| no(format!("its first line is no header ({error})")))?;
     if header.format != FORMAT {
-        return Err(no(format!(
-            "its format is {}, expected {FORMAT}",
-            header.format
-        )));
+        return Err(no(format!("its format is {}, expected {FORMAT}", header.format)));
     }
     if header.shard.number == 0 || header.shard.number > header.shard.of {
         return Err(no(format!("its shard is {}", header.shard)));
@@ -108,12 +97,7 @@ fn difference(found: &Header, expected: &Header) -> Option<(&'static str, String
 fn same(path: &Path, found: &Header, expected: &Header) -> Result<(), SweepFileError> {
     match difference(found, expected) {
         None => Ok(()),
-        Some((what, found, expected)) => Err(SweepFileError::Another {
-            path: path.to_owned(),
-            what,
-            found,
-            expected,
-        }),
+        Some((what, found, expected)) => Err(SweepFileError::Another { path: path.to_owned(), what, found, expected }),
     }
 }
 
@@ -121,34 +105,19 @@ fn same(path: &Path, found: &Header, expected: &Header) -> Result<(), SweepFileE
 ///
 /// # Errors
 /// See [`SweepFileError`].
-pub fn run_to_file(
-    sweep: &Sweep<'_>,
-    path: &Path,
-    resume: bool,
-    watch: &dyn Watch,
-) -> Result<Done, SweepFileError> {
+pub fn run_to_file(sweep: &Sweep<'_>, path: &Path, resume: bool, watch: &dyn Watch) -> Result<Done, SweepFileError> {
     let exists = path.exists();
     if exists && !resume {
         return Err(SweepFileError::Exists(path.to_owned()));
     }
-    let mut file = OpenOptions::new()
-        .read(true)
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(path)
-        .map_err(io(path))?;
-    let (found, length) = if exists {
-        scan(sweep, path, &file)?
-    } else {
-        (0, 0)
-    };
+    let mut file =
+        OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(io(path))?;
+    let (found, length) = if exists { scan(sweep, path, &file)? } else { (0, 0) };
     file.set_len(length).map_err(io(path))?;
     file.seek(SeekFrom::End(0)).map_err(io(path))?;
     let mut out = BufWriter::new(file);
     if length == 0 {
-        out.write_all(sweep.preamble().as_bytes())
-            .map_err(io(path))?;
+        out.write_all(sweep.preamble().as_bytes()).map_err(io(path))?;
     }
     let done = sweep.run(found, &mut out, watch).map_err(io(path))?;
     out.flush().map_err(io(path))?;
@@ -177,26 +146,14 @@ fn scan(sweep: &Sweep<'_>, path: &Path, file: &File) -> Result<(usize, u64), Swe
             let mine = sweep.header();
             same(path, &header, &mine)?;
             let (what, found, expected) = if header.shard == mine.shard {
-                (
-                    "format",
-                    format!("{format:?}"),
-                    format!("{:?}", sweep.format),
-                )
+                ("format", format!("{format:?}"), format!("{:?}", sweep.format))
             } else {
                 ("shard", header.shard.to_string(), mine.shard.to_string())
             };
-            return Err(SweepFileError::Another {
-                path: path.to_owned(),
-                what,
-                found,
-                expected,
-            });
+            return Err(SweepFileError::Another { path: path.to_owned(), what, found, expected });
         }
         if line != wanted {
-            return Err(SweepFileError::NoSweep {
-                path: path.to_owned(),
-                why: "its columns are others".to_owned(),
-            });
+            return Err(SweepFileError::NoSweep { path: path.to_owned(), why: "its columns are others".to_owned() });
         }
         length += line.len() as u64;
     }
@@ -204,10 +161,7 @@ fn scan(sweep: &Sweep<'_>, path: &Path, file: &File) -> Result<(usize, u64), Swe
     let mut found = 0;
     while next(&mut line)? {
         if found == points.len() || !line.starts_with(&sweep.key(points.start + found)) {
-            return Err(SweepFileError::Row {
-                path: path.to_owned(),
-                row: found + 1,
-            });
+            return Err(SweepFileError::Row { path: path.to_owned(), row: found + 1 });
         }
         found += 1;
         length += line.len() as u64;
@@ -223,39 +177,25 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
     let mut shards: Vec<(Header, Format, &PathBuf)> = Vec::new();
     for path in files {
         let mut line = String::new();
-        BufReader::new(File::open(path).map_err(io(path))?)
-            .read_line(&mut line)
-            .map_err(io(path))?;
+        BufReader::new(File::open(path).map_err(io(path))?).read_line(&mut line).map_err(io(path))?;
         let (header, format) = read_header(path, &line)?;
         if let Some((first, other, _)) = shards.first() {
             same(path, &header, first)?;
             let differs = if format == *other {
-                (header.shard.of != first.shard.of).then(|| {
-                    (
-                        "number of shards",
-                        header.shard.of.to_string(),
-                        first.shard.of.to_string(),
-                    )
-                })
+                (header.shard.of != first.shard.of)
+                    .then(|| ("number of shards", header.shard.of.to_string(), first.shard.of.to_string()))
             } else {
                 Some(("format", format!("{format:?}"), format!("{other:?}")))
             };
             if let Some((what, found, expected)) = differs {
-                return Err(SweepFileError::Another {
-                    path: path.clone(),
-                    what,
-                    found,
-                    expected,
-                });
+                return Err(SweepFileError::Another { path: path.clone(), what, found, expected });
             }
         }
         shards.push((header, format, path));
     }
     shards.sort_by_key(|(header, ..)| header.shard.number);
     let Some((first, format, _)) = shards.first().cloned() else {
-        return Err(SweepFileError::Shards(
-            "there is nothing to merge: name the files".to_owned(),
-        ));
+        return Err(SweepFileError::Shards("there is nothing to merge: name the files".to_owned()));
     };
     for pair in shards.windows(2) {
         if pair[0].0.shard == pair[1].0.shard {
@@ -268,19 +208,11 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
         }
     }
     let missing: Vec<String> = (1..=first.shard.of)
-        .filter(|number| {
-            shards
-                .iter()
-                .all(|(header, ..)| header.shard.number != *number)
-        })
+        .filter(|number| shards.iter().all(|(header, ..)| header.shard.number != *number))
         .map(|number| number.to_string())
         .collect();
     if !missing.is_empty() {
-        return Err(SweepFileError::Shards(format!(
-            "shard {} of {} is missing",
-            missing.join(", "),
-            first.shard.of
-        )));
+        return Err(SweepFileError::Shards(format!("shard {} of {} is missing", missing.join(", "), first.shard.of)));
     }
     let mut rows = 0;
     for (k, (header, _, path)) in shards.iter().enumerate() {
@@ -292,14 +224,10 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
             reader.read_line(&mut columns).map_err(io(path))?;
         }
         if k == 0 {
-            let whole = Header {
-                shard: Shard::WHOLE,
-                ..header.clone()
-            };
+            let whole = Header { shard: Shard::WHOLE, ..header.clone() };
             let columns: Vec<String> = columns.trim_end().split(',').map(str::to_owned).collect();
             let text = preamble(&whole, format, &columns);
-            out.write_all(text.as_bytes())
-                .map_err(SweepFileError::Output)?;
+            out.write_all(text.as_bytes()).map_err(SweepFileError::Output)?;
         }
         let expected = header.shard.points(header.points).len();
         let mut found = 0;
@@ -310,8 +238,7 @@ pub fn merge(files: &[PathBuf], out: &mut dyn Write) -> Result<usize, SweepFileE
                 break;
             }
             found += 1;
-            out.write_all(line.as_bytes())
-                .map_err(SweepFileError::Output)?;
+            out.write_all(line.as_bytes()).map_err(SweepFileError::Output)?;
         }
         if found != expected || !line.is_empty() {
             return Err(SweepFileError::Shards(format!(

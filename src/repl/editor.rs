@@ -45,20 +45,10 @@ const ABOUT: usize = 40;
 impl Completer for Editing {
     type Candidate = Shown;
 
-    fn complete(
-        &self,
-        line: &str,
-        position: usize,
-        _: &Context<'_>,
-    ) -> rustyline::Result<(usize, Vec<Shown>)> {
+    fn complete(&self, line: &str, position: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Shown>)> {
         let completion = complete::completions(line, position, &self.vocabulary);
         let only = completion.candidates.len() == 1;
-        let wide = completion
-            .candidates
-            .iter()
-            .map(|candidate| candidate.text.chars().count())
-            .max()
-            .unwrap_or(0);
+        let wide = completion.candidates.iter().map(|candidate| candidate.text.chars().count()).max().unwrap_or(0);
         let shown = |Candidate { text, about }: Candidate| {
             let display = if about.is_empty() {
                 text.clone()
@@ -68,20 +58,10 @@ impl Completer for Editing {
             };
             // a folder or an unfinished word goes on without a blank
             let goes_on = text.ends_with(['/', ':']);
-            let replacement = if only && !goes_on {
-                format!("{text} ")
-            } else {
-                text
-            };
-            Shown {
-                display,
-                replacement,
-            }
+            let replacement = if only && !goes_on { format!("{text} ") } else { text };
+            Shown { display, replacement }
         };
-        Ok((
-            completion.start,
-            completion.candidates.into_iter().map(shown).collect(),
-        ))
+        Ok((completion.start, completion.candidates.into_iter().map(shown).collect()))
     }
 }
 
@@ -152,11 +132,7 @@ impl Highlighter for Editing {
     }
 
     fn highlight_hint<'h>(&self, hint: &'h str) -> Cow<'h, str> {
-        if self.style.color {
-            Cow::Owned(self.style.paint(Role::Muted, hint))
-        } else {
-            Cow::Borrowed(hint)
-        }
+        if self.style.color { Cow::Owned(self.style.paint(Role::Muted, hint)) } else { Cow::Borrowed(hint) }
     }
 
     fn highlight_char(&self, _: &str, _: usize, kind: CmdKind) -> bool {
@@ -207,10 +183,7 @@ mod tests {
 
     #[test]
     fn colours_change_no_visible_character() {
-        let style = Style {
-            color: true,
-            ..Style::default()
-        };
+        let style = Style { color: true, ..Style::default() };
         for line in [
             "set f 0.3; pairs c1 # and \"so\" on",
             "  bogus 1 ;; status",

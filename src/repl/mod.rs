@@ -26,10 +26,7 @@ pub struct Ended {
 impl Ended {
     /// The program ends with this status.
     pub fn with(status: u8) -> Self {
-        Ended {
-            status,
-            next: Next::Quit,
-        }
+        Ended { status, next: Next::Quit }
     }
 }
 
@@ -50,23 +47,15 @@ pub fn is_interactive() -> bool {
 ///
 /// # Errors
 /// The results cannot be written (a closed pipe is no error) or the terminal fails.
-pub fn run(
-    session: &mut Session,
-    style: Style,
-    signals: &Signals,
-    again: bool,
-) -> io::Result<Ended> {
+pub fn run(session: &mut Session, style: Style, signals: &Signals, again: bool) -> io::Result<Ended> {
     if !is_interactive() {
         return plain::run(session, style, signals, false);
     }
     if !again {
         greet(session, &style, &mut io::stdout().lock())?;
     }
-    let ended = if is_dumb() {
-        plain::run(session, style, signals, true)
-    } else {
-        terminal::run(session, style, signals)
-    }?;
+    let ended =
+        if is_dumb() { plain::run(session, style, signals, true) } else { terminal::run(session, style, signals) }?;
     // after a signal the journal stays: nobody said `quit`, the next start offers it
     if !signals.must_end() && ended.next == Next::Quit {
         session.close()?;
@@ -80,16 +69,9 @@ fn greet(session: &Session, style: &Style, out: &mut dyn Write) -> io::Result<()
     let title = format!("{} · {}", scenario.name, scenario.title);
     writeln!(out, "{}", style.fit(&style.text(&title), style.width))?;
     if let Some(answer) = session.answer() {
-        writeln!(
-            out,
-            "{}",
-            status::line(answer, None, &scenario.units, style)
-        )?;
+        writeln!(out, "{}", status::line(answer, None, &scenario.units, style))?;
     }
-    writeln!(
-        out,
-        "`help` lists the commands, Tab completes, Ctrl-D leaves."
-    )?;
+    writeln!(out, "`help` lists the commands, Tab completes, Ctrl-D leaves.")?;
     if let Some(left) = session.left_over() {
         let changes = left.changes();
         let s = if changes == 1 { "" } else { "s" };

@@ -75,10 +75,7 @@ fn ask(out: &mut dyn Write, left: usize, signals: &Signals) -> io::Result<Answer
         return Ok(Answer::Typed(as_text(&ahead)));
     }
     let s = if left == 1 { "" } else { "s" };
-    write!(
-        out,
-        "-- {left} line{s} more: space page, Enter line, a all, q stop --"
-    )?;
+    write!(out, "-- {left} line{s} more: space page, Enter line, a all, q stop --")?;
     out.flush()?;
     let answer = loop {
         if signals.must_end() {

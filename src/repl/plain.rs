@@ -20,12 +20,7 @@ const LOOK: Duration = Duration::from_millis(50);
 ///
 /// A command that fails is told on stderr and the next one runs. On a pipe the exit status is that of the first
 /// failure; on a terminal a failure is part of the conversation.
-pub fn run(
-    session: &mut Session,
-    style: Style,
-    signals: &Signals,
-    prompt: bool,
-) -> io::Result<Ended> {
+pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool) -> io::Result<Ended> {
     let lines = reader()?;
     let mut stdout = io::stdout();
     let mut status = 0;
@@ -64,9 +59,7 @@ pub fn run(
         io.line = line_number;
         let result = session.execute(line, &mut io);
         watch.clear();
-        let asked_for = words::commands(line)
-            .first()
-            .is_some_and(|first| expects_error(first));
+        let asked_for = words::commands(line).first().is_some_and(|first| expects_error(first));
         match &result {
             // the failure before was expected
             Ok(_) if asked_for => pending = 0,
@@ -82,9 +75,8 @@ pub fn run(
             Ok(Next::Continue) => {}
             Ok(Next::Quit) => break,
             Ok(Next::FullScreen { .. }) => {
-                let error = CommandError::Refused(
-                    "the full screen needs a terminal that understands cursor codes".into(),
-                );
+                let error =
+                    CommandError::Refused("the full screen needs a terminal that understands cursor codes".into());
                 let _ = writeln!(io::stderr(), "{}", show_error(&error, &error_style(style)));
                 pending = error.status();
             }
@@ -106,19 +98,13 @@ pub fn run(
     if prompt {
         return Ok(Ended::with(0));
     }
-    let status = [status, pending, session.trouble_status()]
-        .into_iter()
-        .find(|status| *status != 0)
-        .unwrap_or(0);
+    let status = [status, pending, session.trouble_status()].into_iter().find(|status| *status != 0).unwrap_or(0);
     Ok(Ended::with(status))
 }
 
 /// No colour on a stderr that is no terminal.
 fn error_style(style: Style) -> Style {
-    Style {
-        color: style.color && io::stderr().is_terminal(),
-        ..style
-    }
+    Style { color: style.color && io::stderr().is_terminal(), ..style }
 }
 
 /// What the reader of stdin hands over.
@@ -147,8 +133,6 @@ fn reader() -> io::Result<Receiver<Input>> {
             }
         }
     };
-    std::thread::Builder::new()
-        .name("stdin".to_owned())
-        .spawn(read)?;
+    std::thread::Builder::new().name("stdin".to_owned()).spawn(read)?;
     Ok(receiver)
 }

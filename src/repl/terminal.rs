@@ -27,10 +27,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
     let mut editor = editor(session, style).map_err(io::Error::other)?;
     let history = History::open(&mut editor);
     let pace = Pace::default();
-    editor.bind_sequence(
-        Event::Any,
-        EventHandler::Conditional(Box::new(pace.clone())),
-    );
+    editor.bind_sequence(Event::Any, EventHandler::Conditional(Box::new(pace.clone())));
     // an external printer makes the editor wait for more than keys, so that a signal can wake it
     let printer = editor.create_external_printer();
     if printer.is_ok() {
@@ -156,15 +153,8 @@ fn editor(session: &Session, style: Style) -> rustyline::Result<Line> {
         .max_history_size(HISTORY)?
         .build();
     let mut editor = Line::with_config(config)?;
-    editor.set_color_mode(if style.color {
-        ColorMode::Forced
-    } else {
-        ColorMode::Disabled
-    });
-    editor.set_helper(Some(Editing {
-        vocabulary: session.vocabulary(),
-        style,
-    }));
+    editor.set_color_mode(if style.color { ColorMode::Forced } else { ColorMode::Disabled });
+    editor.set_helper(Some(Editing { vocabulary: session.vocabulary(), style }));
     Ok(editor)
 }
 

@@ -17,18 +17,11 @@ use crate::view::style::Role;
 use super::command::{Command, Export};
 use super::expect::{self, Facts};
 use super::values::{self, Setting};
-use super::{
-    Change, CommandError, Format, Next, Output, Session, Setup, help, journal, save, script,
-};
+use super::{Change, CommandError, Format, Next, Output, Session, Setup, help, journal, save, script};
 
 impl Session {
     /// One command. The arms that only show something are in `reports`.
-    pub(super) fn apply(
-        &mut self,
-        command: Command,
-        text: &str,
-        io: &mut Output<'_>,
-    ) -> Result<Next, CommandError> {
+    pub(super) fn apply(&mut self, command: Command, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
         if command.needs_pivots() {
             self.ensure_pivots(io)?;
         }
@@ -59,34 +52,17 @@ impl Session {
             Command::Enumerate { answer } => self.enumerate(answer, io)?,
             Command::Critical { friction } => self.critical(&friction, io)?,
             Command::Ray => self.report_ray(io)?,
-            Command::Plot {
-                picture,
-                at,
-                width,
-                height,
-                of,
-            } => self.plot(picture, &at, width, height, &of, io)?,
+            Command::Plot { picture, at, width, height, of } => self.plot(picture, &at, width, height, &of, io)?,
             Command::Trace { name, to, through } => self.trace(&name, &to, through, io)?,
             Command::Limit { name } => self.limit(&name, io)?,
             Command::Sensitivity { parameter } => self.sensitivity(parameter.as_deref(), io)?,
             Command::Stages { stage } => self.stages(stage, io)?,
-            Command::Sweep {
-                words,
-                out,
-                resume,
-                shard,
-            } => self.sweep(&words, out.as_deref(), resume, shard, io)?,
+            Command::Sweep { words, out, resume, shard } => self.sweep(&words, out.as_deref(), resume, shard, io)?,
             Command::Source { file } => return script::source(self, &file, io),
             Command::Record { file } => self.record(&file, io)?,
             Command::Expect { words } => self.expect(&words, io)?,
-            Command::Export {
-                what: Export::Path,
-                file,
-            } => self.export_path(&file, io)?,
-            Command::Export {
-                what: Export::Lcp,
-                file,
-            } => self.export_lcp(&file, io)?,
+            Command::Export { what: Export::Path, file } => self.export_path(&file, io)?,
+            Command::Export { what: Export::Lcp, file } => self.export_lcp(&file, io)?,
             Command::Export { what, file } => self.export(what, &file, io)?,
             Command::Echo { words } => io.say(&words.join(" "))?,
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
@@ -116,10 +92,7 @@ impl Session {
         let news = !before.same_choice(&next);
         self.enter(next, true, io)?;
         if news {
-            self.undo.push(Change {
-                command: text.to_owned(),
-                setup: before,
-            });
+            self.undo.push(Change { command: text.to_owned(), setup: before });
             self.redo.clear();
             self.note_in_journal(text)?;
         }
@@ -127,12 +100,7 @@ impl Session {
     }
 
     /// Makes `next` the present setup, with its answer; `warm`: found from the present one where that pays.
-    fn enter(
-        &mut self,
-        mut next: Setup,
-        warm: bool,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    fn enter(&mut self, mut next: Setup, warm: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
         let solved = if self.auto && !self.deferred {
             let same_geometry = match (&self.now.prepared, &next.prepared) {
                 (Some(now), Some(next)) => Arc::ptr_eq(now, next),
@@ -188,11 +156,7 @@ impl Session {
     }
 
     /// The one line after a change.
-    pub(super) fn say_what_changed(
-        &self,
-        notes: &[String],
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn say_what_changed(&self, notes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let previous = self.previous_answer();
         let units = &self.now.scenario.units;
         io.report(
@@ -230,12 +194,7 @@ impl Session {
         self.change_noting(Setup::of(scenario), text, &[title], io)
     }
 
-    fn set(
-        &mut self,
-        words: &[String],
-        text: &str,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    fn set(&mut self, words: &[String], text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let scenario = Arc::clone(&self.now.scenario);
         let mut next = self.now.clone();
         let mut notes = Vec::new();
@@ -264,12 +223,7 @@ impl Session {
         self.change_noting(next, text, &notes, io)
     }
 
-    fn set_auto(
-        &mut self,
-        auto: bool,
-        text: &str,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    fn set_auto(&mut self, auto: bool, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         if auto && self.solved.is_none() && !self.deferred {
             let solved = self.now.solve(io.watch)?;
             self.take_answer(Some(solved));
@@ -286,12 +240,7 @@ impl Session {
         }
     }
 
-    fn reset(
-        &mut self,
-        name: Option<&str>,
-        text: &str,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    fn reset(&mut self, name: Option<&str>, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let mut next = self.now.clone();
         let file = next.scenario.parameter_values();
         let rules = next.scenario.rules;
@@ -304,9 +253,7 @@ impl Session {
             Some("tie-break") => next.rules.tie_break = rules.tie_break,
             Some("engine") => next.rules.engine = rules.engine,
             Some(name) => {
-                let value = *file
-                    .get(name)
-                    .ok_or_else(|| values::unknown_parameter(name, &next.scenario))?;
+                let value = *file.get(name).ok_or_else(|| values::unknown_parameter(name, &next.scenario))?;
                 next.values.insert(name.to_owned(), value);
             }
         }
@@ -321,10 +268,7 @@ impl Session {
         self.enter(change.setup, false, io)?;
         self.undo.pop();
         let note = format!("undone: {}", change.command);
-        self.redo.push(Change {
-            command: change.command,
-            setup: before,
-        });
+        self.redo.push(Change { command: change.command, setup: before });
         self.note_in_journal(text)?;
         self.say_what_changed(&[note], io)
     }
@@ -337,10 +281,7 @@ impl Session {
         self.enter(change.setup, false, io)?;
         self.redo.pop();
         let note = format!("done again: {}", change.command);
-        self.undo.push(Change {
-            command: change.command,
-            setup: before,
-        });
+        self.undo.push(Change { command: change.command, setup: before });
         self.note_in_journal(text)?;
         self.say_what_changed(&[note], io)
     }
@@ -353,11 +294,7 @@ impl Session {
         self.say_what_changed(&[], io)
     }
 
-    fn save(
-        &mut self,
-        file: Option<&std::path::Path>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    fn save(&mut self, file: Option<&std::path::Path>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let path = match file {
             Some(path) => path.to_owned(),
             None => self.now.scenario.path.clone().ok_or_else(|| {
@@ -375,9 +312,7 @@ impl Session {
     fn step(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let Some(last) = answer.pivots.last().map(|pivot| pivot.step) else {
-            return Err(CommandError::Refused(
-                "no pivots: the main system is the answer".into(),
-            ));
+            return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
         };
         let here = self.shown_step().unwrap_or(last);
         let count = |word: &str| {
@@ -399,17 +334,13 @@ impl Session {
             ["to", k] => {
                 let k = count(k)?;
                 if k > last {
-                    return Err(CommandError::Refused(format!(
-                        "no pivot {k}: the pivots are 0 … {last}"
-                    )));
+                    return Err(CommandError::Refused(format!("no pivot {k}: the pivots are 0 … {last}")));
                 }
                 k
             }
             [n] => here.saturating_add(count(n)?),
             _ => {
-                return Err(CommandError::Refused(
-                    "step: expected N, back N, to K, first or last".into(),
-                ));
+                return Err(CommandError::Refused("step: expected N, back N, to K, first or last".into()));
             }
         }
         .min(last);
@@ -448,11 +379,7 @@ impl Session {
 fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
     let list = embedded::list();
     io.report(
-        || {
-            list.iter()
-                .map(|(name, title)| json!({"name": name, "title": title}))
-                .collect()
-        },
+        || list.iter().map(|(name, title)| json!({"name": name, "title": title})).collect(),
         |out, style| write_scenarios(out, style),
     )?;
     Ok(())
@@ -462,10 +389,7 @@ fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_scenarios(
-    out: &mut dyn Write,
-    style: &crate::view::style::Style,
-) -> std::io::Result<()> {
+pub fn write_scenarios(out: &mut dyn Write, style: &crate::view::style::Style) -> std::io::Result<()> {
     for (name, title) in embedded::list() {
         let line = format!("{name:<14} {title}");
         writeln!(out, "{}", style.fit(&style.text(&line), style.width))?;

@@ -47,17 +47,10 @@ pub enum Command {
     /// Rules: `set covering cohesive|ones|weight`, `set tie-break lexicographic|natural|first-row|random:SEED`,
     /// `set engine scheme|tableau|exact`; `set auto off` stops solving after each change until `solve` or
     /// `set auto on`.
-    #[command(
-        after_help = "Example:\n  set F2 120\n  set F2 += 10\n  set f 110%\n  set covering weight"
-    )]
+    #[command(after_help = "Example:\n  set F2 120\n  set F2 += 10\n  set f 110%\n  set covering weight")]
     Set {
         /// Parameter, or auto, covering, tie-break, engine; then the value
-        #[arg(
-            value_name = "SETTING",
-            required = true,
-            trailing_var_arg = true,
-            allow_hyphen_values = true
-        )]
+        #[arg(value_name = "SETTING", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
     /// Put a parameter, or everything, back to the value of the file
@@ -127,9 +120,7 @@ pub enum Command {
         range: Option<String>,
     },
     /// Move along the pivots: `pairs` and `plot` then show the structure at that pivot
-    #[command(
-        after_help = "Example:\n  step first; step; step 2; step back 1; step to 4; step last"
-    )]
+    #[command(after_help = "Example:\n  step first; step; step 2; step back 1; step to 4; step last")]
     Step {
         /// N, back N, to K, first or last; one pivot on if left out
         #[arg(value_name = "STEP")]
@@ -181,9 +172,7 @@ pub enum Command {
     /// NAME is a load case, the parameter of one, or a friction parameter. A load is followed from its present factor
     /// upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction up to the
     /// target, or else to the end of the slider. `plot path` and `export path` show the way afterwards.
-    #[command(
-        after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through"
-    )]
+    #[command(after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through")]
     Trace {
         /// What to follow
         #[arg(value_name = "TRACED")]
@@ -223,9 +212,7 @@ pub enum Command {
     ///
     /// A range is A..B, with the number of points N after it (11 if left out). With `--out` the rows go to a .csv or
     /// .json file as they come; Ctrl-C keeps what is done and `--resume` goes on from there.
-    #[command(
-        after_help = "Example:\n  sweep f 0..1 21\n  sweep f 0..1 F2 0..400 41 --out beam.csv"
-    )]
+    #[command(after_help = "Example:\n  sweep f 0..1 21\n  sweep f 0..1 F2 0..400 41 --out beam.csv")]
     Sweep {
         /// PARAMETER A..B [N], up to three times
         #[arg(value_name = "SWEPT", required = true, allow_negative_numbers = true)]
@@ -244,9 +231,7 @@ pub enum Command {
     /// Draw a picture of the present state, or of the last path
     ///
     /// `plot path [slip|force|gap|pressure] [PAIRS]` draws what the last `trace` or `stages` followed.
-    #[command(
-        after_help = "Example:\n  plot slip\n  plot force\n  plot structure\n  trace F2; plot path force c6 c5"
-    )]
+    #[command(after_help = "Example:\n  plot slip\n  plot force\n  plot structure\n  trace F2; plot path force c6 c5")]
     Plot {
         /// What to draw
         #[arg(value_name = "PICTURE")]
@@ -305,12 +290,7 @@ pub enum Command {
     )]
     Expect {
         /// What is expected
-        #[arg(
-            value_name = "EXPECTATION",
-            required = true,
-            trailing_var_arg = true,
-            allow_hyphen_values = true
-        )]
+        #[arg(value_name = "EXPECTATION", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
     /// Write results, or the LCP, to a file
@@ -332,11 +312,7 @@ pub enum Command {
     #[command(after_help = "Example:\n  echo now with less friction")]
     Echo {
         /// Any words
-        #[arg(
-            value_name = "WORDS",
-            trailing_var_arg = true,
-            allow_hyphen_values = true
-        )]
+        #[arg(value_name = "WORDS", trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
     /// Bring back the changes of a session in this directory that ended without `quit`
@@ -511,11 +487,7 @@ pub fn near<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<Str
         .filter(|(score, _)| *score > 0.8)
         .collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(b.1)));
-    scored
-        .into_iter()
-        .take(3)
-        .map(|(_, name)| name.to_owned())
-        .collect()
+    scored.into_iter().take(3).map(|(_, name)| name.to_owned()).collect()
 }
 
 /// "(did you mean …?)" with a blank before it, or nothing.
@@ -557,10 +529,7 @@ pub fn resolve(word: &str) -> Result<String, GrammarError> {
             word: word.to_owned(),
             near: near(word, grammar.get_subcommands().map(|c| c.get_name())),
         }),
-        _ => Err(GrammarError::Ambiguous {
-            word: word.to_owned(),
-            candidates,
-        }),
+        _ => Err(GrammarError::Ambiguous { word: word.to_owned(), candidates }),
     }
 }
 
@@ -580,9 +549,7 @@ pub fn parse(text: &str) -> Result<Option<Command>, GrammarError> {
             .map(|line| Some(line.command))
             .map_err(|error| GrammarError::Arguments(one_paragraph(&error, &name))),
         Err(error) if error.kind() == clap::error::ErrorKind::DisplayHelp => {
-            Ok(Some(Command::Help {
-                command: Some(name),
-            }))
+            Ok(Some(Command::Help { command: Some(name) }))
         }
         Err(error) => Err(GrammarError::Arguments(one_paragraph(&error, &name))),
     }
@@ -600,10 +567,7 @@ fn one_paragraph(error: &clap::Error, name: &str) -> String {
         if line.starts_with("Usage:") {
             break;
         }
-        parts.push(
-            line.trim_start_matches("error: ")
-                .trim_start_matches("tip: "),
-        );
+        parts.push(line.trim_start_matches("error: ").trim_start_matches("tip: "));
     }
     format!("{name}: {}; see `help {name}`", parts.join(" "))
 }
@@ -622,10 +586,7 @@ mod tests {
         assert_eq!(parse("piv").unwrap(), Some(Command::Pivots { range: None }));
         assert_eq!(parse("exit").unwrap(), Some(Command::Quit));
         let ambiguous = parse("p").unwrap_err().to_string();
-        assert!(
-            ambiguous.contains("pairs, pivots, plot") || ambiguous.contains("params"),
-            "{ambiguous}"
-        );
+        assert!(ambiguous.contains("pairs, pivots, plot") || ambiguous.contains("params"), "{ambiguous}");
         let typo = parse("piars").unwrap_err().to_string();
         assert!(typo.contains("did you mean `pairs`"), "{typo}");
     }
@@ -638,18 +599,13 @@ mod tests {
         };
         assert_eq!(words("set F2 -10%"), ["F2", "-10%"]);
         assert_eq!(words("set F2 -= 10"), ["F2", "-=", "10"]);
-        assert!(
-            matches!(parse("echo --at -x"), Ok(Some(Command::Echo { words })) if words.len() == 2)
-        );
+        assert!(matches!(parse("echo --at -x"), Ok(Some(Command::Echo { words })) if words.len() == 2));
     }
 
     #[test]
     fn wrong_arguments_say_where_help_is() {
         let error = parse("plot sli").unwrap_err().to_string();
-        assert!(
-            error.contains("slip") && error.contains("help plot"),
-            "{error}"
-        );
+        assert!(error.contains("slip") && error.contains("help plot"), "{error}");
         assert!(parse("load").unwrap_err().to_string().contains("help load"));
     }
 }

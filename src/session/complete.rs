@@ -61,30 +61,18 @@ impl Session {
             _ => (Vec::new(), Vec::new()),
         };
         let pairs = match &self.scenario().source {
-            Source::Structure(structure) => {
-                structure.pairs.iter().map(|pair| pair.id.clone()).collect()
-            }
+            Source::Structure(structure) => structure.pairs.iter().map(|pair| pair.id.clone()).collect(),
             Source::ContactSystem(system) => system.pairs.clone(),
             Source::Lcp(_) => Vec::new(),
         };
         Vocabulary {
-            parameters: self
-                .values()
-                .iter()
-                .map(|(name, value)| (name.clone(), *value))
-                .collect(),
+            parameters: self.values().iter().map(|(name, value)| (name.clone(), *value)).collect(),
             pairs,
             nodes,
             bars,
             cases: match &self.scenario().source {
-                Source::Structure(structure) => structure
-                    .load_cases
-                    .iter()
-                    .map(|case| case.name.clone())
-                    .collect(),
-                Source::ContactSystem(system) => {
-                    system.loads.iter().map(|load| load.name.clone()).collect()
-                }
+                Source::Structure(structure) => structure.load_cases.iter().map(|case| case.name.clone()).collect(),
+                Source::ContactSystem(system) => system.loads.iter().map(|load| load.name.clone()).collect(),
                 Source::Lcp(_) => Vec::new(),
             },
         }
@@ -109,17 +97,9 @@ fn place(line: &str, position: usize) -> Option<Place<'_>> {
         return None; // behind a `#`
     }
     let command = &head[from..];
-    let start = command
-        .char_indices()
-        .rev()
-        .find(|(_, c)| c.is_whitespace())
-        .map_or(0, |(at, c)| at + c.len_utf8());
+    let start = command.char_indices().rev().find(|(_, c)| c.is_whitespace()).map_or(0, |(at, c)| at + c.len_utf8());
     let before = words::split(&command[..start]).ok()?;
-    Some(Place {
-        before,
-        word: &command[start..],
-        start: from + start,
-    })
+    Some(Place { before, word: &command[start..], start: from + start })
 }
 
 /// The ways to complete the word that ends at byte `position` of `line`.
@@ -141,10 +121,7 @@ pub fn completions(line: &str, position: usize, vocabulary: &Vocabulary) -> Comp
     candidates.sort_by(|a, b| a.text.cmp(&b.text));
     candidates.dedup_by(|a, b| a.text == b.text);
     candidates.truncate(MOST);
-    Completion {
-        start: place.start,
-        candidates,
-    }
+    Completion { start: place.start, candidates }
 }
 
 /// What could follow the end of a line.
@@ -158,11 +135,7 @@ pub struct Hint {
 
 impl Hint {
     fn insert(text: impl Into<String>) -> Option<Self> {
-        Some(Hint {
-            insert: text.into(),
-            note: String::new(),
-        })
-        .filter(|hint| !hint.insert.is_empty())
+        Some(Hint { insert: text.into(), note: String::new() }).filter(|hint| !hint.insert.is_empty())
     }
 
     /// Both together, as shown.
@@ -182,24 +155,14 @@ pub fn hint(line: &str, vocabulary: &Vocabulary) -> Option<Hint> {
         let name = command::resolve(place.word).ok()?;
         let rest = name.strip_prefix(place.word)?;
         let usage = usage(&name);
-        let note = if usage.is_empty() {
-            usage
-        } else {
-            format!(" {usage}")
-        };
-        return Some(Hint {
-            insert: rest.to_owned(),
-            note,
-        })
-        .filter(|hint| *hint != Hint::default());
+        let note = if usage.is_empty() { usage } else { format!(" {usage}") };
+        return Some(Hint { insert: rest.to_owned(), note }).filter(|hint| *hint != Hint::default());
     }
     let name = command::resolve(&place.before[0]).ok()?;
     if !place.word.is_empty() {
         let found = completions(line, line.len(), vocabulary).candidates;
         return match found.as_slice() {
-            [only] if only.text.len() > place.word.len() => {
-                Hint::insert(&only.text[place.word.len()..])
-            }
+            [only] if only.text.len() > place.word.len() => Hint::insert(&only.text[place.word.len()..]),
             _ => None,
         };
     }
@@ -209,11 +172,7 @@ pub fn hint(line: &str, vocabulary: &Vocabulary) -> Option<Hint> {
             .iter()
             .find(|(name, _)| name == parameter)
             .and_then(|(_, value)| Hint::insert(value.to_string())),
-        (_, []) => Some(Hint {
-            insert: String::new(),
-            note: usage(&name),
-        })
-        .filter(|hint| !hint.note.is_empty()),
+        (_, []) => Some(Hint { insert: String::new(), note: usage(&name) }).filter(|hint| !hint.note.is_empty()),
         _ => None,
     }
 }
@@ -235,22 +194,14 @@ fn usage(name: &str) -> String {
         .get_positionals()
         .map(|argument| {
             let name = value_name(argument);
-            if argument.is_required_set() {
-                name
-            } else {
-                format!("[{name}]")
-            }
+            if argument.is_required_set() { name } else { format!("[{name}]") }
         })
         .collect();
     words.join(" ")
 }
 
 fn value_name(argument: &clap::Arg) -> String {
-    argument
-        .get_value_names()
-        .and_then(|names| names.first())
-        .map(ToString::to_string)
-        .unwrap_or_default()
+    argument.get_value_names().and_then(|names| names.first()).map(ToString::to_string).unwrap_or_default()
 }
 
 fn about(text: Option<&clap::builder::StyledStr>) -> String {
@@ -258,10 +209,7 @@ fn about(text: Option<&clap::builder::StyledStr>) -> String {
 }
 
 fn candidate(text: impl Into<String>, about: impl Into<String>) -> Candidate {
-    Candidate {
-        text: text.into(),
-        about: about.into(),
-    }
+    Candidate { text: text.into(), about: about.into() }
 }
 
 /// What may follow the words `given` of the command `name`.
@@ -270,11 +218,7 @@ fn arguments(name: &str, given: &[String], word: &str, vocabulary: &Vocabulary) 
     let Some(command) = grammar.find_subcommand(name) else {
         return Vec::new();
     };
-    let options = || {
-        command
-            .get_arguments()
-            .filter_map(|argument| Some((argument.get_long()?, argument)))
-    };
+    let options = || command.get_arguments().filter_map(|argument| Some((argument.get_long()?, argument)));
     // the value of an option
     if let Some(option) = given.last().and_then(|last| last.strip_prefix("--"))
         && let Some((_, argument)) = options().find(|(long, _)| *long == option)
@@ -282,9 +226,7 @@ fn arguments(name: &str, given: &[String], word: &str, vocabulary: &Vocabulary) 
         return values(argument, given, vocabulary, word);
     }
     let mut candidates: Vec<Candidate> = if word.starts_with('-') {
-        options()
-            .map(|(long, argument)| candidate(format!("--{long}"), about(argument.get_help())))
-            .collect()
+        options().map(|(long, argument)| candidate(format!("--{long}"), about(argument.get_help()))).collect()
     } else {
         Vec::new()
     };
@@ -300,11 +242,9 @@ fn arguments(name: &str, given: &[String], word: &str, vocabulary: &Vocabulary) 
         }
     }
     let positionals: Vec<&clap::Arg> = command.get_positionals().collect();
-    let at = positionals.get(given_positionals).or_else(|| {
-        positionals
-            .last()
-            .filter(|last| last.get_num_args().is_some_and(|n| n.max_values() > 1))
-    });
+    let at = positionals
+        .get(given_positionals)
+        .or_else(|| positionals.last().filter(|last| last.get_num_args().is_some_and(|n| n.max_values() > 1)));
     if let Some(argument) = at {
         candidates.extend(values(argument, given, vocabulary, word));
     }
@@ -312,61 +252,31 @@ fn arguments(name: &str, given: &[String], word: &str, vocabulary: &Vocabulary) 
 }
 
 /// What an argument may be.
-fn values(
-    argument: &clap::Arg,
-    given: &[String],
-    vocabulary: &Vocabulary,
-    word: &str,
-) -> Vec<Candidate> {
+fn values(argument: &clap::Arg, given: &[String], vocabulary: &Vocabulary, word: &str) -> Vec<Candidate> {
     let possible = argument.get_possible_values();
     if !possible.is_empty() {
-        return possible
-            .iter()
-            .map(|value| candidate(value.get_name(), about(value.get_help())))
-            .collect();
+        return possible.iter().map(|value| candidate(value.get_name(), about(value.get_help()))).collect();
     }
     names_of(&value_name(argument), given, vocabulary, word)
 }
 
 /// The names behind a `value_name` of the grammar.
 fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -> Vec<Candidate> {
-    let plain = |names: &[String]| {
-        names
-            .iter()
-            .map(|name| candidate(name, ""))
-            .collect::<Vec<_>>()
-    };
-    let fixed = |names: &[&str]| {
-        names
-            .iter()
-            .map(|name| candidate(*name, ""))
-            .collect::<Vec<_>>()
-    };
-    let parameters = || {
-        vocabulary
-            .parameters
-            .iter()
-            .map(|(name, value)| candidate(name, value.to_string()))
-            .collect::<Vec<_>>()
-    };
+    let plain = |names: &[String]| names.iter().map(|name| candidate(name, "")).collect::<Vec<_>>();
+    let fixed = |names: &[&str]| names.iter().map(|name| candidate(*name, "")).collect::<Vec<_>>();
+    let parameters =
+        || vocabulary.parameters.iter().map(|(name, value)| candidate(name, value.to_string())).collect::<Vec<_>>();
     let rules = [
         ("auto", "solve after each change"),
         ("covering", "covering vector"),
         ("engine", "implementation of Lemke's algorithm"),
         ("tie-break", "what decides among tied rows"),
     ];
-    let rules = || {
-        rules
-            .iter()
-            .map(|(name, about)| candidate(*name, *about))
-            .collect::<Vec<_>>()
-    };
+    let rules = || rules.iter().map(|(name, about)| candidate(*name, *about)).collect::<Vec<_>>();
     match kind {
         "SCENARIO" => {
-            let mut all: Vec<Candidate> = embedded::list()
-                .into_iter()
-                .map(|(name, title)| candidate(name, title))
-                .collect();
+            let mut all: Vec<Candidate> =
+                embedded::list().into_iter().map(|(name, title)| candidate(name, title)).collect();
             all.extend(files(word));
             all
         }
@@ -389,10 +299,7 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
                 all
             }
             [name] => match name.as_str() {
-                "covering" => Covering::ALL
-                    .iter()
-                    .map(|c| candidate(c.to_string(), ""))
-                    .collect(),
+                "covering" => Covering::ALL.iter().map(|c| candidate(c.to_string(), "")).collect(),
                 "tie-break" => fixed(&["lexicographic", "natural", "first-row", "random:"]),
                 "engine" => fixed(&["scheme", "tableau", "exact"]),
                 "auto" => fixed(&["on", "off"]),
@@ -402,12 +309,7 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
         },
         "TRACED" | "LOAD" => {
             let mut all = parameters();
-            all.extend(
-                vocabulary
-                    .cases
-                    .iter()
-                    .map(|case| candidate(case, "load case")),
-            );
+            all.extend(vocabulary.cases.iter().map(|case| candidate(case, "load case")));
             all
         }
         "to VALUE" => match given {
@@ -498,11 +400,7 @@ mod tests {
     }
 
     fn at_end(line: &str) -> Vec<String> {
-        completions(line, line.len(), &vocabulary())
-            .candidates
-            .into_iter()
-            .map(|candidate| candidate.text)
-            .collect()
+        completions(line, line.len(), &vocabulary()).candidates.into_iter().map(|candidate| candidate.text).collect()
     }
 
     #[test]

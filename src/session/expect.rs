@@ -134,14 +134,7 @@ pub struct Facts<'a> {
     pub error: Option<&'a str>,
 }
 
-const OUTCOMES: &[&str] = &[
-    "trivial",
-    "normal",
-    "ray",
-    "pivot-limit",
-    "breakdown",
-    "check-failed",
-];
+const OUTCOMES: &[&str] = &["trivial", "normal", "ray", "pivot-limit", "breakdown", "check-failed"];
 const STATES: &[&str] = &["open", "stick", "slip+", "slip-", "closed"];
 const CLASSES: &[&str] = &["mechanism", "artefact", "fault", "no-equilibrium"];
 const VERDICTS: &[&str] = &["certified", "proved", "undecided"];
@@ -205,15 +198,9 @@ pub fn read(words: &[String]) -> Result<Expectation, ExpectationSyntax> {
             did_you_mean(word, allowed.iter().copied()),
             allowed.join(", ")
         ))),
-        _ => Err(bad(format!(
-            "`{subject}` takes one of {}",
-            allowed.join(", ")
-        ))),
+        _ => Err(bad(format!("`{subject}` takes one of {}", allowed.join(", ")))),
     };
-    let named = |what: &str| {
-        rest.split_first()
-            .ok_or_else(|| bad(format!("`{subject}` of which {what}?")))
-    };
+    let named = |what: &str| rest.split_first().ok_or_else(|| bad(format!("`{subject}` of which {what}?")));
     match subject.as_str() {
         "outcome" => Ok(Expectation::Outcome(one_of(OUTCOMES)?)),
         "ray" => Ok(Expectation::Ray(one_of(CLASSES)?)),
@@ -222,27 +209,16 @@ pub fn read(words: &[String]) -> Result<Expectation, ExpectationSyntax> {
         "error" => Ok(Expectation::Error(rest.join(" "))),
         "p" => Ok(Expectation::P(bound(rest)?)),
         "pivots" => Ok(Expectation::Pivots(bound(rest)?)),
-        size if SIZES.contains(&size) => Ok(Expectation::Size {
-            what: size.to_owned(),
-            bound: bound(rest)?,
-        }),
+        size if SIZES.contains(&size) => Ok(Expectation::Size { what: size.to_owned(), bound: bound(rest)? }),
         "state" => match rest {
-            [pair, state] if STATES.contains(&state.as_str()) => Ok(Expectation::State {
-                pair: pair.clone(),
-                state: state.clone(),
-            }),
-            _ => Err(bad(format!(
-                "`state` takes a pair and one of {}",
-                STATES.join(", ")
-            ))),
+            [pair, state] if STATES.contains(&state.as_str()) => {
+                Ok(Expectation::State { pair: pair.clone(), state: state.clone() })
+            }
+            _ => Err(bad(format!("`state` takes a pair and one of {}", STATES.join(", ")))),
         },
         component if COMPONENTS.contains(&component) => {
             let (node, rest) = named("node")?;
-            Ok(Expectation::Node {
-                component: component.to_owned(),
-                node: node.clone(),
-                bound: bound(rest)?,
-            })
+            Ok(Expectation::Node { component: component.to_owned(), node: node.clone(), bound: bound(rest)? })
         }
         word => {
             let Some((_, quantity)) = QUANTITIES.iter().find(|(name, _)| *name == word) else {
@@ -253,11 +229,7 @@ pub fn read(words: &[String]) -> Result<Expectation, ExpectationSyntax> {
                 )));
             };
             let (pair, rest) = named("pair")?;
-            Ok(Expectation::Pair {
-                quantity: *quantity,
-                pair: pair.clone(),
-                bound: bound(rest)?,
-            })
+            Ok(Expectation::Pair { quantity: *quantity, pair: pair.clone(), bound: bound(rest)? })
         }
     }
 }
@@ -280,10 +252,8 @@ fn bound(words: &[String]) -> Result<Bound, ExpectationSyntax> {
         ("<", Operator::Less),
         (">", Operator::Greater),
     ];
-    let (operator, rest) = operators
-        .iter()
-        .find_map(|(sign, operator)| Some((*operator, text.strip_prefix(sign)?)))
-        .ok_or_else(bad)?;
+    let (operator, rest) =
+        operators.iter().find_map(|(sign, operator)| Some((*operator, text.strip_prefix(sign)?))).ok_or_else(bad)?;
     let (value, tolerance) = match rest.split_once('±').or_else(|| rest.split_once("+-")) {
         Some((value, tolerance)) => (value, Some(tolerance)),
         None => (rest, None),
@@ -300,11 +270,7 @@ fn bound(words: &[String]) -> Result<Bound, ExpectationSyntax> {
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
         return Err(bad());
     }
-    Ok(Bound {
-        operator,
-        value,
-        tolerance,
-    })
+    Ok(Bound { operator, value, tolerance })
 }
 
 impl Bound {
@@ -340,11 +306,7 @@ impl fmt::Display for Bound {
 
 /// A number in full, with an exponent where it would be long.
 fn shown(value: f64) -> String {
-    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
+    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
 impl Expectation {
@@ -354,11 +316,7 @@ impl Expectation {
     /// `Err(Ok(unmet))` if it does not hold; `Err(Err(what))` if it asks for a pair or node that does not exist.
     pub fn test(&self, facts: &Facts<'_>) -> Result<(), Result<Unmet, String>> {
         let words = |expected: String, found: String| {
-            if expected == found {
-                Ok(())
-            } else {
-                Err(Ok(Unmet { expected, found }))
-            }
+            if expected == found { Ok(()) } else { Err(Ok(Unmet { expected, found })) }
         };
         let compare = |what: String, bound: &Bound, found: Option<f64>| match found {
             Some(found) if bound.holds(found) => Ok(()),
@@ -368,17 +326,9 @@ impl Expectation {
             })),
         };
         let pair_named = |id: &str| {
-            facts
-                .pairs
-                .iter()
-                .find(|pair| pair.id == id)
-                .ok_or_else(|| {
-                    Err(super::selection::no_such(
-                        "pair",
-                        id,
-                        facts.pairs.iter().map(|pair| pair.id.as_str()),
-                    ))
-                })
+            facts.pairs.iter().find(|pair| pair.id == id).ok_or_else(|| {
+                Err(super::selection::no_such("pair", id, facts.pairs.iter().map(|pair| pair.id.as_str())))
+            })
         };
         let ray = facts.answer.and_then(|answer| answer.ray.as_ref());
         let outcome = || match facts.answer {
@@ -387,10 +337,9 @@ impl Expectation {
         };
         match self {
             Expectation::Outcome(word) => words(format!("outcome {word}"), outcome()),
-            Expectation::Ray(word) => words(
-                format!("ray {word}"),
-                ray.map_or_else(outcome, |ray| format!("ray {}", class_word(ray.class))),
-            ),
+            Expectation::Ray(word) => {
+                words(format!("ray {word}"), ray.map_or_else(outcome, |ray| format!("ray {}", class_word(ray.class))))
+            }
             Expectation::Verdict(word) => words(
                 format!("verdict {word}"),
                 ray.map_or_else(outcome, |ray| match ray.verdict {
@@ -400,41 +349,20 @@ impl Expectation {
             ),
             Expectation::State { pair, state } => {
                 let found = pair_named(pair)?;
-                words(
-                    format!("state {pair} {state}"),
-                    format!("state {pair} {}", found.state.word()),
-                )
+                words(format!("state {pair} {state}"), format!("state {pair} {}", found.state.word()))
             }
-            Expectation::Pair {
-                quantity,
-                pair,
-                bound,
-            } => {
+            Expectation::Pair { quantity, pair, bound } => {
                 let found = quantity.of(pair_named(pair)?);
-                let name = QUANTITIES
-                    .iter()
-                    .find(|(_, q)| q == quantity)
-                    .map_or("", |(name, _)| name);
+                let name = QUANTITIES.iter().find(|(_, q)| q == quantity).map_or("", |(name, _)| name);
                 compare(format!("{name} {pair}"), bound, Some(found))
             }
-            Expectation::Node {
-                component,
-                node,
-                bound,
-            } => {
+            Expectation::Node { component, node, bound } => {
                 let Some(displacements) = facts.displacements else {
                     return compare(format!("{component} {node}"), bound, None);
                 };
-                let found = displacements
-                    .iter()
-                    .find(|d| d.node == *node)
-                    .ok_or_else(|| {
-                        Err(super::selection::no_such(
-                            "node",
-                            node,
-                            displacements.iter().map(|d| d.node.as_str()),
-                        ))
-                    })?;
+                let found = displacements.iter().find(|d| d.node == *node).ok_or_else(|| {
+                    Err(super::selection::no_such("node", node, displacements.iter().map(|d| d.node.as_str())))
+                })?;
                 let value = match component.as_str() {
                     "ux" => found.ux,
                     "uy" => found.uy,
@@ -443,11 +371,9 @@ impl Expectation {
                 compare(format!("{component} {node}"), bound, Some(value))
             }
             Expectation::P(bound) => compare("p".into(), bound, facts.p),
-            Expectation::Pivots(bound) => compare(
-                "pivots".into(),
-                bound,
-                facts.answer.map(|answer| answer.pivots.len() as f64),
-            ),
+            Expectation::Pivots(bound) => {
+                compare("pivots".into(), bound, facts.answer.map(|answer| answer.pivots.len() as f64))
+            }
             Expectation::Size { what, bound } => {
                 let size = facts.answer.map(|answer| &answer.size);
                 let found = size.and_then(|size| match what.as_str() {
@@ -463,10 +389,7 @@ impl Expectation {
                     expected: format!("an error with \"{part}\""),
                     found: format!("the error \"{message}\""),
                 })),
-                None => Err(Ok(Unmet {
-                    expected: format!("an error with \"{part}\""),
-                    found: "no error".to_owned(),
-                })),
+                None => Err(Ok(Unmet { expected: format!("an error with \"{part}\""), found: "no error".to_owned() })),
             },
         }
     }
@@ -513,15 +436,7 @@ mod tests {
             };
             assert_eq!(bound.holds(found), holds, "{text}");
         }
-        for text in [
-            "p",
-            "p 3",
-            "p = ",
-            "p = x",
-            "p < 1 ± 2",
-            "p = 1 ± -2",
-            "p = inf",
-        ] {
+        for text in ["p", "p 3", "p = ", "p = x", "p < 1 ± 2", "p = 1 ± -2", "p = inf"] {
             assert!(read(&words(text)).is_err(), "{text}");
         }
     }
@@ -529,21 +444,14 @@ mod tests {
     #[test]
     fn sizes_are_compared_like_numbers() {
         let read = read(&words("lcp <= 48")).unwrap();
-        let Expectation::Size { what, bound } = &read else {
-            panic!("{read:?}")
-        };
-        assert_eq!(
-            (what.as_str(), bound.to_string().as_str()),
-            ("lcp", "<= 48")
-        );
+        let Expectation::Size { what, bound } = &read else { panic!("{read:?}") };
+        assert_eq!((what.as_str(), bound.to_string().as_str()), ("lcp", "<= 48"));
         assert!(bound.holds(48.0) && !bound.holds(49.0));
     }
 
     #[test]
     fn not_a_number_fulfils_nothing() {
-        let Ok(Expectation::P(bound)) = read(&words("p = 1 ± 1")) else {
-            panic!()
-        };
+        let Ok(Expectation::P(bound)) = read(&words("p = 1 ± 1")) else { panic!() };
         assert!(!bound.holds(f64::NAN));
     }
 

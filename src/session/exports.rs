@@ -11,12 +11,7 @@ use super::{CommandError, Output, Session};
 
 impl Session {
     /// `export WHAT FILE`.
-    pub(super) fn export(
-        &self,
-        what: Export,
-        path: &Path,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn export(&self, what: Export, path: &Path, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         // pairs and displacements are those at the pivot shown
         let mut shown = answer.clone();
@@ -38,10 +33,7 @@ impl Session {
             };
             return Err(self.none(word, answer));
         }
-        let ending = path
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .unwrap_or_default();
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let as_json = |value: Value| {
             atomic::write(path, |out| {
                 let text = serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
@@ -51,9 +43,7 @@ impl Session {
         let written = match (what, ending) {
             (Export::Pairs, "csv") => atomic::write(path, |out| csv::pairs(out, &shown)),
             (Export::Pivots, "csv") => atomic::write(path, |out| csv::pivots(out, &shown)),
-            (Export::Displacements, "csv") => {
-                atomic::write(path, |out| csv::displacements(out, &shown))
-            }
+            (Export::Displacements, "csv") => atomic::write(path, |out| csv::displacements(out, &shown)),
             (Export::Members, "csv") => atomic::write(path, |out| csv::members(out, &shown)),
             (Export::Reactions, "csv") => atomic::write(path, |out| csv::reactions(out, &shown)),
             (Export::Pairs, "json") => as_json(json_export::pairs(&shown)),
@@ -61,12 +51,9 @@ impl Session {
             (Export::Displacements, "json") => as_json(json_export::displacements(&shown)),
             (Export::Members, "json") => as_json(json_export::members(&shown)),
             (Export::Reactions, "json") => as_json(json_export::reactions(&shown)),
-            (Export::Result, "json") => as_json(json_export::result(
-                answer,
-                &self.now.scenario.name,
-                &self.now.values,
-                false,
-            )),
+            (Export::Result, "json") => {
+                as_json(json_export::result(answer, &self.now.scenario.name, &self.now.values, false))
+            }
             (Export::Result, _) => {
                 return Err(CommandError::Refused(format!(
                     "the whole result is written as JSON: {} must end in .json",
@@ -74,10 +61,7 @@ impl Session {
                 )));
             }
             _ => {
-                return Err(CommandError::Refused(format!(
-                    "{} must end in .csv or .json",
-                    path.display()
-                )));
+                return Err(CommandError::Refused(format!("{} must end in .csv or .json", path.display())));
             }
         };
         written.map_err(|error| CommandError::Refused(error.to_string()))?;
@@ -104,8 +88,7 @@ impl Session {
             Some("json") => {
                 let value = lcp_export::scenario(&lcp, &names, &title);
                 atomic::write(path, |out| {
-                    let text =
-                        serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
+                    let text = serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
                     writeln!(out, "{text}")
                 })
                 .map(|()| vec![path.to_owned()])
@@ -121,18 +104,14 @@ impl Session {
                     .into_iter()
                     .map(|(file, what, rows)| {
                         let comment = format!("{what} of w = M z + q + d p. {title}");
-                        atomic::write(&file, |out| lcp_export::matrix_market(out, &rows, &comment))
-                            .map(|()| file)
+                        atomic::write(&file, |out| lcp_export::matrix_market(out, &rows, &comment)).map(|()| file)
                     })
                     .collect()
             }
             _ => return refused(format!("{} must end in .json or .mtx", path.display())),
         };
         let files = files.map_err(|error| CommandError::Refused(error.to_string()))?;
-        let names: Vec<String> = files
-            .iter()
-            .map(|file| file.display().to_string())
-            .collect();
+        let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
         Ok(io.say(&format!("wrote {}", names.join(", ")))?)
     }
 }

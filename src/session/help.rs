@@ -6,43 +6,13 @@ use super::command::{GrammarError, grammar, resolve};
 
 /// The groups of `help`, each with its commands in the order shown; every command stands in one of them.
 pub const GROUPS: &[(&str, &[&str])] = &[
-    (
-        "scenario",
-        &[
-            "load",
-            "scenarios",
-            "save",
-            "params",
-            "set",
-            "reset",
-            "undo",
-            "redo",
-            "diff",
-        ],
-    ),
-    (
-        "answer",
-        &[
-            "solve",
-            "status",
-            "pairs",
-            "displacements",
-            "members",
-            "reactions",
-            "check",
-        ],
-    ),
+    ("scenario", &["load", "scenarios", "save", "params", "set", "reset", "undo", "redo", "diff"]),
+    ("answer", &["solve", "status", "pairs", "displacements", "members", "reactions", "check"]),
     ("pivots", &["pivots", "step", "why", "ties", "tableau"]),
     ("trouble", &["ray", "compare", "enumerate", "critical"]),
-    (
-        "paths",
-        &["sweep", "trace", "limit", "sensitivity", "stages"],
-    ),
+    ("paths", &["sweep", "trace", "limit", "sensitivity", "stages"]),
     ("pictures", &["plot", "tui"]),
-    (
-        "scripts",
-        &["source", "record", "expect", "export", "echo", "restore"],
-    ),
+    ("scripts", &["source", "record", "expect", "export", "echo", "restore"]),
     ("help", &["help", "tour", "history", "quit"]),
 ];
 
@@ -56,10 +26,7 @@ pub fn overview(style: &Style) -> String {
             text.push('\n');
         }
     };
-    add(
-        "",
-        "One command a line; `;` separates, `#` begins a comment, unique prefixes work.",
-    );
+    add("", "One command a line; `;` separates, `#` begins a comment, unique prefixes work.");
     for (group, names) in GROUPS {
         add("", "");
         add("", group);
@@ -87,16 +54,9 @@ pub fn help(word: &str, width: usize) -> Result<String, GrammarError> {
     grammar.build();
     // `resolve` gave the name of an existing subcommand.
     let Some(command) = grammar.find_subcommand_mut(&name) else {
-        return Err(GrammarError::Unknown {
-            word: name,
-            near: Vec::new(),
-        });
+        return Err(GrammarError::Unknown { word: name, near: Vec::new() });
     };
-    let text = command
-        .clone()
-        .term_width(width)
-        .render_long_help()
-        .to_string();
+    let text = command.clone().term_width(width).render_long_help().to_string();
     let mut lines: Vec<String> = Vec::new();
     for line in text.lines().map(str::trim_end) {
         let blank = line.is_empty() && lines.last().is_some_and(String::is_empty);
@@ -117,19 +77,13 @@ mod tests {
     #[test]
     fn every_command_stands_in_one_group_and_has_an_example() {
         let grammar = grammar();
-        let mut grouped: Vec<&str> = GROUPS
-            .iter()
-            .flat_map(|(_, names)| names.iter().copied())
-            .collect();
+        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
         let mut known: Vec<&str> = grammar.get_subcommands().map(|c| c.get_name()).collect();
         grouped.sort_unstable();
         known.sort_unstable();
         assert_eq!(grouped, known);
         for command in grammar.get_subcommands() {
-            let example = command
-                .get_after_help()
-                .map(ToString::to_string)
-                .unwrap_or_default();
+            let example = command.get_after_help().map(ToString::to_string).unwrap_or_default();
             assert!(example.starts_with("Example:\n"), "{}", command.get_name());
             for line in example.lines().skip(1) {
                 for one in words::commands(line) {

@@ -14,11 +14,7 @@ const HEADER: &str = "# stickslip journal";
 /// The user's state directory of this program: `$XDG_STATE_HOME/stickslip` or `~/.local/state/stickslip`; `None`
 /// where neither variable is set to an absolute path.
 pub fn state_directory() -> Option<PathBuf> {
-    let absolute = |name: &str| {
-        std::env::var_os(name)
-            .map(PathBuf::from)
-            .filter(|path| path.is_absolute())
-    };
+    let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     absolute("XDG_STATE_HOME")
         .or_else(|| absolute("HOME").map(|home| home.join(".local/state")))
         .map(|base| base.join("stickslip"))
@@ -93,11 +89,7 @@ impl Journal {
     fn create(&self) -> io::Result<(File, PathBuf)> {
         fs::create_dir_all(&self.folder)?;
         for attempt in 0..1000 {
-            let path = self.folder.join(format!(
-                "{}-{}-{attempt}.stick",
-                self.key(),
-                std::process::id()
-            ));
+            let path = self.folder.join(format!("{}-{}-{attempt}.stick", self.key(), std::process::id()));
             match OpenOptions::new().write(true).create_new(true).open(&path) {
                 Ok(mut file) => {
                     file.lock()?;
@@ -151,11 +143,7 @@ impl Journal {
                 let _ = fs::remove_file(&path);
                 continue;
             }
-            return Some(LeftOver {
-                path,
-                _file: file,
-                commands,
-            });
+            return Some(LeftOver { path, _file: file, commands });
         }
         None
     }
@@ -189,11 +177,7 @@ mod tests {
         journal.append("set f 0.3").unwrap();
         assert!(Journal::new(folder.path(), place).left_over().is_none());
         drop(journal);
-        assert!(
-            Journal::new(folder.path(), Path::new("/else"))
-                .left_over()
-                .is_none()
-        );
+        assert!(Journal::new(folder.path(), Path::new("/else")).left_over().is_none());
         let left = Journal::new(folder.path(), place).left_over().unwrap();
         assert_eq!(left.commands, ["load beam", "set F2 120", "set f 0.3"]);
         assert_eq!(left.changes(), 2);
@@ -223,11 +207,6 @@ mod tests {
         let mut journal = Journal::new(folder.path(), Path::new("/a"));
         journal.append("set F2 120").unwrap();
         journal.close().unwrap();
-        assert_eq!(
-            fs::read_dir(folder.path().join("journals"))
-                .unwrap()
-                .count(),
-            0
-        );
+        assert_eq!(fs::read_dir(folder.path().join("journals")).unwrap().count(), 0);
     }
 }

@@ -89,9 +89,7 @@ struct Change {
 /// # Errors
 /// A main system that cannot be factorized, an interruption.
 pub fn diagnose(scenario: Scenario, watch: &dyn Watch) -> Result<Vec<String>, CommandError> {
-    worker::run(watch, move |watch| {
-        Ok::<_, CommandError>(solve::prepare(&scenario, watch)?.loose_sentences())
-    })?
+    worker::run(watch, move |watch| Ok::<_, CommandError>(solve::prepare(&scenario, watch)?.loose_sentences()))?
 }
 
 /// A scenario that is being worked on.
@@ -149,9 +147,7 @@ impl Session {
                 Setting::TieBreak(tie_break) => now.rules.tie_break = tie_break,
                 Setting::Engine(engine) => now.rules.engine = engine,
                 Setting::Auto(_) => {
-                    return Err(CommandError::Refused(
-                        "`auto` is for a session: a single run is always solved".into(),
-                    ));
+                    return Err(CommandError::Refused("`auto` is for a session: a single run is always solved".into()));
                 }
             }
         }
@@ -332,9 +328,7 @@ impl Session {
                 Ok(Next::Continue) => {}
                 Ok(next) => return Ok(next),
                 Err(error) => {
-                    let asked_for = commands
-                        .get(index + 1)
-                        .is_some_and(|next| script::expects_error(next));
+                    let asked_for = commands.get(index + 1).is_some_and(|next| script::expects_error(next));
                     if !asked_for || error.is_output() || error.is_interrupted() {
                         return Err(error);
                     }
@@ -373,10 +367,8 @@ impl Session {
     fn run_plain(&mut self, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
         let parsed = command::parse(text);
         // `expect error` and `echo` look at or pass by the message of the command before them
-        let keeps_error = matches!(
-            parsed,
-            Ok(None | Some(command::Command::Expect { .. } | command::Command::Echo { .. }))
-        );
+        let keeps_error =
+            matches!(parsed, Ok(None | Some(command::Command::Expect { .. } | command::Command::Echo { .. })));
         let result = match parsed {
             Ok(None) => Ok(Next::Continue),
             Ok(Some(command)) => self.apply(command, text, io),
@@ -401,10 +393,7 @@ impl Session {
             .values
             .iter()
             .filter(|(name, value)| {
-                scenario
-                    .parameters
-                    .get(*name)
-                    .is_none_or(|parameter| parameter.value.to_bits() != value.to_bits())
+                scenario.parameters.get(*name).is_none_or(|parameter| parameter.value.to_bits() != value.to_bits())
             })
             .map(|(name, value)| format!("set {name} {value}"))
             .collect();
@@ -436,10 +425,7 @@ impl Session {
             .as_ref()
             .map(|solved| solved.answer.outcome)
             .filter(|outcome| {
-                matches!(
-                    outcome,
-                    OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed
-                )
+                matches!(outcome, OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed)
             })
             .or(self.trouble);
         self.previous = self.solved.take().or(self.previous.take());
@@ -464,11 +450,7 @@ impl Setup {
     }
 
     /// Solves, from the `last` answer of the same geometry where there is one and that pays.
-    fn solve_from(
-        &mut self,
-        last: Option<Arc<Solved>>,
-        watch: &dyn Watch,
-    ) -> Result<Arc<Solved>, CommandError> {
+    fn solve_from(&mut self, last: Option<Arc<Solved>>, watch: &dyn Watch) -> Result<Arc<Solved>, CommandError> {
         let scenario = Arc::clone(&self.scenario);
         let prepared = self.prepared.clone();
         let (values, rules) = (self.values.clone(), self.rules);
@@ -482,11 +464,7 @@ impl Setup {
                 None => prepared.solve(&scenario, &values, rules, watch),
             };
             let solved = solved.map_err(|error| {
-                if error.is_interrupted() {
-                    CommandError::Interrupted
-                } else {
-                    CommandError::Solve(error.to_string())
-                }
+                if error.is_interrupted() { CommandError::Interrupted } else { CommandError::Solve(error.to_string()) }
             })?;
             Ok::<_, CommandError>((prepared, Arc::new(solved)))
         })??;
@@ -498,11 +476,7 @@ impl Setup {
         Arc::ptr_eq(&self.scenario, &other.scenario)
             && self.rules == other.rules
             && self.values.len() == other.values.len()
-            && self
-                .values
-                .iter()
-                .zip(&other.values)
-                .all(|((a, x), (b, y))| a == b && x.to_bits() == y.to_bits())
+            && self.values.iter().zip(&other.values).all(|((a, x), (b, y))| a == b && x.to_bits() == y.to_bits())
     }
 }
 

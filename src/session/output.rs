@@ -41,14 +41,7 @@ impl<'a> Output<'a> {
 
     /// Output in the given format.
     pub fn new(out: &'a mut dyn Write, style: Style, format: Format, watch: &'a dyn Watch) -> Self {
-        Output {
-            out,
-            style,
-            format,
-            watch,
-            line: 0,
-            report: None,
-        }
+        Output { out, style, format, watch, line: 0, report: None }
     }
 
     /// Reports a result: only the form that is asked for is made.
@@ -68,9 +61,6 @@ impl<'a> Output<'a> {
 
     /// Reports a sentence.
     pub(super) fn say(&mut self, sentence: &str) -> io::Result<()> {
-        self.report(
-            || Value::String(sentence.to_owned()),
-            |out, _| writeln!(out, "{sentence}"),
-        )
+        self.report(|| Value::String(sentence.to_owned()), |out, _| writeln!(out, "{sentence}"))
     }
 }

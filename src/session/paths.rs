@@ -72,22 +72,15 @@ impl Session {
             (Some(solved), Some(_)) => Arc::clone(solved),
             _ => setup.solve(io.watch)?,
         };
-        let prepared = setup.prepared.clone().ok_or_else(|| {
-            CommandError::Internal("a solved scenario has no prepared geometry".to_owned())
-        })?;
-        Ok(Ground {
-            setup,
-            prepared,
-            solved,
-        })
+        let prepared = setup
+            .prepared
+            .clone()
+            .ok_or_else(|| CommandError::Internal("a solved scenario has no prepared geometry".to_owned()))?;
+        Ok(Ground { setup, prepared, solved })
     }
 
     fn case_names(prepared: &Prepared) -> Vec<String> {
-        prepared
-            .cases
-            .iter()
-            .map(|(name, _)| name.clone())
-            .collect()
+        prepared.cases.iter().map(|(name, _)| name.clone()).collect()
     }
 
     /// `trace NAME [to V] [--through]`.
@@ -98,18 +91,15 @@ impl Session {
         through: bool,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let to =
-            match to {
-                [] => None,
-                [word, value] if word == "to" => Some(value.parse::<f64>().map_err(|_| {
-                    CommandError::Refused(format!("trace: `{value}` is no number"))
-                })?),
-                _ => {
-                    return Err(CommandError::Refused(
-                        "trace: expected `trace NAME` or `trace NAME to VALUE`".into(),
-                    ));
-                }
-            };
+        let to = match to {
+            [] => None,
+            [word, value] if word == "to" => Some(
+                value.parse::<f64>().map_err(|_| CommandError::Refused(format!("trace: `{value}` is no number")))?,
+            ),
+            _ => {
+                return Err(CommandError::Refused("trace: expected `trace NAME` or `trace NAME to VALUE`".into()));
+            }
+        };
         let ground = self.ground(io)?;
         let units = self.now.scenario.units.clone();
         let (prepared, solved) = (Arc::clone(&ground.prepared), ground.solved);
@@ -120,20 +110,10 @@ impl Session {
             let to = to.unwrap_or_else(|| {
                 let slider = scenario.parameters.get(name).and_then(|p| p.max);
                 let present = values.get(name).copied().unwrap_or_default();
-                slider
-                    .filter(|max| *max > present)
-                    .unwrap_or(FRICTION.max(2.0 * present))
+                slider.filter(|max| *max > present).unwrap_or(FRICTION.max(2.0 * present))
             });
             let path = worker::run(io.watch, move |watch| {
-                friction::trace(
-                    &prepared,
-                    &scenario,
-                    &values,
-                    Some(&solved),
-                    &what,
-                    to,
-                    watch,
-                )
+                friction::trace(&prepared, &scenario, &values, Some(&solved), &what, to, watch)
             })??;
             let record = PathRecord::of_friction(&path);
             io.report(
@@ -160,15 +140,7 @@ impl Session {
         let geometry = Arc::clone(&prepared);
         let path = worker::run(io.watch, move |watch| {
             let reach = LoadReach { to, through };
-            load::trace(
-                &prepared,
-                &scenario,
-                &values,
-                Some(&solved),
-                &what,
-                reach,
-                watch,
-            )
+            load::trace(&prepared, &scenario, &values, Some(&solved), &what, reach, watch)
         })??;
         let record = PathRecord::of_load(&path, &Self::case_names(&geometry));
         io.report(
@@ -199,17 +171,10 @@ impl Session {
         let cases = Self::case_names(&ground.prepared);
         let what = name.to_owned();
         let found = worker::run(io.watch, move |watch| {
-            let Ground {
-                prepared, solved, ..
-            } = &ground;
+            let Ground { prepared, solved, .. } = &ground;
             limit::limit(prepared, &scenario, &values, Some(solved), &what, watch)
         })??;
-        let unit = self
-            .now
-            .scenario
-            .parameters
-            .get(name)
-            .and_then(|parameter| parameter.unit.clone());
+        let unit = self.now.scenario.parameters.get(name).and_then(|parameter| parameter.unit.clone());
         io.report(
             || {
                 json!({
@@ -229,41 +194,23 @@ impl Session {
     }
 
     /// `sensitivity [PARAMETER]`.
-    pub(super) fn sensitivity(
-        &mut self,
-        parameter: Option<&str>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn sensitivity(&mut self, parameter: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
         if let Some(name) = parameter
             && !self.now.values.contains_key(name)
         {
             return Err(super::values::unknown_parameter(name, &self.now.scenario).into());
         }
         let ground = self.ground(io)?;
-        let found = sensitivity(
-            &ground.prepared,
-            &self.now.scenario,
-            &ground.solved,
-            &self.now.values,
-        )?;
-        io.report(
-            || json!(found),
-            |out, style| view::sensitivity::write(out, &found, parameter, style),
-        )?;
+        let found = sensitivity(&ground.prepared, &self.now.scenario, &ground.solved, &self.now.values)?;
+        io.report(|| json!(found), |out, style| view::sensitivity::write(out, &found, parameter, style))?;
         Ok(())
     }
 
     /// `stages [STAGE]`.
-    pub(super) fn stages(
-        &mut self,
-        stage: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn stages(&mut self, stage: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let ground = self.ground(io)?;
         let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
-        let history = worker::run(io.watch, move |watch| {
-            stages::follow(&ground.prepared, &scenario, &values, watch)
-        })??;
+        let history = worker::run(io.watch, move |watch| stages::follow(&ground.prepared, &scenario, &values, watch))??;
         let record = Arc::new(PathRecord::of_history(&history));
         let index = match stage {
             None => None,
@@ -347,12 +294,8 @@ impl Session {
             .split(|byte| *byte == b'\n')
             .filter(|line| !line.is_empty())
             .map(|line| {
-                let row: serde_json::Map<String, Value> =
-                    serde_json::from_slice(line).unwrap_or_default();
-                columns
-                    .iter()
-                    .map(|name| row.get(name).cloned().unwrap_or_default())
-                    .collect()
+                let row: serde_json::Map<String, Value> = serde_json::from_slice(line).unwrap_or_default();
+                columns.iter().map(|name| row.get(name).cloned().unwrap_or_default()).collect()
             })
             .collect();
         io.report(
@@ -360,11 +303,7 @@ impl Session {
             |out, style| {
                 view::sweep::write(out, &columns, &rows, grid.axes.len(), style)?;
                 if !done.is_complete() {
-                    writeln!(
-                        out,
-                        "stopped after {} of {} points",
-                        done.written, done.total
-                    )?;
+                    writeln!(out, "stopped after {} of {} points", done.written, done.total)?;
                 }
                 Ok(())
             },
@@ -373,12 +312,7 @@ impl Session {
     }
 
     /// `plot path [QUANTITY] [PAIRS]`.
-    pub(super) fn plot_path(
-        &self,
-        of: &[String],
-        height: usize,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn plot_path(&self, of: &[String], height: usize, io: &mut Output<'_>) -> Result<(), CommandError> {
         let path = self.need_path()?;
         let (quantity, names) = match of.split_first() {
             Some((word, rest)) if word == "slip" => (Quantity::Slip, rest),
@@ -395,10 +329,7 @@ impl Session {
         let mut pairs = Vec::new();
         for name in names {
             let pair = ids.iter().position(|id| id == name).ok_or_else(|| {
-                CommandError::Refused(format!(
-                    "plot: no pair {name}{}",
-                    did_you_mean(name, ids.iter().copied())
-                ))
+                CommandError::Refused(format!("plot: no pair {name}{}", did_you_mean(name, ids.iter().copied())))
             })?;
             pairs.push(pair);
         }
@@ -461,19 +392,15 @@ impl Session {
         stream: &mut dyn Write,
         watch: &dyn Watch,
     ) -> Result<Done, CommandError> {
-        let axes = request
-            .axes
-            .iter()
-            .map(|axis| Axis::parse(axis))
-            .collect::<Result<_, _>>()?;
+        let axes = request.axes.iter().map(|axis| Axis::parse(axis)).collect::<Result<_, _>>()?;
         let grid = Grid::new(&self.now.scenario, axes)?;
         let mut setup = self.now.clone();
         if setup.prepared.is_none() {
             setup.solve(watch)?;
         }
-        let prepared = setup.prepared.ok_or_else(|| {
-            CommandError::Internal("a solved scenario has no prepared geometry".to_owned())
-        })?;
+        let prepared = setup
+            .prepared
+            .ok_or_else(|| CommandError::Internal("a solved scenario has no prepared geometry".to_owned()))?;
         let sweep = Sweep {
             prepared: &prepared,
             scenario: &self.now.scenario,
@@ -501,11 +428,7 @@ impl Session {
 ///
 /// # Errors
 /// Shards that do not make a whole; a place that cannot be written.
-pub fn merge(
-    files: &[PathBuf],
-    to: Option<&Path>,
-    out: &mut dyn Write,
-) -> Result<usize, CommandError> {
+pub fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<usize, CommandError> {
     let Some(path) = to else {
         let mut buffer = std::io::BufWriter::new(out);
         return Ok(sweep_file::merge(files, &mut buffer)?);
@@ -526,11 +449,7 @@ pub fn merge(
 /// The pairs that slip most on a path, at most four: what a plot shows if none is named.
 fn busiest(path: &PathRecord, ids: &[&str]) -> Vec<usize> {
     let most = |pair: usize| {
-        view::number::largest(
-            path.places
-                .iter()
-                .filter_map(|place| place.pairs.get(pair).map(|pair| pair.z_t)),
-        )
+        view::number::largest(path.places.iter().filter_map(|place| place.pairs.get(pair).map(|pair| pair.z_t)))
     };
     let mut pairs: Vec<usize> = (0..ids.len()).collect();
     pairs.sort_by(|&a, &b| most(b).total_cmp(&most(a)).then(a.cmp(&b)));
@@ -546,10 +465,7 @@ pub fn format_of(path: &Path) -> Result<Format, CommandError> {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => Ok(Format::Csv),
         Some("json" | "jsonl") => Ok(Format::Json),
-        _ => Err(CommandError::Refused(format!(
-            "{} must end in .csv or .json",
-            path.display()
-        ))),
+        _ => Err(CommandError::Refused(format!("{} must end in .csv or .json", path.display()))),
     }
 }
 
@@ -565,20 +481,13 @@ pub fn done_sentence(done: &Done, path: &Path) -> String {
         let left = done.total - done.found - done.written;
         format!("stopped, {left} are left: the same command with --resume goes on")
     };
-    format!(
-        "{} rows written to {}{found}; {rest}",
-        done.written,
-        path.display()
-    )
+    format!("{} rows written to {}{found}; {rest}", done.written, path.display())
 }
 
 /// Reads `P A..B [N]` up to three times.
 fn axes(words: &[String]) -> Result<Vec<Axis>, CommandError> {
-    let form = || {
-        CommandError::Refused(
-            "sweep: expected PARAMETER A..B [N], e.g. `sweep f 0..1 21 F2 0..400`".to_owned(),
-        )
-    };
+    let form =
+        || CommandError::Refused("sweep: expected PARAMETER A..B [N], e.g. `sweep f 0..1 21 F2 0..400`".to_owned());
     let mut axes = Vec::new();
     let mut rest = words;
     while let Some((name, after)) = rest.split_first() {
@@ -592,9 +501,9 @@ fn axes(words: &[String]) -> Result<Vec<Axis>, CommandError> {
         };
         let (count, after) = match after.split_first() {
             Some((word, after)) if word.parse::<f64>().is_ok() => {
-                let count = word.parse::<usize>().map_err(|_| {
-                    CommandError::Refused(format!("sweep: `{word}` is no number of points"))
-                })?;
+                let count = word
+                    .parse::<usize>()
+                    .map_err(|_| CommandError::Refused(format!("sweep: `{word}` is no number of points")))?;
                 (count, after)
             }
             _ => (POINTS, after),

@@ -74,15 +74,11 @@ impl Session {
     ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         if answer.pairs.is_empty() {
-            return Err(CommandError::Refused(
-                "nothing to plot: there are no contact pairs in this answer".into(),
-            ));
+            return Err(CommandError::Refused("nothing to plot: there are no contact pairs in this answer".into()));
         }
         let mut states: Vec<(String, Vec<PairState>)> = Vec::new();
         if at.is_empty() {
-            let label = self
-                .position
-                .map_or(String::new(), |step| format!("pivot {step}"));
+            let label = self.position.map_or(String::new(), |step| format!("pivot {step}"));
             states.push((label, self.pairs()));
         } else {
             let last = answer.pivots.last().map(|pivot| pivot.step);
@@ -90,39 +86,20 @@ impl Session {
                 states.push(self.pairs_named(word, last)?);
             }
         }
-        let borrowed: Vec<(&str, &[PairState])> = states
-            .iter()
-            .map(|(label, pairs)| (label.as_str(), pairs.as_slice()))
-            .collect();
+        let borrowed: Vec<(&str, &[PairState])> =
+            states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect();
         io.report(
-            || {
-                states
-                    .iter()
-                    .map(|(label, pairs)| json!({"at": label, "pairs": pairs}))
-                    .collect()
-            },
+            || states.iter().map(|(label, pairs)| json!({"at": label, "pairs": pairs})).collect(),
             |out, style| {
-                zone::write(
-                    out,
-                    quantity,
-                    &borrowed,
-                    &self.now.scenario.units,
-                    height.unwrap_or(HEIGHT),
-                    style,
-                )
+                zone::write(out, quantity, &borrowed, &self.now.scenario.units, height.unwrap_or(HEIGHT), style)
             },
         )?;
         Ok(())
     }
 
     /// The pairs at a pivot named `first`, `last` or by its number.
-    fn pairs_named(
-        &self,
-        word: &str,
-        last: Option<usize>,
-    ) -> Result<(String, Vec<PairState>), CommandError> {
-        let (Some(solved), Some(prepared), Some(last)) = (&self.solved, &self.now.prepared, last)
-        else {
+    fn pairs_named(&self, word: &str, last: Option<usize>) -> Result<(String, Vec<PairState>), CommandError> {
+        let (Some(solved), Some(prepared), Some(last)) = (&self.solved, &self.now.prepared, last) else {
             return Err(CommandError::Refused(
                 "plot: no pivots to choose with `--at`: the main system is the answer".into(),
             ));
@@ -130,22 +107,16 @@ impl Session {
         let step = match word {
             "first" => 0,
             "last" => last,
-            _ => word
-                .parse()
-                .ok()
-                .filter(|step| *step <= last)
-                .ok_or_else(|| {
-                    CommandError::Refused(format!(
-                        "plot: no pivot `{word}`; expected first, last or 0 … {last}"
-                    ))
-                })?,
+            _ => word.parse().ok().filter(|step| *step <= last).ok_or_else(|| {
+                CommandError::Refused(format!("plot: no pivot `{word}`; expected first, last or 0 … {last}"))
+            })?,
         };
         let pairs = if step == last {
             solved.answer.pairs.clone()
         } else {
-            solved.pairs_at(prepared, step).ok_or_else(|| {
-                CommandError::Refused(format!("plot: pivot {step} cannot be shown"))
-            })?
+            solved
+                .pairs_at(prepared, step)
+                .ok_or_else(|| CommandError::Refused(format!("plot: pivot {step} cannot be shown")))?
         };
         Ok((format!("pivot {step}"), pairs))
     }
@@ -153,18 +124,10 @@ impl Session {
     fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         if answer.pivots.is_empty() {
-            return Err(CommandError::Refused(
-                "no pivots: the main system is the answer".into(),
-            ));
+            return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
         }
         io.report(
-            || {
-                answer
-                    .pivots
-                    .iter()
-                    .map(|pivot| json!([pivot.step, pivot.p]))
-                    .collect()
-            },
+            || answer.pivots.iter().map(|pivot| json!([pivot.step, pivot.p])).collect(),
             |out, style| {
                 trace::write(
                     out,
@@ -179,11 +142,7 @@ impl Session {
         Ok(())
     }
 
-    fn plot_structure(
-        &self,
-        height: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    fn plot_structure(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         self.need_answer()?;
         let Source::Structure(structure) = &self.now.scenario.source else {
             return Err(not_a_structure());
@@ -208,10 +167,7 @@ impl Session {
                 style,
             )
         };
-        io.report(
-            || json!({"displacements": displacements, "pairs": pairs}),
-            drawn,
-        )?;
+        io.report(|| json!({"displacements": displacements, "pairs": pairs}), drawn)?;
         Ok(())
     }
 
@@ -227,20 +183,13 @@ impl Session {
             .and_then(|solved| solved.ray.as_ref())
             .and_then(|ray| ray.mode.as_ref())
             .ok_or_else(|| {
-                CommandError::Refused(
-                    "no mode to draw: the run did not end in a motion that costs no energy".into(),
-                )
+                CommandError::Refused("no mode to draw: the run did not end in a motion that costs no energy".into())
             })?;
         let displacements: Vec<NodeDisplacement> = structure
             .nodes
             .iter()
             .zip(&mode.displacements)
-            .map(|(node, u)| NodeDisplacement {
-                node: node.id.clone(),
-                ux: u[0],
-                uy: u[1],
-                rz: u[2],
-            })
+            .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
             .collect();
         let title = format!("{}: collapse mode", self.now.scenario.name);
         let drawn = |out: &mut dyn std::io::Write, style: &Style| {
@@ -273,19 +222,13 @@ impl Session {
             return Err(not_a_structure());
         };
         let Some(members) = &answer.members else {
-            return Err(CommandError::Refused(
-                "no member forces: there is no answer".into(),
-            ));
+            return Err(CommandError::Refused("no member forces: there is no answer".into()));
         };
         let names = || structure.bars.iter().map(|bar| bar.id.as_str());
         let bars: Vec<&str> = match bar {
             Some(bar) if names().any(|name| name == bar) => vec![bar],
             Some(bar) => {
-                return Err(CommandError::Refused(super::selection::no_such(
-                    "bar",
-                    bar,
-                    names(),
-                )));
+                return Err(CommandError::Refused(super::selection::no_such("bar", bar, names())));
             }
             None => names().collect(),
         };
@@ -293,25 +236,15 @@ impl Session {
             return Err(CommandError::Refused("the structure has no bars".into()));
         };
         if bars.len() > 1 {
-            return Err(CommandError::Refused(format!(
-                "plot: of which bar? One of {}",
-                bars.join(", ")
-            )));
+            return Err(CommandError::Refused(format!("plot: of which bar? One of {}", bars.join(", "))));
         }
         io.report(
             || {
-                let points =
-                    diagram::series(structure, members, bar, force).map(|series| series.points);
+                let points = diagram::series(structure, members, bar, force).map(|series| series.points);
                 json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
             },
             |out, style| {
-                let diagram = diagram::Diagram {
-                    structure,
-                    members,
-                    bar,
-                    force,
-                    height: height.unwrap_or(HEIGHT),
-                };
+                let diagram = diagram::Diagram { structure, members, bar, force, height: height.unwrap_or(HEIGHT) };
                 diagram::write(out, &diagram, &self.now.scenario.units, style)
             },
         )?;

@@ -38,9 +38,7 @@ impl Session {
     fn ask<T: Send + 'static>(
         &self,
         io: &Output<'_>,
-        question: impl FnOnce(&Prepared, &Solved, &dyn Watch) -> Result<T, QuestionError>
-        + Send
-        + 'static,
+        question: impl FnOnce(&Prepared, &Solved, &dyn Watch) -> Result<T, QuestionError> + Send + 'static,
     ) -> Result<T, CommandError> {
         let (prepared, solved) = self.both()?;
         let result = worker::run(io.watch, move |watch| question(&prepared, &solved, watch))?;
@@ -49,23 +47,16 @@ impl Session {
 
     /// What only contact holds, in sentences.
     pub(super) fn loose(&self) -> Vec<String> {
-        self.now
-            .prepared
-            .as_ref()
-            .map_or_else(Vec::new, |prepared| prepared.loose_sentences())
+        self.now.prepared.as_ref().map_or_else(Vec::new, |prepared| prepared.loose_sentences())
     }
 
     /// How far the final scheme holds; empty at a pivot on the way.
     pub(super) fn margins(&self, id: &str) -> Vec<Margin> {
-        let (Some(prepared), Some(solved), None) =
-            (&self.now.prepared, &self.solved, self.position)
-        else {
+        let (Some(prepared), Some(solved), None) = (&self.now.prepared, &self.solved, self.position) else {
             return Vec::new();
         };
         let pair = solved.answer.pairs.iter().position(|pair| pair.id == id);
-        pair.map_or_else(Vec::new, |pair| {
-            solved.margins(prepared, &self.now.scenario, &self.now.values, pair)
-        })
+        pair.map_or_else(Vec::new, |pair| solved.margins(prepared, &self.now.scenario, &self.now.values, pair))
     }
 
     /// Work of the loads on the mode, and the motion of the certificate.
@@ -81,13 +72,9 @@ impl Session {
 
     pub(super) fn report_ties(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let (prepared, solved) = self.both()?;
-        let report = solved
-            .ties(&prepared)
-            .ok_or_else(|| CommandError::Refused("ties: the last vertex is singular".into()))?;
-        io.report(
-            || json!(report),
-            |out, style| view::ties::write(out, &report, style),
-        )?;
+        let report =
+            solved.ties(&prepared).ok_or_else(|| CommandError::Refused("ties: the last vertex is singular".into()))?;
+        io.report(|| json!(report), |out, style| view::ties::write(out, &report, style))?;
         Ok(())
     }
 
@@ -96,34 +83,20 @@ impl Session {
         let dictionary = solved
             .dictionary_at(&prepared, self.shown_step())
             .map_err(|error| CommandError::Refused(format!("tableau: {error}")))?;
-        io.report(
-            || json!(dictionary),
-            |out, style| view::tableau::write(out, &dictionary, style),
-        )?;
+        io.report(|| json!(dictionary), |out, style| view::tableau::write(out, &dictionary, style))?;
         Ok(())
     }
 
     pub(super) fn compare(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
-        let comparison = self.ask(io, move |prepared, _, watch| {
-            Ok(prepared.compare(&values, watch)?)
-        })?;
-        io.report(
-            || json!(comparison),
-            |out, style| view::compare::write(out, &comparison, style),
-        )?;
+        let comparison = self.ask(io, move |prepared, _, watch| Ok(prepared.compare(&values, watch)?))?;
+        io.report(|| json!(comparison), |out, style| view::compare::write(out, &comparison, style))?;
         Ok(())
     }
 
-    pub(super) fn enumerate(
-        &mut self,
-        answer: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn enumerate(&mut self, answer: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
-        let mut all: AllAnswers = self.ask(io, move |prepared, _, watch| {
-            prepared.all_answers(&values, watch)
-        })?;
+        let mut all: AllAnswers = self.ask(io, move |prepared, _, watch| prepared.all_answers(&values, watch))?;
         if let Some(number) = answer {
             let count = all.answers.len();
             if number == 0 || number > count {
@@ -168,17 +141,12 @@ impl Session {
     pub(super) fn critical(&self, friction: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
         let name = friction.to_owned();
-        let found = self.ask(io, move |prepared, _, watch| {
-            prepared.critical_friction(&values, &name, watch)
-        })?;
+        let found = self.ask(io, move |prepared, _, watch| prepared.critical_friction(&values, &name, watch))?;
         let pairs = self.pairs();
         let ids: Vec<&str> = pairs.iter().map(|pair| pair.id.as_str()).collect();
         io.report(
             || {
-                let scheme = found
-                    .scheme
-                    .as_ref()
-                    .map(|scheme| view::critical::scheme_words(&ids, scheme));
+                let scheme = found.scheme.as_ref().map(|scheme| view::critical::scheme_words(&ids, scheme));
                 json!({
                     "parameter": friction,
                     "value": found.value,
@@ -194,9 +162,7 @@ impl Session {
     }
 
     pub(super) fn check_exactly(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let check = self.ask(io, |prepared, solved, watch| {
-            prepared.check_exactly(solved, watch)
-        })?;
+        let check = self.ask(io, |prepared, solved, watch| prepared.check_exactly(solved, watch))?;
         let names = match &self.now.scenario.source {
             Source::Lcp(lcp) => lcp.names.clone(),
             _ => Vec::new(),

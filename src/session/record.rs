@@ -15,23 +15,15 @@ pub(super) struct Recorder {
 
 impl Recorder {
     fn write(&mut self, text: &str) -> Result<(), CommandError> {
-        self.file
-            .write_all(text.as_bytes())
-            .and_then(|()| self.file.flush())
-            .map_err(|source| CommandError::File {
-                doing: "record to",
-                path: self.path.clone(),
-                source,
-            })
+        self.file.write_all(text.as_bytes()).and_then(|()| self.file.flush()).map_err(|source| CommandError::File {
+            doing: "record to",
+            path: self.path.clone(),
+            source,
+        })
     }
 
     /// A command, what it showed and how it ended.
-    fn take(
-        &mut self,
-        text: &str,
-        shown: &[u8],
-        result: &Result<Next, CommandError>,
-    ) -> Result<(), CommandError> {
+    fn take(&mut self, text: &str, shown: &[u8], result: &Result<Next, CommandError>) -> Result<(), CommandError> {
         let mut entry = String::new();
         match result {
             // an expectation that does not hold would stop every replay
@@ -105,26 +97,15 @@ impl Session {
             )));
         }
         let file = File::create_new(path).map_err(|source| match source.kind() {
-            io::ErrorKind::AlreadyExists => CommandError::Refused(format!(
-                "{} exists already: record to another file",
-                path.display()
-            )),
-            _ => CommandError::File {
-                doing: "record to",
-                path: path.to_owned(),
-                source,
-            },
+            io::ErrorKind::AlreadyExists => {
+                CommandError::Refused(format!("{} exists already: record to another file", path.display()))
+            }
+            _ => CommandError::File { doing: "record to", path: path.to_owned(), source },
         })?;
-        let mut recorder = Recorder {
-            file,
-            path: path.to_owned(),
-        };
+        let mut recorder = Recorder { file, path: path.to_owned() };
         recorder.write(&self.opening())?;
         self.recorder = Some(recorder);
-        Ok(io.say(&format!(
-            "recording to {} until `record off`",
-            path.display()
-        ))?)
+        Ok(io.say(&format!("recording to {} until `record off`", path.display()))?)
     }
 
     /// The commands that lead to the present state, one a line.
@@ -138,30 +119,20 @@ impl Session {
     }
 
     /// Runs a command and writes it down.
-    pub(super) fn run_recorded(
-        &mut self,
-        text: &str,
-        io: &mut Output<'_>,
-    ) -> Result<Next, CommandError> {
+    pub(super) fn run_recorded(&mut self, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
         let parsed = command::parse(text).ok().flatten();
-        let mut tee = Tee {
-            out: &mut *io.out,
-            copy: Vec::new(),
-        };
+        let mut tee = Tee { out: &mut *io.out, copy: Vec::new() };
         let mut inner = Output::new(&mut tee, io.style, io.format, io.watch);
         inner.line = io.line;
         let result = self.run_plain(text, &mut inner);
         let report = inner.report.take();
         let shown = std::mem::take(&mut tee.copy);
         io.report = report;
-        let again =
-            matches!(parsed, Some(command::Command::Restore { .. })).then(|| self.opening());
+        let again = matches!(parsed, Some(command::Command::Restore { .. })).then(|| self.opening());
         let Some(recorder) = &mut self.recorder else {
             return result; // that was `record off`
         };
-        let interrupted = result
-            .as_ref()
-            .is_err_and(|error| error.is_interrupted() || error.is_output());
+        let interrupted = result.as_ref().is_err_and(|error| error.is_interrupted() || error.is_output());
         let noted = match (&parsed, &again) {
             (Some(command::Command::Record { .. } | command::Command::Quit), _) => Ok(()),
             // what was restored is nowhere but here: write the state it led to

@@ -20,9 +20,7 @@ impl Session {
     /// # Errors
     /// There is none because `auto` is off.
     pub(super) fn need_answer(&self) -> Result<&Answer, CommandError> {
-        self.answer().ok_or_else(|| {
-            CommandError::Refused("not solved yet: `solve`, or `set auto on`".into())
-        })
+        self.answer().ok_or_else(|| CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()))
     }
 
     /// Outcome, pivots, parameters and rules.
@@ -61,11 +59,9 @@ impl Session {
                     writeln!(out, "auto is off: changes wait for `solve`")?;
                 }
                 match self.position.zip(answer.pivots.last()) {
-                    Some((step, last)) => writeln!(
-                        out,
-                        "shown at pivot {step} of {}: `step last` for the end",
-                        last.step
-                    ),
+                    Some((step, last)) => {
+                        writeln!(out, "shown at pivot {step} of {}: `step last` for the end", last.step)
+                    }
                     None => Ok(()),
                 }
             },
@@ -109,26 +105,13 @@ impl Session {
                 continue;
             };
             if file.value.to_bits() != value.to_bits() {
-                rows.push((
-                    name.clone(),
-                    file.value.to_string(),
-                    value.to_string(),
-                    file.unit.as_deref(),
-                ));
+                rows.push((name.clone(), file.value.to_string(), value.to_string(), file.unit.as_deref()));
             }
         }
         let (now, file) = (self.now.rules, scenario.rules);
         for (name, file, now) in [
-            (
-                "covering",
-                file.covering.to_string(),
-                now.covering.to_string(),
-            ),
-            (
-                "tie-break",
-                file.tie_break.to_string(),
-                now.tie_break.to_string(),
-            ),
+            ("covering", file.covering.to_string(), now.covering.to_string()),
+            ("tie-break", file.tie_break.to_string(), now.tie_break.to_string()),
             ("engine", file.engine.to_string(), now.engine.to_string()),
         ] {
             if file != now {
@@ -136,11 +119,7 @@ impl Session {
             }
         }
         io.report(
-            || {
-                rows.iter()
-                    .map(|(name, file, now, _)| json!({"name": name, "file": file, "now": now}))
-                    .collect()
-            },
+            || rows.iter().map(|(name, file, now, _)| json!({"name": name, "file": file, "now": now})).collect(),
             |out, style| {
                 if rows.is_empty() {
                     return writeln!(out, "nothing differs from the file");
@@ -156,11 +135,7 @@ impl Session {
     }
 
     /// `pairs [IDS] [sort KEY]`.
-    pub(super) fn report_pairs(
-        &self,
-        words: &[String],
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn report_pairs(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         self.need_answer()?;
         if let (Source::Lcp(_), Some(solution)) = (&self.now.scenario.source, self.solution()) {
             return self.report_solution(&solution, io);
@@ -170,10 +145,7 @@ impl Session {
             Some(at) => match &words[at + 1..] {
                 [key] => (&words[..at], Some(key.as_str())),
                 _ => {
-                    return Err(CommandError::Refused(format!(
-                        "pairs: `sort` takes one of {}",
-                        SORT_KEYS.join(", ")
-                    )));
+                    return Err(CommandError::Refused(format!("pairs: `sort` takes one of {}", SORT_KEYS.join(", "))));
                 }
             },
         };
@@ -194,14 +166,8 @@ impl Session {
             || json!(chosen),
             |out, style| {
                 if let Some(step) = self.position {
-                    let p = self
-                        .p()
-                        .map_or(String::new(), |p| format!(", p = {}", short(p)));
-                    writeln!(
-                        out,
-                        "{}",
-                        style.paint(Role::Muted, &format!("at pivot {step}{p}"))
-                    )?;
+                    let p = self.p().map_or(String::new(), |p| format!(", p = {}", short(p)));
+                    writeln!(out, "{}", style.paint(Role::Muted, &format!("at pivot {step}{p}")))?;
                 }
                 view::pairs::write(out, &chosen, &self.now.scenario.units, style)
             },
@@ -210,44 +176,21 @@ impl Session {
     }
 
     /// z and w of a bare LCP, in the place of pairs.
-    fn report_solution(
-        &self,
-        solution: &PlainSolution,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        io.report(
-            || json!(solution),
-            |out, style| self.write_solution(solution, out, style),
-        )?;
+    fn report_solution(&self, solution: &PlainSolution, io: &mut Output<'_>) -> Result<(), CommandError> {
+        io.report(|| json!(solution), |out, style| self.write_solution(solution, out, style))?;
         Ok(())
     }
 
-    fn write_solution(
-        &self,
-        solution: &PlainSolution,
-        out: &mut dyn Write,
-        style: &Style,
-    ) -> io::Result<()> {
+    fn write_solution(&self, solution: &PlainSolution, out: &mut dyn Write, style: &Style) -> io::Result<()> {
         let names: Vec<String> = match &self.now.scenario.source {
             Source::Lcp(lcp) => lcp.names.clone(),
             _ => (1..=solution.z.len()).map(|i| i.to_string()).collect(),
         };
-        let wide = names
-            .iter()
-            .map(|name| name.chars().count())
-            .max()
-            .unwrap_or(0)
-            .max(4);
+        let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
         let head = format!("{:<wide$} {:>14} {:>14}", "row", "z", "w");
         writeln!(out, "{}", style.paint(Role::Header, &head))?;
         for (name, (z, w)) in names.iter().zip(solution.z.iter().zip(&solution.w)) {
-            writeln!(
-                out,
-                "{:<wide$} {:>14} {:>14}",
-                style.text(name),
-                short(*z),
-                short(*w)
-            )?;
+            writeln!(out, "{:<wide$} {:>14} {:>14}", style.text(name), short(*z), short(*w))?;
         }
         Ok(())
     }
@@ -263,32 +206,18 @@ impl Session {
         }
     }
 
-    pub(super) fn report_displacements(
-        &self,
-        nodes: &[String],
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn report_displacements(&self, nodes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let all = self
-            .displacements()
-            .ok_or_else(|| self.none("displacements", answer))?;
+        let all = self.displacements().ok_or_else(|| self.none("displacements", answer))?;
         let chosen = if nodes.is_empty() {
             all
         } else {
-            let by_name: HashMap<&str, usize> = all
-                .iter()
-                .enumerate()
-                .map(|(i, d)| (d.node.as_str(), i))
-                .collect();
+            let by_name: HashMap<&str, usize> = all.iter().enumerate().map(|(i, d)| (d.node.as_str(), i)).collect();
             let mut chosen = Vec::new();
             for node in nodes {
-                let index = by_name.get(node.as_str()).ok_or_else(|| {
-                    CommandError::Refused(no_such(
-                        "node",
-                        node,
-                        all.iter().map(|d| d.node.as_str()),
-                    ))
-                })?;
+                let index = by_name
+                    .get(node.as_str())
+                    .ok_or_else(|| CommandError::Refused(no_such("node", node, all.iter().map(|d| d.node.as_str()))))?;
                 chosen.push(all[*index].clone());
             }
             chosen
@@ -303,10 +232,9 @@ impl Session {
     /// The error of a result that this answer or source does not have.
     pub(super) fn none(&self, what: &str, answer: &Answer) -> CommandError {
         CommandError::Refused(match self.now.scenario.source {
-            Source::Structure(_) if !answer.is_answer() => format!(
-                "no {what}: there is no answer ({})",
-                view::status::outcome_word(answer.outcome)
-            ),
+            Source::Structure(_) if !answer.is_answer() => {
+                format!("no {what}: there is no answer ({})", view::status::outcome_word(answer.outcome))
+            }
             Source::Structure(_) => format!("no {what} at this pivot: `step last`"),
             Source::ContactSystem(_) => {
                 format!("no {what}: the scenario is a contact system, not a structure")
@@ -315,16 +243,9 @@ impl Session {
         })
     }
 
-    pub(super) fn report_members(
-        &self,
-        bar: Option<&str>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn report_members(&self, bar: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let members = answer
-            .members
-            .as_ref()
-            .ok_or_else(|| self.none("member forces", answer))?;
+        let members = answer.members.as_ref().ok_or_else(|| self.none("member forces", answer))?;
         if let Some(bar) = bar
             && !members.iter().any(|member| member.bar == bar)
         {
@@ -349,10 +270,7 @@ impl Session {
 
     pub(super) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let reactions = answer
-            .reactions
-            .as_ref()
-            .ok_or_else(|| self.none("reactions", answer))?;
+        let reactions = answer.reactions.as_ref().ok_or_else(|| self.none("reactions", answer))?;
         io.report(
             || json!(reactions),
             |out, style| view::reactions::write(out, reactions, &self.now.scenario.units, style),
@@ -362,19 +280,12 @@ impl Session {
 
     pub(super) fn report_check(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        io.report(
-            || json!(answer.check),
-            |out, style| view::check::write(out, answer, style),
-        )?;
+        io.report(|| json!(answer.check), |out, style| view::check::write(out, answer, style))?;
         Ok(())
     }
 
     /// `pivots [FROM..TO]`.
-    pub(super) fn report_pivots(
-        &self,
-        range: Option<&str>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn report_pivots(&self, range: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let last = answer.pivots.last().map_or(0, |pivot| pivot.step);
         let range = match range {
@@ -407,23 +318,12 @@ impl Session {
                 answer
                     .pivots
                     .iter()
-                    .filter(|pivot| {
-                        range
-                            .as_ref()
-                            .is_none_or(|range| range.contains(&pivot.step))
-                    })
+                    .filter(|pivot| range.as_ref().is_none_or(|range| range.contains(&pivot.step)))
                     .map(|pivot| json!(pivot))
                     .collect()
             },
             |out, style| {
-                view::pivots::write(
-                    out,
-                    &answer.pivots,
-                    range.clone(),
-                    self.position,
-                    &self.now.scenario.units,
-                    style,
-                )
+                view::pivots::write(out, &answer.pivots, range.clone(), self.position, &self.now.scenario.units, style)
             },
         )?;
         Ok(())
@@ -461,10 +361,7 @@ impl Session {
     pub(super) fn report_ray(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let ray = answer.ray.as_ref().ok_or_else(|| {
-            CommandError::Refused(format!(
-                "no ray: the run ended {}",
-                view::status::outcome_word(answer.outcome)
-            ))
+            CommandError::Refused(format!("no ray: the run ended {}", view::status::outcome_word(answer.outcome)))
         })?;
         io.report(
             || json!(ray),

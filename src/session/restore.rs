@@ -6,11 +6,7 @@ use super::{CommandError, Output, Session, command, journal};
 
 impl Session {
     /// Brings back what an earlier session left behind.
-    pub(super) fn restore(
-        &mut self,
-        discard: bool,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    pub(super) fn restore(&mut self, discard: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
         let Some(left) = self.left_over.take() else {
             return Err(CommandError::Refused(
                 "nothing to restore: no session in this directory ended without `quit`".into(),
@@ -37,14 +33,8 @@ impl Session {
         let result = self.replay_journal(&left.commands, io);
         self.journal = journal;
         if let Err(error) = result {
-            (
-                self.now,
-                self.solved,
-                self.previous,
-                self.position,
-                (self.auto, self.trouble),
-                (self.undo, self.redo),
-            ) = kept;
+            (self.now, self.solved, self.previous, self.position, (self.auto, self.trouble), (self.undo, self.redo)) =
+                kept;
             self.left_over = Some(left);
             return Err(error);
         }
@@ -57,11 +47,7 @@ impl Session {
         self.say_what_changed(&[format!("{changes} change{s} restored")], io)
     }
 
-    fn replay_journal(
-        &mut self,
-        commands: &[String],
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
+    fn replay_journal(&mut self, commands: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         self.deferred = true;
         let mut nowhere = std::io::sink();
         let mut quiet = Output::text(&mut nowhere, io.style, io.watch);
@@ -73,11 +59,8 @@ impl Session {
                 Err(error) => Err(error.into()),
             };
             if let Err(error) = applied {
-                result = Err(CommandError::Script {
-                    script: "journal".into(),
-                    line: index + 2,
-                    error: Box::new(error),
-                });
+                result =
+                    Err(CommandError::Script { script: "journal".into(), line: index + 2, error: Box::new(error) });
                 break;
             }
         }

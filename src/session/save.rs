@@ -36,15 +36,9 @@ pub enum SaveError {
 ///
 /// # Errors
 /// [`SaveError`].
-pub fn save(
-    scenario: &Scenario,
-    values: &ParameterValues,
-    rules: Rules,
-    path: &Path,
-) -> Result<(), SaveError> {
+pub fn save(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &Path) -> Result<(), SaveError> {
     let text = edited(scenario, values, rules, path)?;
-    let again =
-        load_text(&path.display().to_string(), &text, Some(path)).map_err(SaveError::Reload)?;
+    let again = load_text(&path.display().to_string(), &text, Some(path)).map_err(SaveError::Reload)?;
     if again.rules != rules {
         return Err(SaveError::Other("solver".into()));
     }
@@ -59,18 +53,11 @@ pub fn save(
 }
 
 /// The new text.
-fn edited(
-    scenario: &Scenario,
-    values: &ParameterValues,
-    rules: Rules,
-    path: &Path,
-) -> Result<String, SaveError> {
+fn edited(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &Path) -> Result<String, SaveError> {
     let shape = |what: &str| SaveError::Shape(what.to_owned());
-    let root = CstRootNode::parse(&scenario.text, &ParseOptions::default())
-        .map_err(|_| shape("the outermost object"))?;
-    let object = root
-        .object_value()
-        .ok_or_else(|| shape("the outermost object"))?;
+    let root =
+        CstRootNode::parse(&scenario.text, &ParseOptions::default()).map_err(|_| shape("the outermost object"))?;
+    let object = root.object_value().ok_or_else(|| shape("the outermost object"))?;
     for (name, value) in values {
         let Some(file) = scenario.parameters.get(name) else {
             return Err(shape(name));
@@ -84,39 +71,24 @@ fn edited(
             .ok_or_else(|| shape(&format!("parameters.{name}")))?;
         let number = CstInputValue::Number(literal(*value));
         match parameter.object_value() {
-            Some(parameter) => parameter
-                .get("value")
-                .ok_or_else(|| shape(&format!("parameters.{name}.value")))?
-                .set_value(number),
+            Some(parameter) => {
+                parameter.get("value").ok_or_else(|| shape(&format!("parameters.{name}.value")))?.set_value(number)
+            }
             None => parameter.set_value(number),
         }
     }
     let file = scenario.rules;
     let changed: Vec<(&str, String)> = [
-        (
-            "covering",
-            file.covering != rules.covering,
-            rules.covering.to_string(),
-        ),
-        (
-            "tie_break",
-            file.tie_break != rules.tie_break,
-            rules.tie_break.to_string(),
-        ),
-        (
-            "engine",
-            file.engine != rules.engine,
-            rules.engine.to_string(),
-        ),
+        ("covering", file.covering != rules.covering, rules.covering.to_string()),
+        ("tie_break", file.tie_break != rules.tie_break, rules.tie_break.to_string()),
+        ("engine", file.engine != rules.engine, rules.engine.to_string()),
     ]
     .into_iter()
     .filter(|(_, changed, _)| *changed)
     .map(|(key, _, word)| (key, word))
     .collect();
     if !changed.is_empty() {
-        let solver = object
-            .object_value_or_create("solver")
-            .ok_or_else(|| shape("solver"))?;
+        let solver = object.object_value_or_create("solver").ok_or_else(|| shape("solver"))?;
         for (key, word) in changed {
             put(&solver, key, CstInputValue::String(word));
         }
@@ -140,9 +112,7 @@ fn keep_file_references(object: &CstObject, scenario: &Scenario, path: &Path) {
         return;
     };
     let folder = |path: &Path| {
-        let parent = path
-            .parent()
-            .filter(|parent| !parent.as_os_str().is_empty());
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
         std::fs::canonicalize(parent.unwrap_or(Path::new(".")))
     };
     let (Ok(from), Ok(to)) = (folder(old), folder(path)) else {
@@ -172,8 +142,7 @@ fn literal(value: f64) -> String {
     } else if value == 0.0 || (1e-5..1e16).contains(&value.abs()) {
         let text = format!("{value:?}");
         // an integer is written as one
-        text.strip_suffix(".0")
-            .map_or(text.clone(), ToOwned::to_owned)
+        text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
     } else {
         format!("{value:e}")
     }
@@ -195,11 +164,7 @@ mod tests {
         values.insert(name.clone(), odd);
         save(&scenario, &values, scenario.rules, &path).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
-        let differing = text
-            .lines()
-            .zip(scenario.text.lines())
-            .filter(|(a, b)| a != b)
-            .count();
+        let differing = text.lines().zip(scenario.text.lines()).filter(|(a, b)| a != b).count();
         assert_eq!(text.lines().count(), scenario.text.lines().count());
         assert_eq!(differing, 1);
         let again = crate::model::load::load_file(&path).unwrap();
@@ -211,34 +176,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("saved.json");
         let scenario = embedded::load("beam").unwrap();
-        let rules = Rules {
-            covering: "weight".parse().unwrap(),
-            tie_break: "random:7".parse().unwrap(),
-            ..scenario.rules
-        };
+        let rules =
+            Rules { covering: "weight".parse().unwrap(), tie_break: "random:7".parse().unwrap(), ..scenario.rules };
         save(&scenario, &scenario.parameter_values(), rules, &path).unwrap();
         assert_eq!(crate::model::load::load_file(&path).unwrap().rules, rules);
     }
 
     #[test]
     fn literals_read_back() {
-        for value in [
-            0.0,
-            -0.0,
-            1.0,
-            1e-7,
-            -2.5e300,
-            5e-324,
-            0.1 + 0.2,
-            1e15,
-            123456789012345680.0,
-        ] {
+        for value in [0.0, -0.0, 1.0, 1e-7, -2.5e300, 5e-324, 0.1 + 0.2, 1e15, 123456789012345680.0] {
             let text = literal(value);
-            assert_eq!(
-                text.parse::<f64>().unwrap().to_bits(),
-                value.to_bits(),
-                "{text}"
-            );
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
             assert!(serde_json::from_str::<f64>(&text).is_ok(), "{text}");
         }
     }

@@ -41,11 +41,7 @@ pub fn run(
     let commands: Vec<(usize, &str)> = text
         .lines()
         .enumerate()
-        .flat_map(|(index, line)| {
-            words::commands(line)
-                .into_iter()
-                .map(move |command| (index + 1, command))
-        })
+        .flat_map(|(index, line)| words::commands(line).into_iter().map(move |command| (index + 1, command)))
         .collect();
     let mut status = 0;
     let mut next = Next::Continue;
@@ -60,20 +56,14 @@ pub fn run(
             Err(error) if error.is_output() => return Err(error),
             Err(error) => {
                 let interrupted = error.is_interrupted();
-                let asked_for = commands
-                    .get(index + 1)
-                    .is_some_and(|(_, next)| expects_error(next));
+                let asked_for = commands.get(index + 1).is_some_and(|(_, next)| expects_error(next));
                 if asked_for && !interrupted {
                     continue;
                 }
                 if status == 0 {
                     status = error.status();
                 }
-                failed(CommandError::Script {
-                    script: name.to_owned(),
-                    line: *line,
-                    error: Box::new(error),
-                });
+                failed(CommandError::Script { script: name.to_owned(), line: *line, error: Box::new(error) });
                 if interrupted || !keep_going {
                     break;
                 }
@@ -88,28 +78,15 @@ pub fn run(
 
 /// `source FILE`: its first failure is the failure of `source`; what ran before it stays done. `quit` in a script
 /// leaves the program.
-pub(super) fn source(
-    session: &mut Session,
-    path: &Path,
-    io: &mut Output<'_>,
-) -> Result<Next, CommandError> {
+pub(super) fn source(session: &mut Session, path: &Path, io: &mut Output<'_>) -> Result<Next, CommandError> {
     if session.depth >= DEEPEST {
-        return Err(CommandError::Refused(format!(
-            "{DEEPEST} scripts within scripts: does one source itself?"
-        )));
+        return Err(CommandError::Refused(format!("{DEEPEST} scripts within scripts: does one source itself?")));
     }
     let text = read(path)?;
     let line = io.line;
     let mut first = None;
     session.depth += 1;
-    let ended = run(
-        session,
-        &path.display().to_string(),
-        &text,
-        false,
-        io,
-        &mut |error| first = Some(error),
-    );
+    let ended = run(session, &path.display().to_string(), &text, false, io, &mut |error| first = Some(error));
     session.depth -= 1;
     io.line = line;
     io.report = None;

@@ -8,18 +8,8 @@ use super::CommandError;
 use super::command::did_you_mean;
 
 /// Keys of `pairs … sort KEY`.
-pub const SORT_KEYS: &[&str] = &[
-    "id",
-    "state",
-    "x_n",
-    "x_t",
-    "z_n",
-    "z_t",
-    "bound",
-    "reserve_plus",
-    "reserve_minus",
-    "position",
-];
+pub const SORT_KEYS: &[&str] =
+    &["id", "state", "x_n", "x_t", "z_n", "z_t", "bound", "reserve_plus", "reserve_minus", "position"];
 
 /// The names without those that repeat the one before.
 pub(super) fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
@@ -36,11 +26,7 @@ pub(super) fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
 }
 
 /// "no pair `c9` (did you mean …?): the pairs are c1 … c6".
-pub(super) fn no_such<'a>(
-    what: &str,
-    id: &str,
-    known: impl Iterator<Item = &'a str> + Clone,
-) -> String {
+pub(super) fn no_such<'a>(what: &str, id: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     let near = did_you_mean(id, known.clone());
     let names: Vec<&str> = known.collect();
     match names.as_slice() {
@@ -49,27 +35,16 @@ pub(super) fn no_such<'a>(
         [first, .., last] if names.len() > 8 => {
             format!("no {what} `{id}`{near}: the {what}s are {first} … {last}")
         }
-        names => format!(
-            "no {what} `{id}`{near}: the {what}s are {}",
-            names.join(", ")
-        ),
+        names => format!("no {what} `{id}`{near}: the {what}s are {}", names.join(", ")),
     }
 }
 
 /// Pairs named by ids, ranges `A..B`, or the name of an edge contact (`joint` for all `joint[…]`).
 pub(super) fn indices(words: &[String], pairs: &[PairState]) -> Result<Vec<usize>, CommandError> {
-    let at: HashMap<&str, usize> = pairs
-        .iter()
-        .enumerate()
-        .map(|(i, pair)| (pair.id.as_str(), i))
-        .collect();
+    let at: HashMap<&str, usize> = pairs.iter().enumerate().map(|(i, pair)| (pair.id.as_str(), i)).collect();
     let find = |id: &str| at.get(id).copied().ok_or_else(|| no_pair(id, pairs));
     let mut chosen = Vec::new();
-    for word in words
-        .iter()
-        .flat_map(|word| word.split(','))
-        .filter(|word| !word.is_empty())
-    {
+    for word in words.iter().flat_map(|word| word.split(',')).filter(|word| !word.is_empty()) {
         if let Some(index) = at.get(word) {
             chosen.push(*index);
         } else if let Some((from, to)) = word.split_once("..") {

@@ -47,12 +47,7 @@ impl Session {
         let solved = self.solved.as_ref()?;
         let ray = solved.answer.ray.as_ref()?;
         let prepared = self.now.prepared.as_ref()?;
-        let Geometry::Structure {
-            system,
-            main,
-            structure,
-        } = &prepared.geometry
-        else {
+        let Geometry::Structure { system, main, structure } = &prepared.geometry else {
             return None;
         };
         let mut z = DVector::zeros(system.joint_count());
@@ -67,16 +62,7 @@ impl Session {
         }
         let u = main.displacements(&vec![0.0; prepared.cases.len()], &z);
         let nodes = structure.nodes.iter().zip(&u.0);
-        Some(
-            nodes
-                .map(|(node, u)| NodeDisplacement {
-                    node: node.id.clone(),
-                    ux: u[0],
-                    uy: u[1],
-                    rz: u[2],
-                })
-                .collect(),
-        )
+        Some(nodes.map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] }).collect())
     }
 
     /// Searches all working schemes of the present problem for answers.
@@ -85,44 +71,26 @@ impl Session {
     /// No contact problem, too many pairs, nothing solved yet, an interruption.
     pub fn all_answers(&self, watch: &dyn Watch) -> Result<AllAnswers, CommandError> {
         let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
-            return Err(CommandError::Refused(
-                "not solved yet: `solve`, or `set auto on`".into(),
-            ));
+            return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
         };
         let (solved, prepared) = (Arc::clone(solved), Arc::clone(prepared));
         worker::run(watch, move |watch| {
-            let (
-                Trace::Contact {
-                    contact,
-                    numbers,
-                    factors,
-                    ..
-                },
-                Some(system),
-            ) = (&solved.trace, prepared.system())
+            let (Trace::Contact { contact, numbers, factors, .. }, Some(system)) = (&solved.trace, prepared.system())
             else {
                 return Err(CommandError::Refused(
                     "answers are enumerated for contact problems, this is a bare LCP".into(),
                 ));
             };
             let mut look = |_: u64| {
-                if watch.stop() {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
+                if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            let found = enumerate(system, numbers, &mut look)
-                .map_err(|error| CommandError::Refused(error.to_string()))?;
+            let found =
+                enumerate(system, numbers, &mut look).map_err(|error| CommandError::Refused(error.to_string()))?;
             let answers = found
                 .answers
                 .iter()
                 .map(|answer| {
-                    let state = JointState {
-                        z: answer.state.z.clone(),
-                        force: answer.state.force.clone(),
-                        p: 0.0,
-                    };
+                    let state = JointState { z: answer.state.z.clone(), force: answer.state.force.clone(), p: 0.0 };
                     let mut pairs = pair_states(system, numbers, contact, &state);
                     prepared.add_released_slips(&mut pairs, numbers, factors, &state);
                     OneAnswer {
@@ -133,26 +101,16 @@ impl Session {
                     }
                 })
                 .collect();
-            Ok(AllAnswers {
-                answers,
-                complete: found.complete && found.undecided == 0,
-            })
+            Ok(AllAnswers { answers, complete: found.complete && found.undecided == 0 })
         })?
     }
 }
 
 /// Whether two lists of pairs are one state.
 fn same(a: &[PairState], b: &[PairState]) -> bool {
-    let largest = |value: fn(&PairState) -> f64| {
-        a.iter()
-            .chain(b)
-            .map(|pair| value(pair).abs())
-            .fold(0.0, f64::max)
-    };
+    let largest = |value: fn(&PairState) -> f64| a.iter().chain(b).map(|pair| value(pair).abs()).fold(0.0, f64::max);
     let near = |value: fn(&PairState) -> f64, size: f64| {
-        a.iter()
-            .zip(b)
-            .all(|(a, b)| (value(a) - value(b)).abs() <= SAME * size)
+        a.iter().zip(b).all(|(a, b)| (value(a) - value(b)).abs() <= SAME * size)
     };
     let force = largest(|p| p.x_n).max(largest(|p| p.x_t));
     let length = largest(|p| p.z_n).max(largest(|p| p.z_t));

@@ -76,23 +76,13 @@ pub enum Setting {
 ///
 /// # Errors
 /// [`SetError`].
-pub fn read(
-    words: &[String],
-    scenario: &Scenario,
-    values: &ParameterValues,
-) -> Result<Setting, SetError> {
+pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> Result<Setting, SetError> {
     let text = words.join(" ");
     let (name, rest) = name_and_rest(&text);
-    let no_value = || SetError::NoValue {
-        name: name.to_owned(),
-    };
+    let no_value = || SetError::NoValue { name: name.to_owned() };
     let choice = || {
         let word = rest.strip_prefix('=').unwrap_or(rest).trim();
-        if word.is_empty() {
-            Err(no_value())
-        } else {
-            Ok(word)
-        }
+        if word.is_empty() { Err(no_value()) } else { Ok(word) }
     };
     match name {
         "covering" if matches!(scenario.source, Source::Lcp(_)) => Err(SetError::CoveringOfLcp),
@@ -105,9 +95,7 @@ pub fn read(
             other => Err(SetError::Auto(other.to_owned())),
         },
         _ => {
-            let present = *values
-                .get(name)
-                .ok_or_else(|| unknown_parameter(name, scenario))?;
+            let present = *values.get(name).ok_or_else(|| unknown_parameter(name, scenario))?;
             if rest.is_empty() || rest == "=" {
                 return Err(no_value());
             }
@@ -140,9 +128,7 @@ pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
 /// Splits `F2 += 10`, `F2+=10`, `f=0.3`, `f 0.3` behind the name.
 fn name_and_rest(text: &str) -> (&str, &str) {
     let text = text.trim();
-    let mut end = text
-        .find(|c: char| c.is_whitespace() || c == '=')
-        .unwrap_or(text.len());
+    let mut end = text.find(|c: char| c.is_whitespace() || c == '=').unwrap_or(text.len());
     let before = text[..end].ends_with(['+', '-', '*', '/']);
     if before && text[end..].starts_with('=') {
         // the operator's first character belongs to the value: `F2+=10`
@@ -163,9 +149,7 @@ fn changed(rest: &str, present: f64) -> Option<f64> {
             let operand = operand.trim();
             let number = match operand.strip_suffix('%') {
                 // a share of the present value where it is added, a plain factor where it multiplies
-                Some(percent) if operator.starts_with(['+', '-']) => {
-                    present * number(percent)? / 100.0
-                }
+                Some(percent) if operator.starts_with(['+', '-']) => present * number(percent)? / 100.0,
                 Some(percent) => number(percent)? / 100.0,
                 None => number(operand)?,
             };
@@ -187,9 +171,7 @@ fn changed(rest: &str, present: f64) -> Option<f64> {
 /// A decimal number; the words `inf` and `nan` are none.
 pub fn number(text: &str) -> Option<f64> {
     let text = text.trim();
-    let plain = text
-        .chars()
-        .all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
+    let plain = text.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
     text.parse().ok().filter(|_| plain)
 }
 
@@ -216,18 +198,7 @@ mod tests {
         ] {
             assert_eq!(changed(rest, 100.0), Some(value), "{rest}");
         }
-        for rest in [
-            "",
-            "x",
-            "inf",
-            "nan",
-            "1 2",
-            "%",
-            "+=",
-            "1,5",
-            "0x10",
-            "infinity%",
-        ] {
+        for rest in ["", "x", "inf", "nan", "1 2", "%", "+=", "1,5", "0x10", "infinity%"] {
             assert_eq!(changed(rest, 100.0), None, "{rest}");
         }
     }

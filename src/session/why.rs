@@ -14,27 +14,19 @@ impl Session {
     pub(super) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let pairs = self.pairs();
-        let pair = pairs
-            .iter()
-            .find(|pair| pair.id == id)
-            .ok_or_else(|| no_pair(id, &pairs))?;
+        let pair = pairs.iter().find(|pair| pair.id == id).ok_or_else(|| no_pair(id, &pairs))?;
         let units = &self.now.scenario.units;
         let force = |value: f64| with_unit(&short(value), units.force.as_deref());
         let length = |value: f64| with_unit(&short(value), units.length.as_deref());
         let state = view::pairs::state_words(pair);
         let cause = match (pair.state, pair.law) {
-            (State::Open, _) => format!(
-                "nothing presses it together: x_n = {} and it is open by {}",
-                force(pair.x_n),
-                length(pair.z_n)
-            ),
-            (State::Closed, _) => format!(
-                "it is pressed together with x_n = {}, and without friction x_t = 0",
-                force(pair.x_n)
-            ),
-            (State::Stick, _)
-                if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() =>
-            {
+            (State::Open, _) => {
+                format!("nothing presses it together: x_n = {} and it is open by {}", force(pair.x_n), length(pair.z_n))
+            }
+            (State::Closed, _) => {
+                format!("it is pressed together with x_n = {}, and without friction x_t = 0", force(pair.x_n))
+            }
+            (State::Stick, _) if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() => {
                 format!(
                     "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
                     force(pair.x_t.abs()),
@@ -67,12 +59,7 @@ impl Session {
             .pivots
             .iter()
             .filter(|pivot| shown.is_none_or(|shown| pivot.step <= shown))
-            .filter(|pivot| {
-                pivot
-                    .turned
-                    .as_ref()
-                    .is_some_and(|turned| turned.pair == id)
-            })
+            .filter(|pivot| pivot.turned.as_ref().is_some_and(|turned| turned.pair == id))
             .collect();
         io.report(
             || json!({"pair": pair, "cause": cause, "pivots": turned, "margins": margins}),

@@ -4,9 +4,7 @@ use thiserror::Error;
 
 /// A line that cannot be split into words.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error(
-    "a quotation mark or a backslash at the end of `{0}` is left open: close it, or quote the mark itself"
-)]
+#[error("a quotation mark or a backslash at the end of `{0}` is left open: close it, or quote the mark itself")]
 pub struct OpenQuote(pub String);
 
 /// Where a character stands while a line is read from the left.
@@ -21,11 +19,7 @@ enum Quote {
 ///
 /// `#` begins a comment only at the start of a word, as in a shell.
 pub fn commands(line: &str) -> Vec<&str> {
-    spans(line)
-        .into_iter()
-        .map(|(start, end)| line[start..end].trim())
-        .filter(|command| !command.is_empty())
-        .collect()
+    spans(line).into_iter().map(|(start, end)| line[start..end].trim()).filter(|command| !command.is_empty()).collect()
 }
 
 /// Byte ranges of the commands of a line, comments excluded, blanks included. Always at least one.
@@ -71,16 +65,7 @@ pub fn spans(line: &str) -> Vec<(usize, usize)> {
 /// [`OpenQuote`] where a quotation is not closed.
 pub fn split(command: &str) -> Result<Vec<String>, OpenQuote> {
     // Any blank separates words here, not only the ASCII ones that a shell knows.
-    let plain: String = command
-        .chars()
-        .map(|c| {
-            if c.is_whitespace() || c == '\0' {
-                ' '
-            } else {
-                c
-            }
-        })
-        .collect();
+    let plain: String = command.chars().map(|c| if c.is_whitespace() || c == '\0' { ' ' } else { c }).collect();
     shlex::split(&plain).ok_or_else(|| OpenQuote(command.to_owned()))
 }
 
@@ -112,20 +97,14 @@ mod tests {
 
     #[test]
     fn semicolons_separate_and_comments_end() {
-        assert_eq!(
-            commands("set f 0.3 ; pairs;;  # all; of them"),
-            ["set f 0.3", "pairs"]
-        );
+        assert_eq!(commands("set f 0.3 ; pairs;;  # all; of them"), ["set f 0.3", "pairs"]);
         assert!(commands("   # nothing").is_empty());
         assert_eq!(commands("echo a#b"), ["echo a#b"]);
     }
 
     #[test]
     fn quotes_keep_both() {
-        assert_eq!(
-            commands(r#"echo "a;b # c" ; echo 'd;e'"#),
-            [r#"echo "a;b # c""#, "echo 'd;e'"]
-        );
+        assert_eq!(commands(r#"echo "a;b # c" ; echo 'd;e'"#), [r#"echo "a;b # c""#, "echo 'd;e'"]);
         assert_eq!(split(r#"echo "a;b # c""#).unwrap(), ["echo", "a;b # c"]);
         assert_eq!(commands(r"echo \;x"), [r"echo \;x"]);
     }
@@ -142,11 +121,7 @@ mod tests {
             let line = format!("echo {}", quote(word));
             let one = commands(&line);
             assert_eq!(one.len(), 1, "{line}");
-            assert_eq!(
-                split(one[0]).unwrap(),
-                ["echo", &word.replace('\t', " ")],
-                "{line}"
-            );
+            assert_eq!(split(one[0]).unwrap(), ["echo", &word.replace('\t', " ")], "{line}");
         }
     }
 }

@@ -19,9 +19,7 @@ pub enum WorkerError {
     #[error("interrupted: the session is as it was")]
     Interrupted,
     /// It panicked: an error of this program.
-    #[error(
-        "internal error in the computation ({0}): the session is as it was; please report the scenario"
-    )]
+    #[error("internal error in the computation ({0}): the session is as it was; please report the scenario")]
     Panicked(String),
 }
 
@@ -70,9 +68,7 @@ pub fn run<T: Send + 'static>(
             let _ = sender.send(result);
         });
     if let Err(error) = spawned {
-        return Err(WorkerError::Panicked(format!(
-            "no thread could be started: {error}"
-        )));
+        return Err(WorkerError::Panicked(format!("no thread could be started: {error}")));
     }
     loop {
         match receiver.recv_timeout(LOOK) {
@@ -86,11 +82,7 @@ pub fn run<T: Send + 'static>(
                     desk.stop.store(true, Ordering::Relaxed);
                     return Err(WorkerError::Interrupted);
                 }
-                let news = desk
-                    .progress
-                    .lock()
-                    .unwrap_or_else(PoisonError::into_inner)
-                    .clone();
+                let news = desk.progress.lock().unwrap_or_else(PoisonError::into_inner).clone();
                 // At every look, new or not: whoever shows it now and then shows the latest.
                 if let Some((what, done)) = news {
                     watch.progress(&what, done);
@@ -124,9 +116,7 @@ mod tests {
     #[test]
     fn a_job_that_does_not_listen_is_left_alone_in_time() {
         let start = Instant::now();
-        let result = run(&Impatient(start), |_| {
-            std::thread::sleep(Duration::from_secs(2))
-        });
+        let result = run(&Impatient(start), |_| std::thread::sleep(Duration::from_secs(2)));
         assert_eq!(result, Err(WorkerError::Interrupted));
         assert!(start.elapsed() < Duration::from_millis(200));
     }

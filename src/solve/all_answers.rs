@@ -66,20 +66,12 @@ pub enum QuestionError {
 
 impl From<SolveError> for QuestionError {
     fn from(error: SolveError) -> Self {
-        if error.is_interrupted() {
-            QuestionError::Interrupted
-        } else {
-            QuestionError::Refused(error.to_string())
-        }
+        if error.is_interrupted() { QuestionError::Interrupted } else { QuestionError::Refused(error.to_string()) }
     }
 }
 
 fn go_on(watch: &dyn Watch) -> ControlFlow<()> {
-    if watch.stop() {
-        ControlFlow::Break(())
-    } else {
-        ControlFlow::Continue(())
-    }
+    if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 /// What the exact check says, of a contact problem or a bare LCP.
@@ -96,11 +88,7 @@ impl Prepared {
     ///
     /// # Errors
     /// Too many pairs or rows; stopped.
-    pub fn all_answers(
-        &self,
-        values: &ParameterValues,
-        watch: &dyn Watch,
-    ) -> Result<AllAnswers, QuestionError> {
+    pub fn all_answers(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
         let system = match &self.geometry {
             Geometry::Plain { lcp, q, .. } => {
                 let mut lcp = lcp.clone();
@@ -131,11 +119,7 @@ impl Prepared {
         Ok(AllAnswers {
             answers,
             exact: found.answers.iter().map(|answer| answer.exact).collect(),
-            continuum: found
-                .answers
-                .iter()
-                .map(|answer| answer.continuum)
-                .collect(),
+            continuum: found.answers.iter().map(|answer| answer.continuum).collect(),
             visited: found.visited,
             cut: found.cut,
             total: found.total,
@@ -175,17 +159,9 @@ impl Prepared {
                 Couple::Plus | Couple::Minus => 0.0,
             } / contact.length_unit;
         }
-        let point = Point {
-            w: vec![0.0; z.len()],
-            z,
-            p: 0.0,
-        };
+        let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };
         let default = Rules::default();
-        let words = [
-            default.covering.to_string(),
-            default.tie_break.to_string(),
-            ENUMERATION.to_owned(),
-        ];
+        let words = [default.covering.to_string(), default.tie_break.to_string(), ENUMERATION.to_owned()];
         Ok(self.answer_at(system, numbers, factors, contact, point, words))
     }
 
@@ -220,10 +196,7 @@ impl Prepared {
             return refused(if names.is_empty() {
                 "no pair has a friction that is a parameter".to_owned()
             } else {
-                format!(
-                    "`{parameter}` is not the friction of any pair; expected {}",
-                    names.join(" or ")
-                )
+                format!("`{parameter}` is not the friction of any pair; expected {}", names.join(" or "))
             });
         }
         let factors = factors(self, values);
@@ -238,11 +211,7 @@ impl Prepared {
             }
             go_on(watch)
         });
-        if found.complete {
-            Ok(found)
-        } else {
-            Err(QuestionError::Interrupted)
-        }
+        if found.complete { Ok(found) } else { Err(QuestionError::Interrupted) }
     }
 
     /// An answer that failed its check in f64 is one nevertheless if its working scheme holds in exact arithmetic: with
@@ -254,18 +223,13 @@ impl Prepared {
         let near = check.min_w >= -EXCUSABLE
             && check.min_z >= -EXCUSABLE
             && check.complementarity <= EXCUSABLE
-            && check
-                .equilibrium
-                .is_none_or(|residual| residual <= TOLERANCE);
+            && check.equilibrium.is_none_or(|residual| residual <= TOLERANCE);
         if !small || !near {
             return;
         }
         let proved = matches!(
             self.check_exactly(solved, watch),
-            Ok(Exactly::Contact(ExactCheck {
-                finding: Finding::Proved { .. },
-                ..
-            }))
+            Ok(Exactly::Contact(ExactCheck { finding: Finding::Proved { .. }, .. }))
         );
         if !proved {
             return;
@@ -288,38 +252,25 @@ impl Prepared {
     ///
     /// # Errors
     /// There is no answer, the bare LCP is too large, or it was stopped.
-    pub fn check_exactly(
-        &self,
-        solved: &Solved,
-        watch: &dyn Watch,
-    ) -> Result<Exactly, QuestionError> {
-        let no_answer =
-            !solved.answer.is_answer() && solved.answer.outcome != OutcomeKind::CheckFailed;
+    pub fn check_exactly(&self, solved: &Solved, watch: &dyn Watch) -> Result<Exactly, QuestionError> {
+        let no_answer = !solved.answer.is_answer() && solved.answer.outcome != OutcomeKind::CheckFailed;
         if no_answer {
-            return Err(QuestionError::Refused(
-                "nothing to check: there is no answer".to_owned(),
-            ));
+            return Err(QuestionError::Refused("nothing to check: there is no answer".to_owned()));
         }
         match (&solved.trace, self.system()) {
             (Trace::Plain { lcp, pivots }, _) => {
                 let basis = match &solved.answer.solution {
-                    Some(solution) if solved.answer.engine == ENUMERATION => solution
-                        .z
-                        .iter()
-                        .enumerate()
-                        .filter(|(_, z)| **z > 0.0)
-                        .map(|(i, _)| i)
-                        .collect(),
+                    Some(solution) if solved.answer.engine == ENUMERATION => {
+                        solution.z.iter().enumerate().filter(|(_, z)| **z > 0.0).map(|(i, _)| i).collect()
+                    }
                     _ => Basis::after(pivots).z,
                 };
-                check_plain_exactly(lcp, &basis)
-                    .map(Exactly::Plain)
-                    .ok_or_else(|| {
-                        QuestionError::Refused(format!(
-                            "{} rows are too many for the exact check of a bare LCP",
-                            lcp.size()
-                        ))
-                    })
+                check_plain_exactly(lcp, &basis).map(Exactly::Plain).ok_or_else(|| {
+                    QuestionError::Refused(format!(
+                        "{} rows are too many for the exact check of a bare LCP",
+                        lcp.size()
+                    ))
+                })
             }
             (Trace::Contact { numbers, .. }, Some(system)) => {
                 let scheme = final_scheme(solved);
@@ -332,9 +283,9 @@ impl Prepared {
                 }
                 Ok(Exactly::Contact(check))
             }
-            (Trace::Contact { .. }, None) => Err(QuestionError::Refused(
-                "nothing to check: there are no contact pairs".to_owned(),
-            )),
+            (Trace::Contact { .. }, None) => {
+                Err(QuestionError::Refused("nothing to check: there are no contact pairs".to_owned()))
+            }
         }
     }
 }
@@ -360,13 +311,7 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
             (State::Stick | State::Closed, _) => PairScheme::STICK,
         })
         .collect();
-    let Trace::Contact {
-        contact,
-        numbers,
-        pivots,
-        ..
-    } = &solved.trace
-    else {
+    let Trace::Contact { contact, numbers, pivots, .. } = &solved.trace else {
         return schemes;
     };
     if pivots.is_empty() {
@@ -398,27 +343,12 @@ fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers,
         )));
     }
     let found = all_plain_answers(lcp, watch).ok_or(QuestionError::Interrupted)?;
-    let run = Run {
-        outcome: Outcome::Trivial,
-        pivots: Vec::new(),
-        point: Point::default(),
-    };
+    let run = Run { outcome: Outcome::Trivial, pivots: Vec::new(), point: Point::default() };
     let words = ["ones", "lexicographic", ENUMERATION].map(str::to_owned);
-    let like = empty_answer(
-        &run,
-        words,
-        crate::answer::record::Size {
-            lcp: lcp.size(),
-            ..Default::default()
-        },
-    );
+    let like = empty_answer(&run, words, crate::answer::record::Size { lcp: lcp.size(), ..Default::default() });
     let count = found.answers.len();
     Ok(AllAnswers {
-        answers: found
-            .answers
-            .iter()
-            .map(|z| plain_answer(lcp, z, &like))
-            .collect(),
+        answers: found.answers.iter().map(|z| plain_answer(lcp, z, &like)).collect(),
         exact: vec![true; count],
         continuum: vec![false; count],
         visited: found.visited,
@@ -431,37 +361,19 @@ fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers,
 /// An enumerated answer of a bare LCP as a solved state, freshly checked; rules and size as `like`.
 pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], like: &Answer) -> Solved {
     let w = lcp.times(z) + &lcp.q;
-    let point = Point {
-        w: w.iter().copied().collect(),
-        z: z.to_vec(),
-        p: 0.0,
-    };
+    let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
     let check = check_plain(lcp, &point);
-    let run = Run {
-        outcome: Outcome::Normal { marginal: false },
-        pivots: Vec::new(),
-        point,
-    };
-    let words = [
-        like.covering.clone(),
-        like.tie_break.clone(),
-        ENUMERATION.to_owned(),
-    ];
+    let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: Vec::new(), point };
+    let words = [like.covering.clone(), like.tie_break.clone(), ENUMERATION.to_owned()];
     let mut answer = empty_answer(&run, words, like.size);
     answer.check = check;
-    answer.solution = Some(PlainSolution {
-        z: run.point.z,
-        w: run.point.w,
-    });
+    answer.solution = Some(PlainSolution { z: run.point.z, w: run.point.w });
     if !answer.check.passed {
         answer.outcome = OutcomeKind::CheckFailed;
     }
     Solved {
         answer,
-        trace: Trace::Plain {
-            lcp: Arc::clone(lcp),
-            pivots: Vec::new(),
-        },
+        trace: Trace::Plain { lcp: Arc::clone(lcp), pivots: Vec::new() },
         ray: None,
         cycled: false,
         kept: None,

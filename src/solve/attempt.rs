@@ -24,11 +24,7 @@ pub fn run_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> R
 }
 
 /// As [`run_scheme`], with the dictionary of the answer, ready to be followed along a change of the load.
-pub(super) fn keep_scheme(
-    lcp: &Arc<MirroredLcp>,
-    rule: TieRule,
-    watch: &dyn Watch,
-) -> (Run, Option<Parametric>) {
+pub(super) fn keep_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> (Run, Option<Parametric>) {
     let mut engine = SchemeEngine::new(Arc::clone(lcp), rule);
     let mut run = watched(&mut engine, "Lemke", watch);
     polish(lcp, &mut run);
@@ -43,15 +39,8 @@ pub(super) fn watched<E: Engine>(engine: &mut E, name: &str, watch: &dyn Watch) 
             first_p = pivot.p_after;
         }
         if pivot.step.is_multiple_of(16) {
-            let left = if first_p > 0.0 {
-                pivot.p_after / first_p
-            } else {
-                0.0
-            };
-            watch.progress(
-                &format!("{name}, pivot {}", pivot.step),
-                (1.0 - left).clamp(0.0, 1.0),
-            );
+            let left = if first_p > 0.0 { pivot.p_after / first_p } else { 0.0 };
+            watch.progress(&format!("{name}, pivot {}", pivot.step), (1.0 - left).clamp(0.0, 1.0));
         }
         if watch.stop() {
             return ControlFlow::Break(());

@@ -39,25 +39,13 @@ impl Prepared {
         let mut rest = numbers.clone();
         rest.load.fill(0.0);
         let path = path_lcp(system, &rest, &numbers.load);
-        let nothing = Basis {
-            z: Vec::new(),
-            active: Vec::new(),
-            p: false,
-        };
+        let nothing = Basis { z: Vec::new(), active: Vec::new(), p: false };
         let Some(mut engine) = Parametric::new(path.lcp.clone(), &nothing, order(&path)) else {
             return Ok(None);
         };
-        let reach = Reach {
-            target: 1.0,
-            through: true,
-            pivots: PIVOTS,
-        };
+        let reach = Reach { target: 1.0, through: true, pivots: PIVOTS };
         let (end, _) = engine.walk(reach, &mut |_| {
-            if watch.stop() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         if end == End::Interrupted {
             return Err(SolveError::Interrupted);
@@ -69,23 +57,12 @@ impl Prepared {
         let contact = contact_lcp_like(Some(&path), system, numbers, rules.covering)?;
         let length = path.length_unit / contact.length_unit;
         let point = Point {
-            z: engine
-                .point()
-                .z
-                .iter()
-                .map(|z| (z * length).max(0.0))
-                .collect(),
+            z: engine.point().z.iter().map(|z| (z * length).max(0.0)).collect(),
             w: vec![0.0; contact.rows.len()],
             p: 0.0,
         };
-        let words = [
-            rules.covering.to_string(),
-            rules.tie_break.to_string(),
-            LOAD_PATH.to_owned(),
-        ];
-        Ok(Some(self.answer_at(
-            system, numbers, factors, contact, point, words,
-        )))
+        let words = [rules.covering.to_string(), rules.tie_break.to_string(), LOAD_PATH.to_owned()];
+        Ok(Some(self.answer_at(system, numbers, factors, contact, point, words)))
     }
 }
 
@@ -99,21 +76,11 @@ mod tests {
 
     #[test]
     fn the_load_path_ends_in_the_answer_of_the_cold_run() {
-        for name in [
-            "beam",
-            "frame",
-            "frame-rotated",
-            "plates-hinged",
-            "plates-free",
-            "greco",
-            "block",
-        ] {
+        for name in ["beam", "frame", "frame-rotated", "plates-hinged", "plates-free", "greco", "block"] {
             let scenario = embedded::load(name).expect("embedded");
             let prepared = prepare(&scenario, &Quiet).expect("sound");
             let values = scenario.parameter_values();
-            let cold = prepared
-                .solve(&scenario, &values, scenario.rules, &Quiet)
-                .expect("solved");
+            let cold = prepared.solve(&scenario, &values, scenario.rules, &Quiet).expect("solved");
             assert!(cold.answer.is_answer(), "{name}");
             let system = prepared.system().expect("a contact problem");
             let factors = factors(&prepared, &values);

@@ -54,17 +54,11 @@ impl Prepared {
     ///
     /// # Errors
     /// Stopped from outside.
-    pub fn compare(
-        &self,
-        values: &ParameterValues,
-        watch: &dyn Watch,
-    ) -> Result<Comparison, SolveError> {
+    pub fn compare(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<Comparison, SolveError> {
         let factors = factors(self, values);
         let pairs = match &self.geometry {
             Geometry::Plain { lcp, .. } => lcp.size().div_ceil(3),
-            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                system.pairs.len()
-            }
+            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => system.pairs.len(),
         };
         let coverings: &[Covering] = match &self.geometry {
             Geometry::Plain { .. } => &[Covering::Cohesive],
@@ -72,17 +66,8 @@ impl Prepared {
         };
         let ties: &[TieBreak] = match &self.geometry {
             // The natural order of a bare LCP is its lexicographic one.
-            Geometry::Plain { .. } => &[
-                TieBreak::Lexicographic,
-                TieBreak::FirstRow,
-                TieBreak::Random(1),
-            ],
-            _ => &[
-                TieBreak::Lexicographic,
-                TieBreak::Natural,
-                TieBreak::FirstRow,
-                TieBreak::Random(1),
-            ],
+            Geometry::Plain { .. } => &[TieBreak::Lexicographic, TieBreak::FirstRow, TieBreak::Random(1)],
+            _ => &[TieBreak::Lexicographic, TieBreak::Natural, TieBreak::FirstRow, TieBreak::Random(1)],
         };
         let mut engines = vec![Engine::Scheme];
         if pairs <= TABLEAU_PAIRS {
@@ -98,20 +83,13 @@ impl Prepared {
             for &tie_break in ties {
                 for &engine in &engines {
                     watch.progress("comparing rules", rows.len() as f64 / all as f64);
-                    let rules = Rules {
-                        covering,
-                        tie_break,
-                        engine,
-                    };
+                    let rules = Rules { covering, tie_break, engine };
                     let solved = self.attempt(values, &factors, rules, watch);
                     rows.push(row(rules, solved, &mut found)?);
                 }
             }
         }
-        Ok(Comparison {
-            rows,
-            answers: found.len(),
-        })
+        Ok(Comparison { rows, answers: found.len() })
     }
 
     fn attempt(
@@ -122,12 +100,7 @@ impl Prepared {
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
         match &self.geometry {
-            Geometry::Plain {
-                lcp,
-                q,
-                names,
-                covering_given,
-            } => {
+            Geometry::Plain { lcp, q, names, covering_given } => {
                 let mut lcp = lcp.clone();
                 for (entry, number) in lcp.q.iter_mut().zip(q) {
                     *entry = number.value(values);
@@ -142,11 +115,7 @@ impl Prepared {
     }
 }
 
-fn row(
-    rules: Rules,
-    solved: Result<Solved, SolveError>,
-    found: &mut Vec<Answer>,
-) -> Result<Compared, SolveError> {
+fn row(rules: Rules, solved: Result<Solved, SolveError>, found: &mut Vec<Answer>) -> Result<Compared, SolveError> {
     let mut row = Compared {
         covering: rules.covering.to_string(),
         tie_break: rules.tie_break.to_string(),
@@ -184,21 +153,14 @@ fn row(
 pub fn same(a: &Answer, b: &Answer) -> bool {
     fn near(a: impl Iterator<Item = f64>, b: impl Iterator<Item = f64>) -> bool {
         let pairs: Vec<(f64, f64)> = a.zip(b).collect();
-        let size = pairs
-            .iter()
-            .fold(0.0, |s: f64, (a, b)| s.max(a.abs()).max(b.abs()));
+        let size = pairs.iter().fold(0.0, |s: f64, (a, b)| s.max(a.abs()).max(b.abs()));
         pairs.iter().all(|(a, b)| (a - b).abs() <= SAME * size)
     }
     match (&a.solution, &b.solution) {
         (Some(a), Some(b)) => near(a.z.iter().copied(), b.z.iter().copied()),
         (None, None) => {
             let read = |answer: &'_ Answer, get: fn(&crate::answer::record::PairState) -> f64| {
-                answer
-                    .pairs
-                    .iter()
-                    .map(get)
-                    .collect::<Vec<f64>>()
-                    .into_iter()
+                answer.pairs.iter().map(get).collect::<Vec<f64>>().into_iter()
             };
             // Forces and displacements, each by their own size. z_τ of an open pair counts too: it follows.
             let forces = |x: &Answer| read(x, |p| p.x_n).chain(read(x, |p| p.x_t));

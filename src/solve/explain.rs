@@ -16,12 +16,8 @@ use crate::model::scenario::Scenario;
 impl Solved {
     fn naming<'a>(&'a self, prepared: &'a Prepared) -> Option<Naming<'a>> {
         match (&self.trace, &prepared.geometry) {
-            (Trace::Contact { contact, .. }, _) => {
-                Some(Naming::Contact(contact, prepared.system()?))
-            }
-            (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) => {
-                Some(Naming::Plain(lcp, names))
-            }
+            (Trace::Contact { contact, .. }, _) => Some(Naming::Contact(contact, prepared.system()?)),
+            (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) => Some(Naming::Plain(lcp, names)),
             (Trace::Plain { .. }, _) => None,
         }
     }
@@ -48,11 +44,7 @@ impl Solved {
     ///
     /// # Errors
     /// Too large, singular.
-    pub fn dictionary_at(
-        &self,
-        prepared: &Prepared,
-        step: Option<usize>,
-    ) -> Result<Dictionary, NoDictionary> {
+    pub fn dictionary_at(&self, prepared: &Prepared, step: Option<usize>) -> Result<Dictionary, NoDictionary> {
         let naming = self.naming(prepared).ok_or(NoDictionary::Singular)?;
         dictionary(&naming, self.trace_pivots(), step)
     }
@@ -66,16 +58,8 @@ impl Solved {
         values: &ParameterValues,
         pair: usize,
     ) -> Vec<Margin> {
-        let (
-            Trace::Contact {
-                contact,
-                numbers,
-                factors,
-                pivots,
-                last,
-            },
-            Some(system),
-        ) = (&self.trace, prepared.system())
+        let (Trace::Contact { contact, numbers, factors, pivots, last }, Some(system)) =
+            (&self.trace, prepared.system())
         else {
             return Vec::new();
         };
@@ -91,21 +75,13 @@ impl Solved {
         };
         // A trivial answer has no vertex of its own in the trace.
         let point = if pivots.is_empty() { &fresh } else { last };
-        let scheme = FinalScheme {
-            system,
-            contact,
-            numbers,
-            basis: &basis,
-            point,
-        };
+        let scheme = FinalScheme { system, contact, numbers, basis: &basis, point };
         let mut margins: Vec<Margin> = prepared
             .cases
             .iter()
             .zip(factors)
             .zip(&system.loads)
-            .filter_map(|(((name, _), factor), load)| {
-                load_margin(&scheme, pair, name, *factor, &load.vector)
-            })
+            .filter_map(|(((name, _), factor), load)| load_margin(&scheme, pair, name, *factor, &load.vector))
             .collect();
         let mut names: Vec<&str> = Vec::new();
         for pair in &system.pairs {
@@ -118,10 +94,7 @@ impl Solved {
         }
         for name in names {
             let present = values.get(name).copied().unwrap_or_default();
-            let slider = scenario
-                .parameters
-                .get(name)
-                .and_then(|parameter| parameter.max);
+            let slider = scenario.parameters.get(name).and_then(|parameter| parameter.max);
             let end = (2.0 * present).max(slider.unwrap_or(1.0)).max(present);
             let at = |value: f64| {
                 let mut values = values.clone();
@@ -138,9 +111,7 @@ impl Prepared {
     /// Parts that only contact holds, each with its motions in words.
     pub fn loose_parts(&self) -> Vec<LoosePart> {
         match &self.geometry {
-            Geometry::Structure {
-                main, structure, ..
-            } => loose_parts(structure, main),
+            Geometry::Structure { main, structure, .. } => loose_parts(structure, main),
             _ => Vec::new(),
         }
     }

@@ -39,10 +39,7 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
         matrix: vec![Vec::new(); n],
         q: vec![0.0; n],
         covering: vec![0.0; n],
-        scale: Scale {
-            row: vec![0.0; n],
-            column: columns.iter().map(|&(j, _)| lcp.scale.column[j]).collect(),
-        },
+        scale: Scale { row: vec![0.0; n], column: columns.iter().map(|&(j, _)| lcp.scale.column[j]).collect() },
     };
     let matrix = lcp.matrix();
     for i in 0..lcp.size() {
@@ -93,17 +90,9 @@ pub fn run_exact_contact(
     rule: TieRule,
     watch: &dyn Watch,
 ) -> Run {
-    let input = WholeInput {
-        system,
-        numbers,
-        covering,
-    };
+    let input = WholeInput { system, numbers, covering };
     let problem = whole_lcp_of(&input, &exact_stiffness(system));
-    rounded(
-        run_exact(problem, rule, watch),
-        contact.force_unit,
-        contact.length_unit,
-    )
+    rounded(run_exact(problem, rule, watch), contact.force_unit, contact.length_unit)
 }
 
 fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run<BigRational> {
@@ -117,18 +106,15 @@ fn rational(value: f64) -> BigRational {
 /// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ.
 pub fn exact_stiffness(system: &ContactSystem) -> Vec<Vec<BigRational>> {
     let k = system.joint_count();
-    let r: Vec<Vec<BigRational>> = (0..k)
-        .map(|i| (0..k).map(|j| rational(system.stiffness[(i, j)])).collect())
-        .collect();
+    let r: Vec<Vec<BigRational>> =
+        (0..k).map(|i| (0..k).map(|j| rational(system.stiffness[(i, j)])).collect()).collect();
     let free = system.kernel.ncols();
     if free == 0 {
         return r;
     }
     // Entries of Z that are rounding noise would only blur motions that are exactly simple.
-    let z: Vec<Vec<BigRational>> = clean(&system.kernel)
-        .row_iter()
-        .map(|row| row.iter().map(|v| rational(*v)).collect())
-        .collect();
+    let z: Vec<Vec<BigRational>> =
+        clean(&system.kernel).row_iter().map(|row| row.iter().map(|v| rational(*v)).collect()).collect();
     let dot = |a: &dyn Fn(usize) -> BigRational, b: &dyn Fn(usize) -> BigRational| {
         let mut sum = BigRational::zero();
         for i in 0..k {
@@ -136,30 +122,19 @@ pub fn exact_stiffness(system: &ContactSystem) -> Vec<Vec<BigRational>> {
         }
         sum
     };
-    let gram: Vec<Vec<BigRational>> = (0..free)
-        .map(|a| {
-            (0..free)
-                .map(|b| dot(&|i| z[i][a].clone(), &|i| z[i][b].clone()))
-                .collect()
-        })
-        .collect();
+    let gram: Vec<Vec<BigRational>> =
+        (0..free).map(|a| (0..free).map(|b| dot(&|i| z[i][a].clone(), &|i| z[i][b].clone())).collect()).collect();
     let Some(inverse) = inverse(gram) else {
         return r; // dependent columns: an orthonormal basis never is
     };
     // Q = Z (ZᵀZ)⁻¹, P = 1 − Q Zᵀ.
     let projector: Vec<Vec<BigRational>> = (0..k)
         .map(|i| {
-            let q: Vec<BigRational> = (0..free)
-                .map(|b| (0..free).map(|a| &z[i][a] * &inverse[a][b]).sum())
-                .collect();
+            let q: Vec<BigRational> = (0..free).map(|b| (0..free).map(|a| &z[i][a] * &inverse[a][b]).sum()).collect();
             (0..k)
                 .map(|j| {
                     let inside: BigRational = (0..free).map(|b| &q[b] * &z[j][b]).sum();
-                    if i == j {
-                        BigRational::one() - inside
-                    } else {
-                        -inside
-                    }
+                    if i == j { BigRational::one() - inside } else { -inside }
                 })
                 .collect()
         })
@@ -186,13 +161,7 @@ pub fn exact_stiffness(system: &ContactSystem) -> Vec<Vec<BigRational>> {
 fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
     let n = a.len();
     for (i, row) in a.iter_mut().enumerate() {
-        row.extend((0..n).map(|j| {
-            if i == j {
-                BigRational::one()
-            } else {
-                BigRational::zero()
-            }
-        }));
+        row.extend((0..n).map(|j| if i == j { BigRational::one() } else { BigRational::zero() }));
     }
     for c in 0..n {
         let pivot = (c..n).find(|&r| !a[r][c].is_zero())?;
@@ -214,9 +183,7 @@ fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
 
 /// An exact run in f64, forces divided by `force` and displacements by `length` (powers of two).
 fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
-    let all = |values: &[BigRational], unit: f64| -> Vec<f64> {
-        values.iter().map(|v| nearest(v) / unit).collect()
-    };
+    let all = |values: &[BigRational], unit: f64| -> Vec<f64> { values.iter().map(|v| nearest(v) / unit).collect() };
     let mut pivots = run.pivots;
     for pivot in &mut pivots {
         pivot.p_before /= force;
@@ -241,11 +208,7 @@ fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
             Outcome::Breakdown(why) => Outcome::Breakdown(why),
             Outcome::Interrupted => Outcome::Interrupted,
         },
-        point: Point {
-            z: all(&run.point.z, length),
-            w: all(&run.point.w, force),
-            p: nearest(&run.point.p) / force,
-        },
+        point: Point { z: all(&run.point.z, length), w: all(&run.point.w, force), p: nearest(&run.point.p) / force },
         pivots,
     }
 }

@@ -10,28 +10,16 @@ use crate::model::parameter::{Number, ParameterValues};
 
 /// The factor of every load case.
 pub fn factors(prepared: &Prepared, values: &ParameterValues) -> Vec<f64> {
-    prepared
-        .cases
-        .iter()
-        .map(|(_, factor)| factor.value(values))
-        .collect()
+    prepared.cases.iter().map(|(_, factor)| factor.value(values)).collect()
 }
 
 /// The numbers of the laws and Σ factor·RF.
-pub fn contact_numbers(
-    system: &ContactSystem,
-    factors: &[f64],
-    values: &ParameterValues,
-) -> ContactNumbers {
+pub fn contact_numbers(system: &ContactSystem, factors: &[f64], values: &ParameterValues) -> ContactNumbers {
     numbers_by(system, factors, &|number| number.value(values))
 }
 
 /// The numbers of the laws, each as `value` reads it, and Σ factor·RF.
-pub(crate) fn numbers_by(
-    system: &ContactSystem,
-    factors: &[f64],
-    value: &dyn Fn(&Number) -> f64,
-) -> ContactNumbers {
+pub(crate) fn numbers_by(system: &ContactSystem, factors: &[f64], value: &dyn Fn(&Number) -> f64) -> ContactNumbers {
     let m = system.pairs.len();
     let mut numbers = ContactNumbers {
         friction: vec![0.0; m],
@@ -42,11 +30,7 @@ pub(crate) fn numbers_by(
     };
     for (i, pair) in system.pairs.iter().enumerate() {
         match &pair.law {
-            Law::Coulomb {
-                friction,
-                cohesion,
-                gap,
-            } => {
+            Law::Coulomb { friction, cohesion, gap } => {
                 numbers.friction[i] = value(friction);
                 numbers.cohesion[i] = value(cohesion);
                 numbers.gap[i] = value(gap);

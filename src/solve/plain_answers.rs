@@ -41,11 +41,7 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCh
     }
     let m = exact_matrix(lcp);
     let q: Vec<BigRational> = lcp.q.iter().map(|v| exact(*v)).collect();
-    let mut check = PlainCheck {
-        unique: false,
-        violations: Vec::new(),
-        zeros: Vec::new(),
-    };
+    let mut check = PlainCheck { unique: false, violations: Vec::new(), zeros: Vec::new() };
     let Basis::One(z) = solve(&m, &q, basis) else {
         return Some(check);
     };
@@ -70,10 +66,7 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCh
 /// M, row by row.
 fn exact_matrix(lcp: &MirroredLcp) -> Vec<Vec<BigRational>> {
     let matrix = lcp.matrix();
-    matrix
-        .row_iter()
-        .map(|row| row.iter().map(|entry| exact(*entry)).collect())
-        .collect()
+    matrix.row_iter().map(|row| row.iter().map(|entry| exact(*entry)).collect()).collect()
 }
 
 fn exact(value: f64) -> BigRational {
@@ -88,12 +81,7 @@ pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAn
     }
     let m = exact_matrix(lcp);
     let q: Vec<BigRational> = lcp.q.iter().map(|v| exact(*v)).collect();
-    let mut found = PlainAnswers {
-        answers: Vec::new(),
-        complete: true,
-        visited: 1 << n,
-        singular: 0,
-    };
+    let mut found = PlainAnswers { answers: Vec::new(), complete: true, visited: 1 << n, singular: 0 };
     let mut exact_answers: Vec<Vec<BigRational>> = Vec::new();
     for basis in 0..1usize << n {
         if watch.stop() {

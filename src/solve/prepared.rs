@@ -103,11 +103,7 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
             system.settle();
             Prepared {
                 geometry: Geometry::Contact { system, released },
-                cases: given
-                    .loads
-                    .iter()
-                    .map(|load| (load.name.clone(), load.factor.clone()))
-                    .collect(),
+                cases: given.loads.iter().map(|load| (load.name.clone(), load.factor.clone())).collect(),
                 factor_seconds: 0.0,
                 condense_seconds: 0.0,
                 seconds: 0.0,
@@ -124,10 +120,7 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
     let lcp = MirroredLcp {
         base: Arc::new(DMatrix::from_fn(n, n, |i, j| given.matrix[i][j])),
         q: DVector::zeros(n),
-        covering: given.covering.as_ref().map_or_else(
-            || DVector::repeat(n, 1.0),
-            |d| DVector::from_column_slice(d),
-        ),
+        covering: given.covering.as_ref().map_or_else(|| DVector::repeat(n, 1.0), |d| DVector::from_column_slice(d)),
         whole: (0..n).collect(),
         mirrors: vec![None; n],
         scale: Scale::plain(&given.matrix),
@@ -148,18 +141,9 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
 }
 
 /// Gives an error of the main system its place in the file.
-fn main_system_problem(
-    scenario: &Scenario,
-    structure: &Structure,
-    error: MainSystemError,
-) -> PrepareError {
+fn main_system_problem(scenario: &Scenario, structure: &Structure, error: MainSystemError) -> PrepareError {
     let places = &scenario.places;
-    let node = |node: usize| {
-        places
-            .nodes
-            .get(node)
-            .map_or(String::new(), ToString::to_string)
-    };
+    let node = |node: usize| places.nodes.get(node).map_or(String::new(), ToString::to_string);
     let path = match &error {
         MainSystemError::Interrupted => return PrepareError::Interrupted,
         MainSystemError::DependentJoints(joints) => {
@@ -189,18 +173,12 @@ fn main_system_problem(
     PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
 }
 
-fn prepare_structure(
-    scenario: &Scenario,
-    structure: &Structure,
-    watch: &dyn Watch,
-) -> Result<Prepared, PrepareError> {
+fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
     let joints = joints(&structure.pairs);
-    let main = MainSystem::new(structure, &joints, watch)
-        .map_err(|error| main_system_problem(scenario, structure, error))?;
+    let main =
+        MainSystem::new(structure, &joints, watch).map_err(|error| main_system_problem(scenario, structure, error))?;
     let tangential = |pair: usize| {
-        joints
-            .iter()
-            .position(|joint| joint.pair == pair && joint.direction == JointDirection::Tangential)
+        joints.iter().position(|joint| joint.pair == pair && joint.direction == JointDirection::Tangential)
     };
     let pairs = structure
         .pairs
@@ -217,30 +195,14 @@ fn prepare_structure(
         .load_cases
         .iter()
         .zip(main.loads())
-        .map(|(case, vector)| JointLoad {
-            name: case.name.clone(),
-            vector: vector.clone(),
-        })
+        .map(|(case, vector)| JointLoad { name: case.name.clone(), vector: vector.clone() })
         .collect();
-    let mut system = ContactSystem {
-        pairs,
-        stiffness: main.stiffness().clone(),
-        loads,
-        kernel: main.kernel().clone(),
-    };
+    let mut system = ContactSystem { pairs, stiffness: main.stiffness().clone(), loads, kernel: main.kernel().clone() };
     system.settle();
     let seconds = main.timings();
     Ok(Prepared {
-        geometry: Geometry::Structure {
-            system,
-            main: Box::new(main),
-            structure: structure.clone(),
-        },
-        cases: structure
-            .load_cases
-            .iter()
-            .map(|case| (case.name.clone(), case.factor.clone()))
-            .collect(),
+        geometry: Geometry::Structure { system, main: Box::new(main), structure: structure.clone() },
+        cases: structure.load_cases.iter().map(|case| (case.name.clone(), case.factor.clone())).collect(),
         factor_seconds: seconds.factor,
         condense_seconds: seconds.condense,
         seconds: 0.0,

@@ -39,16 +39,12 @@ impl Prepared {
         rules: Rules,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        let large = self
-            .system()
-            .is_some_and(|system| system.pairs.len() >= WARM_PAIRS);
+        let large = self.system().is_some_and(|system| system.pairs.len() >= WARM_PAIRS);
         let usual = rules.are_default() && rules.engine == Engine::Scheme;
         if large
             && usual
             && last.answer.is_answer()
-            && values
-                .iter()
-                .all(|(name, value)| scenario.refusal(name, *value).is_none())
+            && values.iter().all(|(name, value)| scenario.refusal(name, *value).is_none())
             && let Some(solved) = self.follow(last, values, rules, watch)
         {
             return Ok(solved);
@@ -58,13 +54,7 @@ impl Prepared {
 
     /// The answer reached from the last one, if it passes its check. Public for tests and measurements of the warm
     /// start alone: any number of pairs.
-    pub fn follow(
-        &self,
-        last: &Solved,
-        values: &ParameterValues,
-        rules: Rules,
-        watch: &dyn Watch,
-    ) -> Option<Solved> {
+    pub fn follow(&self, last: &Solved, values: &ParameterValues, rules: Rules, watch: &dyn Watch) -> Option<Solved> {
         let system = self.system()?;
         let seat = last.kept.as_ref()?;
         let mut guard = seat.lock().unwrap_or_else(PoisonError::into_inner);
@@ -74,8 +64,7 @@ impl Prepared {
         let factors = factors(self, values);
         let numbers = contact_numbers(system, &factors, values);
         let numbers_seconds = start.elapsed().as_secs_f64();
-        let (mut solved, mut seconds) =
-            self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
+        let (mut solved, mut seconds) = self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
         if !solved.answer.is_answer() {
             // The way is made; only its end was not sharp enough.
             let way = solved.answer.start;
@@ -111,20 +100,14 @@ impl Prepared {
         let system = self.system()?;
         let start = Instant::now();
         let found = kept.follow(system, numbers, watch)?;
-        let contact =
-            contact_lcp_like(Some(kept.contact()), system, numbers, rules.covering).ok()?;
+        let contact = contact_lcp_like(Some(kept.contact()), system, numbers, rules.covering).ok()?;
         let length = found.length_unit / contact.length_unit;
-        let point = Point {
-            z: found.point.z.iter().map(|z| z * length).collect(),
-            w: vec![0.0; contact.rows.len()],
-            p: 0.0,
-        };
+        let point =
+            Point { z: found.point.z.iter().map(|z| z * length).collect(), w: vec![0.0; contact.rows.len()], p: 0.0 };
         let seconds = start.elapsed().as_secs_f64();
         let words = rules.words();
         let mut solved = self.answer_at(system, numbers, factors, contact, point, words);
-        solved.answer.start = Start::Warm {
-            changes: found.pivots,
-        };
+        solved.answer.start = Start::Warm { changes: found.pivots };
         Some((solved, seconds))
     }
 }
@@ -132,11 +115,7 @@ impl Prepared {
 /// Whether two answers are the same: states and forces and displacements of all pairs.
 pub fn same_answer(a: &Answer, b: &Answer) -> bool {
     let largest = |pick: fn(&PairState) -> [f64; 2]| {
-        a.pairs
-            .iter()
-            .chain(&b.pairs)
-            .flat_map(pick)
-            .fold(0.0, |m: f64, x| m.max(x.abs()))
+        a.pairs.iter().chain(&b.pairs).flat_map(pick).fold(0.0, |m: f64, x| m.max(x.abs()))
     };
     let force = largest(|pair| [pair.x_n, pair.x_t]);
     let length = largest(|pair| [pair.z_n, pair.z_t]);

@@ -28,18 +28,10 @@ const FEW_PAIRS: usize = 300;
 
 /// The rules tried after the default ones, in order.
 pub fn retries(exact: bool) -> Vec<Rules> {
-    let with = |covering, tie_break, engine| Rules {
-        covering,
-        tie_break,
-        engine,
-    };
+    let with = |covering, tie_break, engine| Rules { covering, tie_break, engine };
     let mut rules = Vec::new();
     if exact {
-        rules.push(with(
-            Covering::Cohesive,
-            TieBreak::Lexicographic,
-            Engine::Exact,
-        ));
+        rules.push(with(Covering::Cohesive, TieBreak::Lexicographic, Engine::Exact));
     }
     let scheme = |covering, tie_break| with(covering, tie_break, Engine::Scheme);
     rules.extend([
@@ -54,19 +46,12 @@ pub fn retries(exact: bool) -> Vec<Rules> {
 }
 
 fn rules_words(attempt: &Attempt) -> String {
-    format!(
-        "covering {}, tie-break {}, engine {}",
-        attempt.covering, attempt.tie_break, attempt.engine
-    )
+    format!("covering {}, tie-break {}, engine {}", attempt.covering, attempt.tie_break, attempt.engine)
 }
 
 impl Prepared {
     pub(super) fn named_factors(&self, factors: &[f64]) -> Vec<(String, f64)> {
-        self.cases
-            .iter()
-            .map(|(name, _)| name.clone())
-            .zip(factors.iter().copied())
-            .collect()
+        self.cases.iter().map(|(name, _)| name.clone()).zip(factors.iter().copied()).collect()
     }
 
     pub(super) fn subject<'a>(
@@ -80,9 +65,7 @@ impl Prepared {
             numbers,
             cases,
             structure: match &self.geometry {
-                Geometry::Structure {
-                    main, structure, ..
-                } => Some((structure, main)),
+                Geometry::Structure { main, structure, .. } => Some((structure, main)),
                 _ => None,
             },
         }
@@ -98,24 +81,14 @@ impl Prepared {
     ) -> Result<Solved, SolveError> {
         let factors = factors(self, values);
         let numbers = contact_numbers(system, &factors, values);
-        let job = Job {
-            prepared: self,
-            system,
-            numbers: &numbers,
-            factors: &factors,
-            rules,
-            watch,
-        };
+        let job = Job { prepared: self, system, numbers: &numbers, factors: &factors, rules, watch };
         let mut solved = job.attempt(rules)?;
         if solved.answer.is_answer() {
             return Ok(solved);
         }
         let cases = self.named_factors(&factors);
         let subject = self.subject(system, &numbers, &cases);
-        let certified = solved
-            .ray
-            .as_mut()
-            .is_some_and(|report| certify_ray(report, &subject));
+        let certified = solved.ray.as_mut().is_some_and(|report| certify_ray(report, &subject));
         if !certified && rules.are_default() {
             solved = job.retry(solved, &subject)?;
         } else if !certified {
@@ -123,10 +96,7 @@ impl Prepared {
         }
         if let Some(report) = solved.ray.as_mut().filter(|_| !brief) {
             let solves = |numbers: &ContactNumbers, changed: Option<(usize, f64)>| {
-                let default = Rules {
-                    engine: Engine::Scheme,
-                    ..Rules::default()
-                };
+                let default = Rules { engine: Engine::Scheme, ..Rules::default() };
                 let mut factors = factors.clone();
                 if let Some((case, factor)) = changed {
                     factors[case] = factor;
@@ -160,8 +130,7 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn attempt(&self, rules: Rules) -> Result<Solved, SolveError> {
-        self.prepared
-            .attempt_contact(self.system, self.numbers, self.factors, rules, self.watch)
+        self.prepared.attempt_contact(self.system, self.numbers, self.factors, rules, self.watch)
     }
 
     fn covering_of(&self, word: &str) -> Covering {
@@ -208,10 +177,7 @@ impl Job<'_> {
                 // The first run broke down or failed its check: a ray that can be proved is better than that.
                 if let Some(report) = &mut again.ray {
                     let mut proved = certify_ray(report, subject);
-                    if !proved
-                        && report.verdict.is_some()
-                        && found.as_ref().is_some_and(Enumeration::no_answer)
-                    {
+                    if !proved && report.verdict.is_some() && found.as_ref().is_some_and(Enumeration::no_answer) {
                         report.verdict = Some(Verdict::Proved);
                         proved = true;
                     }
@@ -223,9 +189,7 @@ impl Job<'_> {
             }
         }
         if try_rules
-            && let Some(mut again) =
-                self.prepared
-                    .along_load(self.system, self.numbers, self.factors, self.watch)?
+            && let Some(mut again) = self.prepared.along_load(self.system, self.numbers, self.factors, self.watch)?
         {
             attempts.append(&mut again.answer.attempts);
             if again.answer.is_answer() {
@@ -246,11 +210,7 @@ impl Job<'_> {
         if attempts.len() > 1 {
             shown.told = format!(
                 " Tried besides, without an answer: {}.",
-                attempts[1..]
-                    .iter()
-                    .map(rules_words)
-                    .collect::<Vec<_>>()
-                    .join("; ")
+                attempts[1..].iter().map(rules_words).collect::<Vec<_>>().join("; ")
             );
             if let Some(failure) = &mut shown.answer.failure {
                 failure.push_str(&shown.told);
@@ -263,22 +223,12 @@ impl Job<'_> {
     }
 
     /// Rules that the user chose have failed: says whether the default ones do better.
-    fn compare_with_default(
-        &self,
-        solved: &mut Solved,
-        subject: &Subject,
-    ) -> Result<(), SolveError> {
+    fn compare_with_default(&self, solved: &mut Solved, subject: &Subject) -> Result<(), SolveError> {
         let default = Rules::default();
         let other = self.attempt(default)?;
-        let words = format!(
-            "covering {}, tie-break {}",
-            default.covering, default.tie_break
-        );
+        let words = format!("covering {}, tie-break {}", default.covering, default.tie_break);
         let said = if other.answer.is_answer() {
-            format!(
-                " The default rules ({words}) find an answer in {} pivots.",
-                other.pivot_count()
-            )
+            format!(" The default rules ({words}) find an answer in {} pivots.", other.pivot_count())
         } else {
             match all_answers(subject, self.watch) {
                 Some(found) if found.no_answer() => {
@@ -290,8 +240,7 @@ impl Job<'_> {
                     String::new()
                 }
                 Some(found) if !found.answers.is_empty() => {
-                    " An answer exists: going through all working schemes finds it (`enumerate`)."
-                        .to_owned()
+                    " An answer exists: going through all working schemes finds it (`enumerate`).".to_owned()
                 }
                 _ => format!(" The default rules ({words}) find no answer either."),
             }
@@ -306,18 +255,10 @@ impl Job<'_> {
     /// The first enumerated answer that passes the fresh check.
     fn enumerated(&self, found: &Enumeration) -> Result<Option<Solved>, SolveError> {
         for candidate in &found.answers {
-            let mut solved = self.prepared.enumerated_answer(
-                self.system,
-                self.numbers,
-                self.factors,
-                candidate,
-            )?;
+            let mut solved = self.prepared.enumerated_answer(self.system, self.numbers, self.factors, candidate)?;
             if solved.answer.is_answer() {
                 if found.answers.len() > 1 {
-                    solved.answer.notes.push(format!(
-                        "there are {} answers; this is one of them",
-                        found.answers.len()
-                    ));
+                    solved.answer.notes.push(format!("there are {} answers; this is one of them", found.answers.len()));
                 }
                 return Ok(Some(solved));
             }
@@ -340,10 +281,7 @@ fn told(first: &Solved, attempts: &[Attempt]) -> String {
     };
     // The last attempt is the one that found it.
     let found = attempts.last().map_or(String::new(), rules_words);
-    format!(
-        "the run under the default rules {how}; the answer was found at attempt {} ({found})",
-        attempts.len()
-    )
+    format!("the run under the default rules {how}; the answer was found at attempt {} ({found})", attempts.len())
 }
 
 /// Solves a bare LCP, with retries under the default tie-break.
@@ -379,9 +317,7 @@ pub(super) fn solve_plain_judged(
         return Ok(first);
     }
     let found = all_plain_answers(lcp, watch);
-    let none = found
-        .as_ref()
-        .is_some_and(|found| found.complete && found.answers.is_empty());
+    let none = found.as_ref().is_some_and(|found| found.complete && found.answers.is_empty());
     if none && first.answer.ray.is_some() {
         first.answer.ray = Some(ray::plain_report(first.answer.p, Verdict::Proved));
         return Ok(first);
@@ -389,16 +325,9 @@ pub(super) fn solve_plain_judged(
     let mut attempts = first.answer.attempts.clone();
     let mut others = Vec::new();
     if lcp.size() <= EXACT_ROWS && rules.engine != Engine::Exact {
-        others.push(Rules {
-            engine: Engine::Exact,
-            ..rules
-        });
+        others.push(Rules { engine: Engine::Exact, ..rules });
     }
-    others.push(Rules {
-        tie_break: TieBreak::Random(1),
-        engine: Engine::Scheme,
-        ..rules
-    });
+    others.push(Rules { tie_break: TieBreak::Random(1), engine: Engine::Scheme, ..rules });
     for rules in others {
         let mut again = attempt(rules)?;
         attempts.append(&mut again.answer.attempts);
@@ -417,10 +346,7 @@ pub(super) fn solve_plain_judged(
             attempts.append(&mut solved.answer.attempts);
             solved.answer.notes.push(told(&first, &attempts));
             if found.answers.len() > 1 {
-                solved.answer.notes.push(format!(
-                    "there are {} answers; this is one of them",
-                    found.answers.len()
-                ));
+                solved.answer.notes.push(format!("there are {} answers; this is one of them", found.answers.len()));
             }
             solved.answer.attempts = attempts;
             return Ok(solved);

@@ -14,8 +14,8 @@ use super::warm::Kept;
 use crate::answer::check::{check_contact, check_plain};
 use crate::answer::pairs::{JointState, joint_state, pair_states};
 use crate::answer::record::{
-    Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState,
-    PlainSolution, Reaction, Size, Start, Timings, Verdict,
+    Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, PlainSolution, Reaction,
+    Size, Start, Timings, Verdict,
 };
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
@@ -76,10 +76,7 @@ impl SolveError {
 
 /// The numbers behind an answer: what is needed to look at any pivot of its run.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "one for each solved state, never in lists"
-)]
+#[expect(clippy::large_enum_variant, reason = "one for each solved state, never in lists")]
 pub enum Trace {
     /// Of a contact problem.
     Contact {
@@ -164,12 +161,7 @@ impl Prepared {
         }
         let start = Instant::now();
         let mut solved = match &self.geometry {
-            Geometry::Plain {
-                lcp,
-                q,
-                names,
-                covering_given,
-            } => {
+            Geometry::Plain { lcp, q, names, covering_given } => {
                 if rules.covering != Covering::default() {
                     return Err(SolveError::CoveringOfPlain(rules.covering));
                 }
@@ -270,14 +262,7 @@ impl Prepared {
             pivots: run.pivots,
             last: run.point,
         };
-        let mut solved = Solved {
-            answer,
-            trace,
-            ray,
-            cycled,
-            kept,
-            told: String::new(),
-        };
+        let mut solved = Solved { answer, trace, ray, cycled, kept, told: String::new() };
         if refused {
             self.prove_after_all(&mut solved, watch);
         }
@@ -296,11 +281,7 @@ impl Prepared {
         words: [String; 3],
     ) -> Solved {
         let state = joint_state(system, numbers, &contact, &point);
-        let run = Run {
-            outcome: Outcome::Normal { marginal: false },
-            pivots: Vec::new(),
-            point,
-        };
+        let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: Vec::new(), point };
         let mut answer = empty_answer(&run, words, self.size(system, &contact));
         answer.pairs = pair_states(system, numbers, &contact, &state);
         self.add_released_slips(&mut answer.pairs, numbers, factors, &state);
@@ -344,10 +325,7 @@ impl Prepared {
         state: &JointState,
     ) {
         let mut equilibrium = None;
-        if let Geometry::Structure {
-            main, structure, ..
-        } = &self.geometry
-        {
+        if let Geometry::Structure { main, structure, .. } = &self.geometry {
             let u = main.displacements(factors, &dislocation(numbers, state));
             equilibrium = Some(main.equilibrium_residual(structure, &u, &state.force, factors));
             answer.members = Some(
@@ -398,14 +376,8 @@ impl Prepared {
         state: &JointState,
     ) {
         match &self.geometry {
-            Geometry::Structure {
-                main, structure, ..
-            } => {
-                if !structure
-                    .pairs
-                    .iter()
-                    .any(|pair| matches!(pair.law, Law::Frictionless { .. }))
-                {
+            Geometry::Structure { main, structure, .. } => {
+                if !structure.pairs.iter().any(|pair| matches!(pair.law, Law::Frictionless { .. })) {
                     return;
                 }
                 let u = main.displacements(factors, &dislocation(numbers, state));
@@ -438,27 +410,15 @@ pub(crate) fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVect
 }
 
 fn end_forces(ends: crate::fem::EndForces) -> EndForces {
-    EndForces {
-        n: ends.normal,
-        q: ends.shear,
-        m: ends.moment,
-    }
+    EndForces { n: ends.normal, q: ends.shear, m: ends.moment }
 }
 
-fn named(
-    structure: &crate::model::structure::Structure,
-    u: &Displacements,
-) -> Vec<NodeDisplacement> {
+fn named(structure: &crate::model::structure::Structure, u: &Displacements) -> Vec<NodeDisplacement> {
     structure
         .nodes
         .iter()
         .zip(&u.0)
-        .map(|(node, u)| NodeDisplacement {
-            node: node.id.clone(),
-            ux: u[0],
-            uy: u[1],
-            rz: u[2],
-        })
+        .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
         .collect()
 }
 
@@ -469,10 +429,7 @@ fn fail_check(answer: &mut Answer) {
         answer.check.min_w,
         answer.check.min_z,
         answer.check.complementarity,
-        answer
-            .check
-            .equilibrium
-            .map_or(String::new(), |e| format!(", equilibrium {e:.1e}"))
+        answer.check.equilibrium.map_or(String::new(), |e| format!(", equilibrium {e:.1e}"))
     ));
     if let Some(last) = answer.attempts.last_mut() {
         last.outcome = OutcomeKind::CheckFailed;
@@ -484,10 +441,7 @@ pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer 
     let outcome = kind(&run.outcome);
     let [covering, tie_break, engine] = words;
     let failure = match &run.outcome {
-        Outcome::PivotLimit => Some(format!(
-            "the limit of {} pivots was reached.",
-            super::attempt::PIVOT_LIMIT
-        )),
+        Outcome::PivotLimit => Some(format!("the limit of {} pivots was reached.", super::attempt::PIVOT_LIMIT)),
         Outcome::Cycle => Some(format!(
             "the tie-break {tie_break} cycles: after {} pivots a working scheme came back.",
             run.pivots.len()
@@ -533,9 +487,7 @@ pub(super) fn attempt_plain(
     watch: &dyn Watch,
 ) -> Result<Solved, SolveError> {
     let rule = match rules.tie_break {
-        TieBreak::Lexicographic | TieBreak::Natural => {
-            TieRule::Lexicographic((0..lcp.size()).collect())
-        }
+        TieBreak::Lexicographic | TieBreak::Natural => TieRule::Lexicographic((0..lcp.size()).collect()),
         TieBreak::FirstRow => TieRule::FirstRow,
         TieBreak::Random(seed) => TieRule::Random(seed),
     };
@@ -544,11 +496,7 @@ pub(super) fn attempt_plain(
         Engine::Scheme => run_scheme(lcp, rule, watch),
         Engine::Tableau => run_tableau(lcp, rule, watch),
         Engine::Exact if lcp.size() > EXACT_ROWS => {
-            return Err(SolveError::TooLargeForExact {
-                what: "rows",
-                found: lcp.size(),
-                most: EXACT_ROWS,
-            });
+            return Err(SolveError::TooLargeForExact { what: "rows", found: lcp.size(), most: EXACT_ROWS });
         }
         Engine::Exact => run_exact_plain(lcp, rule, watch),
     };
@@ -557,27 +505,15 @@ pub(super) fn attempt_plain(
     }
     let seconds = start.elapsed().as_secs_f64();
     let covering = if covering_given { "given" } else { "ones" };
-    let words = [
-        covering.to_owned(),
-        rules.tie_break.to_string(),
-        rules.engine.to_string(),
-    ];
-    let size = Size {
-        unknowns: None,
-        free: None,
-        pairs: 0,
-        lcp: lcp.size(),
-    };
+    let words = [covering.to_owned(), rules.tie_break.to_string(), rules.engine.to_string()];
+    let size = Size { unknowns: None, free: None, pairs: 0, lcp: lcp.size() };
     let mut answer = empty_answer(&run, words, size);
     answer.timings.lemke = seconds;
     answer.pivots = sentence::plain_records(&run.pivots, names);
     if matches!(run.outcome, Outcome::Ray(_)) {
         answer.ray = Some(ray::plain_report(run.point.p, Verdict::Undecided));
     }
-    answer.solution = Some(PlainSolution {
-        z: run.point.z.clone(),
-        w: run.point.w.clone(),
-    });
+    answer.solution = Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
     if answer.is_answer() {
         answer.check = check_plain(lcp, &run.point);
         if !answer.check.passed {
@@ -587,10 +523,7 @@ pub(super) fn attempt_plain(
     let cycled = run.outcome == Outcome::Cycle;
     Ok(Solved {
         answer,
-        trace: Trace::Plain {
-            lcp: Arc::clone(lcp),
-            pivots: run.pivots,
-        },
+        trace: Trace::Plain { lcp: Arc::clone(lcp), pivots: run.pivots },
         ray: None,
         cycled,
         told: String::new(),
@@ -613,14 +546,7 @@ impl Solved {
 
     /// The vertex after pivot `step` over the joints; `None` beyond the last and for a bare LCP.
     fn state_at(&self, prepared: &Prepared, step: usize) -> Option<JointState> {
-        let Trace::Contact {
-            contact,
-            numbers,
-            pivots,
-            last,
-            ..
-        } = &self.trace
-        else {
+        let Trace::Contact { contact, numbers, pivots, last, .. } = &self.trace else {
             return None;
         };
         let system = prepared.system()?;
@@ -634,13 +560,7 @@ impl Solved {
 
     /// The pairs after pivot `step`: the working scheme on the way, under its p.
     pub fn pairs_at(&self, prepared: &Prepared, step: usize) -> Option<Vec<PairState>> {
-        let Trace::Contact {
-            contact,
-            numbers,
-            factors,
-            ..
-        } = &self.trace
-        else {
+        let Trace::Contact { contact, numbers, factors, .. } = &self.trace else {
             return None;
         };
         let state = self.state_at(prepared, step)?;
@@ -650,27 +570,14 @@ impl Solved {
     }
 
     /// The displacements after pivot `step`; structures only.
-    pub fn displacements_at(
-        &self,
-        prepared: &Prepared,
-        step: usize,
-    ) -> Option<Vec<NodeDisplacement>> {
-        let (
-            Trace::Contact {
-                numbers, factors, ..
-            },
-            Geometry::Structure {
-                main, structure, ..
-            },
-        ) = (&self.trace, &prepared.geometry)
+    pub fn displacements_at(&self, prepared: &Prepared, step: usize) -> Option<Vec<NodeDisplacement>> {
+        let (Trace::Contact { numbers, factors, .. }, Geometry::Structure { main, structure, .. }) =
+            (&self.trace, &prepared.geometry)
         else {
             return None;
         };
         let state = self.state_at(prepared, step)?;
-        Some(named(
-            structure,
-            &main.displacements(factors, &dislocation(numbers, &state)),
-        ))
+        Some(named(structure, &main.displacements(factors, &dislocation(numbers, &state))))
     }
 
     /// z and w of a bare LCP after pivot `step`.
@@ -679,9 +586,6 @@ impl Solved {
             return None;
         };
         let point = vertex(lcp, &Basis::after(pivots.get(..=step)?))?;
-        Some(PlainSolution {
-            z: point.z,
-            w: point.w,
-        })
+        Some(PlainSolution { z: point.z, w: point.w })
     }
 }

@@ -50,12 +50,7 @@ impl Kept {
     /// Keeps the dictionary of an answer just found.
     pub fn new(engine: Parametric, contact: ContactLcp, numbers: ContactNumbers) -> Kept {
         let extra = vec![0.0; numbers.friction.len()];
-        Kept {
-            engine,
-            contact,
-            numbers,
-            extra,
-        }
+        Kept { engine, contact, numbers, extra }
     }
 
     /// Refines what is kept from the data, where its answer was not good enough; then [`Kept::follow`] again.
@@ -69,12 +64,7 @@ impl Kept {
     }
 
     /// q per primary row and b per mirrored row for the given numbers, with the friction of the matrix.
-    fn right_side(
-        &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        extra: &[f64],
-    ) -> (Vec<f64>, Vec<f64>) {
+    fn right_side(&self, system: &ContactSystem, numbers: &ContactNumbers, extra: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let load = load_with_gaps(system, numbers);
         let unit = self.contact.force_unit;
         let size = self.contact.lcp.size();
@@ -89,8 +79,7 @@ impl Kept {
                     _ => numbers.cohesion[i],
                 };
                 let constant = (given + extra[i]) / unit;
-                q[row] =
-                    load[joint] / unit + self.contact.friction[i] * (load[i] / unit) + constant;
+                q[row] = load[joint] / unit + self.contact.friction[i] * (load[i] / unit) + constant;
                 constants[row] = 2.0 * constant;
             }
         }
@@ -98,13 +87,7 @@ impl Kept {
     }
 
     /// Follows the answer to other numbers and extra cohesions; `None` where the path does not get there.
-    fn walk(
-        &mut self,
-        system: &ContactSystem,
-        to: &ContactNumbers,
-        extra: &[f64],
-        watch: &dyn Watch,
-    ) -> Option<usize> {
+    fn walk(&mut self, system: &ContactSystem, to: &ContactNumbers, extra: &[f64], watch: &dyn Watch) -> Option<usize> {
         let (from_q, from_b) = self.right_side(system, &self.numbers, &self.extra);
         let (to_q, to_b) = self.right_side(system, to, extra);
         if from_q == to_q && from_b == to_b {
@@ -123,17 +106,9 @@ impl Kept {
         if !self.engine.reload(Arc::new(lcp)) {
             return None;
         }
-        let reach = Reach {
-            target: 1.0,
-            through: false,
-            pivots: PIVOTS,
-        };
+        let reach = Reach { target: 1.0, through: false, pivots: PIVOTS };
         let (end, pivots) = self.engine.walk(reach, &mut |_| {
-            if watch.stop() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         if end != End::Target {
             return None;
@@ -157,34 +132,16 @@ impl Kept {
     /// The answer for other numbers of the same system. `None`: solve cold (friction moved too far, the path turns or
     /// ends before the target, no scheme held, or `watch` asked to stop); what was kept is of no use then. The caller
     /// runs the fresh check on what it makes of the answer.
-    pub fn follow(
-        &mut self,
-        system: &ContactSystem,
-        to: &ContactNumbers,
-        watch: &dyn Watch,
-    ) -> Option<WarmPoint> {
+    pub fn follow(&mut self, system: &ContactSystem, to: &ContactNumbers, watch: &dyn Watch) -> Option<WarmPoint> {
         let length_unit = self.contact.length_unit;
-        let change: Vec<f64> = to
-            .friction
-            .iter()
-            .zip(&self.contact.friction)
-            .map(|(to, from)| to - from)
-            .collect();
-        if change
-            .iter()
-            .zip(&to.friction)
-            .any(|(change, f)| change.abs() > FRICTION_REACH * f)
-        {
+        let change: Vec<f64> = to.friction.iter().zip(&self.contact.friction).map(|(to, from)| to - from).collect();
+        if change.iter().zip(&to.friction).any(|(change, f)| change.abs() > FRICTION_REACH * f) {
             return None;
         }
         if change.iter().all(|change| *change == 0.0) {
             let none = vec![0.0; change.len()];
             let pivots = self.walk(system, to, &none, watch)?;
-            return Some(WarmPoint {
-                point: self.engine.point(),
-                length_unit,
-                pivots,
-            });
+            return Some(WarmPoint { point: self.engine.point(), length_unit, pivots });
         }
         let change_rows = self.per_row(&change, 1.0);
         let mut extra = self.extra.clone();
@@ -194,11 +151,7 @@ impl Kept {
             let unit = self.contact.force_unit;
             let extra_rows = self.per_row(&extra, unit);
             if let Some(point) = self.engine.at_friction(&change_rows, &extra_rows) {
-                return Some(WarmPoint {
-                    point,
-                    length_unit,
-                    pivots,
-                });
+                return Some(WarmPoint { point, length_unit, pivots });
             }
             let point = self.engine.point();
             let next: Vec<f64> = change

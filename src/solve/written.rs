@@ -11,23 +11,12 @@ use crate::model::rules::Covering;
 impl Prepared {
     /// The LCP in the scenario's units (forces w, q; displacements z) and the names of its rows. The covering of a bare
     /// LCP is its own.
-    pub fn written_lcp(
-        &self,
-        values: &ParameterValues,
-        covering: Covering,
-    ) -> (Lcp<f64>, Vec<String>) {
+    pub fn written_lcp(&self, values: &ParameterValues, covering: Covering) -> (Lcp<f64>, Vec<String>) {
         match &self.geometry {
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
                 let numbers = contact_numbers(system, &factors(self, values), values);
-                let lcp = whole_lcp(&WholeInput {
-                    system,
-                    numbers: &numbers,
-                    covering,
-                });
-                let names = rows(system)
-                    .iter()
-                    .map(|row| row.name('x', system))
-                    .collect();
+                let lcp = whole_lcp(&WholeInput { system, numbers: &numbers, covering });
+                let names = rows(system).iter().map(|row| row.name('x', system)).collect();
                 (lcp, names)
             }
             Geometry::Plain { lcp, q, names, .. } => {
@@ -59,18 +48,9 @@ mod tests {
             let text = scenario(&lcp, &names, name).to_string();
             let exported = load_text("exported", &text, None).expect("a scenario");
             let again = prepare(&exported, &Quiet).expect("prepared");
-            let solved = again
-                .solve(
-                    &exported,
-                    &exported.parameter_values(),
-                    exported.rules,
-                    &Quiet,
-                )
-                .expect("solved");
+            let solved = again.solve(&exported, &exported.parameter_values(), exported.rules, &Quiet).expect("solved");
             let z = solved.answer.solution.expect("an lcp has one").z;
-            let direct = prepared
-                .solve(&loaded, &values, loaded.rules, &Quiet)
-                .expect("solved");
+            let direct = prepared.solve(&loaded, &values, loaded.rules, &Quiet).expect("solved");
             let expected: Vec<f64> = match (&direct.answer.solution, prepared.system()) {
                 (Some(solution), _) => solution.z.clone(),
                 (None, system) => rows(system.expect("contact"))
@@ -88,10 +68,7 @@ mod tests {
             let largest = expected.iter().fold(0.0f64, |a, b| a.max(b.abs()));
             assert_eq!(z.len(), expected.len(), "{name}");
             for (found, expected) in z.iter().zip(&expected) {
-                assert!(
-                    (found - expected).abs() <= 1e-9 * largest,
-                    "{name}: {found} {expected}"
-                );
+                assert!((found - expected).abs() <= 1e-9 * largest, "{name}: {found} {expected}");
             }
         }
     }

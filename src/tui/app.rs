@@ -37,14 +37,7 @@ pub enum Pane {
 
 impl Pane {
     /// All panes, in the order of their numbers.
-    pub const ALL: [Pane; 6] = [
-        Pane::Structure,
-        Pane::Parameters,
-        Pane::Pairs,
-        Pane::Pivots,
-        Pane::Plot,
-        Pane::Answer,
-    ];
+    pub const ALL: [Pane; 6] = [Pane::Structure, Pane::Parameters, Pane::Pairs, Pane::Pivots, Pane::Plot, Pane::Answer];
 
     /// Its title.
     pub fn title(self) -> &'static str {
@@ -76,10 +69,7 @@ impl Pane {
 
     /// Its place in [`Pane::ALL`].
     pub fn index(self) -> usize {
-        Pane::ALL
-            .iter()
-            .position(|pane| *pane == self)
-            .unwrap_or_default()
+        Pane::ALL.iter().position(|pane| *pane == self).unwrap_or_default()
     }
 }
 
@@ -119,14 +109,8 @@ pub enum SortKey {
 
 impl SortKey {
     /// In the order in which they follow each other.
-    pub const ALL: [SortKey; 6] = [
-        SortKey::File,
-        SortKey::State,
-        SortKey::Slip,
-        SortKey::Pressure,
-        SortKey::Reserve,
-        SortKey::Gap,
-    ];
+    pub const ALL: [SortKey; 6] =
+        [SortKey::File, SortKey::State, SortKey::Slip, SortKey::Pressure, SortKey::Reserve, SortKey::Gap];
 
     /// In words.
     pub fn word(self) -> &'static str {
@@ -152,10 +136,7 @@ pub struct Viewport {
 
 impl Default for Viewport {
     fn default() -> Self {
-        Viewport {
-            zoom: 1.0,
-            centre: (0.0, 0.0),
-        }
+        Viewport { zoom: 1.0, centre: (0.0, 0.0) }
     }
 }
 
@@ -293,13 +274,7 @@ pub struct State {
 
 impl State {
     /// A screen on this session.
-    pub fn new(
-        shown: Arc<Shown>,
-        look: Look,
-        keys: Arc<Keymap>,
-        size: (u16, u16),
-        home: Leave,
-    ) -> Self {
+    pub fn new(shown: Arc<Shown>, look: Look, keys: Arc<Keymap>, size: (u16, u16), home: Leave) -> Self {
         let mut state = State {
             shown,
             look,
@@ -390,19 +365,13 @@ impl State {
 
     /// The value of a parameter as asked for.
     pub fn value(&self, name: &str) -> f64 {
-        self.wanted
-            .get(name)
-            .or_else(|| self.shown.values.get(name))
-            .copied()
-            .unwrap_or_default()
+        self.wanted.get(name).or_else(|| self.shown.values.get(name)).copied().unwrap_or_default()
     }
 
     /// The pivot shown or asked for.
     pub fn step(&self) -> Option<usize> {
         let last = self.shown.last_step()?;
-        self.wanted_step
-            .or(self.shown.step())
-            .map(|step| step.min(last))
+        self.wanted_step.or(self.shown.step()).map(|step| step.min(last))
     }
 
     /// Indices of the pairs in the chosen order.
@@ -418,11 +387,7 @@ impl State {
             SortKey::Reserve => reserve(pair),
             SortKey::Gap => pair.z_n,
         };
-        order.sort_by(|a, b| {
-            number(&pairs[*a])
-                .total_cmp(&number(&pairs[*b]))
-                .then(a.cmp(b))
-        });
+        order.sort_by(|a, b| number(&pairs[*a]).total_cmp(&number(&pairs[*b])).then(a.cmp(b)));
         if self.descending {
             order.reverse();
         }
@@ -431,9 +396,6 @@ impl State {
 
     /// Something to say until the next key.
     pub fn say(&mut self, role: Role, text: impl Into<String>) {
-        self.message = Some(Message {
-            text: text.into(),
-            role,
-        });
+        self.message = Some(Message { text: text.into(), role });
     }
 }

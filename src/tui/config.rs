@@ -26,22 +26,13 @@ pub struct Config {
 
 impl Default for Config {
     fn default() -> Self {
-        Config {
-            keys: Keymap::default(),
-            mouse: true,
-            explain: true,
-            problems: Vec::new(),
-        }
+        Config { keys: Keymap::default(), mouse: true, explain: true, problems: Vec::new() }
     }
 }
 
 /// Where the configuration stands; `None` where no variable names a folder.
 pub fn path() -> Option<PathBuf> {
-    let absolute = |name: &str| {
-        std::env::var_os(name)
-            .map(PathBuf::from)
-            .filter(|path| path.is_absolute())
-    };
+    let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     absolute("XDG_CONFIG_HOME")
         .or_else(|| absolute("HOME").map(|home| home.join(".config")))
         .map(|folder| folder.join("stickslip/config.json"))
@@ -53,10 +44,7 @@ pub fn load() -> Config {
 }
 
 fn read(path: &Path) -> Config {
-    let problem = |text: String| Config {
-        problems: vec![format!("{}: {text}", path.display())],
-        ..Config::default()
-    };
+    let problem = |text: String| Config { problems: vec![format!("{}: {text}", path.display())], ..Config::default() };
     match fs::read_to_string(path) {
         Ok(text) => {
             let mut config = parse(&text);
@@ -92,14 +80,11 @@ pub fn parse(text: &str) -> Config {
                 for (name, value) in keys {
                     let words = match &value {
                         Value::String(key) => vec![key.clone()],
-                        Value::Array(keys) if keys.iter().all(Value::is_string) => keys
-                            .iter()
-                            .filter_map(|key| key.as_str().map(ToOwned::to_owned))
-                            .collect(),
+                        Value::Array(keys) if keys.iter().all(Value::is_string) => {
+                            keys.iter().filter_map(|key| key.as_str().map(ToOwned::to_owned)).collect()
+                        }
                         _ => {
-                            config
-                                .problems
-                                .push(format!("keys.{name}: expected a key or a list of keys"));
+                            config.problems.push(format!("keys.{name}: expected a key or a list of keys"));
                             continue;
                         }
                     };
@@ -108,15 +93,9 @@ pub fn parse(text: &str) -> Config {
                     }
                 }
             }
-            (key @ ("mouse" | "explain"), _) => config
-                .problems
-                .push(format!("{key}: expected true or false")),
-            ("keys", _) => config
-                .problems
-                .push("keys: expected an object { \"action\": \"key\" }".into()),
-            (key, _) => config
-                .problems
-                .push(format!("{key}: unknown; expected keys, mouse or explain")),
+            (key @ ("mouse" | "explain"), _) => config.problems.push(format!("{key}: expected true or false")),
+            ("keys", _) => config.problems.push("keys: expected an object { \"action\": \"key\" }".into()),
+            (key, _) => config.problems.push(format!("{key}: unknown; expected keys, mouse or explain")),
         }
     }
     config
@@ -133,11 +112,7 @@ mod tests {
         let config = parse(
             r#"{"keys": {"leave": "x", "play": ["ctrl-p"], "fly": "f", "up": 1, "down": "hyper"}, "mouse": false, "m": 1}"#,
         );
-        let find = |key: &str| {
-            config
-                .keys
-                .find(Context::Everywhere, Key::parse(key).unwrap())
-        };
+        let find = |key: &str| config.keys.find(Context::Everywhere, Key::parse(key).unwrap());
         assert_eq!(find("x"), Some(Do::Leave));
         assert_eq!(find("ctrl-p"), Some(Do::Play));
         assert!(!config.mouse);

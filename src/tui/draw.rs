@@ -58,11 +58,7 @@ fn too_small(state: &State, area: Rect, buffer: &mut Buffer) {
         area.width, area.height
     );
     let report = state.look.report(usize::from(area.width).max(1));
-    for (row, line) in report
-        .wrap(&text, usize::from(area.width))
-        .iter()
-        .enumerate()
-    {
+    for (row, line) in report.wrap(&text, usize::from(area.width)).iter().enumerate() {
         if row < usize::from(area.height) {
             buffer.set_stringn(
                 area.x,
@@ -83,22 +79,10 @@ fn draw_title(state: &State, area: Rect, buffer: &mut Buffer) {
     let outcome = look.fit(&outcome, usize::from(area.width).saturating_sub(12));
     let width = outcome.width() as u16;
     let start = area.right().saturating_sub(width);
-    buffer.set_stringn(
-        start,
-        area.y,
-        &outcome,
-        usize::from(width),
-        look.role(role).add_modifier(Modifier::BOLD),
-    );
+    buffer.set_stringn(start, area.y, &outcome, usize::from(width), look.role(role).add_modifier(Modifier::BOLD));
     let room = usize::from(start.saturating_sub(area.x + 2));
     let title = format!("{} · {}", shown.scenario.name, shown.scenario.title);
-    buffer.set_stringn(
-        area.x,
-        area.y,
-        look.fit(&title, room),
-        room,
-        look.role(Role::Title),
-    );
+    buffer.set_stringn(area.x, area.y, look.fit(&title, room), room, look.role(Role::Title));
 }
 
 /// The outcome in a few words, or what is being computed.
@@ -117,9 +101,7 @@ fn outcome(state: &State) -> (String, Role) {
             class_word(ray.class),
             with_unit(
                 &short(ray.p),
-                crate::view::force_unit(&shown.scenario.units)
-                    .filter(|_| !shown.pairs.is_empty())
-                    .as_deref()
+                crate::view::force_unit(&shown.scenario.units).filter(|_| !shown.pairs.is_empty()).as_deref()
             )
         ),
         None => outcome_word(answer.outcome).to_owned(),
@@ -136,49 +118,26 @@ fn outcome(state: &State) -> (String, Role) {
     (text, Role::of_outcome(answer.outcome))
 }
 
-fn draw_pane(
-    state: &State,
-    places: &Places,
-    pane: Pane,
-    area: Rect,
-    shares: bool,
-    buffer: &mut Buffer,
-) {
+fn draw_pane(state: &State, places: &Places, pane: Pane, area: Rect, shares: bool, buffer: &mut Buffer) {
     let look = state.look;
     let focused = pane == state.focus;
-    let mut block = Block::bordered()
-        .border_set(look.border_set(focused))
-        .border_style(look.border(focused));
+    let mut block = Block::bordered().border_set(look.border_set(focused)).border_style(look.border(focused));
     let mut used = 2;
     if !shares {
-        let style = if focused {
-            look.role(Role::Accent)
-        } else {
-            look.role(Role::Title)
-        };
+        let style = if focused { look.role(Role::Accent) } else { look.role(Role::Title) };
         let title = format!(" {} {} ", pane.index() + 1, pane.title());
         used += title.width();
         block = block.title_top(Line::styled(title, style));
     }
-    let tabs = places
-        .tabs
-        .as_ref()
-        .filter(|_| shares)
-        .map(|(area, names)| layout::tab_names(*area, names, pane));
+    let tabs = places.tabs.as_ref().filter(|_| shares).map(|(area, names)| layout::tab_names(*area, names, pane));
     if let Some(tabs) = &tabs {
-        used += tabs
-            .iter()
-            .map(|(_, _, name)| name.len() + 3)
-            .sum::<usize>();
+        used += tabs.iter().map(|(_, _, name)| name.len() + 3).sum::<usize>();
     }
     let note = panes::note(state, pane);
     let inner = usize::from(area.width).saturating_sub(2);
     let explains = state.explains && state.tour.is_none();
     let mut below = if explains {
-        let plain = matches!(
-            state.shown.scenario.source,
-            crate::model::scenario::Source::Lcp(_)
-        );
+        let plain = matches!(state.shown.scenario.source, crate::model::scenario::Source::Lcp(_));
         pane.explanation(plain).to_owned()
     } else {
         String::new()
@@ -198,11 +157,7 @@ fn draw_pane(
     }
     block.render(area, buffer);
     for (x, tab, name) in tabs.into_iter().flatten() {
-        let style = if tab == pane {
-            look.selected()
-        } else {
-            look.role(Role::Muted)
-        };
+        let style = if tab == pane { look.selected() } else { look.role(Role::Muted) };
         let room = usize::from(area.right().saturating_sub(x));
         buffer.set_stringn(x, area.y, format!(" {name} "), room, style);
     }
@@ -223,21 +178,15 @@ fn draw_sentence(state: &State, area: Rect, buffer: &mut Buffer) {
         lines.truncate(rows);
         if let Some(last) = lines.last_mut() {
             let cut = look.fit(last, width.saturating_sub(1));
-            *last = if cut.ends_with(report.ellipsis()) {
-                cut
-            } else {
-                format!("{cut}{}", report.ellipsis())
-            };
+            *last = if cut.ends_with(report.ellipsis()) { cut } else { format!("{cut}{}", report.ellipsis()) };
         }
     }
     for (row, line) in lines.iter().enumerate() {
         let y = area.y + row as u16;
         let cut = if row == 0 { head.min(line.len()) } else { 0 };
         let cut = if line.is_char_boundary(cut) { cut } else { 0 };
-        let spans = vec![
-            Span::styled(line[..cut].to_owned(), look.role(Role::Accent)),
-            Span::raw(line[cut..].to_owned()),
-        ];
+        let spans =
+            vec![Span::styled(line[..cut].to_owned(), look.role(Role::Accent)), Span::raw(line[cut..].to_owned())];
         buffer.set_line(area.x, y, &Line::from(spans), area.width);
     }
 }
@@ -255,13 +204,7 @@ fn draw_about(state: &State, area: Rect, buffer: &mut Buffer) {
     };
     if let Some(text) = text {
         let width = usize::from(area.width);
-        buffer.set_stringn(
-            area.x,
-            area.y,
-            look.fit(&text, width),
-            width,
-            look.role(Role::Muted),
-        );
+        buffer.set_stringn(area.x, area.y, look.fit(&text, width), width, look.role(Role::Muted));
     }
 }
 

@@ -24,11 +24,7 @@ pub struct Entry {
 impl Entry {
     /// A line that begins with this text.
     pub fn with(text: &str) -> Self {
-        Entry {
-            text: text.to_owned(),
-            cursor: text.len(),
-            ..Entry::default()
-        }
+        Entry { text: text.to_owned(), cursor: text.len(), ..Entry::default() }
     }
 
     fn forget_candidates(&mut self) {
@@ -39,19 +35,13 @@ impl Entry {
     /// Types a text; control characters become blanks.
     pub fn insert(&mut self, text: &str) {
         self.forget_candidates();
-        let clean: String = text
-            .chars()
-            .map(|c| if c.is_control() { ' ' } else { c })
-            .collect();
+        let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         self.text.insert_str(self.cursor, &clean);
         self.cursor += clean.len();
     }
 
     fn before(&self) -> Option<usize> {
-        self.text[..self.cursor]
-            .char_indices()
-            .next_back()
-            .map(|(at, _)| at)
+        self.text[..self.cursor].char_indices().next_back().map(|(at, _)| at)
     }
 
     fn after(&self) -> Option<usize> {
@@ -111,11 +101,7 @@ impl Entry {
     pub fn delete_word(&mut self) {
         self.forget_candidates();
         let head = self.text[..self.cursor].trim_end();
-        let start = head
-            .char_indices()
-            .rev()
-            .find(|(_, c)| c.is_whitespace())
-            .map_or(0, |(at, c)| at + c.len_utf8());
+        let start = head.char_indices().rev().find(|(_, c)| c.is_whitespace()).map_or(0, |(at, c)| at + c.len_utf8());
         self.text.replace_range(start..self.cursor, "");
         self.cursor = start;
     }
@@ -135,11 +121,7 @@ impl Entry {
             [] => {}
             [only] => {
                 let folder = only.text.ends_with('/');
-                let text = if folder {
-                    only.text.clone()
-                } else {
-                    format!("{} ", only.text)
-                };
+                let text = if folder { only.text.clone() } else { format!("{} ", only.text) };
                 self.put(&text);
             }
             several => {

@@ -14,10 +14,7 @@ pub struct Frame<W: Write> {
 impl<W: Write> Frame<W> {
     /// A frame that is sent to `to`.
     pub fn new(to: W) -> Self {
-        Frame {
-            to,
-            bytes: Vec::new(),
-        }
+        Frame { to, bytes: Vec::new() }
     }
 }
 
@@ -42,10 +39,7 @@ fn sixteen(bytes: &[u8]) -> Vec<u8> {
     while let Some(start) = rest.windows(2).position(|two| two == b"\x1b[") {
         let (text, code) = rest.split_at(start);
         out.extend_from_slice(text);
-        let end = code
-            .iter()
-            .skip(2)
-            .position(|byte| (0x40..=0x7e).contains(byte));
+        let end = code.iter().skip(2).position(|byte| (0x40..=0x7e).contains(byte));
         let Some(end) = end.map(|at| at + 2) else {
             rest = code;
             break;

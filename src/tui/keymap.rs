@@ -73,14 +73,7 @@ const fn row(
     help: &'static str,
     hint: &'static str,
 ) -> Binding {
-    Binding {
-        context,
-        name,
-        keys,
-        action,
-        help,
-        hint,
-    }
+    Binding { context, name, keys, action, help, hint }
 }
 
 use Context::{Entry, Everywhere, Overlay as Over, Tour};
@@ -231,12 +224,7 @@ impl Key {
             (Some(c), None) => KeyCode::Char(c),
             _ => match NAMED.iter().find(|(name, _, _)| *name == rest) {
                 Some((_, code, _)) => *code,
-                None => KeyCode::F(
-                    rest.strip_prefix('f')?
-                        .parse()
-                        .ok()
-                        .filter(|n| (1..=12).contains(n))?,
-                ),
+                None => KeyCode::F(rest.strip_prefix('f')?.parse().ok().filter(|n| (1..=12).contains(n))?),
             },
         };
         Some(Key { code, control, alt })
@@ -250,11 +238,7 @@ impl Key {
             KeyCode::Char(c) if control => KeyCode::Char(c.to_ascii_lowercase()),
             code => code,
         };
-        Key {
-            code,
-            control,
-            alt: event.modifiers.contains(KeyModifiers::ALT),
-        }
+        Key { code, control, alt: event.modifiers.contains(KeyModifiers::ALT) }
     }
 
     /// As it is shown.
@@ -290,10 +274,7 @@ pub struct Keymap {
 impl Default for Keymap {
     fn default() -> Self {
         Keymap {
-            keys: BINDINGS
-                .iter()
-                .map(|binding| binding.keys.iter().filter_map(|k| Key::parse(k)).collect())
-                .collect(),
+            keys: BINDINGS.iter().map(|binding| binding.keys.iter().filter_map(|k| Key::parse(k)).collect()).collect(),
         }
     }
 }
@@ -305,9 +286,7 @@ impl Keymap {
     /// No such row, or no such key: a sentence for the user.
     pub fn bind(&mut self, name: &str, keys: &[String]) -> Result<(), String> {
         let Some(row) = BINDINGS.iter().position(|binding| binding.name == name) else {
-            return Err(format!(
-                "no action `{name}`: `?` lists the keys, the manual their names"
-            ));
+            return Err(format!("no action `{name}`: `?` lists the keys, the manual their names"));
         };
         let mut parsed = Vec::new();
         for key in keys {
@@ -351,10 +330,7 @@ impl Keymap {
         let mut hints: Vec<(String, &'static str)> = Vec::new();
         for context in contexts {
             for (binding, keys) in BINDINGS.iter().zip(&self.keys) {
-                let (true, Some(key)) = (
-                    binding.context == *context && !binding.hint.is_empty(),
-                    keys.first(),
-                ) else {
+                let (true, Some(key)) = (binding.context == *context && !binding.hint.is_empty(), keys.first()) else {
                     continue;
                 };
                 let label = key.label(ascii);
@@ -403,11 +379,9 @@ pub fn action(state: &State, event: &KeyEvent) -> Option<Action> {
         }
     }
     match key {
-        Key {
-            code: KeyCode::Char(c),
-            control: false,
-            alt: false,
-        } if state.input != Input::None => Some(Action::Type(c)),
+        Key { code: KeyCode::Char(c), control: false, alt: false } if state.input != Input::None => {
+            Some(Action::Type(c))
+        }
         _ => None,
     }
 }
@@ -421,16 +395,10 @@ pub fn manual() -> String {
         if rows.is_empty() {
             continue;
         }
-        text.push_str(&format!(
-            "\n{}\n\n| key | name | what it does |\n| --- | --- | --- |\n",
-            context.title()
-        ));
+        text.push_str(&format!("\n{}\n\n| key | name | what it does |\n| --- | --- | --- |\n", context.title()));
         for (keys, binding) in rows {
             let keys = keys.replace('|', "\\|");
-            text.push_str(&format!(
-                "| {keys} | `{}` | {} |\n",
-                binding.name, binding.help
-            ));
+            text.push_str(&format!("| {keys} | `{}` | {} |\n", binding.name, binding.help));
         }
     }
     text
@@ -450,12 +418,7 @@ mod tests {
             assert!(!binding.help.is_empty() && !binding.keys.is_empty());
             for key in binding.keys {
                 let key = Key::parse(key).unwrap_or_else(|| panic!("{key}"));
-                assert!(
-                    seen.insert((binding.context, key)),
-                    "{} twice in {:?}",
-                    key.label(false),
-                    binding.context
-                );
+                assert!(seen.insert((binding.context, key)), "{} twice in {:?}", key.label(false), binding.context);
             }
             assert!(Context::ALL.contains(&binding.context));
         }

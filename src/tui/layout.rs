@@ -48,8 +48,7 @@ pub fn places(state: &State) -> Option<Places> {
     let about = take(u16::from(roomy));
     let sentence = match (state.tour, roomy) {
         (Some(at), true) => {
-            let lines =
-                tour::lines(state, at, usize::from(width)).map_or(2, |(lines, _)| lines.len());
+            let lines = tour::lines(state, at, usize::from(width)).map_or(2, |(lines, _)| lines.len());
             // at most 6
             take(lines.clamp(2, 6) as u16)
         }
@@ -65,13 +64,7 @@ pub fn places(state: &State) -> Option<Places> {
         (None, _) => take(2),
     };
     let body = Rect::new(0, 1, width, left - 1);
-    let mut places = Places {
-        title: Rect::new(0, 0, width, 1),
-        sentence,
-        about,
-        bottom,
-        ..Places::default()
-    };
+    let mut places = Places { title: Rect::new(0, 0, width, 1), sentence, about, bottom, ..Places::default() };
     if state.maximized || width < SEVERAL.0 || height < SEVERAL.1 {
         places.panes.push((state.focus, body));
         places.tabs = Some((body, Pane::ALL.to_vec()));
@@ -92,10 +85,7 @@ fn parameter_rows(state: &State) -> u16 {
 
 fn cut_rows(area: Rect, rows: u16) -> (Rect, Rect) {
     let rows = rows.min(area.height);
-    (
-        Rect::new(area.x, area.y, area.width, rows),
-        Rect::new(area.x, area.y + rows, area.width, area.height - rows),
-    )
+    (Rect::new(area.x, area.y, area.width, rows), Rect::new(area.x, area.y + rows, area.width, area.height - rows))
 }
 
 fn cut_columns(area: Rect, columns: u16) -> (Rect, Rect) {
@@ -139,9 +129,7 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
     let (parameters, rest) = cut_rows(right, parameter_rows(state).min(right.height / 3));
     let (rest, answer) = cut_rows(rest, rest.height - 9.min(rest.height / 4));
     // the pivots take what they need, at most half; the pairs have more to show
-    let needed = u16::try_from(pivot_rows)
-        .unwrap_or(u16::MAX)
-        .saturating_add(3);
+    let needed = u16::try_from(pivot_rows).unwrap_or(u16::MAX).saturating_add(3);
     let (pivots, pairs) = cut_rows(rest, needed.clamp(6, rest.height / 2));
     places.panes = vec![
         (Pane::Structure, structure),
@@ -156,8 +144,7 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
 /// Whether a structure is so low that it needs few rows.
 fn is_flat(structure: &crate::model::structure::Structure) -> bool {
     let side = |axis: usize| {
-        let (low, high) =
-            crate::view::plot::chart::range(structure.nodes.iter().map(|node| node.position[axis]));
+        let (low, high) = crate::view::plot::chart::range(structure.nodes.iter().map(|node| node.position[axis]));
         high - low
     };
     side(1) < 0.12 * side(0)
@@ -165,21 +152,14 @@ fn is_flat(structure: &crate::model::structure::Structure) -> bool {
 
 /// The pane at a place of the screen.
 pub fn pane_at(places: &Places, x: u16, y: u16) -> Option<(Pane, Rect)> {
-    places
-        .panes
-        .iter()
-        .copied()
-        .find(|(_, area)| area.contains((x, y).into()))
+    places.panes.iter().copied().find(|(_, area)| area.contains((x, y).into()))
 }
 
 /// Names of tabs in a border with the columns they take: (start, pane, name).
 pub fn tab_names(area: Rect, panes: &[Pane], front: Pane) -> Vec<(u16, Pane, String)> {
-    let named: Vec<(Pane, String)> = panes
-        .iter()
-        .map(|pane| (*pane, format!("{} {}", pane.index() + 1, pane.title())))
-        .collect();
-    let length =
-        |names: &[(Pane, String)]| names.iter().map(|(_, n)| n.len() + 3).sum::<usize>() + 2;
+    let named: Vec<(Pane, String)> =
+        panes.iter().map(|pane| (*pane, format!("{} {}", pane.index() + 1, pane.title()))).collect();
+    let length = |names: &[(Pane, String)]| names.iter().map(|(_, n)| n.len() + 3).sum::<usize>() + 2;
     let names = if length(&named) <= usize::from(area.width) {
         named
     } else {
@@ -187,11 +167,7 @@ pub fn tab_names(area: Rect, panes: &[Pane], front: Pane) -> Vec<(u16, Pane, Str
             .iter()
             .map(|pane| {
                 let number = (pane.index() + 1).to_string();
-                let name = if *pane == front {
-                    format!("{number} {}", pane.title())
-                } else {
-                    number
-                };
+                let name = if *pane == front { format!("{number} {}", pane.title()) } else { number };
                 (*pane, name)
             })
             .collect()

@@ -57,24 +57,13 @@ fn help(state: &State) -> Vec<Line<'static>> {
         }
         let mut heading = vec![Span::styled(context.title(), look.role(Role::Title))];
         if let Context::Pane(pane) = context {
-            heading.push(Span::styled(
-                look.text(&format!("  {}", pane.explanation(false))),
-                look.role(Role::Muted),
-            ));
+            heading.push(Span::styled(look.text(&format!("  {}", pane.explanation(false))), look.role(Role::Muted)));
         }
         lines.push(Line::from(heading));
         for (keys, binding) in rows {
             let report = look.report(text_width(state));
-            for (i, text) in report
-                .hanging(&format!("  {:<15}", keys), binding.help)
-                .into_iter()
-                .enumerate()
-            {
-                let cut = text
-                    .char_indices()
-                    .nth(17)
-                    .filter(|_| i == 0)
-                    .map_or(0, |(at, _)| at);
+            for (i, text) in report.hanging(&format!("  {:<15}", keys), binding.help).into_iter().enumerate() {
+                let cut = text.char_indices().nth(17).filter(|_| i == 0).map_or(0, |(at, _)| at);
                 lines.push(Line::from(vec![
                     Span::styled(text[..cut].to_owned(), look.role(Role::Accent)),
                     Span::raw(text[cut..].to_owned()),
@@ -93,9 +82,7 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
         (0, true) => "No working scheme is an answer: there is none.".to_owned(),
         (0, false) => "No answer was found, but not every scheme could be decided.".to_owned(),
         (1, true) => "One answer, and no other.".to_owned(),
-        (n, true) => format!(
-            "{n} answers, and no others: which one the structure takes depends on its history."
-        ),
+        (n, true) => format!("{n} answers, and no others: which one the structure takes depends on its history."),
         (n, false) => format!("{n} answers; not every scheme could be decided."),
     };
     let report = look.report(width);
@@ -106,13 +93,7 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
     let Some(first) = found.answers.first() else {
         return lines;
     };
-    let id = first
-        .pairs
-        .iter()
-        .map(|pair| pair.id.width())
-        .max()
-        .unwrap_or(0)
-        .max(4);
+    let id = first.pairs.iter().map(|pair| pair.id.width()).max().unwrap_or(0).max(4);
     const NUMBER: usize = 11;
     let words = found.answers.iter().flat_map(|answer| &answer.pairs);
     let word = words.map(|pair| state_words(pair).len()).max().unwrap_or(0) + 1;
@@ -138,11 +119,7 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
             }
             head.push(Span::styled(
                 pad_right(&look.fit(&name, block - 1), block),
-                look.role(if answer.shown {
-                    Role::Accent
-                } else {
-                    Role::Header
-                }),
+                look.role(if answer.shown { Role::Accent } else { Role::Header }),
             ));
         }
         lines.push(Line::from(head));
@@ -154,29 +131,15 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
             pad_left(&look.text("z_τ"), NUMBER)
         );
         lines.push(Line::styled(
-            format!(
-                "{} {}",
-                pad_right("pair", id),
-                columns.repeat(answers.len())
-            ),
+            format!("{} {}", pad_right("pair", id), columns.repeat(answers.len())),
             look.role(Role::Muted),
         ));
         for row in 0..first.pairs.len() {
-            let mut spans = vec![Span::raw(format!(
-                "{} ",
-                pad_right(&look.text(&first.pairs[row].id), id)
-            ))];
+            let mut spans = vec![Span::raw(format!("{} ", pad_right(&look.text(&first.pairs[row].id), id)))];
             for answer in answers {
                 let pair: &PairState = &answer.pairs[row];
-                spans.push(Span::styled(
-                    pad_right(state_words(pair), word),
-                    look.role(Role::State(pair.state)),
-                ));
-                let numbers = [
-                    in_column(pair.x_n, forces),
-                    in_column(pair.x_t, forces),
-                    in_column(pair.z_t, lengths),
-                ];
+                spans.push(Span::styled(pad_right(state_words(pair), word), look.role(Role::State(pair.state))));
+                let numbers = [in_column(pair.x_n, forces), in_column(pair.x_t, forces), in_column(pair.z_t, lengths)];
                 let text: String = numbers.iter().map(|n| pad_left(n, NUMBER)).collect();
                 spans.push(Span::raw(format!("{text}  ")));
             }
@@ -199,9 +162,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let widest = lines.iter().map(Line::width).max().unwrap_or(0).max(30);
     // the terminal has at most 65 535 columns and rows
     let width = (widest + 4).min(usize::from(area.width)) as u16;
-    let height = (lines.len() + 2)
-        .min(usize::from(area.height).saturating_sub(2))
-        .max(3) as u16;
+    let height = (lines.len() + 2).min(usize::from(area.height).saturating_sub(2)).max(3) as u16;
     let place = Rect::new(
         area.x + (area.width - width) / 2,
         area.y + (area.height.saturating_sub(1 + height)) / 2,
@@ -211,35 +172,17 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     Clear.render(place, buffer);
     let room = usize::from(place.height).saturating_sub(2);
     let scroll = scroll.min(lines.len().saturating_sub(room));
-    let mut block = Block::bordered()
-        .border_set(look.border_set(true))
-        .border_style(look.border(true))
-        .title_top(Line::styled(
-            format!(
-                " {} ",
-                look.fit(title, usize::from(width).saturating_sub(6))
-            ),
-            look.role(Role::Title),
-        ));
+    let mut block = Block::bordered().border_set(look.border_set(true)).border_style(look.border(true)).title_top(
+        Line::styled(format!(" {} ", look.fit(title, usize::from(width).saturating_sub(6))), look.role(Role::Title)),
+    );
     if lines.len() > room {
         block = block.title_bottom(
-            Line::raw(format!(
-                " {} - {} of {} ",
-                scroll + 1,
-                scroll + room,
-                lines.len()
-            ))
-            .right_aligned(),
+            Line::raw(format!(" {} - {} of {} ", scroll + 1, scroll + room, lines.len())).right_aligned(),
         );
     }
     block.render(place, buffer);
     for (row, line) in lines.iter().skip(scroll).take(room).enumerate() {
-        buffer.set_line(
-            place.x + 2,
-            place.y + 1 + row as u16,
-            line,
-            place.width.saturating_sub(3),
-        );
+        buffer.set_line(place.x + 2, place.y + 1 + row as u16, line, place.width.saturating_sub(3));
     }
 }
 
@@ -276,20 +219,9 @@ pub fn draw_input(state: &State, bottom: Rect, buffer: &mut Buffer) -> Option<(u
         start += entry.text[start..].chars().next().map_or(1, char::len_utf8);
     }
     let end = bottom.right();
-    let (x, _) = buffer.set_stringn(
-        bottom.x,
-        bottom.y,
-        &prompt,
-        usize::from(bottom.width),
-        look.role(Role::Accent),
-    );
-    let (after, _) = buffer.set_stringn(
-        x,
-        bottom.y,
-        &entry.text[start..],
-        usize::from(end.saturating_sub(x)),
-        Style::new(),
-    );
+    let (x, _) = buffer.set_stringn(bottom.x, bottom.y, &prompt, usize::from(bottom.width), look.role(Role::Accent));
+    let (after, _) =
+        buffer.set_stringn(x, bottom.y, &entry.text[start..], usize::from(end.saturating_sub(x)), Style::new());
     if entry.cursor == entry.text.len() {
         buffer.set_stringn(
             after,
@@ -312,9 +244,7 @@ fn draw_candidates(state: &State, entry: &super::entry::Entry, bottom: Rect, buf
     let look = state.look;
     let most = usize::from(bottom.y).saturating_sub(3).clamp(1, 10);
     let chosen = entry.chosen.unwrap_or(0);
-    let first = chosen
-        .saturating_sub(most / 2)
-        .min(entry.offered.len().saturating_sub(most));
+    let first = chosen.saturating_sub(most / 2).min(entry.offered.len().saturating_sub(most));
     let shown: Vec<_> = entry.offered.iter().skip(first).take(most).collect();
     let name = shown.iter().map(|c| c.text.width()).max().unwrap_or(0);
     let width = bottom.width;
@@ -326,11 +256,7 @@ fn draw_candidates(state: &State, entry: &super::entry::Entry, bottom: Rect, buf
         if entry.chosen == Some(first + i) {
             style = style.patch(look.selected());
         }
-        let text = format!(
-            " {}  {} ",
-            pad_right(&look.text(&candidate.text), name),
-            look.text(&candidate.about)
-        );
+        let text = format!(" {}  {} ", pad_right(&look.text(&candidate.text), name), look.text(&candidate.about));
         buffer.set_stringn(
             place.x,
             place.y + i as u16,

@@ -60,23 +60,14 @@ enum Incoming {
 /// There is no terminal, or it fails; the session is lost then.
 pub fn run(session: Session, style: Style, start: Start) -> io::Result<(Session, Ended)> {
     let config = config::load();
-    let look = Look {
-        color: style.color,
-        ascii: style.ascii,
-    };
+    let look = Look { color: style.color, ascii: style.ascii };
     let (signals, _handlers) = Signals::install()?;
     let (sender, incoming) = mpsc::channel();
     let shown = Arc::new(Shown::of(&session));
     let screen = Screen::take(config.mouse)?;
     // crossterm looks at NO_COLOR itself; whether there is colour was decided before
     crossterm::style::force_color_output(true);
-    let mut state = State::new(
-        shown,
-        look,
-        Arc::new(config.keys),
-        screen.size()?,
-        start.home,
-    );
+    let mut state = State::new(shown, look, Arc::new(config.keys), screen.size()?, start.home);
     state.mouse = config.mouse;
     state.explains = config.explain;
     if let Some(problem) = config.problems.first() {
@@ -85,27 +76,13 @@ pub fn run(session: Session, style: Style, start: Start) -> io::Result<(Session,
     let results = Mutex::new(sender.clone());
     let worker = Worker::start(session, move |action| {
         // after the end nobody listens
-        let _ = results
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .send(Incoming::Action(action));
+        let _ = results.lock().unwrap_or_else(PoisonError::into_inner).send(Incoming::Action(action));
     })?;
     let reader = Reader::start(sender.clone(), signals.clone())?;
     reader.watch_signals(sender, signals)?;
-    let mut loop_ = Loop {
-        state,
-        screen,
-        worker,
-        reader,
-        incoming,
-    };
+    let mut loop_ = Loop { state, screen, worker, reader, incoming };
     let ended = loop_.run(start.tour);
-    let Loop {
-        screen,
-        worker,
-        reader,
-        ..
-    } = loop_;
+    let Loop { screen, worker, reader, .. } = loop_;
     reader.end();
     drop(screen);
     let session = worker.end()?;
@@ -139,10 +116,7 @@ impl Reader {
                     continue;
                 }
                 let found = {
-                    let _reading = theirs
-                        .reading
-                        .lock()
-                        .unwrap_or_else(PoisonError::into_inner);
+                    let _reading = theirs.reading.lock().unwrap_or_else(PoisonError::into_inner);
                     match event::poll(LOOK) {
                         Ok(true) => Some(event::read()),
                         Ok(false) => None,
@@ -187,9 +161,7 @@ impl Reader {
                 thread::sleep(LOOK);
             }
         };
-        thread::Builder::new()
-            .name("signals".to_owned())
-            .spawn(look)?;
+        thread::Builder::new().name("signals".to_owned()).spawn(look)?;
         Ok(())
     }
 
@@ -228,10 +200,7 @@ impl Loop {
         let mut last_tick = Instant::now();
         loop {
             let first = match self.state.tick() {
-                None => self
-                    .incoming
-                    .recv()
-                    .map_err(|_| RecvTimeoutError::Disconnected),
+                None => self.incoming.recv().map_err(|_| RecvTimeoutError::Disconnected),
                 Some(tick) => {
                     let due = (last_tick + tick).saturating_duration_since(Instant::now());
                     self.incoming.recv_timeout(due)
@@ -352,8 +321,5 @@ impl Loop {
 
 /// Ended by a signal.
 fn end(status: u8) -> Ended {
-    Ended {
-        leave: Leave::Quit,
-        status,
-    }
+    Ended { leave: Leave::Quit, status }
 }

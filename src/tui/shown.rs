@@ -103,16 +103,13 @@ impl Shown {
 
     /// Whether the answer was followed from the last one and has no pivots yet.
     pub fn is_warm(&self) -> bool {
-        self.answer()
-            .is_some_and(|answer| answer.start != Start::Cold)
+        self.answer().is_some_and(|answer| answer.start != Start::Cold)
     }
 
     /// Whether the answer before is worth showing beside the present one.
     pub fn has_before(&self) -> bool {
         self.position.is_none()
-            && self
-                .before()
-                .is_some_and(|before| before.is_answer() && before.pairs.len() == self.pairs.len())
+            && self.before().is_some_and(|before| before.is_answer() && before.pairs.len() == self.pairs.len())
             && self.answer().is_some_and(Answer::is_answer)
     }
 }

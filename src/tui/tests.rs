@@ -34,17 +34,9 @@ struct Rig {
 impl Rig {
     fn new(scenario: &str, width: u16, height: u16) -> Rig {
         let session = Session::new(embedded::load(scenario).unwrap(), &Quiet).unwrap();
-        let look = Look {
-            color: true,
-            ascii: false,
-        };
-        let state = State::new(
-            Arc::new(Shown::of(&session)),
-            look,
-            Arc::new(Keymap::default()),
-            (width, height),
-            Leave::Quit,
-        );
+        let look = Look { color: true, ascii: false };
+        let state =
+            State::new(Arc::new(Shown::of(&session)), look, Arc::new(Keymap::default()), (width, height), Leave::Quit);
         Rig { session, state }
     }
 
@@ -93,9 +85,7 @@ impl Rig {
     fn buffer(&self) -> Buffer {
         let (width, height) = self.state.size;
         let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-        terminal
-            .draw(|frame| draw::draw(&self.state, frame))
-            .unwrap();
+        terminal.draw(|frame| draw::draw(&self.state, frame)).unwrap();
         terminal.backend().buffer().clone()
     }
 
@@ -127,10 +117,7 @@ fn event(key: &str) -> KeyEvent {
         "space" => (KeyCode::Char(' '), KeyModifiers::NONE),
         "ctrl-c" => (KeyCode::Char('c'), KeyModifiers::CONTROL),
         "ctrl-z" => (KeyCode::Char('z'), KeyModifiers::CONTROL),
-        one => (
-            KeyCode::Char(one.chars().next().unwrap()),
-            KeyModifiers::NONE,
-        ),
+        one => (KeyCode::Char(one.chars().next().unwrap()), KeyModifiers::NONE),
     };
     KeyEvent::new(code, modifiers)
 }
@@ -153,13 +140,10 @@ fn masked(text: &str) -> String {
         let words: Vec<String> = line
             .split(' ')
             .map(|word| {
-                let noise = word
-                    .split_once("e-1")
-                    .is_some_and(|(_, rest)| rest.starts_with(|c: char| c.is_ascii_digit()));
+                let noise =
+                    word.split_once("e-1").is_some_and(|(_, rest)| rest.starts_with(|c: char| c.is_ascii_digit()));
                 if noise {
-                    word.chars()
-                        .map(|c| if "0123456789.-e".contains(c) { '#' } else { c })
-                        .collect()
+                    word.chars().map(|c| if "0123456789.-e".contains(c) { '#' } else { c }).collect()
                 } else {
                     word.to_owned()
                 }
@@ -211,16 +195,7 @@ macro_rules! snapshot {
 
 #[test]
 fn first_screens() {
-    for scenario in [
-        "beam",
-        "beam-ray",
-        "plates-free",
-        "frame-rotated",
-        "greco",
-        "murty6",
-        "klarbring",
-        "gap",
-    ] {
+    for scenario in ["beam", "beam-ray", "plates-free", "frame-rotated", "greco", "murty6", "klarbring", "gap"] {
         for (width, height) in [(80, 24), (140, 45)] {
             let rig = Rig::new(scenario, width, height);
             insta::assert_snapshot!(format!("{scenario}-{width}x{height}"), rig.screen());
@@ -301,12 +276,7 @@ fn small_and_plain_terminals() {
     rig.state.look = Look::default();
     rig.press(&["1"]);
     let buffer = rig.buffer();
-    assert!(
-        buffer
-            .content
-            .iter()
-            .all(|cell| cell.fg == ratatui::style::Color::Reset)
-    );
+    assert!(buffer.content.iter().all(|cell| cell.fg == ratatui::style::Color::Reset));
     rig.state.look.ascii = true;
     snapshot!("plates-free-ascii", rig);
     for key in ["2", "3", "4", "5", "6", "?"] {
@@ -387,20 +357,13 @@ fn a_typed_value_understands_what_set_understands() {
     rig.act(Action::Paste("-1".into()));
     rig.press(&["enter"]);
     assert_eq!(rig.state.value("f"), 3.0);
-    assert!(
-        rig.screen().contains("must not be negative"),
-        "{}",
-        rig.screen()
-    );
+    assert!(rig.screen().contains("must not be negative"), "{}", rig.screen());
 }
 
 #[test]
 fn a_newer_value_stops_the_older_solve() {
     let mut rig = Rig::new("beam", 80, 24);
-    let set = |value: f64| Job::Set {
-        name: "f".into(),
-        value,
-    };
+    let set = |value: f64| Job::Set { name: "f".into(), value };
     let more = || Action::Do(Do::Vary(10));
     assert_eq!(update(&mut rig.state, more()), [Effect::Run(set(0.55))]);
     assert_eq!(update(&mut rig.state, more()), [Effect::Stop]);
@@ -423,13 +386,7 @@ fn a_newer_value_stops_the_older_solve() {
     assert_eq!(rig.state.value("f"), 0.65);
     let done = rig.perform(set(0.65));
     let effects = update(&mut rig.state, Action::Done(Box::new(done)));
-    assert_eq!(
-        effects,
-        [Effect::Run(Job::Set {
-            name: "F2".into(),
-            value: 260.0
-        })]
-    );
+    assert_eq!(effects, [Effect::Run(Job::Set { name: "F2".into(), value: 260.0 })]);
     assert_eq!(rig.state.shown.values["f"], 0.65);
     assert_eq!(rig.state.value("F2"), 260.0);
 }
@@ -438,22 +395,12 @@ fn a_newer_value_stops_the_older_solve() {
 fn progress_is_shown_and_can_be_stopped() {
     let mut rig = Rig::new("beam", 80, 24);
     update(&mut rig.state, Action::Do(Do::Vary(10)));
-    let progress = || Action::Progress {
-        what: "Lemke, pivot 64".into(),
-        fraction: 0.42,
-    };
+    let progress = || Action::Progress { what: "Lemke, pivot 64".into(), fraction: 0.42 };
     update(&mut rig.state, progress());
-    assert!(
-        rig.screen().contains("Lemke, pivot 64 42 %"),
-        "{}",
-        rig.screen()
-    );
+    assert!(rig.screen().contains("Lemke, pivot 64 42 %"), "{}", rig.screen());
     assert_eq!(update(&mut rig.state, Action::Do(Do::Stop)), [Effect::Stop]);
     let mut stopped = rig.perform(Job::Step(0));
-    stopped.job = Job::Set {
-        name: "f".into(),
-        value: 0.55,
-    };
+    stopped.job = Job::Set { name: "f".into(), value: 0.55 };
     stopped.error = Some("interrupted".into());
     stopped.interrupted = true;
     update(&mut rig.state, Action::Done(Box::new(stopped)));
@@ -467,14 +414,7 @@ fn progress_is_shown_and_can_be_stopped() {
 #[test]
 fn stepping_moves_every_pane() {
     let mut rig = Rig::new("beam", 140, 45);
-    let slipping = |rig: &Rig| {
-        rig.state
-            .shown
-            .pairs
-            .iter()
-            .filter(|pair| pair.state == PairMotion::SlipPlus)
-            .count()
-    };
+    let slipping = |rig: &Rig| rig.state.shown.pairs.iter().filter(|pair| pair.state == PairMotion::SlipPlus).count();
     assert_eq!(slipping(&rig), 4);
     rig.press(&["home"]);
     assert_eq!((rig.state.step(), slipping(&rig)), (Some(0), 0));
@@ -533,10 +473,7 @@ fn the_mode_moves_only_at_a_ray() {
     assert!(rig.state.shown.at_ray());
     let mode = rig.state.shown.mode.clone().unwrap();
     // the beam slides as a whole
-    assert!(
-        mode.iter()
-            .all(|u| (u.ux - 1.0).abs() < 1e-9 && u.uy.abs() < 1e-9)
-    );
+    assert!(mode.iter().all(|u| (u.ux - 1.0).abs() < 1e-9 && u.uy.abs() < 1e-9));
     rig.press(&["m"]);
     assert!(rig.state.tick().is_some());
     let first = rig.screen();
@@ -586,9 +523,7 @@ fn auto_off_leaves_the_panes_empty_and_alive() {
     rig.press(&["+"]);
     assert!(rig.state.shown.solved.is_none());
     assert!(rig.screen().contains("not solved yet"));
-    rig.press(&[
-        "left", "space", "m", "a", "3", "down", "5", "p", "6", "down",
-    ]);
+    rig.press(&["left", "space", "m", "a", "3", "down", "5", "p", "6", "down"]);
     rig.screen();
     rig.press(&["esc"]);
     rig.command("solve");
@@ -603,27 +538,13 @@ fn all_answers_stand_side_by_side() {
         panic!("no answers");
     };
     assert!(answers.complete);
-    let mut states: Vec<_> = answers
-        .answers
-        .iter()
-        .map(|a| a.pairs[0].state.word())
-        .collect();
+    let mut states: Vec<_> = answers.answers.iter().map(|a| a.pairs[0].state.word()).collect();
     states.sort_unstable();
     assert_eq!(states, ["open", "slip+", "stick"]);
-    assert_eq!(
-        answers.answers.iter().filter(|answer| answer.shown).count(),
-        1
-    );
+    assert_eq!(answers.answers.iter().filter(|answer| answer.shown).count(), 1);
     let mut rig = Rig::new("greco", 80, 24);
     rig.press(&["a"]);
-    assert!(
-        rig.state
-            .message
-            .as_ref()
-            .unwrap()
-            .text
-            .contains("at most 10")
-    );
+    assert!(rig.state.message.as_ref().unwrap().text.contains("at most 10"));
 }
 
 #[test]

@@ -18,11 +18,7 @@ pub struct Look {
 impl Look {
     /// The look of a report that is `width` characters wide.
     pub fn report(&self, width: usize) -> style::Style {
-        style::Style {
-            width,
-            color: self.color,
-            ascii: self.ascii,
-        }
+        style::Style { width, color: self.color, ascii: self.ascii }
     }
 
     /// Text in the characters allowed here.
@@ -38,16 +34,9 @@ impl Look {
 
     /// The style of a role.
     pub fn role(&self, role: Role) -> Style {
-        let painted = style::Style {
-            color: true,
-            ..self.report(80)
-        }
-        .paint(role, "x");
-        let mut style = self
-            .lines(&painted)
-            .first()
-            .and_then(|line| line.spans.first().map(|span| span.style))
-            .unwrap_or_default();
+        let painted = style::Style { color: true, ..self.report(80) }.paint(role, "x");
+        let mut style =
+            self.lines(&painted).first().and_then(|line| line.spans.first().map(|span| span.style)).unwrap_or_default();
         if !self.color {
             style.fg = None;
         }
@@ -169,19 +158,13 @@ mod tests {
 
     #[test]
     fn painted_reports_become_spans() {
-        let look = Look {
-            color: true,
-            ascii: false,
-        };
+        let look = Look { color: true, ascii: false };
         let lines = look.lines("a \u{1b}[1;31mbad\u{1b}[0m\u{7} z\nnext");
         assert_eq!(lines.len(), 2);
         let first = &lines[0];
         assert_eq!(first.spans.len(), 3);
         assert_eq!(first.spans[1].content, "bad");
-        assert_eq!(
-            first.spans[1].style,
-            Style::new().fg(Color::Red).add_modifier(Modifier::BOLD)
-        );
+        assert_eq!(first.spans[1].style, Style::new().fg(Color::Red).add_modifier(Modifier::BOLD));
         assert_eq!(first.spans[2].content, " z");
         assert!(look.lines("\u{1b}[").len() == 1 && look.lines("\u{1b}").len() == 1);
     }

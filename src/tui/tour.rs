@@ -70,11 +70,7 @@ pub fn lines(state: &State, at: usize, width: usize) -> Option<(Vec<String>, usi
     let step = STEPS.get(at)?;
     let look = state.look;
     let keys = state.keys.rows(Context::Tour, look.ascii);
-    let key = |name: &str| {
-        keys.iter()
-            .find(|(_, binding)| binding.name == name)
-            .map_or("", |(keys, _)| keys)
-    };
+    let key = |name: &str| keys.iter().find(|(_, binding)| binding.name == name).map_or("", |(keys, _)| keys);
     let head = format!(
         "Tour {} of {} ({} on, {} back, {} ends):",
         at + 1,
@@ -84,8 +80,6 @@ pub fn lines(state: &State, at: usize, width: usize) -> Option<(Vec<String>, usi
         key("tour-end")
     );
     let head = look.text(&head);
-    let lines = look
-        .report(width)
-        .wrap(&format!("{head} {}", step.text), width);
+    let lines = look.report(width).wrap(&format!("{head} {}", step.text), width);
     Some((lines, head.len()))
 }

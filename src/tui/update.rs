@@ -92,10 +92,7 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::TypeValue => match state.selected_parameter() {
             Some((name, _)) => {
                 let name = name.to_owned();
-                state.input = Input::Value {
-                    name,
-                    entry: Entry::default(),
-                };
+                state.input = Input::Value { name, entry: Entry::default() };
             }
             None => state.say(Role::Warning, "this scenario has no parameters"),
         },
@@ -114,9 +111,7 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::Mode => {
             if !state.shown.at_ray() {
                 let why = match state.shown.answer() {
-                    Some(answer) if answer.ray.is_some() => {
-                        "the mode belongs to the ray: go to the end of the pivots"
-                    }
+                    Some(answer) if answer.ray.is_some() => "the mode belongs to the ray: go to the end of the pivots",
                     _ => "no ray here: there is an answer, and no mode of collapse",
                 };
                 state.say(Role::Warning, why);
@@ -137,11 +132,7 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::Suspend => return vec![Effect::Suspend],
         Do::Mouse => {
             state.mouse = !state.mouse;
-            let text = if state.mouse {
-                "the mouse works in the panes"
-            } else {
-                "the mouse belongs to the terminal"
-            };
+            let text = if state.mouse { "the mouse works in the panes" } else { "the mouse belongs to the terminal" };
             state.say(Role::Plain, text);
             return vec![Effect::Mouse(state.mouse)];
         }
@@ -161,10 +152,7 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
             let at = SortKey::ALL.iter().position(|key| *key == state.sort);
             let next = at.map_or(0, |at| (at + 1) % SortKey::ALL.len());
             state.sort = SortKey::ALL[next];
-            state.descending = !matches!(
-                state.sort,
-                SortKey::File | SortKey::State | SortKey::Reserve
-            );
+            state.descending = !matches!(state.sort, SortKey::File | SortKey::State | SortKey::Reserve);
         }
         Do::SortReverse => state.descending = !state.descending,
         Do::TourNext => return tour_by(state, 1),
@@ -230,9 +218,7 @@ fn zoom(state: &mut State, by: f64) {
 }
 
 fn deform(state: &mut State, by: f64) {
-    let now = state
-        .magnification
-        .unwrap_or_else(|| panes::structure::automatic(state));
+    let now = state.magnification.unwrap_or_else(|| panes::structure::automatic(state));
     let new = now * by;
     if new.is_finite() && new > 0.0 {
         state.magnification = Some(new);
@@ -242,10 +228,7 @@ fn deform(state: &mut State, by: f64) {
 fn turn_plot(state: &mut State, by: isize) {
     let plots = state.plots();
     let count = plots.len() as isize;
-    let at = plots
-        .iter()
-        .position(|plot| *plot == state.plot)
-        .unwrap_or_default() as isize;
+    let at = plots.iter().position(|plot| *plot == state.plot).unwrap_or_default() as isize;
     state.plot = plots[(at + by).rem_euclid(count) as usize];
     state.tab = Pane::Plot;
 }
@@ -255,9 +238,7 @@ fn select(state: &mut State, by: isize) -> Vec<Effect> {
     let limit = overlay::last_line(state);
     match &mut state.overlay {
         Overlay::None => {}
-        Overlay::Help { scroll }
-        | Overlay::Output { scroll, .. }
-        | Overlay::Answers { scroll, .. } => {
+        Overlay::Help { scroll } | Overlay::Output { scroll, .. } | Overlay::Answers { scroll, .. } => {
             *scroll = scroll.saturating_add_signed(by).min(limit);
             return Vec::new();
         }
@@ -289,9 +270,9 @@ fn scroll_to(state: &mut State, line: usize) {
     let limit = overlay::last_line(state);
     match &mut state.overlay {
         Overlay::None => {}
-        Overlay::Help { scroll }
-        | Overlay::Output { scroll, .. }
-        | Overlay::Answers { scroll, .. } => *scroll = line.min(limit),
+        Overlay::Help { scroll } | Overlay::Output { scroll, .. } | Overlay::Answers { scroll, .. } => {
+            *scroll = line.min(limit)
+        }
     }
 }
 
@@ -355,11 +336,7 @@ fn stop(state: &mut State) -> Vec<Effect> {
     state.moving = false;
     state.waiting.clear();
     state.wanted_step = None;
-    if state.running.is_some() {
-        vec![Effect::Stop]
-    } else {
-        Vec::new()
-    }
+    if state.running.is_some() { vec![Effect::Stop] } else { Vec::new() }
 }
 
 fn vary_by(state: &mut State, tenths: i8) -> Vec<Effect> {
@@ -399,8 +376,7 @@ fn order(state: &mut State, job: Job) -> Vec<Effect> {
     match &job {
         Job::Set { name, .. } => {
             state.waiting.retain(|waiting| {
-                !matches!(waiting, Job::Set { name: other, .. } if other == name)
-                    && !matches!(waiting, Job::Step(_))
+                !matches!(waiting, Job::Set { name: other, .. } if other == name) && !matches!(waiting, Job::Step(_))
             });
             state.wanted_step = None;
             let older = match running {
@@ -412,9 +388,7 @@ fn order(state: &mut State, job: Job) -> Vec<Effect> {
                 effects.push(Effect::Stop);
             }
         }
-        Job::Step(_) => state
-            .waiting
-            .retain(|waiting| !matches!(waiting, Job::Step(_))),
+        Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
         Job::Answers | Job::Line { .. } | Job::Pivots => {}
     }
     state.waiting.push_back(job);
@@ -464,10 +438,7 @@ fn tour_by(state: &mut State, by: isize) -> Vec<Effect> {
     let next = at.saturating_add_signed(by);
     if next >= tour::STEPS.len() {
         state.tour = None;
-        state.say(
-            Role::Good,
-            "the tour is over: vary f, F, F2, or `:load` another scenario (`:scenarios`)",
-        );
+        state.say(Role::Good, "the tour is over: vary f, F, F2, or `:load` another scenario (`:scenarios`)");
         return Vec::new();
     }
     begin_tour(state, next)
@@ -543,26 +514,16 @@ fn finish(state: &mut State, done: Done) -> Vec<Effect> {
 /// Brings the selections and what was asked for in line with what is shown.
 fn settle(state: &mut State, job: &Job) {
     let waits = |name: &str, state: &State| {
-        state
-            .waiting
-            .iter()
-            .any(|job| matches!(job, Job::Set { name: other, .. } if other == name))
+        state.waiting.iter().any(|job| matches!(job, Job::Set { name: other, .. } if other == name))
     };
-    let kept: Vec<String> = state
-        .wanted
-        .keys()
-        .filter(|name| waits(name, state))
-        .cloned()
-        .collect();
+    let kept: Vec<String> = state.wanted.keys().filter(|name| waits(name, state)).cloned().collect();
     state.wanted.retain(|name, _| kept.contains(name));
     if !state.waiting.iter().any(|job| matches!(job, Job::Step(_))) {
         state.wanted_step = None;
     }
     let count = state.shown.pairs.len();
     state.pair = state.pair.min(count.saturating_sub(1));
-    state.parameter = state
-        .parameter
-        .min(state.shown.values.len().saturating_sub(1));
+    state.parameter = state.parameter.min(state.shown.values.len().saturating_sub(1));
     if let (Some(at), Job::Line { shows: false, .. }) = (state.tour, job)
         && let Some(step) = tour::STEPS.get(at)
     {
@@ -598,21 +559,13 @@ fn show_output(state: &mut State, job: &Job, output: &str) {
                     state.say(Role::Plain, text);
                 }
                 _ => {
-                    state.overlay = Overlay::Output {
-                        title: text.clone(),
-                        lines,
-                        scroll: 0,
-                    };
+                    state.overlay = Overlay::Output { title: text.clone(), lines, scroll: 0 };
                 }
             }
         }
         Job::Pivots => {
             if let Some(line) = state.look.lines(output).first() {
-                let text: String = line
-                    .spans
-                    .iter()
-                    .map(|span| span.content.as_ref())
-                    .collect();
+                let text: String = line.spans.iter().map(|span| span.content.as_ref()).collect();
                 state.say(Role::Warning, text);
             }
         }
@@ -620,11 +573,7 @@ fn show_output(state: &mut State, job: &Job, output: &str) {
             // `undone: …`, or that a value lies outside its range; the last line says what the screen shows anyway
             let lines = state.look.lines(output);
             if lines.len() > 1 && state.tour.is_none() {
-                let text: String = lines[0]
-                    .spans
-                    .iter()
-                    .map(|span| span.content.as_ref())
-                    .collect();
+                let text: String = lines[0].spans.iter().map(|span| span.content.as_ref()).collect();
                 state.say(Role::Plain, text);
             }
         }
@@ -654,19 +603,11 @@ fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
         .lines()
         .flat_map(|line| {
             let wrapped = report.wrap(line, report.width);
-            if wrapped.is_empty() {
-                vec![String::new()]
-            } else {
-                wrapped
-            }
+            if wrapped.is_empty() { vec![String::new()] } else { wrapped }
         })
         .map(|line| ratatui::text::Line::styled(line, style))
         .collect();
-    state.overlay = Overlay::Output {
-        title,
-        lines,
-        scroll: 0,
-    };
+    state.overlay = Overlay::Output { title, lines, scroll: 0 };
 }
 
 fn by_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
@@ -682,10 +623,7 @@ fn by_mouse(state: &mut State, mouse: Mouse) -> Vec<Effect> {
             press(state, &places, x, y)
         }
         Mouse::Drag(x, _) => {
-            let area = places
-                .panes
-                .iter()
-                .find(|(pane, _)| *pane == Pane::Parameters);
+            let area = places.panes.iter().find(|(pane, _)| *pane == Pane::Parameters);
             match (state.held, area) {
                 (Some(parameter), Some((_, area))) => slide(state, parameter, *area, x),
                 _ => Vec::new(),

@@ -25,24 +25,10 @@ pub fn perform(session: &mut Session, job: Job, style: Style, watch: &dyn Watch)
     let mut output = Vec::new();
     let mut answers = None;
     let result = match &job {
-        Job::Set { name, value } => run(
-            session,
-            &format!("set {name} {value}"),
-            &mut output,
-            style,
-            watch,
-        ),
-        Job::Step(step) => run(
-            session,
-            &format!("step to {step}"),
-            &mut output,
-            style,
-            watch,
-        ),
+        Job::Set { name, value } => run(session, &format!("set {name} {value}"), &mut output, style, watch),
+        Job::Step(step) => run(session, &format!("step to {step}"), &mut output, style, watch),
         Job::Line { text, .. } => run(session, text, &mut output, style, watch),
-        Job::Pivots => session
-            .ensure_pivots(&mut Output::text(&mut output, style, watch))
-            .map(|()| Next::Continue),
+        Job::Pivots => session.ensure_pivots(&mut Output::text(&mut output, style, watch)).map(|()| Next::Continue),
         Job::Answers => session.all_answers(watch).map(|found| {
             answers = Some(found);
             Next::Continue
@@ -92,25 +78,15 @@ impl Worker {
     ///
     /// # Errors
     /// The system has no thread; the session is lost then, which ends the program.
-    pub fn start(
-        mut session: Session,
-        send: impl Fn(Action) + Send + Sync + 'static,
-    ) -> io::Result<Worker> {
+    pub fn start(mut session: Session, send: impl Fn(Action) + Send + Sync + 'static) -> io::Result<Worker> {
         let (orders, incoming) = mpsc::channel::<Order>();
         let stopped = Arc::new(AtomicU64::new(0));
         let asked = Arc::clone(&stopped);
         let work = move || {
             while let Ok((number, job, style)) = incoming.recv() {
-                let watch = Desk {
-                    number,
-                    stopped: &asked,
-                    send: &send,
-                    since: Mutex::new((Instant::now(), None)),
-                };
+                let watch = Desk { number, stopped: &asked, send: &send, since: Mutex::new((Instant::now(), None)) };
                 let kept = job.clone();
-                let done = catch_unwind(AssertUnwindSafe(|| {
-                    perform(&mut session, job, style, &watch)
-                }));
+                let done = catch_unwind(AssertUnwindSafe(|| perform(&mut session, job, style, &watch)));
                 let done = done.unwrap_or_else(|_| Done {
                     job: kept,
                     shown: Arc::new(Shown::of(&session)),
@@ -124,15 +100,8 @@ impl Worker {
             }
             session
         };
-        let thread = thread::Builder::new()
-            .name("session".to_owned())
-            .spawn(work)?;
-        Ok(Worker {
-            orders,
-            thread,
-            given: 0,
-            stopped,
-        })
+        let thread = thread::Builder::new().name("session".to_owned()).spawn(work)?;
+        Ok(Worker { orders, thread, given: 0, stopped })
     }
 
     /// Gives a job.
@@ -154,9 +123,7 @@ impl Worker {
     pub fn end(self) -> io::Result<Session> {
         self.stop();
         drop(self.orders);
-        self.thread.join().map_err(|_| {
-            io::Error::other("the thread of the session ended by an error of this program")
-        })
+        self.thread.join().map_err(|_| io::Error::other("the thread of the session ended by an error of this program"))
     }
 }
 
@@ -177,10 +144,7 @@ impl Watch for Desk<'_> {
             return;
         }
         since.1 = Some(Instant::now());
-        (self.send)(Action::Progress {
-            what: what.to_owned(),
-            fraction,
-        });
+        (self.send)(Action::Progress { what: what.to_owned(), fraction });
     }
 
     fn stop(&self) -> bool {

@@ -21,11 +21,7 @@ pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<
         Column::words("meaning").droppable(1),
     ]);
     let mut push = |name: &str, value: f64, meaning: &str| {
-        table.rows.push(Row::new(vec![
-            Cell::from(name),
-            Cell::from(residual(value)),
-            Cell::new(meaning, Role::Muted),
-        ]));
+        table.rows.push(Row::new(vec![Cell::from(name), Cell::from(residual(value)), Cell::new(meaning, Role::Muted)]));
     };
     push("min w", check.min_w, "smallest contact force or reserve");
     push("min z", check.min_z, "smallest opening or slip");
@@ -34,10 +30,6 @@ pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<
         push("equilibrium", equilibrium, "residual of K u = F + Bᵀλ");
     }
     table.write(out, style)?;
-    let (word, role) = if check.passed {
-        ("passed", Role::Good)
-    } else {
-        ("FAILED", Role::Bad)
-    };
+    let (word, role) = if check.passed { ("passed", Role::Good) } else { ("FAILED", Role::Bad) };
     writeln!(out, "{}", style.paint(role, word))
 }

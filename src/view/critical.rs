@@ -27,9 +27,10 @@ pub fn scheme_words(ids: &[&str], scheme: &[PairScheme]) -> String {
 
 /// The finding in a sentence.
 pub fn sentence(parameter: &str, found: &CriticalFriction, ids: &[&str]) -> String {
-    let scheme = found.scheme.as_ref().map_or(String::new(), |scheme| {
-        format!(" (working scheme {})", scheme_words(ids, scheme))
-    });
+    let scheme = found
+        .scheme
+        .as_ref()
+        .map_or(String::new(), |scheme| format!(" (working scheme {})", scheme_words(ids, scheme)));
     match (found.value, found.coverage) {
         (Some(value), Coverage::Exact) => format!(
             "{parameter} up to {}: one answer for every load; above it, more than one is possible{scheme}",
@@ -43,13 +44,11 @@ pub fn sentence(parameter: &str, found: &CriticalFriction, ids: &[&str]) -> Stri
         (None, Coverage::Exact) if found.singular == 0 => {
             format!("one answer for every load, whatever {parameter}")
         }
-        (None, Coverage::Exact) => format!(
-            "no working scheme loses its uniqueness at any {parameter}; nothing is said of the singular ones"
-        ),
+        (None, Coverage::Exact) => {
+            format!("no working scheme loses its uniqueness at any {parameter}; nothing is said of the singular ones")
+        }
         (None, Coverage::Sampled { count, seed }) => {
-            format!(
-                "no counter-example found in {count} blocks drawn with seed {seed}: nothing is proved"
-            )
+            format!("no counter-example found in {count} blocks drawn with seed {seed}: nothing is proved")
         }
     }
 }
@@ -57,11 +56,7 @@ pub fn sentence(parameter: &str, found: &CriticalFriction, ids: &[&str]) -> Stri
 /// Ten significant digits without trailing zeros.
 fn precise(value: f64) -> String {
     let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(value);
-    if (1e-4..1e6).contains(&rounded.abs()) {
-        format!("{rounded}")
-    } else {
-        short(value)
-    }
+    if (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { short(value) }
 }
 
 /// Writes the finding and how it was found.
@@ -73,10 +68,7 @@ pub fn write(
     style: &Style,
 ) -> io::Result<()> {
     let singular = if found.singular > 0 {
-        format!(
-            "; {} of them singular without friction already (parts held by contact only)",
-            found.singular
-        )
+        format!("; {} of them singular without friction already (parts held by contact only)", found.singular)
     } else {
         String::new()
     };

@@ -22,33 +22,20 @@ pub struct Change {
 
 /// The pairs of `now` whose state differs from the one they had in `previous`.
 pub fn changes(previous: &Answer, now: &Answer) -> Vec<Change> {
-    let before: std::collections::HashMap<&str, &'static str> = previous
-        .pairs
-        .iter()
-        .map(|pair| (pair.id.as_str(), state_words(pair)))
-        .collect();
+    let before: std::collections::HashMap<&str, &'static str> =
+        previous.pairs.iter().map(|pair| (pair.id.as_str(), state_words(pair))).collect();
     now.pairs
         .iter()
         .filter_map(|pair| {
             let from = *before.get(pair.id.as_str())?;
             let to = state_words(pair);
-            (from != to).then(|| Change {
-                pair: pair.id.clone(),
-                from,
-                to,
-                state: pair.state,
-            })
+            (from != to).then(|| Change { pair: pair.id.clone(), from, to, state: pair.state })
         })
         .collect()
 }
 
 /// Writes a line per changed pair: `c3 stick → slip+`; first the outcome, if that changed.
-pub fn write(
-    out: &mut dyn Write,
-    previous: &Answer,
-    now: &Answer,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, previous: &Answer, now: &Answer, style: &Style) -> io::Result<()> {
     let mut lines = Vec::new();
     if previous.outcome != now.outcome {
         lines.push((

@@ -8,17 +8,8 @@ use crate::contact::exact_check::{ExactSign, Finding};
 use crate::solve::all_answers::Exactly;
 
 fn signs(signs: &[ExactSign]) -> String {
-    let words: Vec<String> = signs
-        .iter()
-        .map(|sign| {
-            format!(
-                "{}[{}] = {}",
-                sign.quantity.name(),
-                sign.id,
-                short(sign.value)
-            )
-        })
-        .collect();
+    let words: Vec<String> =
+        signs.iter().map(|sign| format!("{}[{}] = {}", sign.quantity.name(), sign.id, short(sign.value))).collect();
     words.join(", ")
 }
 
@@ -32,10 +23,8 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
                     check.released, check.signs
                 )];
                 if !zeros.is_empty() {
-                    let ids: Vec<String> = zeros
-                        .iter()
-                        .map(|sign| format!("{}[{}]", sign.quantity.name(), sign.id))
-                        .collect();
+                    let ids: Vec<String> =
+                        zeros.iter().map(|sign| format!("{}[{}]", sign.quantity.name(), sign.id)).collect();
                     lines.push(format!("exactly on a limit: {}", ids.join(", ")));
                 }
                 (Role::Good, lines)
@@ -57,15 +46,10 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
                 )],
             ),
             Finding::Interrupted => (Role::Warning, vec!["interrupted".to_owned()]),
-            Finding::Failed => (
-                Role::Warning,
-                vec!["not decided: the exact solver gave up".to_owned()],
-            ),
+            Finding::Failed => (Role::Warning, vec!["not decided: the exact solver gave up".to_owned()]),
         },
         Exactly::Plain(check) => {
-            let name = |letter: char, row: usize| {
-                format!("{letter}[{}]", names.get(row).map_or("?", String::as_str))
-            };
+            let name = |letter: char, row: usize| format!("{letter}[{}]", names.get(row).map_or("?", String::as_str));
             if !check.unique {
                 return (
                     Role::Warning,
@@ -75,8 +59,7 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
             if check.violations.is_empty() {
                 let mut lines = vec!["proved: the basis solved in exact arithmetic, all signs hold".to_owned()];
                 if !check.zeros.is_empty() {
-                    let zeros: Vec<String> =
-                        check.zeros.iter().map(|(letter, row)| name(*letter, *row)).collect();
+                    let zeros: Vec<String> = check.zeros.iter().map(|(letter, row)| name(*letter, *row)).collect();
                     lines.push(format!("exactly zero: {}", zeros.join(", ")));
                 }
                 return (Role::Good, lines);
@@ -86,21 +69,13 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
                 .iter()
                 .map(|(letter, row, value)| format!("{} = {}", name(*letter, *row), short(*value)))
                 .collect();
-            (
-                Role::Bad,
-                vec![format!("refuted in exact arithmetic: {}", bad.join(", "))],
-            )
+            (Role::Bad, vec![format!("refuted in exact arithmetic: {}", bad.join(", "))])
         }
     }
 }
 
 /// Writes the finding.
-pub fn write(
-    out: &mut dyn Write,
-    check: &Exactly,
-    names: &[String],
-    style: &Style,
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, check: &Exactly, names: &[String], style: &Style) -> io::Result<()> {
     let (role, lines) = sentences(check, names);
     for text in lines {
         for line in style.wrap(&style.text(&text), style.width) {

@@ -18,10 +18,7 @@ pub fn write(
     units: &Units,
     style: &Style,
 ) -> io::Result<()> {
-    let chosen: Vec<&MemberForces> = members
-        .iter()
-        .filter(|member| bar.is_none_or(|bar| member.bar == bar))
-        .collect();
+    let chosen: Vec<&MemberForces> = members.iter().filter(|member| bar.is_none_or(|bar| member.bar == bar)).collect();
     if chosen.is_empty() {
         let text = match bar {
             Some(bar) => format!("no bar {bar}"),
@@ -46,11 +43,7 @@ pub fn write(
             let first = word == "start";
             table.rows.push(Row::new(vec![
                 Cell::from(if first { member.bar.as_str() } else { "" }),
-                Cell::from(if first {
-                    member.element.to_string()
-                } else {
-                    String::new()
-                }),
+                Cell::from(if first { member.element.to_string() } else { String::new() }),
                 Cell::new(word, Role::Muted),
                 Cell::from(in_column(end.n, forces)),
                 Cell::from(in_column(end.q, forces)),

@@ -20,11 +20,8 @@ pub fn short(value: f64) -> String {
                 Some((mantissa, exponent)) => (mantissa, Some(exponent)),
                 None => (text.as_str(), None),
             };
-            let mantissa = if mantissa.contains('.') {
-                mantissa.trim_end_matches('0').trim_end_matches('.')
-            } else {
-                mantissa
-            };
+            let mantissa =
+                if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
             match exponent {
                 Some(exponent) => format!("{mantissa}e{exponent}"),
                 None => mantissa.to_owned(),
@@ -63,19 +60,12 @@ pub fn with_unit(number: &str, unit: Option<&str>) -> String {
 
 /// Largest finite |value|: the scale against which a column's noise is judged.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values
-        .into_iter()
-        .filter(|value| value.is_finite())
-        .fold(0.0, |largest, value| f64::max(largest, value.abs()))
+    values.into_iter().filter(|value| value.is_finite()).fold(0.0, |largest, value| f64::max(largest, value.abs()))
 }
 
 /// `value`, or 0 if it is only noise beside `scale`.
 pub fn denoised(value: f64, scale: f64) -> f64 {
-    if value.abs() <= NOISE * scale {
-        0.0
-    } else {
-        value
-    }
+    if value.abs() <= NOISE * scale { 0.0 } else { value }
 }
 
 /// A number of a table whose quantity has the largest value `scale`: noise is `0`, and all numbers not much smaller
@@ -106,11 +96,7 @@ fn digits(value: f64, plain: std::ops::RangeInclusive<i32>) -> Option<String> {
 
 /// The power of ten that is written behind a number with this exponent: none, or a multiple of three.
 fn power(exponent: i32, plain: std::ops::RangeInclusive<i32>) -> i32 {
-    if plain.contains(&exponent) {
-        0
-    } else {
-        exponent.div_euclid(3) * 3
-    }
+    if plain.contains(&exponent) { 0 } else { exponent.div_euclid(3) * 3 }
 }
 
 /// Five figures and the exponent of the first one.

@@ -21,12 +21,7 @@ pub fn state_words(pair: &PairState) -> &'static str {
 }
 
 /// Writes state, forces, displacements, bound and reserves of every pair given.
-pub fn write(
-    out: &mut dyn Write,
-    pairs: &[PairState],
-    units: &Units,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, pairs: &[PairState], units: &Units, style: &Style) -> io::Result<()> {
     if pairs.is_empty() {
         return writeln!(out, "{}", style.fit("no contact pairs", style.width));
     }

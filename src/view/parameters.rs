@@ -9,26 +9,15 @@ use crate::model::parameter::{Parameter, ParameterValues};
 use crate::model::scenario::Scenario;
 
 /// Writes name, present value, unit, range and meaning; a value that differs from the file says what the file has.
-pub fn write(
-    out: &mut dyn Write,
-    scenario: &Scenario,
-    values: &ParameterValues,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, scenario: &Scenario, values: &ParameterValues, style: &Style) -> io::Result<()> {
     if scenario.parameters.is_empty() {
         return writeln!(out, "{}", style.fit("no parameters", style.width));
     }
     let changed = |name: &str, parameter: &Parameter| {
-        values
-            .get(name)
-            .is_some_and(|value| value.to_bits() != parameter.value.to_bits())
+        values.get(name).is_some_and(|value| value.to_bits() != parameter.value.to_bits())
     };
     let any = scenario.parameters.iter().any(|(n, p)| changed(n, p));
-    let mut table = Table::new(vec![
-        Column::words("name"),
-        Column::numbers("value", None),
-        Column::words("unit"),
-    ]);
+    let mut table = Table::new(vec![Column::words("name"), Column::numbers("value", None), Column::words("unit")]);
     if any {
         table.columns.push(Column::words("in the file"));
     }
@@ -37,22 +26,14 @@ pub fn write(
     for (name, parameter) in &scenario.parameters {
         let value = values.get(name).copied().unwrap_or(parameter.value);
         let is_changed = changed(name, parameter);
-        let role = if is_changed {
-            Role::Accent
-        } else {
-            Role::Plain
-        };
+        let role = if is_changed { Role::Accent } else { Role::Plain };
         let mut cells = vec![
             Cell::from(name.as_str()),
             Cell::new(in_full(value), role),
             Cell::new(parameter.unit.clone().unwrap_or_default(), Role::Muted),
         ];
         if any {
-            let file = if is_changed {
-                format!("was {}", in_full(parameter.value))
-            } else {
-                String::new()
-            };
+            let file = if is_changed { format!("was {}", in_full(parameter.value)) } else { String::new() };
             cells.push(Cell::new(file, Role::Accent));
         }
         cells.push(Cell::new(range(parameter), Role::Muted));

@@ -24,11 +24,7 @@ pub fn exact(value: f64) -> String {
     // Between 0 and 14 by the range above.
     let decimals = (9.0 - exponent) as usize;
     let text = format!("{value:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 fn max_slip(pairs: &[PairState]) -> f64 {
@@ -66,16 +62,10 @@ fn breakpoints(
 }
 
 /// Writes the breakpoints of a load path and how it ended.
-pub fn write_load(
-    out: &mut dyn Write,
-    path: &LoadPath,
-    units: &Units,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &Style) -> io::Result<()> {
     let name = &path.parameter.name;
     if path.from_zero {
-        let text =
-            format!("there is no answer at the present load: the path starts from {name} = 0");
+        let text = format!("there is no answer at the present load: the path starts from {name} = 0");
         sentences(out, &text, Role::Muted, style)?;
     }
     if path.breakpoints.is_empty() {
@@ -104,21 +94,12 @@ pub fn write_load(
 }
 
 /// Writes the breakpoints of a friction path, its intervals and how it ended.
-pub fn write_friction(
-    out: &mut dyn Write,
-    path: &FrictionPath,
-    units: &Units,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write_friction(out: &mut dyn Write, path: &FrictionPath, units: &Units, style: &Style) -> io::Result<()> {
     if path.breakpoints.is_empty()
         && let Some(only) = path.intervals.first()
     {
-        let text = format!(
-            "one scheme from {} = {} to {}: nothing changes",
-            path.name,
-            exact(only.from),
-            exact(only.to)
-        );
+        let text =
+            format!("one scheme from {} = {} to {}: nothing changes", path.name, exact(only.from), exact(only.to));
         sentences(out, &text, Role::Plain, style)?;
     } else {
         let rows: Vec<_> = path
@@ -130,16 +111,9 @@ pub fn write_friction(
                 } else {
                     ""
                 };
-                let slip = path
-                    .samples
-                    .iter()
-                    .find(|(value, _)| *value == breakpoint.value)
-                    .map(|(_, pairs)| max_slip(pairs));
-                (
-                    breakpoint.value,
-                    format!("{}{jump}", breakpoint.sentence),
-                    slip,
-                )
+                let slip =
+                    path.samples.iter().find(|(value, _)| *value == breakpoint.value).map(|(_, pairs)| max_slip(pairs));
+                (breakpoint.value, format!("{}{jump}", breakpoint.sentence), slip)
             })
             .collect();
         breakpoints(out, &path.name, &rows, units, style)?;
@@ -152,29 +126,17 @@ pub fn write_friction(
 }
 
 /// Writes the limit load, the safety and the collapse.
-pub fn write_limit(
-    out: &mut dyn Write,
-    limit: &Limit,
-    unit: Option<&str>,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style: &Style) -> io::Result<()> {
     let name = &limit.path.parameter.name;
     let Some(factor) = limit.factor else {
         let text = format!("no limit was found: {}", limit.path.end_sentence());
         return sentences(out, &text, Role::Plain, style);
     };
     let safety = match limit.safety {
-        Some(safety) => format!(
-            ", {} times the present {}",
-            exact(safety),
-            with_unit(&short(limit.present), unit)
-        ),
+        Some(safety) => format!(", {} times the present {}", exact(safety), with_unit(&short(limit.present), unit)),
         None => format!(" (present {})", with_unit(&short(limit.present), unit)),
     };
-    let text = format!(
-        "limit load: {name} = {}{safety}",
-        with_unit(&exact(factor), unit)
-    );
+    let text = format!("limit load: {name} = {}{safety}", with_unit(&exact(factor), unit));
     sentences(out, &text, Role::Title, style)?;
     if let Some(collapse) = &limit.collapse {
         let class = match collapse.class {
@@ -189,12 +151,7 @@ pub fn write_limit(
             Some(Verdict::Undecided) => ", undecided",
             None => "",
         };
-        sentences(
-            out,
-            &format!("collapse ({class}{verdict}): {}", collapse.mode),
-            Role::Warning,
-            style,
-        )?;
+        sentences(out, &format!("collapse ({class}{verdict}): {}", collapse.mode), Role::Warning, style)?;
     }
     let confirmed = if limit.confirmed {
         "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001"

@@ -32,23 +32,14 @@ pub fn write(
     units: &Units,
     style: &Style,
 ) -> io::Result<()> {
-    let chosen: Vec<&PivotRecord> = pivots
-        .iter()
-        .filter(|pivot| {
-            range
-                .as_ref()
-                .is_none_or(|range| range.contains(&pivot.step))
-        })
-        .collect();
+    let chosen: Vec<&PivotRecord> =
+        pivots.iter().filter(|pivot| range.as_ref().is_none_or(|range| range.contains(&pivot.step))).collect();
     if chosen.is_empty() {
         let text = match (pivots.last(), &range) {
             (None, _) => "no pivots: the main system is the answer".to_owned(),
-            (Some(last), Some(range)) => format!(
-                "no pivots in {}..{}: there are 0..{}",
-                range.start(),
-                range.end(),
-                last.step
-            ),
+            (Some(last), Some(range)) => {
+                format!("no pivots in {}..{}: there are 0..{}", range.start(), range.end(), last.step)
+            }
             (Some(_), None) => String::new(),
         };
         return writeln!(out, "{}", style.fit(&text, style.width));
@@ -65,11 +56,7 @@ pub fn write(
     if ties {
         table.columns.push(Column::words("ties").droppable(1));
     }
-    let longest = chosen
-        .iter()
-        .map(|pivot| pivot.sentence.width())
-        .max()
-        .unwrap_or(0);
+    let longest = chosen.iter().map(|pivot| pivot.sentence.width()).max().unwrap_or(0);
     let on_the_row = longest > 0 && longest + 50 <= style.width;
     if on_the_row {
         table.columns.push(Column::words("what happens"));
@@ -83,11 +70,7 @@ pub fn write(
         ]);
         if ties {
             let count = pivot.ties.len();
-            let text = if count > 1 {
-                format!("{count} tied")
-            } else {
-                String::new()
-            };
+            let text = if count > 1 { format!("{count} tied") } else { String::new() };
             row.cells.push(Cell::new(text, Role::Warning));
         }
         if on_the_row {

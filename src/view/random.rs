@@ -32,13 +32,7 @@ fn name() -> impl Strategy<Value = String> {
 }
 
 fn state() -> impl Strategy<Value = State> {
-    prop::sample::select(vec![
-        State::Open,
-        State::Stick,
-        State::SlipPlus,
-        State::SlipMinus,
-        State::Closed,
-    ])
+    prop::sample::select(vec![State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Closed])
 }
 
 fn pair() -> impl Strategy<Value = PairState> {
@@ -66,25 +60,13 @@ fn pair() -> impl Strategy<Value = PairState> {
 
 fn pivot() -> impl Strategy<Value = PivotRecord> {
     let ties = prop::collection::vec(name(), 0..4);
-    (0..2000usize, name(), name(), number(), ties, name()).prop_map(
-        |(step, entering, leaving, p, ties, sentence)| PivotRecord {
-            step,
-            entering,
-            leaving,
-            p,
-            ties,
-            turned: None,
-            sentence,
-        },
-    )
+    (0..2000usize, name(), name(), number(), ties, name()).prop_map(|(step, entering, leaving, p, ties, sentence)| {
+        PivotRecord { step, entering, leaving, p, ties, turned: None, sentence }
+    })
 }
 
 fn style() -> impl Strategy<Value = Style> {
-    (16..140usize, any::<bool>()).prop_map(|(width, ascii)| Style {
-        width,
-        color: false,
-        ascii,
-    })
+    (16..140usize, any::<bool>()).prop_map(|(width, ascii)| Style { width, color: false, ascii })
 }
 
 fn outcome() -> impl Strategy<Value = OutcomeKind> {
@@ -104,12 +86,7 @@ fn narrow(style: &Style, report: impl FnOnce(&mut Vec<u8>) -> std::io::Result<()
     report(&mut out).expect("a vector takes everything");
     let text = String::from_utf8(out).expect("UTF-8");
     for line in text.lines() {
-        assert!(
-            line.width() <= style.width,
-            "{} > {}: {line}\nin\n{text}",
-            line.width(),
-            style.width
-        );
+        assert!(line.width() <= style.width, "{} > {}: {line}\nin\n{text}", line.width(), style.width);
         assert!(!line.contains('\x1b'), "an escape of the input: {line:?}");
         assert!(!style.ascii || line.is_ascii(), "not ASCII: {line}");
         assert!(!line.contains("NaN") && !line.contains("inf"), "{line}");

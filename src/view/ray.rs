@@ -17,9 +17,7 @@ pub fn class_meaning(class: RayClass) -> &'static str {
     match class {
         RayClass::Mechanism => "the loads do work on a motion that costs no energy",
         RayClass::Artefact => "z+ and z- of a pair grow together; says nothing about the structure",
-        RayClass::Fault => {
-            "the structure stands without its contacts: an answer exists, the run failed"
-        }
+        RayClass::Fault => "the structure stands without its contacts: an answer exists, the run failed",
         RayClass::NoEquilibrium => "the run found no equilibrium",
     }
 }
@@ -43,14 +41,8 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
     let head = style.fit(&format!("ray: {}", class_word(ray.class)), style.width);
     writeln!(out, "{}", style.paint(role, &head))?;
     let verdict = match ray.verdict {
-        Some(verdict) => format!(
-            "{}: {}",
-            verdict_word(verdict),
-            verdict_meaning(ray.verdict)
-        ),
-        None if matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium) => {
-            verdict_meaning(None).into()
-        }
+        Some(verdict) => format!("{}: {}", verdict_word(verdict), verdict_meaning(ray.verdict)),
+        None if matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium) => verdict_meaning(None).into(),
         // An artefact or a fault claims nothing about the structure.
         None => String::new(),
     };
@@ -71,11 +63,7 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         }
     }
     let moves = |value: f64| denoised(value, 1.0) != 0.0;
-    let moving: Vec<_> = ray
-        .direction
-        .iter()
-        .filter(|d| moves(d.z_n) || moves(d.z_t))
-        .collect();
+    let moving: Vec<_> = ray.direction.iter().filter(|d| moves(d.z_n) || moves(d.z_t)).collect();
     if moving.is_empty() {
         return Ok(());
     }
@@ -111,12 +99,7 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
 }
 
 /// Writes the work of each load case on the mode and the motion that certifies it.
-pub fn write_details(
-    out: &mut dyn Write,
-    report: &RayReport,
-    system: &ContactSystem,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write_details(out: &mut dyn Write, report: &RayReport, system: &ContactSystem, style: &Style) -> io::Result<()> {
     if !report.powers.is_empty() && report.class == RayClass::Mechanism {
         writeln!(out)?;
         let mut table = Table::new(vec![
@@ -143,12 +126,9 @@ pub fn write_details(
     if let Some(certificate) = &report.certificate {
         writeln!(out)?;
         let words = match &report.certificate_mode {
-            Some(mode) if !mode.parts.is_empty() => mode
-                .parts
-                .iter()
-                .map(crate::explain::mode::PartMotion::words)
-                .collect::<Vec<_>>()
-                .join("; "),
+            Some(mode) if !mode.parts.is_empty() => {
+                mode.parts.iter().map(crate::explain::mode::PartMotion::words).collect::<Vec<_>>().join("; ")
+            }
             _ => crate::explain::mode::pair_words(system, &certificate.direction).join("; "),
         };
         let text = format!(

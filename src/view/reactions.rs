@@ -11,39 +11,23 @@ use crate::model::scenario::Units;
 
 /// Writes the forces of the supports on the structure, and their sum. Forces of contact with the ground are not
 /// among them: they stand under the pairs.
-pub fn write(
-    out: &mut dyn Write,
-    reactions: &[Reaction],
-    units: &Units,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, reactions: &[Reaction], units: &Units, style: &Style) -> io::Result<()> {
     if reactions.is_empty() {
         return writeln!(out, "{}", style.fit("no supports", style.width));
     }
     let force = force_unit(units);
     let moments = reactions.iter().any(|reaction| reaction.m != 0.0);
-    let mut table = Table::new(vec![
-        Column::words("node"),
-        Column::numbers("F_x", force.clone()),
-        Column::numbers("F_y", force),
-    ]);
+    let mut table =
+        Table::new(vec![Column::words("node"), Column::numbers("F_x", force.clone()), Column::numbers("F_y", force)]);
     if moments {
-        table
-            .columns
-            .push(Column::numbers("M", moment_unit(units)).droppable(1));
+        table.columns.push(Column::numbers("M", moment_unit(units)).droppable(1));
     }
     let forces = largest(reactions.iter().flat_map(|r| [r.fx, r.fy]));
     let largest_moment = largest(reactions.iter().map(|r| r.m));
     let mut push = |name: &str, fx: f64, fy: f64, m: Option<f64>| {
-        let mut cells = vec![
-            Cell::from(name),
-            Cell::from(in_column(fx, forces)),
-            Cell::from(in_column(fy, forces)),
-        ];
+        let mut cells = vec![Cell::from(name), Cell::from(in_column(fx, forces)), Cell::from(in_column(fy, forces))];
         if moments {
-            cells.push(Cell::from(
-                m.map_or_else(String::new, |m| in_column(m, largest_moment)),
-            ));
+            cells.push(Cell::from(m.map_or_else(String::new, |m| in_column(m, largest_moment))));
         }
         table.rows.push(Row::new(cells));
     };

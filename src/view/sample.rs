@@ -11,10 +11,7 @@ use crate::model::structure::*;
 
 /// Metres and kilonewtons.
 pub fn units() -> Units {
-    Units {
-        length: Some("m".into()),
-        force: Some("kN".into()),
-    }
+    Units { length: Some("m".into()), force: Some("kN".into()) }
 }
 
 /// Supports of the beam.
@@ -34,11 +31,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
     for i in 0..SUPPORTS {
         let j = (SUPPORTS - i) as f64;
         let slips = j <= n;
-        let z_t = if slips {
-            FLEXIBILITY * ((n - j + 1.0) * rho + r * (n - j) * (n - j + 1.0) / 2.0)
-        } else {
-            0.0
-        };
+        let z_t = if slips { FLEXIBILITY * ((n - j + 1.0) * rho + r * (n - j) * (n - j + 1.0) / 2.0) } else { 0.0 };
         let x_t = match j - n {
             k if k <= 0.0 => -r,
             1.0 => -rho,
@@ -68,9 +61,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         p: (pull - r) / (1.0 + friction),
         ties: vec!["x+[c6]".into()],
         turned: None,
-        sentence:
-            "p enters: at p = 53.846 no reserve is negative; pair c6 has used up its reserve x⁺"
-                .into(),
+        sentence: "p enters: at p = 53.846 no reserve is negative; pair c6 has used up its reserve x⁺".into(),
     }];
     for k in 1..=slipping {
         let (now, next) = (SUPPORTS + 1 - k, SUPPORTS - k);
@@ -78,17 +69,9 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         pivots.push(PivotRecord {
             step: k,
             entering: format!("z+[c{now}]"),
-            leaving: if last {
-                "p".into()
-            } else {
-                format!("x+[c{next}]")
-            },
+            leaving: if last { "p".into() } else { format!("x+[c{next}]") },
             p: if last { 0.0 } else { p(k + 1) },
-            ties: if last {
-                vec!["p".into(), format!("x+[c{next}]")]
-            } else {
-                vec![format!("x+[c{next}]")]
-            },
+            ties: if last { vec!["p".into(), format!("x+[c{next}]")] } else { vec![format!("x+[c{next}]")] },
             turned: Some(Turned {
                 pair: format!("c{now}"),
                 joint: TurnedJoint::Tangential,
@@ -98,9 +81,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             sentence: if last {
                 format!("pair c{now} slips +; p falls to 0: this is the answer")
             } else {
-                format!(
-                    "pair c{now} slips +; p falls, until pair c{next} uses up its reserve x⁺ (friction bound)"
-                )
+                format!("pair c{now} slips +; p falls, until pair c{next} uses up its reserve x⁺ (friction bound)")
             },
         });
     }
@@ -119,23 +100,12 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             outcome: OutcomeKind::Normal,
         }],
         pivots,
-        check: Check {
-            min_w: 0.0,
-            min_z: 0.0,
-            complementarity: 3.1e-17,
-            equilibrium: Some(2.2e-16),
-            passed: true,
-        },
+        check: Check { min_w: 0.0, min_z: 0.0, complementarity: 3.1e-17, equilibrium: Some(2.2e-16), passed: true },
         displacements: Some(
             pairs
                 .iter()
                 .zip(["A", "B", "C", "D", "E", "F"])
-                .map(|(pair, node)| NodeDisplacement {
-                    node: node.into(),
-                    ux: pair.z_t,
-                    uy: -1e-21,
-                    rz: -0.0,
-                })
+                .map(|(pair, node)| NodeDisplacement { node: node.into(), ux: pair.z_t, uy: -1e-21, rz: -0.0 })
                 .collect(),
         ),
         members: Some(
@@ -143,23 +113,13 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
                 .map(|element| {
                     let n: f64 = pull + pairs[element + 1..].iter().map(|p| p.x_t).sum::<f64>();
                     let end = EndForces { n, q: 0.0, m: 0.0 };
-                    MemberForces {
-                        bar: "AF".into(),
-                        element,
-                        start: end,
-                        end,
-                    }
+                    MemberForces { bar: "AF".into(), element, start: end, end }
                 })
                 .collect(),
         ),
         reactions: Some(Vec::new()),
         solution: None,
-        size: Size {
-            unknowns: Some(18),
-            free: Some(18),
-            pairs: SUPPORTS,
-            lcp: 3 * SUPPORTS,
-        },
+        size: Size { unknowns: Some(18), free: Some(18), pairs: SUPPORTS, lcp: 3 * SUPPORTS },
         pairs,
         timings: Timings::default(),
         start: crate::answer::record::Start::Cold,
@@ -177,18 +137,11 @@ pub fn beam_ray() -> Answer {
         class: RayClass::Mechanism,
         verdict: Some(Verdict::Certified),
         p: 10.0 / 3.0,
-        direction: (1..=SUPPORTS)
-            .map(|i| PairDirection {
-                pair: format!("c{i}"),
-                z_n: 0.0,
-                z_t: 1.0,
-            })
-            .collect(),
+        direction: (1..=SUPPORTS).map(|i| PairDirection { pair: format!("c{i}"), z_n: 0.0, z_t: 1.0 }).collect(),
         mode: "the whole structure slides towards +t on all six pairs".into(),
-        explanation:
-            "the loads pull with 20 kN more than friction can hold; more weight, more friction \
+        explanation: "the loads pull with 20 kN more than friction can hold; more weight, more friction \
                       or a smaller F2 would stop it"
-                .into(),
+            .into(),
     });
     answer.displacements = None;
     answer.members = None;
@@ -200,31 +153,17 @@ pub fn beam_ray() -> Answer {
 pub fn beam_structure() -> Structure {
     let names = ["A", "B", "C", "D", "E", "F"];
     Structure {
-        nodes: (0..SUPPORTS)
-            .map(|i| Node {
-                id: names[i].into(),
-                position: [i as f64, 0.0],
-            })
-            .collect(),
+        nodes: (0..SUPPORTS).map(|i| Node { id: names[i].into(), position: [i as f64, 0.0] }).collect(),
         materials: vec![steel()],
         elements: (0..SUPPORTS - 1)
             .map(|i| Element {
                 nodes: vec![i, i + 1],
                 material: 0,
-                kind: ElementKind::Frame {
-                    area: 0.01,
-                    inertia: 1e-4,
-                    hinges: [false; 2],
-                },
+                kind: ElementKind::Frame { area: 0.01, inertia: 1e-4, hinges: [false; 2] },
             })
             .collect(),
-        bars: vec![Bar {
-            id: "AF".into(),
-            elements: 0..SUPPORTS - 1,
-        }],
-        pairs: (0..SUPPORTS)
-            .map(|i| ground_pair(&format!("c{}", i + 1), i))
-            .collect(),
+        bars: vec![Bar { id: "AF".into(), elements: 0..SUPPORTS - 1 }],
+        pairs: (0..SUPPORTS).map(|i| ground_pair(&format!("c{}", i + 1), i)).collect(),
         load_cases: vec![
             LoadCase {
                 name: "weight".into(),
@@ -244,72 +183,43 @@ pub fn beam_structure() -> Structure {
 /// Two plates, the lower one held along its base, contact between them.
 pub fn plates() -> Structure {
     let (nx, ny) = (8, 4);
-    let mut structure = Structure {
-        materials: vec![steel()],
-        ..Structure::default()
-    };
+    let mut structure = Structure { materials: vec![steel()], ..Structure::default() };
     for (name, y0) in [("lower", 0.0), ("upper", 4.0)] {
         let first = structure.nodes.len();
         let from = structure.elements.len();
         let index = |i: usize, j: usize| first + j * (nx + 1) + i;
         for j in 0..=ny {
             for i in 0..=nx {
-                structure.nodes.push(Node {
-                    id: format!("{name}[{i},{j}]"),
-                    position: [i as f64, y0 + j as f64],
-                });
+                structure.nodes.push(Node { id: format!("{name}[{i},{j}]"), position: [i as f64, y0 + j as f64] });
             }
         }
         for j in 0..ny {
             for i in 0..nx {
                 structure.elements.push(Element {
-                    nodes: vec![
-                        index(i, j),
-                        index(i + 1, j),
-                        index(i + 1, j + 1),
-                        index(i, j + 1),
-                    ],
+                    nodes: vec![index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)],
                     material: 0,
-                    kind: ElementKind::Quad {
-                        thickness: 0.1,
-                        plane: Plane::Strain,
-                    },
+                    kind: ElementKind::Quad { thickness: 0.1, plane: Plane::Strain },
                 });
             }
         }
         structure.plates.push(Plate {
             id: name.into(),
             elements: from..structure.elements.len(),
-            nodes: (0..=ny)
-                .map(|j| (0..=nx).map(|i| index(i, j)).collect())
-                .collect(),
+            nodes: (0..=ny).map(|j| (0..=nx).map(|i| index(i, j)).collect()).collect(),
         });
     }
-    let (lower, upper) = (
-        structure.plates[0].nodes.clone(),
-        structure.plates[1].nodes.clone(),
-    );
+    let (lower, upper) = (structure.plates[0].nodes.clone(), structure.plates[1].nodes.clone());
     for i in 0..=nx {
         for component in [Component::X, Component::Y] {
-            structure.supports.push(Support {
-                node: lower[0][i],
-                component,
-            });
+            structure.supports.push(Support { node: lower[0][i], component });
         }
-        structure.pairs.push(Pair {
-            against: Some(lower[ny][i]),
-            ..ground_pair(&format!("joint[{i}]"), upper[0][i])
-        });
+        structure.pairs.push(Pair { against: Some(lower[ny][i]), ..ground_pair(&format!("joint[{i}]"), upper[0][i]) });
     }
     structure
 }
 
 fn point(node: usize, force: [f64; 2]) -> Load {
-    Load::Nodal {
-        node,
-        force,
-        moment: 0.0,
-    }
+    Load::Nodal { node, force, moment: 0.0 }
 }
 
 /// A cantilever, clamped at A, 4 m in two elements, under q = 10 kN/m downwards: Q = q (L − x), M = −q (L − x)²/2.
@@ -322,32 +232,17 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
     structure.elements.truncate(2);
     structure.bars[0].elements = 0..2;
     structure.pairs.clear();
-    structure.supports = [Component::X, Component::Y, Component::R]
-        .map(|component| Support { node: 0, component })
-        .to_vec();
+    structure.supports =
+        [Component::X, Component::Y, Component::R].map(|component| Support { node: 0, component }).to_vec();
     let (q, l, ei) = (10.0, 4.0, 2.1e4);
     structure.load_cases = vec![LoadCase {
         name: "line".into(),
         factor: Number::Value(1.0),
-        loads: (0..2)
-            .map(|element| Load::Line {
-                element,
-                value: [0.0, -q],
-            })
-            .collect(),
+        loads: (0..2).map(|element| Load::Line { element, value: [0.0, -q] }).collect(),
     }];
-    let at = |x: f64| EndForces {
-        n: 0.0,
-        q: q * (l - x),
-        m: -q * (l - x) * (l - x) / 2.0,
-    };
+    let at = |x: f64| EndForces { n: 0.0, q: q * (l - x), m: -q * (l - x) * (l - x) / 2.0 };
     let members = [(0, 0.0, 2.0), (1, 2.0, 4.0)]
-        .map(|(element, start, end)| MemberForces {
-            bar: "AF".into(),
-            element,
-            start: at(start),
-            end: at(end),
-        })
+        .map(|(element, start, end)| MemberForces { bar: "AF".into(), element, start: at(start), end: at(end) })
         .to_vec();
     // v = −q x² (6 L² − 4 L x + x²)/24 EI and its derivative.
     let displacements = structure
@@ -367,12 +262,7 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
 }
 
 fn steel() -> Material {
-    Material {
-        youngs_modulus: 2.1e8,
-        poisson_ratio: 0.3,
-        density: 0.0,
-        expansion: 0.0,
-    }
+    Material { youngs_modulus: 2.1e8, poisson_ratio: 0.3, density: 0.0, expansion: 0.0 }
 }
 
 fn ground_pair(id: &str, node: usize) -> Pair {
@@ -400,20 +290,8 @@ pub fn scenario() -> Scenario {
         about: Some(about.into()),
     };
     let parameters = IndexMap::from([
-        (
-            "f".to_owned(),
-            parameter(0.5, 1.0, 0.05, None, "friction coefficient"),
-        ),
-        (
-            "F2".to_owned(),
-            parameter(
-                100.0,
-                400.0,
-                10.0,
-                Some("kN"),
-                "horizontal pull at the right end",
-            ),
-        ),
+        ("f".to_owned(), parameter(0.5, 1.0, 0.05, None, "friction coefficient")),
+        ("F2".to_owned(), parameter(100.0, 400.0, 10.0, Some("kN"), "horizontal pull at the right end")),
     ]);
     Scenario {
         name: "beam".into(),

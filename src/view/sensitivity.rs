@@ -8,26 +8,14 @@ use super::table::{Cell, Column, Row, Table};
 use crate::path::sensitivity::Sensitivity;
 
 /// Writes the derivatives with respect to `parameter`, or to all of them.
-pub fn write(
-    out: &mut dyn Write,
-    sensitivity: &Sensitivity,
-    parameter: Option<&str>,
-    style: &Style,
-) -> io::Result<()> {
-    let chosen = sensitivity
-        .parameters
-        .iter()
-        .filter(|rate| parameter.is_none_or(|name| rate.parameter == name));
+pub fn write(out: &mut dyn Write, sensitivity: &Sensitivity, parameter: Option<&str>, style: &Style) -> io::Result<()> {
+    let chosen = sensitivity.parameters.iter().filter(|rate| parameter.is_none_or(|name| rate.parameter == name));
     for (k, rate) in chosen.enumerate() {
         if k > 0 {
             writeln!(out)?;
         }
         let title = format!("per unit of {}", rate.parameter);
-        writeln!(
-            out,
-            "{}",
-            style.paint(Role::Title, &style.fit(&title, style.width))
-        )?;
+        writeln!(out, "{}", style.paint(Role::Title, &style.fit(&title, style.width)))?;
         let forces = largest(rate.pairs.iter().flat_map(|pair| [pair.x_n, pair.x_t]));
         let lengths = largest(rate.pairs.iter().flat_map(|pair| [pair.z_n, pair.z_t]));
         if forces == 0.0 && lengths == 0.0 {

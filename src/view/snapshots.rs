@@ -58,33 +58,14 @@ fn pictures(style: &Style) -> String {
     let states: [(&str, &[PairState]); 2] = [("F2 = 100", &first.pairs), ("F2 = 130", &last.pairs)];
     let mut out = Vec::new();
     let mut all = || -> io::Result<()> {
-        zone::write(
-            &mut out,
-            zone::Quantity::Slip,
-            &states[1..],
-            &units,
-            10,
-            style,
-        )?;
+        zone::write(&mut out, zone::Quantity::Slip, &states[1..], &units, 10, style)?;
         zone::write(&mut out, zone::Quantity::Slip, &states, &units, 10, style)?;
-        zone::write(
-            &mut out,
-            zone::Quantity::Force,
-            &states[1..],
-            &units,
-            12,
-            style,
-        )?;
+        zone::write(&mut out, zone::Quantity::Force, &states[1..], &units, 12, style)?;
         trace::write(&mut out, &last.pivots, Some(2), &units, 10, style)?;
         let bar = beam_structure();
         let forces = last.members.as_deref().unwrap_or_default();
-        let drawn = diagram::Diagram {
-            structure: &bar,
-            members: forces,
-            bar: "AF",
-            force: diagram::Force::Axial,
-            height: 8,
-        };
+        let drawn =
+            diagram::Diagram { structure: &bar, members: forces, bar: "AF", force: diagram::Force::Axial, height: 8 };
         diagram::write(&mut out, &drawn, &units, style)?;
         let picture = structure::Picture {
             title: "beam",
@@ -99,13 +80,7 @@ fn pictures(style: &Style) -> String {
         structure::write_with_loads(&mut out, &picture, &values, style)?;
         let (held, forces, moved) = cantilever();
         for force in [diagram::Force::Shear, diagram::Force::Moment] {
-            let drawn = diagram::Diagram {
-                structure: &held,
-                members: &forces,
-                bar: "AF",
-                force,
-                height: 9,
-            };
+            let drawn = diagram::Diagram { structure: &held, members: &forces, bar: "AF", force, height: 9 };
             diagram::write(&mut out, &drawn, &units, style)?;
         }
         let picture = structure::Picture {
@@ -118,22 +93,8 @@ fn pictures(style: &Style) -> String {
         };
         structure::write_with_loads(&mut out, &picture, &values, style)?;
         let one = &last.pairs[5..];
-        zone::write(
-            &mut out,
-            zone::Quantity::Pressure,
-            &[("", one)],
-            &units,
-            6,
-            style,
-        )?;
-        zone::write(
-            &mut out,
-            zone::Quantity::Gap,
-            &states[1..],
-            &units,
-            6,
-            style,
-        )?;
+        zone::write(&mut out, zone::Quantity::Pressure, &[("", one)], &units, 6, style)?;
+        zone::write(&mut out, zone::Quantity::Gap, &states[1..], &units, 6, style)?;
         if let Some(ray) = beam_ray().ray {
             zone::mode(&mut out, &ray, &last.pairs, &units, 6, style)?;
         }
@@ -143,11 +104,7 @@ fn pictures(style: &Style) -> String {
             .iter()
             .map(|node| NodeDisplacement {
                 node: node.id.clone(),
-                ux: if node.id.starts_with("upper") {
-                    1e-3
-                } else {
-                    0.0
-                },
+                ux: if node.id.starts_with("upper") { 1e-3 } else { 0.0 },
                 uy: 0.0,
                 rz: 0.0,
             })
@@ -173,11 +130,7 @@ fn pictures(style: &Style) -> String {
 }
 
 fn at(width: usize, ascii: bool) -> Style {
-    Style {
-        width,
-        color: false,
-        ascii,
-    }
+    Style { width, color: false, ascii }
 }
 
 fn assert_narrow(text: &str, width: usize) {
@@ -213,9 +166,7 @@ fn pictures_at_three_widths() {
 fn ascii_is_ascii() {
     let (reports, pictures) = (everything(&at(80, true)), pictures(&at(80, true)));
     for text in [&reports, &pictures] {
-        let strange = text
-            .chars()
-            .find(|c| !(*c == '\n' || (' '..='~').contains(c)));
+        let strange = text.chars().find(|c| !(*c == '\n' || (' '..='~').contains(c)));
         assert_eq!(strange, None);
         assert_narrow(text, 80);
     }
@@ -226,14 +177,8 @@ fn ascii_is_ascii() {
 #[test]
 fn colour_changes_nothing_but_colour() {
     let plain = at(80, false);
-    let painted = Style {
-        color: true,
-        ..plain
-    };
-    for (plain, painted) in [
-        (everything(&plain), everything(&painted)),
-        (pictures(&plain), pictures(&painted)),
-    ] {
+    let painted = Style { color: true, ..plain };
+    for (plain, painted) in [(everything(&plain), everything(&painted)), (pictures(&plain), pictures(&painted))] {
         let mut stripped = String::new();
         for (place, piece) in painted.split("\x1b[").enumerate() {
             let text = match (place, piece.split_once('m')) {
@@ -294,8 +239,5 @@ fn moments_between_nodes_are_exact_under_a_line_load() {
         let exact = -10.0 * (4.0 - x) * (4.0 - x) / 2.0;
         assert!((m - exact).abs() < 1e-12 * 80.0, "{m} at {x}");
     }
-    assert_eq!(
-        diagram::series(&structure, &members, "AG", diagram::Force::Moment),
-        None
-    );
+    assert_eq!(diagram::series(&structure, &members, "AG", diagram::Force::Moment), None);
 }

@@ -10,12 +10,7 @@ use crate::model::scenario::Units;
 use crate::path::stages::{History, HistoryEnd};
 
 /// Writes a row per stage: its factors, pivots, changes, largest slip and slip increment, energy.
-pub fn write(
-    out: &mut dyn Write,
-    history: &History,
-    units: &Units,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Style) -> io::Result<()> {
     let mut columns = vec![Column::count("stage")];
     columns.extend(history.cases.iter().map(|case| Column::numbers(case, None)));
     columns.extend([
@@ -27,55 +22,29 @@ pub fn write(
         Column::words("balance").droppable(5),
     ]);
     let mut table = Table::new(columns);
-    let ends = || {
-        history
-            .stages
-            .iter()
-            .filter_map(|stage| stage.moments.last())
-    };
-    let factors: Vec<f64> = (0..history.cases.len())
-        .map(|case| largest(ends().map(|end| end.factors[case])))
-        .collect();
+    let ends = || history.stages.iter().filter_map(|stage| stage.moments.last());
+    let factors: Vec<f64> = (0..history.cases.len()).map(|case| largest(ends().map(|end| end.factors[case]))).collect();
     let slips = largest(ends().flat_map(|end| end.pairs.iter().map(|pair| pair.z_t)));
     // Rounding beside the work of the loads is no dissipation.
     let energies = largest(history.stages.iter().flat_map(|stage| {
         let energy = stage.energy.unwrap_or_default();
         [stage.dissipated, energy.work, energy.stored]
     }));
-    let work = denoised(
-        largest(history.stages.iter().map(|stage| stage.dissipated)),
-        energies,
-    );
+    let work = denoised(largest(history.stages.iter().map(|stage| stage.dissipated)), energies);
     for (index, stage) in history.stages.iter().enumerate() {
         let Some(end) = stage.moments.last() else {
             continue;
         };
         let mut cells = vec![Cell::from((index + 1).to_string())];
-        cells.extend(
-            end.factors
-                .iter()
-                .zip(&factors)
-                .map(|(factor, scale)| Cell::from(in_column(*factor, *scale))),
-        );
-        let changes = stage
-            .moments
-            .iter()
-            .filter(|moment| !moment.changes.is_empty())
-            .count();
+        cells.extend(end.factors.iter().zip(&factors).map(|(factor, scale)| Cell::from(in_column(*factor, *scale))));
+        let changes = stage.moments.iter().filter(|moment| !moment.changes.is_empty()).count();
         cells.extend([
             Cell::from(stage.pivots.to_string()),
             Cell::from(changes.to_string()),
-            Cell::from(in_column(
-                largest(end.pairs.iter().map(|pair| pair.z_t)),
-                slips,
-            )),
+            Cell::from(in_column(largest(end.pairs.iter().map(|pair| pair.z_t)), slips)),
             Cell::from(in_column(largest(stage.slip.iter().copied()), slips)),
             Cell::from(in_column(denoised(stage.dissipated, energies), work)),
-            Cell::from(
-                stage
-                    .energy
-                    .map_or(String::new(), |energy| residual(energy.residual)),
-            ),
+            Cell::from(stage.energy.map_or(String::new(), |energy| residual(energy.residual))),
         ]);
         table.rows.push(Row::new(cells));
     }
@@ -119,12 +88,7 @@ pub fn write_stage(
     let mut table = Table::new(columns);
     for moment in &stage.moments {
         let mut cells = vec![Cell::from(short(moment.t))];
-        cells.extend(
-            moment
-                .factors
-                .iter()
-                .map(|factor| Cell::from(super::path::exact(*factor))),
-        );
+        cells.extend(moment.factors.iter().map(|factor| Cell::from(super::path::exact(*factor))));
         cells.push(Cell::from(style.text(&moment.sentence)));
         table.rows.push(Row::new(cells));
     }
@@ -134,10 +98,7 @@ pub fn write_stage(
             "work {} = stored {} + dissipated {}, balance {}",
             short(energy.work),
             short(energy.stored),
-            short(denoised(
-                stage.dissipated,
-                energy.work.abs().max(energy.stored.abs())
-            )),
+            short(denoised(stage.dissipated, energy.work.abs().max(energy.stored.abs()))),
             residual(energy.residual)
         );
         writeln!(out, "{}", style.fit(&text, style.width))?;

@@ -62,11 +62,7 @@ pub fn state_counts(pairs: &[PairState]) -> String {
     let count = |state: State| pairs.iter().filter(|pair| pair.state == state).count();
     let friction = pairs.iter().any(|pair| pair.law != "frictionless");
     let unilateral = pairs.iter().any(|pair| pair.law != "bound");
-    let (plus, minus, closed) = (
-        count(State::SlipPlus),
-        count(State::SlipMinus),
-        count(State::Closed),
-    );
+    let (plus, minus, closed) = (count(State::SlipPlus), count(State::SlipMinus), count(State::Closed));
     let mut parts = Vec::new();
     if friction {
         parts.push(format!("{} stick", count(State::Stick)));
@@ -102,14 +98,13 @@ pub fn max_slip(pairs: &[PairState]) -> Option<(f64, &PairState)> {
 
 /// The largest opening: (z_n, pair).
 pub fn max_opening(pairs: &[PairState]) -> Option<(f64, &PairState)> {
-    pairs
-        .iter()
-        .filter(|pair| pair.state == State::Open && pair.z_n.is_finite())
-        .map(|pair| (pair.z_n, pair))
-        .fold(None, |best: Option<(f64, &PairState)>, next| match best {
+    pairs.iter().filter(|pair| pair.state == State::Open && pair.z_n.is_finite()).map(|pair| (pair.z_n, pair)).fold(
+        None,
+        |best: Option<(f64, &PairState)>, next| match best {
             Some(best) if best.0 >= next.0 => Some(best),
             _ => Some(next),
-        })
+        },
+    )
 }
 
 /// The line after a change:
@@ -140,11 +135,7 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
             ];
             let mut ways = ways.into_iter().map(|parts| joined(&head, &parts, style));
             let fitting = ways.find(|(text, _)| text.width() <= style.width);
-            finished(
-                fitting.unwrap_or_else(|| joined(&head, &[], style)),
-                role,
-                style,
-            )
+            finished(fitting.unwrap_or_else(|| joined(&head, &[], style)), role, style)
         }
         OutcomeKind::Trivial | OutcomeKind::Normal => {
             finished(joined(&head, &[pivot_count(answer)], style), role, style)
@@ -175,11 +166,8 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
 /// The states of a count that occur: `2 stick 4 slip+` of `2 stick 4 slip+ 0 open`.
 fn occurring(states: &str) -> String {
     let words: Vec<&str> = states.split(' ').collect();
-    let some: Vec<String> = words
-        .chunks(2)
-        .filter(|count| count.first() != Some(&"0"))
-        .map(|count| count.join(" "))
-        .collect();
+    let some: Vec<String> =
+        words.chunks(2).filter(|count| count.first() != Some(&"0")).map(|count| count.join(" ")).collect();
     some.join(" ")
 }
 
@@ -209,9 +197,7 @@ fn headline(answer: &Answer) -> (String, Role) {
     let word = outcome_word(answer.outcome);
     let role = Role::of_outcome(answer.outcome);
     match &answer.ray {
-        Some(ray) if answer.outcome == OutcomeKind::Ray => {
-            (format!("ray: {}", class_word(ray.class)), role)
-        }
+        Some(ray) if answer.outcome == OutcomeKind::Ray => (format!("ray: {}", class_word(ray.class)), role),
         _ if answer.marginal => (format!("{word} (marginal)"), Role::Warning),
         _ => (word.to_owned(), role),
     }
@@ -270,10 +256,7 @@ pub fn write(
     }
     if answer.marginal {
         let p = with_unit(&short(answer.p), p_unit(answer, units).as_deref());
-        rows.push((
-            "marginal",
-            format!("exactly on a limit: p stopped at {p} instead of 0"),
-        ));
+        rows.push(("marginal", format!("exactly on a limit: p stopped at {p} instead of 0")));
     }
     let size = &answer.size;
     let mut sizes = Vec::new();
@@ -284,27 +267,17 @@ pub fn write(
         });
     }
     if !matches!(scenario.source, Source::Lcp(_)) {
-        sizes.push(format!(
-            "{} contact {}",
-            size.pairs,
-            if size.pairs == 1 { "pair" } else { "pairs" }
-        ));
+        sizes.push(format!("{} contact {}", size.pairs, if size.pairs == 1 { "pair" } else { "pairs" }));
     }
     sizes.push(format!("LCP of {}", size.lcp));
     rows.push(("size", sizes.join(" · ")));
     rows.push((
         "rules",
-        format!(
-            "covering {} · tie-break {} · engine {}",
-            answer.covering, answer.tie_break, answer.engine
-        ),
+        format!("covering {} · tie-break {} · engine {}", answer.covering, answer.tie_break, answer.engine),
     ));
     if let Start::Warm { changes } = answer.start {
         let times = if changes == 1 { "change" } else { "changes" };
-        rows.push((
-            "start",
-            format!("warm: followed from the last answer, {changes} {times} of the working scheme"),
-        ));
+        rows.push(("start", format!("warm: followed from the last answer, {changes} {times} of the working scheme")));
     }
     if answer.is_answer() || answer.outcome == OutcomeKind::CheckFailed {
         let check = &answer.check;
@@ -340,10 +313,7 @@ pub fn write(
         let values: Vec<String> = parameters
             .iter()
             .map(|(name, value)| {
-                let unit = scenario
-                    .parameters
-                    .get(name)
-                    .and_then(|p| p.unit.as_deref());
+                let unit = scenario.parameters.get(name).and_then(|p| p.unit.as_deref());
                 format!("{name} = {}", with_unit(&in_full(*value), unit))
             })
             .collect();
@@ -353,9 +323,7 @@ pub fn write(
         let label = format!("{label:<12}");
         for (i, line) in style.hanging(&label, &text).iter().enumerate() {
             match line.strip_prefix(label.as_str()) {
-                Some(rest) if i == 0 => {
-                    writeln!(out, "{}{rest}", style.paint(Role::Muted, &label))?
-                }
+                Some(rest) if i == 0 => writeln!(out, "{}{rest}", style.paint(Role::Muted, &label))?,
                 _ => writeln!(out, "{line}")?,
             }
         }

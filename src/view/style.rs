@@ -18,11 +18,7 @@ pub struct Style {
 impl Default for Style {
     /// 80 columns, Unicode, no colour: what a pipe gets.
     fn default() -> Self {
-        Style {
-            width: 80,
-            color: false,
-            ascii: false,
-        }
+        Style { width: 80, color: false, ascii: false }
     }
 }
 
@@ -57,9 +53,7 @@ impl Role {
         match outcome {
             OutcomeKind::Trivial | OutcomeKind::Normal => Role::Good,
             OutcomeKind::Ray => Role::Warning,
-            OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => {
-                Role::Bad
-            }
+            OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => Role::Bad,
         }
     }
 
@@ -190,11 +184,7 @@ impl Style {
             lines.push(String::new());
         }
         for (i, line) in lines.iter_mut().enumerate() {
-            let head = if i == 0 {
-                self.fit(&label, indent)
-            } else {
-                " ".repeat(indent)
-            };
+            let head = if i == 0 { self.fit(&label, indent) } else { " ".repeat(indent) };
             *line = self.fit(format!("{head}{line}").trim_end(), self.width);
         }
         lines

@@ -9,15 +9,7 @@ use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 
 /// Columns that go first where the table is too wide.
-const LESS: [&str; 7] = [
-    "failure",
-    "max_x_n_pair",
-    "max_x_n",
-    "max_gap_pair",
-    "max_gap",
-    "closed",
-    "class",
-];
+const LESS: [&str; 7] = ["failure", "max_x_n_pair", "max_x_n", "max_gap_pair", "max_gap", "closed", "class"];
 
 /// Writes the columns that hold anything; the first `axes` of them are the parameters.
 pub fn write(
@@ -28,22 +20,14 @@ pub fn write(
     style: &Style,
 ) -> io::Result<()> {
     let used: Vec<usize> = (0..columns.len())
-        .filter(|&k| {
-            k < axes
-                || rows
-                    .iter()
-                    .any(|row| !matches!(&row[k], Value::Null) && row[k] != 0 && row[k] != 0.0)
-        })
+        .filter(|&k| k < axes || rows.iter().any(|row| !matches!(&row[k], Value::Null) && row[k] != 0 && row[k] != 0.0))
         .collect();
     let is_words = |k: usize| rows.iter().any(|row| row[k].is_string());
     let is_count = |k: usize| rows.iter().all(|row| row[k].is_u64() || row[k].is_null());
     let mut table = Table::new(
         used.iter()
             .map(|&k| {
-                let rank = LESS
-                    .iter()
-                    .position(|name| *name == columns[k])
-                    .map_or(0, |at| (LESS.len() - at) as u8);
+                let rank = LESS.iter().position(|name| *name == columns[k]).map_or(0, |at| (LESS.len() - at) as u8);
                 let column = if is_words(k) {
                     Column::words(&columns[k])
                 } else if is_count(k) {
@@ -51,11 +35,7 @@ pub fn write(
                 } else {
                     Column::numbers(&columns[k], None)
                 };
-                if k < axes {
-                    column
-                } else {
-                    column.droppable(rank)
-                }
+                if k < axes { column } else { column.droppable(rank) }
             })
             .collect(),
     );

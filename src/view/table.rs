@@ -29,29 +29,17 @@ pub struct Column {
 impl Column {
     /// Left-aligned words.
     pub fn words(head: &str) -> Column {
-        Column {
-            head: head.into(),
-            unit: None,
-            align: Align::Left,
-            rank: 0,
-        }
+        Column { head: head.into(), unit: None, align: Align::Left, rank: 0 }
     }
 
     /// Counters, at the right.
     pub fn count(head: &str) -> Column {
-        Column {
-            align: Align::Right,
-            ..Column::words(head)
-        }
+        Column { align: Align::Right, ..Column::words(head) }
     }
 
     /// Numbers with their unit.
     pub fn numbers(head: &str, unit: Option<String>) -> Column {
-        Column {
-            unit,
-            align: Align::Decimal,
-            ..Column::words(head)
-        }
+        Column { unit, align: Align::Decimal, ..Column::words(head) }
     }
 
     /// May be left out where the table is too wide; the highest rank goes first, 0 stays to the last.
@@ -71,10 +59,7 @@ pub struct Cell {
 impl Cell {
     /// Coloured text.
     pub fn new(text: impl Into<String>, role: Role) -> Cell {
-        Cell {
-            text: text.into(),
-            role,
-        }
+        Cell { text: text.into(), role }
     }
 }
 
@@ -98,10 +83,7 @@ pub struct Row {
 impl Row {
     /// A row of cells.
     pub fn new(cells: Vec<Cell>) -> Row {
-        Row {
-            cells,
-            ..Row::default()
-        }
+        Row { cells, ..Row::default() }
     }
 }
 
@@ -120,22 +102,13 @@ const GAP: usize = 2;
 impl Table {
     /// An empty table.
     pub fn new(columns: Vec<Column>) -> Table {
-        Table {
-            columns,
-            rows: Vec::new(),
-        }
+        Table { columns, rows: Vec::new() }
     }
 
     /// Writes the table: heads, units (if any), rows. Columns that find no room are named beneath it.
     pub fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        let columns: Vec<Printed> = (0..self.columns.len())
-            .map(|index| self.printed(index, style))
-            .collect();
-        let gutter = if self.rows.iter().any(|row| row.marked) {
-            2
-        } else {
-            0
-        };
+        let columns: Vec<Printed> = (0..self.columns.len()).map(|index| self.printed(index, style)).collect();
+        let gutter = if self.rows.iter().any(|row| row.marked) { 2 } else { 0 };
         let room = style.width.saturating_sub(gutter);
         let all: usize = columns.iter().map(|column| column.width).sum();
         let gaps = columns.len().saturating_sub(1);
@@ -173,12 +146,7 @@ impl Table {
             if let Some(sentence) = &row.beneath {
                 let indent = (gutter + 4).min(style.width / 4);
                 for line in style.wrap(sentence, style.width - indent) {
-                    writeln!(
-                        out,
-                        "{}{}",
-                        " ".repeat(indent),
-                        style.paint(Role::Muted, &line)
-                    )?;
+                    writeln!(out, "{}{}", " ".repeat(indent), style.paint(Role::Muted, &line))?;
                 }
             }
         }
@@ -200,50 +168,26 @@ impl Table {
         let mut cells: Vec<String> = self
             .rows
             .iter()
-            .map(|row| {
-                row.cells
-                    .get(index)
-                    .map_or_else(String::new, |cell| style.text(&cell.text))
-            })
+            .map(|row| row.cells.get(index).map_or_else(String::new, |cell| style.text(&cell.text)))
             .collect();
         if column.align == Align::Decimal {
             align_decimals(&mut cells);
         }
         let head = style.text(&column.head);
-        let unit = column
-            .unit
-            .as_ref()
-            .map_or_else(String::new, |unit| style.text(unit));
-        let width = cells
-            .iter()
-            .map(|cell| cell.width())
-            .chain([head.width(), unit.width()])
-            .max()
-            .unwrap_or(0);
-        Printed {
-            head,
-            unit,
-            cells,
-            width,
-        }
+        let unit = column.unit.as_ref().map_or_else(String::new, |unit| style.text(unit));
+        let width = cells.iter().map(|cell| cell.width()).chain([head.width(), unit.width()]).max().unwrap_or(0);
+        Printed { head, unit, cells, width }
     }
 
     /// Columns that are shown, with their widths: whole ones as long as that is possible; then words are cut.
     fn shown(&self, columns: &[Printed], width: usize, gap: usize) -> Vec<(usize, usize)> {
         let total = |shown: &[(usize, usize)]| {
-            shown.iter().map(|(_, width)| width).sum::<usize>()
-                + gap * shown.len().saturating_sub(1)
+            shown.iter().map(|(_, width)| width).sum::<usize>() + gap * shown.len().saturating_sub(1)
         };
-        let mut shown: Vec<(usize, usize)> = columns
-            .iter()
-            .enumerate()
-            .map(|(index, column)| (index, column.width))
-            .collect();
+        let mut shown: Vec<(usize, usize)> =
+            columns.iter().enumerate().map(|(index, column)| (index, column.width)).collect();
         while total(&shown) > width {
-            let last = shown
-                .iter()
-                .enumerate()
-                .max_by_key(|(place, (index, _))| (self.columns[*index].rank, *place));
+            let last = shown.iter().enumerate().max_by_key(|(place, (index, _))| (self.columns[*index].rank, *place));
             match last {
                 Some((place, (index, _))) if self.columns[*index].rank > 0 => {
                     shown.remove(place);
@@ -285,18 +229,8 @@ struct Printed {
 fn align_decimals(cells: &mut [String]) {
     let integer = |cell: &str| cell.find(['.', 'e']).unwrap_or(cell.len());
     let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || c == '-');
-    let before = cells
-        .iter()
-        .filter(|cell| is_number(cell))
-        .map(|cell| integer(cell))
-        .max()
-        .unwrap_or(0);
-    let after = cells
-        .iter()
-        .filter(|cell| is_number(cell))
-        .map(|cell| cell.len() - integer(cell))
-        .max()
-        .unwrap_or(0);
+    let before = cells.iter().filter(|cell| is_number(cell)).map(|cell| integer(cell)).max().unwrap_or(0);
+    let after = cells.iter().filter(|cell| is_number(cell)).map(|cell| cell.len() - integer(cell)).max().unwrap_or(0);
     for cell in cells.iter_mut() {
         if is_number(cell) {
             let left = before - integer(cell);

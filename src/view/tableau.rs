@@ -13,29 +13,19 @@ pub fn write(out: &mut dyn Write, dictionary: &Dictionary, style: &Style) -> io:
         None => "before the entry of p".to_owned(),
         Some(step) => format!("after pivot {step}"),
     };
-    writeln!(
-        out,
-        "{}",
-        style.text(&format!(
-            "dictionary {at}: basic = value + rates · nonbasic"
-        ))
-    )?;
+    writeln!(out, "{}", style.text(&format!("dictionary {at}: basic = value + rates · nonbasic")))?;
     let mut columns = vec![Column::words("basic"), Column::numbers("value", None)];
     // Columns that find no room are named beneath the table, the last ones first.
-    columns.extend(dictionary.nonbasic.iter().enumerate().map(|(k, name)| {
-        Column::numbers(name, None).droppable(u8::try_from(k + 1).unwrap_or(u8::MAX))
-    }));
+    columns.extend(
+        dictionary
+            .nonbasic
+            .iter()
+            .enumerate()
+            .map(|(k, name)| Column::numbers(name, None).droppable(u8::try_from(k + 1).unwrap_or(u8::MAX))),
+    );
     let mut table = Table::new(columns);
-    for ((name, value), rates) in dictionary
-        .basic
-        .iter()
-        .zip(&dictionary.values)
-        .zip(&dictionary.rates)
-    {
-        let mut cells = vec![
-            Cell::from(name.as_str()),
-            Cell::from(engineering(denoised(*value, 1.0))),
-        ];
+    for ((name, value), rates) in dictionary.basic.iter().zip(&dictionary.values).zip(&dictionary.rates) {
+        let mut cells = vec![Cell::from(name.as_str()), Cell::from(engineering(denoised(*value, 1.0)))];
         cells.extend(rates.iter().map(|rate| Cell::from(engineering(*rate))));
         table.rows.push(Row::new(cells));
     }

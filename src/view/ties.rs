@@ -24,12 +24,7 @@ pub fn write(out: &mut dyn Write, report: &TieReport, style: &Style) -> io::Resu
     }
     for tie in &report.ties {
         let label = format!("pivot {:<4} ", tie.step);
-        let text = format!(
-            "{} tied; {} left ({})",
-            tie.tied.join(", "),
-            tie.leaving,
-            tie.reason
-        );
+        let text = format!("{} tied; {} left ({})", tie.tied.join(", "), tie.leaving, tie.reason);
         line(out, &label, &text)?;
     }
     if report.degenerate.is_empty() {
@@ -37,11 +32,7 @@ pub fn write(out: &mut dyn Write, report: &TieReport, style: &Style) -> io::Resu
     }
     for vertex in &report.degenerate {
         let label = format!("after {:<4} ", vertex.step);
-        line(
-            out,
-            &label,
-            &format!("basic at zero: {}", vertex.zeros.join(", ")),
-        )?;
+        line(out, &label, &format!("basic at zero: {}", vertex.zeros.join(", ")))?;
     }
     if !report.complete {
         let text = "earlier vertices were not looked at for zeros";

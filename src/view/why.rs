@@ -14,15 +14,7 @@ fn turn_words(turn: &Turn) -> String {
 pub fn write(out: &mut dyn Write, id: &str, margins: &[Margin], style: &Style) -> io::Result<()> {
     for margin in margins {
         let how = if margin.exact { "" } else { " (by search)" };
-        writeln!(
-            out,
-            "{}",
-            style.text(&format!(
-                "{} = {}{how}",
-                margin.parameter,
-                short(margin.present)
-            ))
-        )?;
+        writeln!(out, "{}", style.text(&format!("{} = {}{how}", margin.parameter, short(margin.present))))?;
         let rows = [
             ("  up, first       ", &margin.up, &margin.own_up),
             ("  down, first     ", &margin.down, &margin.own_down),

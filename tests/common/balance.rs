@@ -54,11 +54,9 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
         let factor = case.factor.value(values);
         for load in &case.loads {
             match load {
-                Load::Nodal {
-                    node,
-                    force,
-                    moment,
-                } => add(*node, at(*node), force.map(|f| factor * f), factor * moment),
+                Load::Nodal { node, force, moment } => {
+                    add(*node, at(*node), force.map(|f| factor * f), factor * moment)
+                }
                 Load::Line { element, value } => {
                     let [a, b] = [0, 1].map(|end| structure.elements[*element].nodes[end]);
                     let ([xa, ya], [xb, yb]) = (at(a), at(b));
@@ -89,12 +87,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
         let d = spring.direction;
         let u = &u[spring.node];
         let force = -spring.stiffness * (d[0] * u.ux + d[1] * u.uy);
-        add(
-            spring.node,
-            at(spring.node),
-            [force * d[0], force * d[1]],
-            0.0,
-        );
+        add(spring.node, at(spring.node), [force * d[0], force * d[1]], 0.0);
     }
     // A tie that joins nodes at different places hands over force without its moment: no balance of moments there.
     let mut moments = vec![true; n];
@@ -112,9 +105,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
     let mut worst = 0f64;
     for part in 0..n {
         if force > 0.0 {
-            worst = worst
-                .max(sum[part][0].abs() / force)
-                .max(sum[part][1].abs() / force);
+            worst = worst.max(sum[part][0].abs() / force).max(sum[part][1].abs() / force);
         }
         if moment > 0.0 && moments[part] {
             worst = worst.max(sum[part][2].abs() / moment);
@@ -144,31 +135,18 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
         largest[1] = largest[1].max(force[2].abs());
     };
     for element in &structure.elements {
-        if matches!(
-            element.kind,
-            stickslip::model::structure::ElementKind::Quad { .. }
-        ) {
-            element
-                .nodes
-                .iter()
-                .for_each(|&node| bars_only[node] = false);
+        if matches!(element.kind, stickslip::model::structure::ElementKind::Quad { .. }) {
+            element.nodes.iter().for_each(|&node| bars_only[node] = false);
         }
     }
     for member in answer.members.as_ref().expect("members") {
-        let bar = structure
-            .bars
-            .iter()
-            .find(|bar| bar.id == member.bar)
-            .unwrap();
+        let bar = structure.bars.iter().find(|bar| bar.id == member.bar).unwrap();
         let nodes = &structure.elements[bar.elements.start + member.element].nodes;
         let [a, b] = [0, 1].map(|end| structure.nodes[nodes[end]].position);
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let x = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
         let y = [-x[1], x[0]];
-        for (node, sign, end) in [
-            (nodes[0], 1.0, &member.start),
-            (nodes[1], -1.0, &member.end),
-        ] {
+        for (node, sign, end) in [(nodes[0], 1.0, &member.start), (nodes[1], -1.0, &member.end)] {
             let force = [0, 1].map(|i| sign * (end.n * x[i] - end.q * y[i]));
             add(node, [force[0], force[1], sign * end.m]);
         }
@@ -176,16 +154,8 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
     for case in &structure.load_cases {
         let factor = case.factor.value(values);
         for load in &case.loads {
-            if let Load::Nodal {
-                node,
-                force,
-                moment,
-            } = load
-            {
-                add(
-                    *node,
-                    [factor * force[0], factor * force[1], factor * moment],
-                );
+            if let Load::Nodal { node, force, moment } = load {
+                add(*node, [factor * force[0], factor * force[1], factor * moment]);
             }
         }
     }
@@ -198,10 +168,7 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
         }
     }
     for reaction in answer.reactions.as_ref().expect("reactions") {
-        let node = structure
-            .nodes
-            .iter()
-            .position(|node| node.id == reaction.node);
+        let node = structure.nodes.iter().position(|node| node.id == reaction.node);
         add(node.unwrap(), [reaction.fx, reaction.fy, reaction.m]);
     }
     let u = answer.displacements.as_ref().expect("displacements");
@@ -216,10 +183,7 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
     for node in (0..n).filter(|&node| bars_only[node]) {
         let [x, y, m] = sum[node].map(f64::abs);
         if largest[0] > 0.0 {
-            worst = worst
-                .max(x / largest[0])
-                .max(y / largest[0])
-                .max(m / moment);
+            worst = worst.max(x / largest[0]).max(y / largest[0]).max(m / moment);
         }
     }
     worst
@@ -233,16 +197,10 @@ pub fn incompatibility(scenario: &Scenario, values: &ParameterValues, answer: &A
     };
     let all = answer.displacements.as_ref().expect("displacements");
     let u = |node: usize| [all[node].ux, all[node].uy, all[node].rz];
-    let mut largest = all
-        .iter()
-        .fold(0f64, |a, d| a.max(d.ux.abs()).max(d.uy.abs()));
+    let mut largest = all.iter().fold(0f64, |a, d| a.max(d.ux.abs()).max(d.uy.abs()));
     let mut off = 0f64;
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
-        let gap = pair
-            .law
-            .numbers()
-            .into_iter()
-            .find(|(key, _)| *key == "gap");
+        let gap = pair.law.numbers().into_iter().find(|(key, _)| *key == "gap");
         let gap = gap.map_or(0.0, |(_, gap)| gap.value(values));
         let along = |a: [f64; 2]| {
             let project = |node: usize| a[0] * u(node)[0] + a[1] * u(node)[1];

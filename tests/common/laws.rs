@@ -24,9 +24,7 @@ pub fn violation(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
         let (z_n, z_t) = (pair.z_n / length, pair.z_t / length);
         let mut at_most = |excess: f64| worst = worst.max(excess);
         let bound = match law {
-            Law::Coulomb {
-                friction, cohesion, ..
-            } => friction.value(values) * x_n + cohesion.value(values) / force,
+            Law::Coulomb { friction, cohesion, .. } => friction.value(values) * x_n + cohesion.value(values) / force,
             Law::Frictionless { .. } => 0.0,
             Law::Bound { bound } => bound.value(values) / force,
         };

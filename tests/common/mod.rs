@@ -55,9 +55,7 @@ impl Case {
         for (name, value) in set {
             *values.get_mut(*name).expect("a parameter") = *value;
         }
-        self.prepared
-            .solve(&self.scenario, &values, rules, &Quiet)
-            .unwrap_or_else(|e| panic!("{e}"))
+        self.prepared.solve(&self.scenario, &values, rules, &Quiet).unwrap_or_else(|e| panic!("{e}"))
     }
 }
 
@@ -70,28 +68,16 @@ pub fn scenario_text(mut value: Value) -> String {
 
 /// Default tie-break, given covering.
 pub fn covering(covering: Covering) -> Rules {
-    Rules {
-        covering,
-        ..Rules::default()
-    }
+    Rules { covering, ..Rules::default() }
 }
 
 /// Every covering with every tie rule.
 pub fn all_rules() -> Vec<Rules> {
-    let ties = [
-        TieBreak::Lexicographic,
-        TieBreak::Natural,
-        TieBreak::FirstRow,
-        TieBreak::Random(7),
-    ];
+    let ties = [TieBreak::Lexicographic, TieBreak::Natural, TieBreak::FirstRow, TieBreak::Random(7)];
     let mut all = Vec::new();
     for covering in Covering::ALL {
         for tie_break in ties {
-            all.push(Rules {
-                covering,
-                tie_break,
-                ..Rules::default()
-            });
+            all.push(Rules { covering, tie_break, ..Rules::default() });
         }
     }
     all
@@ -116,10 +102,7 @@ pub fn close(what: &str, found: f64, expected: f64, tolerance: f64) {
 /// Equal to the printed figure, half a unit of its last digit (given as `unit`) allowed.
 #[track_caller]
 pub fn printed(what: &str, found: f64, figure: f64, unit: f64) {
-    assert!(
-        (found - figure).abs() <= 0.5001 * unit,
-        "{what}: found {found}, printed {figure}"
-    );
+    assert!((found - figure).abs() <= 0.5001 * unit, "{what}: found {found}, printed {figure}");
 }
 
 /// Each entry, relative to the largest expected one.
@@ -128,13 +111,7 @@ pub fn near_all(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{what}");
     let size = expected.iter().fold(0f64, |a, b| a.max(b.abs()));
     for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
-        near(
-            &format!("{what}[{i}]"),
-            *found,
-            *expected,
-            tolerance,
-            if size > 0.0 { size } else { 1.0 },
-        );
+        near(&format!("{what}[{i}]"), *found, *expected, tolerance, if size > 0.0 { size } else { 1.0 });
     }
 }
 

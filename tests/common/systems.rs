@@ -7,24 +7,11 @@ use stickslip::model::pair::Law;
 use stickslip::model::parameter::Number;
 
 /// Coulomb pairs c1, c2, … with one friction, no cohesion and no gaps; joints: all normal ones, then all tangential ones.
-pub fn coulomb(
-    stiffness: DMatrix<f64>,
-    load: DVector<f64>,
-    friction: f64,
-) -> (ContactSystem, ContactNumbers) {
+pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> (ContactSystem, ContactNumbers) {
     let m = load.len() / 2;
-    let law = Law::Coulomb {
-        friction: Number::Value(friction),
-        cohesion: Number::Value(0.0),
-        gap: Number::Value(0.0),
-    };
+    let law = Law::Coulomb { friction: Number::Value(friction), cohesion: Number::Value(0.0), gap: Number::Value(0.0) };
     let pairs = (0..m)
-        .map(|i| ContactPair {
-            id: format!("c{}", i + 1),
-            law: law.clone(),
-            position: None,
-            tangential: Some(m + i),
-        })
+        .map(|i| ContactPair { id: format!("c{}", i + 1), law: law.clone(), position: None, tangential: Some(m + i) })
         .collect();
     let numbers = ContactNumbers {
         friction: vec![friction; m],
@@ -36,10 +23,7 @@ pub fn coulomb(
     let system = ContactSystem {
         pairs,
         stiffness,
-        loads: vec![JointLoad {
-            name: "load".into(),
-            vector: load,
-        }],
+        loads: vec![JointLoad { name: "load".into(), vector: load }],
         kernel: DMatrix::zeros(2 * m, 0),
     };
     (system, numbers)

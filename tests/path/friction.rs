@@ -19,33 +19,21 @@ fn load(name: &str, set: &[(&str, f64)]) -> (Scenario, Prepared, ParameterValues
 }
 
 fn solve(scenario: &Scenario, prepared: &Prepared, values: &ParameterValues) -> Solved {
-    prepared
-        .solve(scenario, values, scenario.rules, &Quiet)
-        .expect("solvable")
+    prepared.solve(scenario, values, scenario.rules, &Quiet).expect("solvable")
 }
 
 fn follow(name: &str, from: f64, to: f64) -> FrictionPath {
     let (scenario, prepared, values) = load(name, &[("f", from)]);
     let solved = solve(&scenario, &prepared, &values);
-    trace(
-        &prepared,
-        &scenario,
-        &values,
-        Some(&solved),
-        "f",
-        to,
-        &Quiet,
-    )
-    .expect("a path")
+    trace(&prepared, &scenario, &values, Some(&solved), "f", to, &Quiet).expect("a path")
 }
 
 /// Validation 12, computed independently.
 #[test]
 fn the_frames_hold_their_schemes_in_the_known_intervals() {
-    for (name, expected) in [
-        ("frame", [0.39319471, 0.75271411, 5.42608696]),
-        ("frame-rotated", [0.28331450, 0.44932055, 0.68876861]),
-    ] {
+    for (name, expected) in
+        [("frame", [0.39319471, 0.75271411, 5.42608696]), ("frame-rotated", [0.28331450, 0.44932055, 0.68876861])]
+    {
         for (from, to) in [(0.1, 6.0), (6.0, 0.1)] {
             let path = follow(name, from, to);
             assert_eq!(path.end, FrictionEnd::Target);
@@ -53,16 +41,9 @@ fn the_frames_hold_their_schemes_in_the_known_intervals() {
             found.sort_by(f64::total_cmp);
             assert_eq!(found.len(), 3, "{name} {:?}", path.breakpoints);
             for (found, expected) in found.iter().zip(expected) {
-                assert!(
-                    (found - expected).abs() <= 0.51e-8,
-                    "{name}: {found} is not {expected}"
-                );
+                assert!((found - expected).abs() <= 0.51e-8, "{name}: {found} is not {expected}");
             }
-            assert!(
-                path.breakpoints
-                    .iter()
-                    .all(|b| !b.jump && b.changes.len() == 1)
-            );
+            assert!(path.breakpoints.iter().all(|b| !b.jump && b.changes.len() == 1));
             assert_eq!(path.intervals.len(), 4);
             assert_eq!(path.intervals[0].from, from);
             assert_eq!(path.intervals[3].to, to);
@@ -78,10 +59,7 @@ fn an_answer_that_ends_jumps_to_another() {
     assert_eq!(path.end, FrictionEnd::Target);
     assert_eq!(path.breakpoints.len(), 1, "{:?}", path.breakpoints);
     let breakpoint = &path.breakpoints[0];
-    assert!(
-        (breakpoint.value - 5.0 / 3.0).abs() <= 1e-8,
-        "{breakpoint:?}"
-    );
+    assert!((breakpoint.value - 5.0 / 3.0).abs() <= 1e-8, "{breakpoint:?}");
     assert!(breakpoint.jump);
     assert_eq!(breakpoint.changes[0].from, "stick");
     assert_eq!(breakpoint.changes[0].to, "open");
@@ -95,10 +73,7 @@ fn the_beam_sticks_support_by_support_as_friction_grows() {
     let expected: Vec<f64> = (1..=5).rev().map(|k| 2.5 / f64::from(k)).collect();
     assert_eq!(found.len(), 5, "{found:?}");
     for (found, expected) in found.iter().zip(expected) {
-        assert!(
-            (found - expected).abs() <= 1e-10 * expected,
-            "{found} is not {expected}"
-        );
+        assert!((found - expected).abs() <= 1e-10 * expected, "{found} is not {expected}");
     }
     // Towards less friction the beam slides away at f = 2.5/6.
     let path = follow("beam", 0.45, 0.1);
@@ -130,12 +105,8 @@ fn sensitivities_agree_with_differences() {
             };
             let ((plus, step), (minus, _)) = (at(1.0), at(-1.0));
             type Read = fn(&stickslip::answer::record::PairState) -> f64;
-            let reads: [(&str, Read); 4] = [
-                ("x_n", |p| p.x_n),
-                ("x_t", |p| p.x_t),
-                ("z_n", |p| p.z_n),
-                ("z_t", |p| p.z_t),
-            ];
+            let reads: [(&str, Read); 4] =
+                [("x_n", |p| p.x_n), ("x_t", |p| p.x_t), ("z_n", |p| p.z_n), ("z_t", |p| p.z_t)];
             for (which, read) in reads {
                 let mine = |k: usize| match which {
                     "x_n" => rate.pairs[k].x_n,
@@ -144,12 +115,7 @@ fn sensitivities_agree_with_differences() {
                     _ => rate.pairs[k].z_t,
                 };
                 let size = (0..plus.len()).map(|k| mine(k).abs()).fold(0.0, f64::max);
-                let value = solved
-                    .answer
-                    .pairs
-                    .iter()
-                    .map(|p| read(p).abs())
-                    .fold(0.0, f64::max);
+                let value = solved.answer.pairs.iter().map(|p| read(p).abs()).fold(0.0, f64::max);
                 for k in 0..plus.len() {
                     let difference = (read(&plus[k]) - read(&minus[k])) / (2.0 * step);
                     let tolerance = 1e-5 * size + 1e-9 * value / step;

@@ -96,8 +96,7 @@ fn pressure_and_stick_zone_are_those_of_the_closed_forms() {
     for (shear, stick) in [(5.0, FRAC_2_SQRT_PI), (7.5, FRAC_2_PI.sqrt())] {
         let scenario = load_text("hertz", &scenario(shear), None).expect("sound");
         let prepared = prepare(&scenario, &Quiet).expect("sound");
-        let history =
-            follow(&prepared, &scenario, &scenario.parameter_values(), &Quiet).expect("a history");
+        let history = follow(&prepared, &scenario, &scenario.parameter_values(), &Quiet).expect("a history");
         assert_eq!(history.end, HistoryEnd::Complete);
         let end = |stage: usize| &history.stages[stage].moments.last().expect("moments").pairs;
         let x = along();
@@ -106,12 +105,7 @@ fn pressure_and_stick_zone_are_those_of_the_closed_forms() {
         let p0 = pressed[middle].x_n / ELEMENT;
         assert!((p0 - 7.9788).abs() <= 0.003 * 7.9788, "p0 = {p0}");
         let half_width = |which: &dyn Fn(State) -> bool| {
-            let held: Vec<f64> = end(1)
-                .iter()
-                .zip(&x)
-                .filter(|(pair, _)| which(pair.state))
-                .map(|(_, x)| *x)
-                .collect();
+            let held: Vec<f64> = end(1).iter().zip(&x).filter(|(pair, _)| which(pair.state)).map(|(_, x)| *x).collect();
             let (first, last) = (held.first().expect("some"), held.last().expect("some"));
             0.5 * (last - first) + 0.5 * ELEMENT
         };

@@ -20,53 +20,27 @@ impl Case {
         for (name, value) in set {
             *values.get_mut(*name).expect("a parameter") = *value;
         }
-        Case {
-            prepared: prepare(&scenario, &Quiet).expect("sound"),
-            values,
-            scenario,
-        }
+        Case { prepared: prepare(&scenario, &Quiet).expect("sound"), values, scenario }
     }
 
     fn solve(&self) -> Solved {
-        self.prepared
-            .solve(&self.scenario, &self.values, self.scenario.rules, &Quiet)
-            .expect("solvable")
+        self.prepared.solve(&self.scenario, &self.values, self.scenario.rules, &Quiet).expect("solvable")
     }
 
     fn trace(&self, name: &str, to: Option<f64>) -> LoadPath {
         let reach = LoadReach { to, through: false };
         let solved = self.solve();
-        trace(
-            &self.prepared,
-            &self.scenario,
-            &self.values,
-            Some(&solved),
-            name,
-            reach,
-            &Quiet,
-        )
-        .expect("a path")
+        trace(&self.prepared, &self.scenario, &self.values, Some(&solved), name, reach, &Quiet).expect("a path")
     }
 
     fn limit(&self, name: &str) -> stickslip::path::limit::Limit {
         let solved = self.solve();
-        limit(
-            &self.prepared,
-            &self.scenario,
-            &self.values,
-            Some(&solved),
-            name,
-            &Quiet,
-        )
-        .expect("a path")
+        limit(&self.prepared, &self.scenario, &self.values, Some(&solved), name, &Quiet).expect("a path")
     }
 }
 
 fn close(found: f64, expected: f64, relative: f64) {
-    assert!(
-        (found - expected).abs() <= relative * expected.abs(),
-        "{found} is not {expected} within {relative:e}"
-    );
+    assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected} within {relative:e}");
 }
 
 /// ```text
@@ -98,12 +72,7 @@ fn the_beam_slips_support_by_support_and_then_as_a_whole() {
         close(limit.factor.expect("a limit"), 6.0 * r, 1e-12);
         assert!(limit.confirmed);
         let collapse = limit.collapse.expect("a mode");
-        assert!(
-            collapse
-                .direction
-                .iter()
-                .all(|d| (d.z_t - 1.0).abs() < 1e-9 && d.z_n == 0.0)
-        );
+        assert!(collapse.direction.iter().all(|d| (d.z_t - 1.0).abs() < 1e-9 && d.z_n == 0.0));
     }
     // Beyond the limit there is no answer: the path starts from 0 and the safety is below 1.
     let limit = Case::new("beam", &[("F2", 400.0)]).limit("pull");
@@ -145,10 +114,7 @@ fn plates_slide_and_overturn_at_their_limits() {
         close(limit.factor.expect("a limit"), expected, 1e-9);
         assert!(limit.confirmed, "f = {f}");
         let collapse = limit.collapse.expect("a mode");
-        assert_eq!(
-            collapse.class,
-            stickslip::answer::record::RayClass::Mechanism
-        );
+        assert_eq!(collapse.class, stickslip::answer::record::RayClass::Mechanism);
         let opens = collapse.direction.iter().any(|d| d.z_n > 1e-9);
         assert_eq!(opens, expected == 400.0, "{}", collapse.mode);
     }
@@ -160,17 +126,9 @@ fn a_slope_is_climbed_and_descended() {
     let (tan, mu) = (0.1, 0.3);
     let case = Case::new("slope", &[("F", 0.0)]);
     let up = case.trace("push", None);
-    close(
-        up.limit().expect("a limit"),
-        (tan + mu) / (1.0 - mu * tan),
-        1e-9,
-    );
+    close(up.limit().expect("a limit"), (tan + mu) / (1.0 - mu * tan), 1e-9);
     let down = case.trace("push", Some(-1.0));
-    close(
-        down.limit().expect("a limit"),
-        (tan - mu) / (1.0 + mu * tan),
-        1e-9,
-    );
+    close(down.limit().expect("a limit"), (tan - mu) / (1.0 + mu * tan), 1e-9);
 }
 
 /// The state on a path is the state solved for there, where there is only one.
@@ -194,27 +152,13 @@ fn the_path_passes_through_the_answers_of_its_loads() {
             *case.values.get_mut(load).expect("a parameter") = factor;
             let solved = case.solve();
             let size = |k: fn(&stickslip::answer::record::PairState) -> f64| {
-                solved
-                    .answer
-                    .pairs
-                    .iter()
-                    .map(|p| k(p).abs())
-                    .fold(0.0, f64::max)
+                solved.answer.pairs.iter().map(|p| k(p).abs()).fold(0.0, f64::max)
             };
             let (force, length) = (size(|p| p.x_n), size(|p| p.z_t).max(size(|p| p.z_n)));
             for (a, b) in found.iter().zip(&solved.answer.pairs) {
-                assert!(
-                    (a.x_n - b.x_n).abs() <= 1e-9 * force,
-                    "{name} {factor} {a:?} {b:?}"
-                );
-                assert!(
-                    (a.x_t - b.x_t).abs() <= 1e-9 * force,
-                    "{name} {factor} {a:?} {b:?}"
-                );
-                assert!(
-                    (a.z_t - b.z_t).abs() <= 1e-9 * length,
-                    "{name} {factor} {a:?} {b:?}"
-                );
+                assert!((a.x_n - b.x_n).abs() <= 1e-9 * force, "{name} {factor} {a:?} {b:?}");
+                assert!((a.x_t - b.x_t).abs() <= 1e-9 * force, "{name} {factor} {a:?} {b:?}");
+                assert!((a.z_t - b.z_t).abs() <= 1e-9 * length, "{name} {factor} {a:?} {b:?}");
                 assert_eq!(a.state, b.state, "{name} {factor} {}", a.id);
             }
         }
@@ -228,46 +172,22 @@ fn a_warm_answer_can_be_followed_and_differentiated() {
     let before = case.solve();
     *case.values.get_mut("T").expect("a parameter") = 110.0;
     let rules = case.scenario.rules;
-    let warm = case
-        .prepared
-        .follow(&before, &case.values, rules, &Quiet)
-        .expect("a way");
+    let warm = case.prepared.follow(&before, &case.values, rules, &Quiet).expect("a way");
     let cold = case.solve();
     let basis = stickslip::path::start::final_basis(&warm).expect("a scheme");
     assert!(!basis.z.is_empty());
     let rates = |solved: &Solved| {
-        stickslip::path::sensitivity::sensitivity(
-            &case.prepared,
-            &case.scenario,
-            solved,
-            &case.values,
-        )
-        .expect("an answer")
+        stickslip::path::sensitivity::sensitivity(&case.prepared, &case.scenario, solved, &case.values)
+            .expect("an answer")
     };
     let (a, b) = (rates(&warm), rates(&cold));
     for (a, b) in a.parameters.iter().zip(&b.parameters) {
-        let size = b
-            .pairs
-            .iter()
-            .map(|pair| pair.z_t.abs())
-            .fold(0.0, f64::max);
+        let size = b.pairs.iter().map(|pair| pair.z_t.abs()).fold(0.0, f64::max);
         for (a, b) in a.pairs.iter().zip(&b.pairs) {
             assert!((a.z_t - b.z_t).abs() <= 1e-8 * size, "{a:?} {b:?}");
         }
     }
-    let reach = LoadReach {
-        to: None,
-        through: false,
-    };
-    let path = trace(
-        &case.prepared,
-        &case.scenario,
-        &case.values,
-        Some(&warm),
-        "push",
-        reach,
-        &Quiet,
-    )
-    .expect("a path");
+    let reach = LoadReach { to: None, through: false };
+    let path = trace(&case.prepared, &case.scenario, &case.values, Some(&warm), "push", reach, &Quiet).expect("a path");
     close(path.limit().expect("a limit"), 150.0, 1e-9);
 }

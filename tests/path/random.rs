@@ -26,20 +26,12 @@ use crate::common::systems::coulomb;
 fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
     let n = 2 * m;
     let number = |rng: &mut ChaCha8Rng, ties: bool| {
-        if ties {
-            f64::from(rng.random_range(-1..=1))
-        } else {
-            rng.random_range(-1.0..1.0)
-        }
+        if ties { f64::from(rng.random_range(-1..=1)) } else { rng.random_range(-1.0..1.0) }
     };
     let a = DMatrix::from_fn(n, n, |_, _| number(rng, ties));
     let stiffness = &a * a.transpose() / n as f64 + DMatrix::identity(n, n);
     let load = DVector::from_fn(n, |_, _| number(rng, ties));
-    let friction = if ties {
-        0.25
-    } else {
-        rng.random_range(0.0..0.4)
-    };
+    let friction = if ties { 0.25 } else { rng.random_range(0.0..0.4) };
     let (system, mut numbers) = coulomb(stiffness, load, friction);
     numbers.cohesion = vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m];
     numbers.gap = vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m];
@@ -51,10 +43,7 @@ fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64
     let rule = contact.tie_rule(TieBreak::Lexicographic);
     let mut engine = SchemeEngine::new(Arc::clone(&contact.lcp), rule);
     let run = run(&mut engine, 20_000, &mut |_| ControlFlow::Continue(()));
-    assert!(matches!(
-        run.outcome,
-        Outcome::Trivial | Outcome::Normal { .. }
-    ));
+    assert!(matches!(run.outcome, Outcome::Trivial | Outcome::Normal { .. }));
     let z = contact.joint_displacements(system, &run.point.z) * contact.length_unit;
     let basis = Basis::after(&run.pivots);
     let engine = engine.into_parametric().expect("stands on an answer");
@@ -76,21 +65,12 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
         for step in 0..4 {
             let mut next = numbers.clone();
             next.load = DVector::from_fn(2 * m, |_, _| {
-                if ties {
-                    f64::from(rng.random_range(-2..=2))
-                } else {
-                    rng.random_range(-1.0..1.0)
-                }
+                if ties { f64::from(rng.random_range(-2..=2)) } else { rng.random_range(-1.0..1.0) }
             });
             let increment = &next.load - &numbers.load;
             let contact = path_lcp(&system, &numbers, &increment);
-            let mut engine = Parametric::new(Arc::clone(&contact.lcp), &basis, order(&contact))
-                .expect("regular");
-            let reach = Reach {
-                target: 1.0,
-                through: false,
-                pivots: 10_000,
-            };
+            let mut engine = Parametric::new(Arc::clone(&contact.lcp), &basis, order(&contact)).expect("regular");
+            let reach = Reach { target: 1.0, through: false, pivots: 10_000 };
             let path = engine.follow(reach, &mut |_| ControlFlow::Continue(()));
             assert_eq!(path.end, End::Target, "problem {k}.{step}, m = {m}");
             let z_of = |z: &[f64]| contact.joint_displacements(&system, z) * contact.length_unit;
@@ -100,11 +80,7 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
                 let (_, z, _) = cold(&system, &there);
                 let error = (z_of(&knot.point.z) - &z).amax();
                 // z_τ of pairs that just touch without force may be anything.
-                assert!(
-                    error <= 1e-9,
-                    "problem {k}.{step} at t = {}: {error:e}",
-                    knot.t
-                );
+                assert!(error <= 1e-9, "problem {k}.{step} at t = {}: {error:e}", knot.t);
             }
             let warm = kept.follow(&system, &next, &Quiet).expect("a way");
             let (_, z, _) = cold(&system, &next);
@@ -141,8 +117,7 @@ fn warm_starts_follow_friction_to_the_answers_of_cold_runs() {
                 Some(warm) => {
                     followed += 1;
                     let contact = fresh.contact();
-                    let found =
-                        contact.joint_displacements(&system, &warm.point.z) * warm.length_unit;
+                    let found = contact.joint_displacements(&system, &warm.point.z) * warm.length_unit;
                     assert!((&found - &z).amax() <= 1e-10, "problem {k}.{step}");
                 }
                 None => kept = fresh,

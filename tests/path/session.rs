@@ -6,13 +6,8 @@ use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
 fn run(scenario: &str, commands: &[&str]) -> Vec<Result<String, String>> {
-    let mut session =
-        Session::new(embedded::load(scenario).expect("embedded"), &Quiet).expect("sound");
-    let style = Style {
-        width: 100,
-        color: false,
-        ascii: false,
-    };
+    let mut session = Session::new(embedded::load(scenario).expect("embedded"), &Quiet).expect("sound");
+    let style = Style { width: 100, color: false, ascii: false };
     commands
         .iter()
         .map(|command| {
@@ -52,54 +47,23 @@ fn the_beam_is_traced_and_its_limit_found() {
             "trace pull 5",
         ],
     );
-    assert!(
-        results[0]
-            .as_ref()
-            .is_err_and(|error| error.contains("no path"))
-    );
+    assert!(results[0].as_ref().is_err_and(|error| error.contains("no path")));
     let trace = text(&results[2]);
-    for word in [
-        "50",
-        "100",
-        "150",
-        "200",
-        "250",
-        "pair c2 slips +",
-        "the target pull = 260",
-    ] {
+    for word in ["50", "100", "150", "200", "250", "pair c2 slips +", "the target pull = 260"] {
         assert!(trace.contains(word), "{trace}");
     }
-    assert!(
-        text(&results[3]).contains("force x_τ over pull"),
-        "{}",
-        text(&results[3])
-    );
+    assert!(text(&results[3]).contains("force x_τ over pull"), "{}", text(&results[3]));
     let written = std::fs::read_to_string(&csv).expect("written");
     assert!(written.starts_with("stage,value,factor weight,factor pull,pair,state,"));
     // Start, five breakpoints and the target, six pairs each.
     assert_eq!(written.lines().count(), 1 + 7 * 6);
     let limit = text(&results[5]);
     assert!(limit.contains("limit load: F2 = 300 kN"), "{limit}");
-    assert!(
-        limit.contains("mechanism") && limit.contains("confirmed"),
-        "{limit}"
-    );
-    assert!(
-        text(&results[6]).contains("one scheme"),
-        "{}",
-        text(&results[6])
-    );
+    assert!(limit.contains("mechanism") && limit.contains("confirmed"), "{limit}");
+    assert!(text(&results[6]).contains("one scheme"), "{}", text(&results[6]));
     assert!(results[7].is_ok(), "{:?}", results[7]);
-    assert!(
-        results[8]
-            .as_ref()
-            .is_err_and(|error| error.contains("stages"))
-    );
-    assert!(
-        results[9]
-            .as_ref()
-            .is_err_and(|error| error.contains("load cases weight, pull"))
-    );
+    assert!(results[8].as_ref().is_err_and(|error| error.contains("stages")));
+    assert!(results[9].as_ref().is_err_and(|error| error.contains("load cases weight, pull")));
     assert!(results[10].is_err());
 }
 
@@ -120,33 +84,10 @@ fn sweeps_are_tables_or_files() {
         ],
     );
     let table = text(&results[0]);
-    assert!(
-        table.contains("normal") && table.contains("mechanism"),
-        "{table}"
-    );
-    assert!(
-        text(&results[1]).contains("55 rows written"),
-        "{:?}",
-        results[1]
-    );
-    assert!(
-        results[2]
-            .as_ref()
-            .is_err_and(|error| error.contains("--resume"))
-    );
-    assert!(
-        text(&results[3]).contains("55 were there already; complete"),
-        "{:?}",
-        results[3]
-    );
-    assert!(
-        results[4]
-            .as_ref()
-            .is_err_and(|error| error.contains("unknown parameter g"))
-    );
-    assert!(
-        results[5]
-            .as_ref()
-            .is_err_and(|error| error.contains("too many to show"))
-    );
+    assert!(table.contains("normal") && table.contains("mechanism"), "{table}");
+    assert!(text(&results[1]).contains("55 rows written"), "{:?}", results[1]);
+    assert!(results[2].as_ref().is_err_and(|error| error.contains("--resume")));
+    assert!(text(&results[3]).contains("55 were there already; complete"), "{:?}", results[3]);
+    assert!(results[4].as_ref().is_err_and(|error| error.contains("unknown parameter g")));
+    assert!(results[5].as_ref().is_err_and(|error| error.contains("too many to show")));
 }

@@ -24,10 +24,7 @@ fn run(name: &str, stages: &str, set: &[(&str, f64)]) -> (Scenario, Prepared, Hi
 }
 
 fn close(found: f64, expected: f64, size: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-12 * size,
-        "{found} is not {expected}"
-    );
+    assert!((found - expected).abs() <= 1e-12 * size, "{found} is not {expected}");
 }
 
 /// r = 30, L/EA = 1e-5: the end slips 300e-5 at 150, and on the way back it remembers.
@@ -42,12 +39,7 @@ fn a_bar_on_supports_draws_the_masing_loop() {
     };
     let at = |from: f64, to: f64, force: f64| (force - from) / (to - from);
     close(end(1, 1.0), 300.0, 300.0);
-    for (force, slip) in [
-        (100.0, 300.0),
-        (50.0, 260.0),
-        (0.0, 180.0),
-        (-150.0, -300.0),
-    ] {
+    for (force, slip) in [(100.0, 300.0), (50.0, 260.0), (0.0, 180.0), (-150.0, -300.0)] {
         close(end(2, at(150.0, -150.0, force)), slip, 300.0);
     }
     close(end(3, at(-150.0, 150.0, 0.0)), -180.0, 300.0);
@@ -78,44 +70,19 @@ fn a_bar_on_supports_draws_the_masing_loop() {
 #[test]
 fn one_loading_in_one_stage_or_many_is_the_one_shot_answer() {
     for (name, stages, set) in [
-        (
-            "beam",
-            r#"[{"weight": 1}, {"weight": 1, "pull": 1}]"#,
-            vec![],
-        ),
+        ("beam", r#"[{"weight": 1}, {"weight": 1, "pull": 1}]"#, vec![]),
         (
             "beam",
             r#"[{"weight": 1}, {"weight": 1, "pull": 0.37}, {"weight": 1, "pull": 0.7}, {"weight": 1, "pull": 1}]"#,
             vec![],
         ),
-        (
-            "plates-hinged",
-            r#"[{"weight": 1}, {"weight": 1, "lift": 1}]"#,
-            vec![],
-        ),
-        (
-            "block",
-            r#"[{"weight": 1}, {"weight": 1, "push": 1}]"#,
-            vec![],
-        ),
+        ("plates-hinged", r#"[{"weight": 1}, {"weight": 1, "lift": 1}]"#, vec![]),
+        ("block", r#"[{"weight": 1}, {"weight": 1, "push": 1}]"#, vec![]),
     ] {
         let (scenario, prepared, history) = run(name, stages, &set);
         assert_eq!(history.end, HistoryEnd::Complete, "{name}");
-        let solved = prepared
-            .solve(
-                &scenario,
-                &scenario.parameter_values(),
-                scenario.rules,
-                &Quiet,
-            )
-            .expect("solvable");
-        assert!(
-            solved
-                .answer
-                .notes
-                .iter()
-                .any(|note| note.contains("history"))
-        );
+        let solved = prepared.solve(&scenario, &scenario.parameter_values(), scenario.rules, &Quiet).expect("solvable");
+        assert!(solved.answer.notes.iter().any(|note| note.contains("history")));
         let last = history.stages.last().expect("stages");
         for stage in &history.stages {
             let energy = stage.energy.expect("a structure");

@@ -23,10 +23,7 @@ struct Case {
 impl Case {
     fn new(name: &str, axes: &[&str]) -> Case {
         let scenario = embedded::load(name).expect("embedded");
-        let axes = axes
-            .iter()
-            .map(|axis| Axis::parse(axis).expect("an axis"))
-            .collect();
+        let axes = axes.iter().map(|axis| Axis::parse(axis).expect("an axis")).collect();
         Case {
             prepared: prepare(&scenario, &Quiet).expect("sound"),
             values: scenario.parameter_values(),
@@ -62,9 +59,7 @@ struct Stop(AtomicUsize);
 impl Watch for Stop {
     fn stop(&self) -> bool {
         let left = |left: usize| Some(left.saturating_sub(1));
-        self.0
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, left)
-            <= Ok(1)
+        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, left) <= Ok(1)
     }
 }
 
@@ -79,10 +74,7 @@ fn cut_and_continue(case: &Case, patience: usize) {
         let done = run_to_file(&sweep, &path, rounds > 0, &watch).expect("written");
         rounds += 1;
         let now = fs::read(&path).expect("there");
-        assert!(
-            whole.starts_with(&now),
-            "what is kept is the beginning of the whole"
-        );
+        assert!(whole.starts_with(&now), "what is kept is the beginning of the whole");
         if done.is_complete() {
             break;
         }
@@ -96,15 +88,9 @@ fn cut_and_continue(case: &Case, patience: usize) {
     // Nothing left to do; and without --resume nothing is overwritten.
     let again = run_to_file(&sweep, &path, true, &Quiet).expect("complete");
     assert_eq!((again.written, again.found), (0, case.grid.len()));
-    assert!(matches!(
-        run_to_file(&sweep, &path, false, &Quiet),
-        Err(SweepFileError::Exists(_))
-    ));
+    assert!(matches!(run_to_file(&sweep, &path, false, &Quiet), Err(SweepFileError::Exists(_))));
     let other = case.sweep("1/2", Format::Csv);
-    assert!(matches!(
-        run_to_file(&other, &path, true, &Quiet),
-        Err(SweepFileError::Another { what: "shard", .. })
-    ));
+    assert!(matches!(run_to_file(&other, &path, true, &Quiet), Err(SweepFileError::Another { what: "shard", .. })));
 }
 
 #[test]
@@ -126,10 +112,7 @@ fn threads_and_shards_change_no_byte() {
     for format in [Format::Csv, Format::Json] {
         let whole = case.bytes("1/1", format);
         for threads in [1, 3] {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .expect("threads");
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             assert_eq!(pool.install(|| case.bytes("1/1", format)), whole);
         }
         let folder = tempfile::tempdir().expect("a place");
@@ -142,21 +125,13 @@ fn threads_and_shards_change_no_byte() {
             files.push(path);
         }
         let mut merged = Vec::new();
-        assert_eq!(
-            merge(&files, &mut merged).expect("complete"),
-            case.grid.len()
-        );
+        assert_eq!(merge(&files, &mut merged).expect("complete"), case.grid.len());
         assert_eq!(merged, whole);
         let mut nothing = Vec::new();
         let missing = merge(&files[..2], &mut nothing).expect_err("shard 2 is missing");
         assert_eq!(missing.to_string(), "shard 2 of 3 is missing");
         let twice = [files.clone(), vec![files[0].clone()]].concat();
-        assert!(
-            merge(&twice, &mut nothing)
-                .expect_err("twice")
-                .to_string()
-                .contains("twice")
-        );
+        assert!(merge(&twice, &mut nothing).expect_err("twice").to_string().contains("twice"));
         let text = fs::read(&files[1]).expect("there");
         fs::write(&files[1], &text[..text.len() - 5]).expect("written");
         let short = merge(&files, &mut nothing).expect_err("cut").to_string();
@@ -175,11 +150,7 @@ fn rows_say_what_was_found() {
          max_x_n,max_x_n_pair,failure"
     );
     assert!(rows[1].starts_with("100.0,normal,,0.0,"), "{}", rows[1]);
-    assert!(
-        rows[3].starts_with("400.0,ray,mechanism,11.11"),
-        "{}",
-        rows[3]
-    );
+    assert!(rows[3].starts_with("400.0,ray,mechanism,11.11"), "{}", rows[3]);
     // z_1 = (L/EA) r n (n+1)/2 at F2 = n r, here n = 5, r = 50.
     let cells: Vec<&str> = rows[2].split(',').collect();
     let slip: f64 = cells[10].parse().expect("a number");

@@ -17,31 +17,18 @@ pub fn check(case: &Case, set: &[(&str, f64)], rules: Rules) -> bool {
         values[*name] = *value;
     }
     if !answer.is_answer() {
-        assert!(
-            answer.ray.is_some(),
-            "{set:?} {rules:?}: {:?}",
-            answer.failure
-        );
+        assert!(answer.ray.is_some(), "{set:?} {rules:?}: {:?}", answer.failure);
         return false;
     }
     is_answer(&answer);
     let off = imbalance(&case.scenario, &values, &answer);
     assert!(off < 1e-9, "{set:?} {rules:?}: out of balance by {off:e}");
     let off = nodal_imbalance(&case.scenario, &values, &answer);
-    assert!(
-        off < 1e-9,
-        "{set:?} {rules:?}: a node out of balance by {off:e}"
-    );
+    assert!(off < 1e-9, "{set:?} {rules:?}: a node out of balance by {off:e}");
     let off = incompatibility(&case.scenario, &values, &answer);
-    assert!(
-        off < 1e-9,
-        "{set:?} {rules:?}: displacements and pairs differ by {off:e}"
-    );
+    assert!(off < 1e-9, "{set:?} {rules:?}: displacements and pairs differ by {off:e}");
     let wrong = violation(&case.scenario, &values, &answer);
-    assert!(
-        wrong < 1e-9,
-        "{set:?} {rules:?}: laws violated by {wrong:e}"
-    );
+    assert!(wrong < 1e-9, "{set:?} {rules:?}: laws violated by {wrong:e}");
     true
 }
 
@@ -52,12 +39,8 @@ fn embedded_structures_balance() {
         if !matches!(case.scenario.source, Source::Structure(_)) {
             continue;
         }
-        let parameters: Vec<(String, f64, f64)> = case
-            .scenario
-            .parameters
-            .iter()
-            .map(|(name, p)| (name.clone(), p.min.unwrap(), p.max.unwrap()))
-            .collect();
+        let parameters: Vec<(String, f64, f64)> =
+            case.scenario.parameters.iter().map(|(name, p)| (name.clone(), p.min.unwrap(), p.max.unwrap())).collect();
         let mut answers = 0;
         for rule in Covering::ALL {
             answers += usize::from(check(&case, &[], covering(rule)));
@@ -74,15 +57,7 @@ fn embedded_structures_balance() {
 
 #[test]
 fn every_rule_that_answers_answers_right() {
-    for name in [
-        "beam",
-        "block",
-        "frame-rotated",
-        "plates-hinged",
-        "slope",
-        "klarbring",
-        "gap",
-    ] {
+    for name in ["beam", "block", "frame-rotated", "plates-hinged", "slope", "klarbring", "gap"] {
         let case = Case::embedded(name);
         for rules in all_rules() {
             check(&case, &[], rules);

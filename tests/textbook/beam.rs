@@ -29,9 +29,7 @@ const E: f64 = 2e8;
 /// The beam on `n` supports at distance `length`.
 fn beam(n: usize, length: f64) -> Case {
     let name = |i: usize| format!("s{}", i + 1);
-    let nodes: serde_json::Map<_, _> = (0..n)
-        .map(|i| (name(i), json!([length * i as f64, 0])))
-        .collect();
+    let nodes: serde_json::Map<_, _> = (0..n).map(|i| (name(i), json!([length * i as f64, 0]))).collect();
     let bars: Vec<_> = (1..n)
         .map(|i| {
             json!({ "id": format!("b{i}"), "nodes": [name(i - 1), name(i)],
@@ -44,9 +42,7 @@ fn beam(n: usize, length: f64) -> Case {
                     "normal": [0, 1], "friction": "f" })
         })
         .collect();
-    let weights: Vec<_> = (0..n)
-        .map(|i| json!({ "point": { "at": name(i), "force": [0, -1] } }))
-        .collect();
+    let weights: Vec<_> = (0..n).map(|i| json!({ "point": { "at": name(i), "force": [0, -1] } })).collect();
     Case::json(json!({
         "parameters": { "f": 0.3, "F": 100.0, "F2": 0.0 },
         "materials": { "steel": { "E": E, "nu": 0.3 } },
@@ -92,12 +88,7 @@ fn agrees(case: &Case, n: usize, unit: f64, r: f64, pull: f64, set: &[(&str, f64
         is_answer(&answer);
         let what = format!("{rule}, n = {n}, F2 = {pull}");
         let (slips, friction) = closed_form(n, unit, r, pull);
-        near_all(
-            &format!("z_τ, {what}"),
-            &of_pairs(&answer, |p| p.z_t),
-            &slips,
-            1e-9,
-        );
+        near_all(&format!("z_τ, {what}"), &of_pairs(&answer, |p| p.z_t), &slips, 1e-9);
         let force = of_pairs(&answer, |p| -p.x_t);
         for (found, expected) in force.iter().zip(&friction) {
             near(&format!("x_τ, {what}"), *found, *expected, 1e-9, r);
@@ -189,11 +180,7 @@ fn exactly_at_the_limit_it_stands() {
             let limit = n as f64 * 30.0;
             for rule in Covering::ALL {
                 let answer = case.solve_under(&[("F2", limit)], covering(rule));
-                assert_eq!(
-                    answer.outcome,
-                    OutcomeKind::Normal,
-                    "n = {n}, L = {length}, {rule}"
-                );
+                assert_eq!(answer.outcome, OutcomeKind::Normal, "n = {n}, L = {length}, {rule}");
             }
             agrees(&case, n, length / (E * AREA), 30.0, limit, &[("F2", limit)]);
         }
@@ -207,19 +194,11 @@ fn beyond_the_limit_p_is_what_is_missing() {
             let case = beam(n, length);
             for f in [0.3, 0.5, 0.75, 1.5] {
                 let limit = n as f64 * f * 100.0;
-                for (beyond, tolerance) in [
-                    (1.0 + 1e-9, 1e-5),
-                    (1.0 + 1e-6, 1e-7),
-                    (1.01, 1e-9),
-                    (1.1, 1e-9),
-                    (3.0, 1e-9),
-                ] {
+                for (beyond, tolerance) in
+                    [(1.0 + 1e-9, 1e-5), (1.0 + 1e-6, 1e-7), (1.01, 1e-9), (1.1, 1e-9), (3.0, 1e-9)]
+                {
                     let pull = limit * beyond;
-                    for (rule, d) in [
-                        (Covering::Cohesive, 1.0 + f),
-                        (Covering::Ones, 1.0),
-                        (Covering::Weight, f),
-                    ] {
+                    for (rule, d) in [(Covering::Cohesive, 1.0 + f), (Covering::Ones, 1.0), (Covering::Weight, f)] {
                         let answer = case.solve_under(&[("f", f), ("F2", pull)], covering(rule));
                         let ray = mechanism(&answer);
                         let expected = (pull - limit) / (n as f64 * d);
@@ -238,23 +217,16 @@ fn beyond_the_limit_p_is_what_is_missing() {
 
 #[test]
 fn the_embedded_beams_are_this_beam() {
-    for (name, outcome) in [
-        ("beam", OutcomeKind::Normal),
-        ("beam-limit", OutcomeKind::Normal),
-        ("beam-ray", OutcomeKind::Ray),
-    ] {
+    for (name, outcome) in
+        [("beam", OutcomeKind::Normal), ("beam-limit", OutcomeKind::Normal), ("beam-ray", OutcomeKind::Ray)]
+    {
         let case = Case::embedded(name);
         let answer = case.solve(&[]);
         assert_eq!(answer.outcome, outcome, "{name}");
         let values = case.scenario.parameter_values();
         let (r, pull) = (values["f"] * values["F"], values["F2"]);
         if outcome == OutcomeKind::Ray {
-            close(
-                "p",
-                mechanism(&answer).p,
-                (pull - 6.0 * r) / (6.0 * 1.5),
-                1e-9,
-            );
+            close("p", mechanism(&answer).p, (pull - 6.0 * r) / (6.0 * 1.5), 1e-9);
         } else {
             agrees(&case, 6, 1e-5, r, pull, &[]);
         }

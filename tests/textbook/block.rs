@@ -50,13 +50,9 @@ fn slides_at_f() {
         assert_eq!(answer.outcome, OutcomeKind::Normal, "H = {h}");
         is_answer(&answer);
     }
-    for (h, tolerance) in [
-        (0.2 * (1.0 + 1e-9), 1e-5),
-        (0.2 * (1.0 + 1e-6), 1e-7),
-        (0.202, 1e-9),
-        (0.23, 1e-9),
-        (0.263, 1e-9),
-    ] {
+    for (h, tolerance) in
+        [(0.2 * (1.0 + 1e-9), 1e-5), (0.2 * (1.0 + 1e-6), 1e-7), (0.202, 1e-9), (0.23, 1e-9), (0.263, 1e-9)]
+    {
         let answer = case.solve(&[("f", 0.2), ("H", h)]);
         let ray = mechanism(&answer);
         close("p", ray.p, (h - 0.2) / 6.0, tolerance);
@@ -78,11 +74,7 @@ fn the_base_carries_weight_and_push() {
         is_answer(&answer);
         let normal: f64 = answer.pairs.iter().map(|p| p.x_n).sum();
         let shear: f64 = answer.pairs.iter().map(|p| p.x_t).sum();
-        let moment: f64 = answer
-            .pairs
-            .iter()
-            .map(|p| p.x_n * (p.position.unwrap()[0] - 0.5))
-            .sum();
+        let moment: f64 = answer.pairs.iter().map(|p| p.x_n * (p.position.unwrap()[0] - 0.5)).sum();
         near("Σ x_n", normal, 1.0, 1e-9, 1.0);
         near("Σ x_τ", shear, -h, 1e-9, 1.0);
         near("Σ x_n x", moment, 2.0 * h, 1e-9, 1.0);

@@ -22,13 +22,7 @@ fn the_stop_carries_what_is_left_after_the_gap() {
     let answer = case.solve(&[]);
     is_answer(&answer);
     close("x_n", answer.pairs[0].x_n, 30.3125, 1e-9);
-    for (load, gap) in [
-        (50.0, 0.0),
-        (50.0, 0.02),
-        (50.0, 0.05),
-        (100.0, 0.1),
-        (7.0, 0.001),
-    ] {
+    for (load, gap) in [(50.0, 0.0), (50.0, 0.02), (50.0, 0.05), (100.0, 0.1), (7.0, 0.001)] {
         let answer = case.solve(&[("P", load), ("g", gap)]);
         is_answer(&answer);
         let carried = load - 3.0 * EI * gap / L.powi(3);

@@ -47,8 +47,7 @@ fn without_contacts_it_is_a_linear_structure() {
 #[test]
 fn without_load_nothing_happens() {
     for law in ["coulomb", "frictionless"] {
-        let mut contact =
-            json!([{ "id": "c", "node": "B", "against": "ground", "normal": [0, 1], "law": law }]);
+        let mut contact = json!([{ "id": "c", "node": "B", "against": "ground", "normal": [0, 1], "law": law }]);
         for gap in [0.0, 0.1] {
             contact[0]["gap"] = gap.into();
             let case = cantilever(contact.clone(), 0.0);
@@ -63,13 +62,8 @@ fn without_load_nothing_happens() {
     }
     for name in ["beam", "block", "plates-free", "greco", "slope", "frame"] {
         let case = Case::embedded(name);
-        let zero: Vec<(&str, f64)> = case
-            .scenario
-            .parameters
-            .keys()
-            .filter(|name| *name != "f")
-            .map(|name| (name.as_str(), 0.0))
-            .collect();
+        let zero: Vec<(&str, f64)> =
+            case.scenario.parameters.keys().filter(|name| *name != "f").map(|name| (name.as_str(), 0.0)).collect();
         if name == "greco" || name == "frame" || name == "block" {
             continue; // their weight has no parameter
         }
@@ -77,12 +71,7 @@ fn without_load_nothing_happens() {
             let answer = case.solve_under(&zero, rules);
             is_answer(&answer);
             assert_eq!(answer.outcome, OutcomeKind::Trivial);
-            assert!(
-                answer
-                    .pairs
-                    .iter()
-                    .all(|p| p.x_n == 0.0 && p.z_n == 0.0 && p.z_t == 0.0)
-            );
+            assert!(answer.pairs.iter().all(|p| p.x_n == 0.0 && p.z_n == 0.0 && p.z_t == 0.0));
         }
     }
 }
@@ -123,18 +112,9 @@ fn a_node_held_by_its_pair_only() {
     for fx in [0.0, 0.5, -1.0, 1.0] {
         assert!(check(&case, &[("Fx", fx)], Rules::default()));
         let answer = case.solve(&[("Fx", fx)]);
-        near_all(
-            "x",
-            &[answer.pairs[0].x_n, answer.pairs[0].x_t],
-            &[2.0, -fx],
-            1e-9,
-        );
+        near_all("x", &[answer.pairs[0].x_n, answer.pairs[0].x_t], &[2.0, -fx], 1e-9);
     }
-    for (fx, fy, p) in [
-        (1.3, -2.0, 0.3 / 1.5),
-        (-4.0, -2.0, 3.0 / 1.5),
-        (0.0, 1.0, 1.0),
-    ] {
+    for (fx, fy, p) in [(1.3, -2.0, 0.3 / 1.5), (-4.0, -2.0, 3.0 / 1.5), (0.0, 1.0, 1.0)] {
         let answer = case.solve(&[("Fx", fx), ("Fy", fy)]);
         close("p", mechanism(&answer).p, p, 1e-9);
     }
@@ -153,12 +133,7 @@ fn bound_pairs_alone() {
         "contacts": [{ "id": "c", "node": "B", "against": "ground", "normal": [0, 1], "law": "bound", "bound": 2.0 }],
         "loads": { "pull": { "factor": "P", "items": [{ "point": { "at": "B", "force": [1, 3] } }] } }
     }));
-    for (load, slip, x_t) in [
-        (5.0, 6e-4, -2.0),
-        (-5.0, -6e-4, 2.0),
-        (1.0, 0.0, -1.0),
-        (2.0, 0.0, -2.0),
-    ] {
+    for (load, slip, x_t) in [(5.0, 6e-4, -2.0), (-5.0, -6e-4, 2.0), (1.0, 0.0, -1.0), (2.0, 0.0, -2.0)] {
         assert!(check(&case, &[("P", load)], Rules::default()));
         let answer = case.solve(&[("P", load)]);
         let pair = &answer.pairs[0];
@@ -176,19 +151,7 @@ fn the_same_pair_order_and_units_of_the_report() {
     let ids: Vec<&str> = answer.pairs.iter().map(|p| p.id.as_str()).collect();
     assert_eq!(ids, ["c1", "c2", "c3", "c4", "c5", "c6"]);
     for pair in &answer.pairs {
-        near(
-            "x⁺ + x⁻",
-            pair.reserve_plus + pair.reserve_minus,
-            2.0 * pair.bound,
-            1e-12,
-            100.0,
-        );
-        near(
-            "x⁺ − x⁻",
-            pair.reserve_plus - pair.reserve_minus,
-            2.0 * pair.x_t,
-            1e-12,
-            100.0,
-        );
+        near("x⁺ + x⁻", pair.reserve_plus + pair.reserve_minus, 2.0 * pair.bound, 1e-12, 100.0);
+        near("x⁺ − x⁻", pair.reserve_plus - pair.reserve_minus, 2.0 * pair.x_t, 1e-12, 100.0);
     }
 }

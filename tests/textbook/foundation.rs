@@ -28,11 +28,7 @@ fn half_beam(half: f64, reach: f64, n: usize) -> Case {
     let mut springs = Vec::new();
     let mut contacts = Vec::new();
     let mut bars = Vec::new();
-    let middle = if reach < half {
-        "middle".to_owned()
-    } else {
-        format!("a{n}")
-    };
+    let middle = if reach < half { "middle".to_owned() } else { format!("a{n}") };
     let mut supports = vec![json!({ "at": middle, "fixed": ["x", "r"] })];
     for i in 0..=n {
         let (a, b) = (format!("a{i}"), format!("b{i}"));
@@ -41,9 +37,12 @@ fn half_beam(half: f64, reach: f64, n: usize) -> Case {
         let share = if i == 0 || i == n { 0.5 } else { 1.0 };
         springs.push(json!({ "at": b, "direction": [0, 1], "stiffness": 4.0 * h * share }));
         supports.push(json!({ "at": b, "fixed": ["x"] }));
-        contacts.push(json!({ "id": format!("c{i}"), "node": a, "against": b, "normal": [0, 1], "law": "frictionless" }));
+        contacts
+            .push(json!({ "id": format!("c{i}"), "node": a, "against": b, "normal": [0, 1], "law": "frictionless" }));
         if i > 0 {
-            bars.push(json!({ "id": format!("e{i}"), "nodes": [format!("a{}", i - 1), a], "material": "m", "section": "s" }));
+            bars.push(
+                json!({ "id": format!("e{i}"), "nodes": [format!("a{}", i - 1), a], "material": "m", "section": "s" }),
+            );
         }
     }
     if reach < half {
@@ -81,17 +80,10 @@ fn exact(half: f64) -> (f64, f64) {
     // y''(0) = 0, y'''(0) = 1, y(c) = 0, y'''(c) = 0; what is left: y'(c) + y''(c)(half − c).
     let solve = |c: f64| {
         let (start, end) = (terms(0.0), terms(c));
-        let a = Matrix4::from_rows(&[
-            start[2].transpose(),
-            start[3].transpose(),
-            end[0].transpose(),
-            end[3].transpose(),
-        ]);
+        let a =
+            Matrix4::from_rows(&[start[2].transpose(), start[3].transpose(), end[0].transpose(), end[3].transpose()]);
         let y = a.lu().solve(&Vector4::new(0.0, 1.0, 0.0, 0.0)).unwrap();
-        (
-            end[1].dot(&y) + end[2].dot(&y) * (half - c),
-            end[2].dot(&y).abs(),
-        )
+        (end[1].dot(&y) + end[2].dot(&y) * (half - c), end[2].dot(&y).abs())
     };
     let (mut low, mut high) = (0.3, 1.5);
     assert!(solve(low).0 * solve(high).0 < 0.0);
@@ -108,16 +100,8 @@ fn exact(half: f64) -> (f64, f64) {
 
 /// (c, |M_mid|) of an answer: c where the pressure, linear beside its end, reaches zero.
 fn measured(answer: &Answer, h: f64) -> (f64, f64) {
-    let last = answer
-        .pairs
-        .iter()
-        .rposition(|p| p.state == State::Closed)
-        .unwrap();
-    assert!(
-        answer.pairs[..=last]
-            .iter()
-            .all(|p| p.state == State::Closed)
-    );
+    let last = answer.pairs.iter().rposition(|p| p.state == State::Closed).unwrap();
+    assert!(answer.pairs[..=last].iter().all(|p| p.state == State::Closed));
     let y = displacement(answer, &format!("a{last}"))[1];
     let next = displacement(answer, &format!("a{}", last + 1))[1];
     let c = h * (last as f64 + y / (y - next));
@@ -127,11 +111,7 @@ fn measured(answer: &Answer, h: f64) -> (f64, f64) {
 
 #[test]
 fn contact_length_and_moment() {
-    for (length, c, moment) in [
-        (4.0, 1.08301, 0.33789),
-        (5.0, 0.94347, 0.30262),
-        (8.0, 0.75940, 0.24905),
-    ] {
+    for (length, c, moment) in [(4.0, 1.08301, 0.33789), (5.0, 0.94347, 0.30262), (8.0, 0.75940, 0.24905)] {
         let half = length / 2.0;
         let (exact_c, exact_moment) = exact(half);
         printed("αc by the equation", exact_c, c, 1e-5);

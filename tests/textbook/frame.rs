@@ -20,23 +20,16 @@ const NORMAL: [f64; 3] = [36.44231, 34.32692, 5.52885];
 #[test]
 fn vertical_supports() {
     let case = Case::embedded("frame");
-    for (f, slips) in [
-        (0.1, [0.04261, 0.092161, 0.148251]),
-        (0.3, [0.013544, 0.047912, 0.101896]),
-        (0.6, [0.0, 0.011593, 0.062418]),
-    ] {
+    for (f, slips) in
+        [(0.1, [0.04261, 0.092161, 0.148251]), (0.3, [0.013544, 0.047912, 0.101896]), (0.6, [0.0, 0.011593, 0.062418])]
+    {
         let answer = case.solve(&[("f", f)]);
         is_answer(&answer);
         let x: Vec<f64> = of_pairs(&answer, |p| p.x_n);
         let mut slip = 0.0;
         for k in 0..3 {
             printed("x_n", x[k], NORMAL[k], 1e-5);
-            printed(
-                "slip in mm",
-                answer.pairs[k].z_t * 1e3,
-                slips[k],
-                if k == 0 && f < 0.2 { 1e-5 } else { 1e-6 },
-            );
+            printed("slip in mm", answer.pairs[k].z_t * 1e3, slips[k], if k == 0 && f < 0.2 { 1e-5 } else { 1e-6 });
             let rest = 30.0 - f * x[k..].iter().sum::<f64>();
             slip += rest.max(0.0) * 4.0 / 2.1e6;
             near("slip by the formula", answer.pairs[k].z_t, slip, 1e-9, 1e-4);
@@ -57,10 +50,7 @@ fn vertical_breakpoints() {
         // The formula itself, to 1e-9.
         let exact = 30.0 / below.pairs[k..].iter().map(|p| p.x_n).sum::<f64>();
         printed("breakpoint", exact, figure, 1e-8);
-        for (f, state) in [
-            (exact * (1.0 - 1e-9), State::SlipPlus),
-            (exact * (1.0 + 1e-9), State::Stick),
-        ] {
+        for (f, state) in [(exact * (1.0 - 1e-9), State::SlipPlus), (exact * (1.0 + 1e-9), State::Stick)] {
             assert_eq!(case.solve(&[("f", f)]).pairs[k].state, state);
         }
     }
@@ -73,13 +63,8 @@ fn turned_support() {
     let case = Case::embedded("frame-rotated");
     let answer = case.solve(&[("f", 0.1)]);
     is_answer(&answer);
-    for (k, (x_n, slip, unit)) in [
-        (36.54445, 0.030659, 1e-6),
-        (34.19073, 0.06828, 1e-5),
-        (8.78137, 0.158975, 1e-6),
-    ]
-    .into_iter()
-    .enumerate()
+    for (k, (x_n, slip, unit)) in
+        [(36.54445, 0.030659, 1e-6), (34.19073, 0.06828, 1e-5), (8.78137, 0.158975, 1e-6)].into_iter().enumerate()
     {
         printed("x_n", answer.pairs[k].x_n, x_n, 1e-5);
         printed("slip in mm", answer.pairs[k].z_t * 1e3, slip, unit);

@@ -20,13 +20,7 @@ use crate::common::*;
 fn displacements_of_the_base() {
     let answer = Case::embedded("greco").solve(&[]);
     is_answer(&answer);
-    for (i, figure) in [
-        (0, 2.84594),
-        (1, 2.70792),
-        (4, 2.27403),
-        (6, 1.97271),
-        (9, 1.53642),
-    ] {
+    for (i, figure) in [(0, 2.84594), (1, 2.70792), (4, 2.27403), (6, 1.97271), (9, 1.53642)] {
         let ux = displacement(&answer, &format!("block[{i},0]"))[0];
         printed(&format!("u_x of node {i}"), ux * 1e5, figure, 1e-5);
         near("slip", answer.pairs[i].z_t, ux, 1e-9, 1e-5);

@@ -37,29 +37,15 @@ fn sliding_is_told_apart_at_one_part_in_1e9() {
         for rule in COVERINGS {
             for below in [0.5, 0.9, 1.0 - 1e-6, 1.0 - 1e-9] {
                 let answer = case.solve_under(&[("f", f), ("T", limit * below)], covering(rule));
-                assert!(
-                    answer.ray.is_none(),
-                    "f = {f}, ×{below}, {rule}: {:?}",
-                    answer.ray
-                );
+                assert!(answer.ray.is_none(), "f = {f}, ×{below}, {rule}: {:?}", answer.ray);
                 is_answer(&answer);
             }
-            for (beyond, tolerance) in [
-                (1.0 + 1e-9, 1e-5),
-                (1.0 + 1e-6, 1e-7),
-                (1.01, 1e-9),
-                (1.1, 1e-9),
-            ] {
+            for (beyond, tolerance) in [(1.0 + 1e-9, 1e-5), (1.0 + 1e-6, 1e-7), (1.01, 1e-9), (1.1, 1e-9)] {
                 let push = limit * beyond;
                 let answer = case.solve_under(&[("f", f), ("T", push)], covering(rule));
                 let ray = mechanism(&answer);
                 let expected = (4.0 * push - 800.0 * f) / (17.0 * d_t(rule, f));
-                close(
-                    &format!("p, f = {f}, ×{beyond}, {rule}"),
-                    ray.p,
-                    expected,
-                    tolerance,
-                );
+                close(&format!("p, f = {f}, ×{beyond}, {rule}"), ray.p, expected, tolerance);
                 for pair in &ray.direction {
                     near("z̄_τ", pair.z_t, 1.0, 1e-9, 1.0);
                     near("z̄_n", pair.z_n, 0.0, 1e-9, 1.0);
@@ -76,11 +62,7 @@ fn overturning_is_told_apart_at_one_part_in_1e9() {
         for rule in COVERINGS {
             for below in [0.9, 1.0 - 1e-6, 1.0 - 1e-9] {
                 let answer = case.solve_under(&[("f", f), ("T", 400.0 * below)], covering(rule));
-                assert_eq!(
-                    answer.outcome,
-                    OutcomeKind::Normal,
-                    "f = {f}, ×{below}, {rule}"
-                );
+                assert_eq!(answer.outcome, OutcomeKind::Normal, "f = {f}, ×{below}, {rule}");
                 is_answer(&answer);
             }
             for (beyond, tolerance) in [(1.0 + 1e-9, 1e-5), (1.0 + 1e-6, 1e-7), (1.01, 1e-9)] {
@@ -88,12 +70,7 @@ fn overturning_is_told_apart_at_one_part_in_1e9() {
                 let answer = case.solve_under(&[("f", f), ("T", push)], covering(rule));
                 let ray = mechanism(&answer);
                 let expected = (8.0 * push - 3200.0) / 68.0;
-                close(
-                    &format!("p, f = {f}, ×{beyond}, {rule}"),
-                    ray.p,
-                    expected,
-                    tolerance,
-                );
+                close(&format!("p, f = {f}, ×{beyond}, {rule}"), ray.p, expected, tolerance);
                 for (i, pair) in ray.direction.iter().enumerate() {
                     near("z̄_n", pair.z_n, (16 - i) as f64 / 16.0, 1e-9, 1.0);
                     near("z̄_τ", pair.z_t, 0.0, 1e-9, 1.0);
@@ -124,22 +101,12 @@ fn exactly_at_the_limits() {
     let case = Case::embedded("plates-free");
     for (f, push) in [(0.3, 60.0), (0.75, 150.0), (1.5, 300.0)] {
         let answer = case.solve(&[("f", f), ("T", push)]);
-        assert_eq!(
-            answer.outcome,
-            OutcomeKind::Normal,
-            "f = {f}: {:?}",
-            answer.ray
-        );
+        assert_eq!(answer.outcome, OutcomeKind::Normal, "f = {f}: {:?}", answer.ray);
         is_answer(&answer);
     }
     for f in [2.2, 2.5, 3.0] {
         let answer = case.solve(&[("f", f), ("T", 400.0)]);
-        assert_eq!(
-            answer.outcome,
-            OutcomeKind::Normal,
-            "f = {f}: {:?}",
-            answer.ray
-        );
+        assert_eq!(answer.outcome, OutcomeKind::Normal, "f = {f}: {:?}", answer.ray);
         is_answer(&answer);
     }
 }

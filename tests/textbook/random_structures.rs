@@ -27,10 +27,7 @@ use crate::common::*;
 type Turn = [[f64; 2]; 2];
 
 fn turned(q: &Turn, v: [f64; 2]) -> [f64; 2] {
-    [
-        q[0][0] * v[0] + q[1][0] * v[1],
-        q[0][1] * v[0] + q[1][1] * v[1],
-    ]
+    [q[0][0] * v[0] + q[1][0] * v[1], q[0][1] * v[0] + q[1][1] * v[1]]
 }
 
 fn mirrored(q: &Turn) -> bool {
@@ -58,23 +55,8 @@ fn structure(seed: u64, q: &Turn) -> String {
     }
     let mut bars = Vec::new();
     for (body, edges) in [
-        (
-            "a",
-            vec![
-                (0, 1),
-                (1, 2),
-                (3, 4),
-                (4, 5),
-                (0, 3),
-                (1, 4),
-                (2, 5),
-                (0, 4),
-            ],
-        ),
-        (
-            "b",
-            vec![(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)],
-        ),
+        ("a", vec![(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5), (0, 4)]),
+        ("b", vec![(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)]),
     ] {
         for (k, (from, to)) in edges.into_iter().enumerate() {
             let slot = k + if body == "a" { 0 } else { 8 };
@@ -97,10 +79,7 @@ fn structure(seed: u64, q: &Turn) -> String {
         json!({ "id": id, "nodes": corners, "thickness": 0.05, "material": "brick", "plane": "stress" })
     };
     let quads = if with_quads {
-        vec![
-            quad("q1", vec!["b3", "b4", "b1", "b0"]),
-            quad("q2", vec!["b4", "b5", "b2", "b1"]),
-        ]
+        vec![quad("q1", vec!["b3", "b4", "b1", "b0"]), quad("q2", vec!["b4", "b5", "b2", "b1"])]
     } else {
         Vec::new()
     };
@@ -126,7 +105,8 @@ fn structure(seed: u64, q: &Turn) -> String {
             continue;
         }
         let normal = turn([number(-0.6, 0.6), 1.0]);
-        let mut contact = json!({ "id": format!("ab{i}"), "node": format!("a{i}"), "against": format!("b{i}"), "normal": normal });
+        let mut contact =
+            json!({ "id": format!("ab{i}"), "node": format!("a{i}"), "against": format!("b{i}"), "normal": normal });
         law(&mut contact, &mut number);
         contacts.push(contact);
     }
@@ -136,12 +116,14 @@ fn structure(seed: u64, q: &Turn) -> String {
             continue;
         }
         let normal = turn([number(-0.3, 0.3), 1.0]);
-        let mut contact = json!({ "id": format!("g{i}"), "node": format!("b{i}"), "against": "ground", "normal": normal });
+        let mut contact =
+            json!({ "id": format!("g{i}"), "node": format!("b{i}"), "against": "ground", "normal": normal });
         law(&mut contact, &mut number);
         contacts.push(contact);
     }
     if bits[60] {
-        springs.push(json!({ "at": "a5", "direction": turn([number(-1.0, 1.0), 1.0]), "stiffness": number(10.0, 1e5) }));
+        springs
+            .push(json!({ "at": "a5", "direction": turn([number(-1.0, 1.0), 1.0]), "stiffness": number(10.0, 1e5) }));
     }
     if bits[61] && bits[62] {
         for d in [[1.0, 0.0], [0.0, 1.0]] {
@@ -155,12 +137,8 @@ fn structure(seed: u64, q: &Turn) -> String {
         let force = turn([number(-4.0, 4.0), number(-20.0, 1.0)]);
         items.push(json!({ "point": { "at": at, "force": force } }));
     }
-    items.push(
-        json!({ "line": { "bar": "a_34", "value": turn([number(-1.0, 1.0), number(-5.0, 0.0)]) } }),
-    );
-    items.push(
-        json!({ "line": { "bar": "b_14", "value": turn([number(-1.0, 1.0), number(-1.0, 0.0)]) } }),
-    );
+    items.push(json!({ "line": { "bar": "a_34", "value": turn([number(-1.0, 1.0), number(-5.0, 0.0)]) } }));
+    items.push(json!({ "line": { "bar": "b_14", "value": turn([number(-1.0, 1.0), number(-1.0, 0.0)]) } }));
     scenario_text(json!({
         "materials": { "steel": { "E": 2e7, "nu": 0.3 }, "brick": { "E": 1e6, "nu": 0.2 } },
         "sections": { "bar": { "area": 0.01, "inertia": 2e-5 } },
@@ -188,10 +166,7 @@ fn every_answer_stands_up_to_statics() {
         let case = match case(seed, &STRAIGHT) {
             Ok(case) => case,
             Err(message) => {
-                assert!(
-                    message.contains("mechanism") || message.contains("joint"),
-                    "seed {seed}: {message}"
-                );
+                assert!(message.contains("mechanism") || message.contains("joint"), "seed {seed}: {message}");
                 refused += 1;
                 continue;
             }
@@ -199,10 +174,7 @@ fn every_answer_stands_up_to_statics() {
         let system = case.prepared.system().unwrap();
         let stiffness = &system.stiffness;
         let lost = (stiffness * &system.kernel).amax();
-        assert!(
-            lost <= 1e-13 * stiffness.amax(),
-            "seed {seed}: R Z = {lost:e}"
-        );
+        assert!(lost <= 1e-13 * stiffness.amax(), "seed {seed}: R Z = {lost:e}");
         assert_eq!(*stiffness, stiffness.transpose(), "seed {seed}");
         let answer = case.solve(&[]);
         if answer.is_answer() {
@@ -210,21 +182,13 @@ fn every_answer_stands_up_to_statics() {
             check(&case, &[], Rules::default());
         } else {
             rays += 1;
-            let ray = answer
-                .ray
-                .unwrap_or_else(|| panic!("seed {seed}: {:?}", answer.failure));
-            assert!(
-                matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium),
-                "seed {seed}: {ray:?}"
-            );
+            let ray = answer.ray.unwrap_or_else(|| panic!("seed {seed}: {:?}", answer.failure));
+            assert!(matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium), "seed {seed}: {ray:?}");
             assert!(system.kernel.ncols() > 0, "seed {seed}");
         }
     }
     println!("{answers} answers, {rays} rays, {refused} refused");
-    assert!(
-        answers > 150 && rays > 20,
-        "{answers} answers, {rays} rays, {refused} refused"
-    );
+    assert!(answers > 150 && rays > 20, "{answers} answers, {rays} rays, {refused} refused");
 }
 
 fn compare(what: &str, a: &Answer, b: &Answer, sign: f64) {
@@ -240,11 +204,7 @@ fn compare(what: &str, a: &Answer, b: &Answer, sign: f64) {
         let sign = if tangential { sign } else { 1.0 };
         let scale = size(&x);
         // At a ray the vertex may be far off (z large beside what it carries).
-        let tolerance = if a.outcome == OutcomeKind::Ray {
-            1e-6
-        } else {
-            1e-8
-        };
+        let tolerance = if a.outcome == OutcomeKind::Ray { 1e-6 } else { 1e-8 };
         for (x, y) in x.iter().zip(&y) {
             near(&format!("{name}, {what}"), *y, sign * x, tolerance, scale);
         }
@@ -257,11 +217,7 @@ fn compare(what: &str, a: &Answer, b: &Answer, sign: f64) {
         };
         assert_eq!(flipped, y, "{what}");
     }
-    assert_eq!(
-        a.ray.as_ref().map(|r| r.class),
-        b.ray.as_ref().map(|r| r.class),
-        "{what}"
-    );
+    assert_eq!(a.ray.as_ref().map(|r| r.class), b.ray.as_ref().map(|r| r.class), "{what}");
     near(what, b.p, a.p, 1e-7, a.p.max(1e-3));
 }
 

@@ -29,33 +29,16 @@ fn limits_up_and_down() {
     let down = (TAN - F) / (1.0 + F * TAN);
     printed("up", up, 0.412371, 1e-6);
     printed("down", down, -0.194175, 1e-6);
-    for inside in [
-        0.4123,
-        up * (1.0 - 1e-9),
-        0.2,
-        0.0,
-        -0.1,
-        down * (1.0 - 1e-9),
-    ] {
+    for inside in [0.4123, up * (1.0 - 1e-9), 0.2, 0.0, -0.1, down * (1.0 - 1e-9)] {
         let answer = case.solve(&[("F", inside)]);
         is_answer(&answer);
     }
     for (limit, sign) in [(up, 1.0), (down, -1.0)] {
-        for (beyond, tolerance) in [
-            (1.0 + 1e-9, 1e-5),
-            (1.0 + 1e-6, 1e-7),
-            (1.01, 1e-9),
-            (1.1, 1e-9),
-        ] {
+        for (beyond, tolerance) in [(1.0 + 1e-9, 1e-5), (1.0 + 1e-6, 1e-7), (1.01, 1e-9), (1.1, 1e-9)] {
             let force = limit * beyond;
             let answer = case.solve(&[("F", force)]);
             let ray = mechanism(&answer);
-            close(
-                &format!("p at {force}"),
-                ray.p,
-                missing(force, sign),
-                tolerance,
-            );
+            close(&format!("p at {force}"), ray.p, missing(force, sign), tolerance);
             for pair in &ray.direction {
                 near("z̄_τ", pair.z_t, sign, 1e-9, 1.0);
                 near("z̄_n", pair.z_n, 0.0, 1e-9, 1.0);

@@ -21,12 +21,7 @@ fn point_on_springs_against_a_skew_ground() {
         let angle = 0.3 + 30f64.to_radians() * f64::from(turn);
         let n = [angle.cos(), angle.sin()];
         let t = [n[1], -n[0]];
-        for (f, force) in [
-            (0.3, [3.0, -4.0]),
-            (0.0, [1.0, 2.0]),
-            (2.0, [-5.0, 0.5]),
-            (0.7, [0.0, 0.0]),
-        ] {
+        for (f, force) in [(0.3, [3.0, -4.0]), (0.0, [1.0, 2.0]), (2.0, [-5.0, 0.5]), (0.7, [0.0, 0.0])] {
             let case = Case::json(json!({
                 "nodes": { "P": [1, 2] },
                 "springs": [
@@ -67,8 +62,7 @@ fn point_against_point_with_a_skew_normal() {
         let t = [n[1], -n[0]];
         let force = [3.0, -4.0];
         for f in [0.0, 0.3, 1.0, 5.0] {
-            let spring =
-                |at: &str, d: [i32; 2], k: f64| json!({ "at": at, "direction": d, "stiffness": k });
+            let spring = |at: &str, d: [i32; 2], k: f64| json!({ "at": at, "direction": d, "stiffness": k });
             let case = Case::json(json!({
                 "nodes": { "A": [1, 2], "B": [1, 2] },
                 "springs": [
@@ -115,8 +109,7 @@ fn slabs(angle: f64) -> Case {
         json!({ "id": format!("s{i}"), "origin": turn(0.0, i as f64 - 1.0), "size": [8, 1], "divisions": [4, 1],
                 "rotation": angle, "thickness": 1, "material": "m", "plane": "stress" })
     };
-    let weight =
-        |i: usize| json!({ "point": { "at": format!("s{i}.bottom"), "force": turn(0.0, -1.0) } });
+    let weight = |i: usize| json!({ "point": { "at": format!("s{i}.bottom"), "force": turn(0.0, -1.0) } });
     Case::json(json!({
         "parameters": { "f1": 0.5, "f2": 0.5, "f3": 0.5, "H": 0.1 },
         "materials": { "m": { "E": 1000, "nu": 0.3 } },
@@ -137,32 +130,19 @@ fn slabs(angle: f64) -> Case {
 fn chain_of_slabs() {
     for angle in [0.0, 37.0, 90.0, 180.0, 211.0] {
         let case = slabs(angle);
-        for (which, f) in [
-            (0, [0.1, 0.5, 0.9]),
-            (1, [0.5, 0.2, 0.9]),
-            (2, [0.5, 0.5, 0.4]),
-            (1, [1.2, 0.3, 1.7]),
-        ] {
+        for (which, f) in [(0, [0.1, 0.5, 0.9]), (1, [0.5, 0.2, 0.9]), (2, [0.5, 0.5, 0.4]), (1, [1.2, 0.3, 1.7])] {
             let limits = [3.0 * f[0], 2.0 * f[1], f[2]];
             let limit = limits[which];
             assert!(limits.iter().all(|other| *other >= limit));
             let set = |h: f64| [("f1", f[0]), ("f2", f[1]), ("f3", f[2]), ("H", h)];
             for h in [0.0, 0.5 * limit, 0.95 * limit, limit * (1.0 - 1e-9)] {
-                assert!(
-                    check(&case, &set(h), Rules::default()),
-                    "angle {angle}, f = {f:?}, H = {h}"
-                );
+                assert!(check(&case, &set(h), Rules::default()), "angle {angle}, f = {f:?}, H = {h}");
             }
             for (beyond, tolerance) in [(1.0 + 1e-9, 1e-5), (1.0 + 1e-6, 1e-7), (1.01, 1e-9)] {
                 let h = limit * beyond;
                 let answer = case.solve(&set(h));
                 let ray = mechanism(&answer);
-                close(
-                    "p",
-                    ray.p,
-                    (h - limit) / (5.0 * (1.0 + f[which])),
-                    tolerance,
-                );
+                close("p", ray.p, (h - limit) / (5.0 * (1.0 + f[which])), tolerance);
                 for (i, pair) in ray.direction.iter().enumerate() {
                     let expected = f64::from(u8::from(i / 5 == which));
                     near("z̄_τ", pair.z_t, expected, 1e-9, 1.0);
@@ -219,36 +199,18 @@ fn rafters_on_rough_feet() {
             let case = rafters(a, h, &bar, &loads);
             let limit = a / h;
             for f in [limit * (1.0 + 1e-9), limit * 1.1, 3.0] {
-                assert!(
-                    check(&case, &[("f", f)], Rules::default()),
-                    "{bar} a = {a}, f = {f}"
-                );
+                assert!(check(&case, &[("f", f)], Rules::default()), "{bar} a = {a}, f = {f}");
                 let answer = case.solve(&[("f", f)]);
                 near_all("x_n", &of_pairs(&answer, |p| p.x_n), &[load / 2.0; 2], 1e-9);
                 let thrust = load / 2.0 * limit;
-                near_all(
-                    "x_τ",
-                    &of_pairs(&answer, |p| p.x_t),
-                    &[thrust, -thrust],
-                    1e-9,
-                );
+                near_all("x_τ", &of_pairs(&answer, |p| p.x_t), &[thrust, -thrust], 1e-9);
             }
-            for (below, tolerance) in [
-                (1.0 - 1e-9, 1e-5),
-                (1.0 - 1e-6, 1e-7),
-                (0.9, 1e-9),
-                (0.1, 1e-9),
-            ] {
+            for (below, tolerance) in [(1.0 - 1e-9, 1e-5), (1.0 - 1e-6, 1e-7), (0.9, 1e-9), (0.1, 1e-9)] {
                 let f = limit * below;
                 let answer = case.solve(&[("f", f)]);
                 let ray = mechanism(&answer);
                 let expected = load / 2.0 * (limit - f) / (1.0 + f);
-                close(
-                    &format!("p, {bar}, a/h = {limit}, ×{below}"),
-                    ray.p,
-                    expected,
-                    tolerance,
-                );
+                close(&format!("p, {bar}, a/h = {limit}, ×{below}"), ray.p, expected, tolerance);
             }
         }
     }
@@ -263,51 +225,22 @@ fn hinged_rafters_under_a_line_load() {
         { "line": { "bar": "l", "value": [0, -q] } }, { "line": { "bar": "r", "value": [0, -q] } }
     ] } });
     for divisions in [1, 2, 5] {
-        let bar =
-            json!({ "kind": "frame", "material": "m", "section": "s", "divisions": divisions });
+        let bar = json!({ "kind": "frame", "material": "m", "section": "s", "divisions": divisions });
         let case = rafters(a, h, &bar, &loads);
         let limit = a / (2.0 * h);
         assert!(check(&case, &[("f", 0.5)], Rules::default()));
         let answer = case.solve(&[("f", 0.5)]);
         near_all("x_n", &of_pairs(&answer, |p| p.x_n), &[q * length; 2], 1e-9);
         let thrust = q * length * limit;
-        near_all(
-            "x_τ",
-            &of_pairs(&answer, |p| p.x_t),
-            &[thrust, -thrust],
-            1e-9,
-        );
+        near_all("x_τ", &of_pairs(&answer, |p| p.x_t), &[thrust, -thrust], 1e-9);
         // At the hinge and at the feet no moment; at the apex N is the horizontal thrust's share.
         let members = answer.members.as_ref().unwrap();
-        near(
-            "M at the foot",
-            members[0].start.m,
-            0.0,
-            1e-9,
-            q * length * length,
-        );
-        near(
-            "M at the hinge",
-            members[divisions - 1].end.m,
-            0.0,
-            1e-9,
-            q * length * length,
-        );
-        near(
-            "N at the apex",
-            members[divisions - 1].end.n,
-            -thrust * a / length,
-            1e-9,
-            thrust,
-        );
+        near("M at the foot", members[0].start.m, 0.0, 1e-9, q * length * length);
+        near("M at the hinge", members[divisions - 1].end.m, 0.0, 1e-9, q * length * length);
+        near("N at the apex", members[divisions - 1].end.n, -thrust * a / length, 1e-9, thrust);
         for f in [0.3, 0.1, 0.0] {
             let answer = case.solve(&[("f", f)]);
-            close(
-                "p",
-                mechanism(&answer).p,
-                q * length * (limit - f) / (1.0 + f),
-                1e-9,
-            );
+            close("p", mechanism(&answer).p, q * length * (limit - f) / (1.0 + f), 1e-9);
         }
     }
 }
@@ -346,23 +279,13 @@ fn ladder() {
         assert_eq!(floor.state, State::Stick);
         assert_eq!(wall.state, State::Closed);
     }
-    for (below, tolerance) in [
-        (1.0 - 1e-9, 1e-5),
-        (1.0 - 1e-6, 1e-7),
-        (0.9, 1e-9),
-        (0.0, 1e-9),
-    ] {
+    for (below, tolerance) in [(1.0 - 1e-9, 1e-5), (1.0 - 1e-6, 1e-7), (0.9, 1e-9), (0.0, 1e-9)] {
         let f = limit * below;
         for rule in [Covering::Cohesive, Covering::Ones] {
             let answer = case.solve_under(&[("f", f)], covering(rule));
             let ray = mechanism(&answer);
             let d = if rule == Covering::Ones { 1.0 } else { 1.0 + f };
-            close(
-                &format!("p, ×{below}"),
-                ray.p,
-                load * (limit - f) / d,
-                tolerance,
-            );
+            close(&format!("p, ×{below}"), ray.p, load * (limit - f) / d, tolerance);
             near("z̄_τ of the foot", ray.direction[0].z_t, 1.0, 1e-9, 1.0);
         }
     }
@@ -385,13 +308,7 @@ fn bar_closes_a_gap() {
             "contacts": [{ "id": "c", "node": "B", "against": "ground", "normal": [-1, 0], "law": "frictionless", "gap": "g" }],
             "loads": { "push": { "factor": "P", "items": [{ "point": { "at": "B", "force": [1, 0] } }] } }
         }));
-        for (load, gap) in [
-            (10.0, 0.001),
-            (10.0, 0.0),
-            (10.0, 0.003),
-            (-10.0, 0.0),
-            (-10.0, 0.001),
-        ] {
+        for (load, gap) in [(10.0, 0.001), (10.0, 0.0), (10.0, 0.003), (-10.0, 0.0), (-10.0, 0.001)] {
             let set = [("P", load), ("g", gap)];
             assert!(check(&case, &set, Rules::default()));
             let answer = case.solve(&set);
@@ -443,18 +360,8 @@ fn cohesion() {
         let bound = 0.5 * x_n + c;
         let x_t = -fx.clamp(-bound, bound);
         let found = [pair.x_n, pair.x_t, pair.z_n * k, pair.z_t * k, pair.bound];
-        near_all(
-            "pair",
-            &found,
-            &[x_n, x_t, fy.max(0.0), fx + x_t, bound],
-            1e-9,
-        );
-        assert_eq!(
-            answer.notes.is_empty(),
-            !(fy > 0.0 && c > 0.0),
-            "{:?}",
-            answer.notes
-        );
+        near_all("pair", &found, &[x_n, x_t, fy.max(0.0), fx + x_t, bound], 1e-9);
+        assert_eq!(answer.notes.is_empty(), !(fy > 0.0 && c > 0.0), "{:?}", answer.notes);
     }
 }
 
@@ -525,36 +432,17 @@ fn tied_plates_are_one_plate() {
                 "thickness": 1, "material": "m", "plane": "stress" })
     };
     let one = common(json!([plate("a", 0.0, 2.0, [4, 8])]), json!([]), "a");
-    let ties: Vec<Value> = (0..=4)
-        .map(|i| json!({ "nodes": [format!("a[{i},4]"), format!("b[{i},0]")] }))
-        .collect();
-    let two = common(
-        json!([plate("a", 0.0, 1.0, [4, 4]), plate("b", 1.0, 1.0, [4, 4])]),
-        json!(ties),
-        "b",
-    );
-    for set in [
-        [("f", 0.4), ("H", 0.2)],
-        [("f", 0.2), ("H", 0.19)],
-        [("f", 0.4), ("H", 0.26)],
-        [("f", 0.2), ("H", 0.23)],
-    ] {
+    let ties: Vec<Value> = (0..=4).map(|i| json!({ "nodes": [format!("a[{i},4]"), format!("b[{i},0]")] })).collect();
+    let two = common(json!([plate("a", 0.0, 1.0, [4, 4]), plate("b", 1.0, 1.0, [4, 4])]), json!(ties), "b");
+    for set in
+        [[("f", 0.4), ("H", 0.2)], [("f", 0.2), ("H", 0.19)], [("f", 0.4), ("H", 0.26)], [("f", 0.2), ("H", 0.23)]]
+    {
         let (a, b) = (one.solve(&set), two.solve(&set));
         assert_eq!(a.outcome, b.outcome);
         near("p", b.p, a.p, 1e-9, 1.0);
         assert_eq!(states(&a), states(&b));
-        near_all(
-            "x_n",
-            &of_pairs(&b, |p| p.x_n),
-            &of_pairs(&a, |p| p.x_n),
-            1e-9,
-        );
-        near_all(
-            "x_τ",
-            &of_pairs(&b, |p| p.x_t),
-            &of_pairs(&a, |p| p.x_t),
-            1e-9,
-        );
+        near_all("x_n", &of_pairs(&b, |p| p.x_n), &of_pairs(&a, |p| p.x_n), 1e-9);
+        near_all("x_τ", &of_pairs(&b, |p| p.x_t), &of_pairs(&a, |p| p.x_t), 1e-9);
         check(&two, &set, Rules::default());
     }
 }
@@ -588,12 +476,7 @@ fn beam_in_a_vee() {
     let root = 2f64.sqrt();
     assert!(check(&case, &[], Rules::default()));
     let answer = case.solve(&[]);
-    near_all(
-        "x_n",
-        &of_pairs(&answer, |p| p.x_n),
-        &[10.0 / root; 2],
-        1e-9,
-    );
+    near_all("x_n", &of_pairs(&answer, |p| p.x_n), &[10.0 / root; 2], 1e-9);
     // Rough planes hold a moment: the beam turns about the instantaneous centre at (0, 0)… up to a limit.
     for f in [0.1, 0.3, 0.8] {
         assert!(check(&case, &[("f", f), ("M", 0.5 * f)], Rules::default()));

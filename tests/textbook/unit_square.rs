@@ -98,12 +98,7 @@ fn the_element_gives_the_stiffness_by_hand() {
     let case = square();
     let system = case.prepared.system().unwrap();
     assert!((&system.stiffness - stiffness()).amax() < 1e-14);
-    near_all(
-        "CLV",
-        system.loads[0].vector.as_slice(),
-        &[0.1, 0.1, 0.5, -0.5],
-        1e-14,
-    );
+    near_all("CLV", system.loads[0].vector.as_slice(), &[0.1, 0.1, 0.5, -0.5], 1e-14);
     assert_eq!(system.kernel.ncols(), 0);
 }
 
@@ -126,10 +121,7 @@ fn one_of_three_answers_is_found() {
         found += 1;
         let p = &answer.pairs;
         let z = DVector::from_row_slice(&[p[0].z_n, p[1].z_n, p[0].z_t, p[1].z_t]);
-        assert!(
-            answers.iter().any(|known| (known - &z).amax() < 1e-9),
-            "{rules:?}: {z}"
-        );
+        assert!(answers.iter().any(|known| (known - &z).amax() < 1e-9), "{rules:?}: {z}");
     }
     assert!(found > 0);
 }

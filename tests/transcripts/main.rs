@@ -41,13 +41,7 @@ fn refused(session: &mut Session, text: &str) -> String {
 
 /// All of a session that a failed command must leave as it was: commands that lead to it, its answer, the pivot
 /// shown, the depths of undo and redo, whether it solves at once.
-type State = (
-    Vec<String>,
-    Option<usize>,
-    Option<usize>,
-    (usize, usize),
-    bool,
-);
+type State = (Vec<String>, Option<usize>, Option<usize>, (usize, usize), bool);
 
 fn state(session: &Session) -> State {
     (
@@ -65,16 +59,9 @@ fn replay(text: &str, format: Format, keep_going: bool) -> (String, Vec<String>,
     let mut out = Vec::new();
     let mut failures = Vec::new();
     let mut io = Output::new(&mut out, Style::default(), format, &Quiet);
-    let ended = script::run(
-        &mut session,
-        "test",
-        text,
-        keep_going,
-        &mut io,
-        &mut |error| {
-            failures.push(error.to_string());
-        },
-    )
+    let ended = script::run(&mut session, "test", text, keep_going, &mut io, &mut |error| {
+        failures.push(error.to_string());
+    })
     .unwrap();
     (String::from_utf8(out).unwrap(), failures, ended.status)
 }
@@ -155,17 +142,9 @@ fn every_command_on_the_beam() {
         }
     }
     // rounding of the last digits is not what this test is about
-    let steady: Vec<&str> = transcript
-        .lines()
-        .filter(|line| !line.contains("min w"))
-        .collect();
+    let steady: Vec<&str> = transcript.lines().filter(|line| !line.contains("min w")).collect();
     insta::assert_snapshot!("commands", steady.join("\n"));
-    for (what, ending) in [
-        ("pairs", "csv"),
-        ("pivots", "json"),
-        ("displacements", "csv"),
-        ("result", "json"),
-    ] {
+    for (what, ending) in [("pairs", "csv"), ("pivots", "json"), ("displacements", "csv"), ("result", "json")] {
         let file = folder.path().join(format!("{what}.{ending}"));
         shown(&mut session, &format!("export {what} {}", file.display()));
         assert!(fs::metadata(&file).unwrap().len() > 20);
@@ -270,16 +249,8 @@ fn a_saved_scenario_has_the_same_answer_bit_for_bit() {
         let mut two = session("gap");
         shown(&mut two, &format!("load {}", file.display()));
         assert_eq!(two.rules(), one.rules());
-        assert_eq!(
-            two.answer().unwrap().pairs,
-            one.answer().unwrap().pairs,
-            "{name}"
-        );
-        assert_eq!(
-            two.answer().unwrap().pivots,
-            one.answer().unwrap().pivots,
-            "{name}"
-        );
+        assert_eq!(two.answer().unwrap().pairs, one.answer().unwrap().pairs, "{name}");
+        assert_eq!(two.answer().unwrap().pivots, one.answer().unwrap().pivots, "{name}");
         assert!(shown(&mut two, "diff").contains("nothing differs"));
     }
     let mut embedded = session("beam");
@@ -316,41 +287,20 @@ fn statuses_of_scripts() {
         ("expect outcome ray\nbogus", true, 1, 2),
         ("quit\nbogus", false, 0, 0),
         ("load cycling; set tie-break first-row", false, 4, 0),
-        (
-            "load cycling; set tie-break first-row\nexpect outcome pivot-limit",
-            false,
-            0,
-            0,
-        ),
+        ("load cycling; set tie-break first-row\nexpect outcome pivot-limit", false, 0, 0),
     ] {
         let (_, failures, found) = replay(text, Format::Text, keep_going);
-        assert_eq!(
-            (found, failures.len()),
-            (status, told),
-            "{text}: {failures:?}"
-        );
+        assert_eq!((found, failures.len()), (status, told), "{text}: {failures:?}");
     }
 }
 
 #[test]
 fn a_failed_expectation_says_where_and_what() {
-    let (_, failures, _) = replay(
-        "\nset f 0.3\nset F2 181; expect p < 0.1",
-        Format::Text,
-        false,
-    );
+    let (_, failures, _) = replay("\nset f 0.3\nset F2 181; expect p < 0.1", Format::Text, false);
     assert_eq!(failures.len(), 1);
-    assert!(
-        failures[0].starts_with("test:3: expected p < 0.1, found 0.12820512"),
-        "{}",
-        failures[0]
-    );
+    assert!(failures[0].starts_with("test:3: expected p < 0.1, found 0.12820512"), "{}", failures[0]);
     let (_, failures, _) = replay("expect state c9 stick", Format::Text, false);
-    assert!(
-        failures[0].contains("no pair `c9`: the pairs are c1, c2"),
-        "{}",
-        failures[0]
-    );
+    assert!(failures[0].contains("no pair `c9`: the pairs are c1, c2"), "{}", failures[0]);
 }
 
 #[test]
@@ -358,14 +308,8 @@ fn json_lines_are_one_object_per_command() {
     let text = "status # first\n\npairs c1; bogus\nexpect error unknown\nplot slip\nset F2 181";
     let (out, _, status) = replay(text, Format::JsonLines, false);
     assert_eq!(status, 0);
-    let objects: Vec<serde_json::Value> = out
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect();
-    let lines: Vec<u64> = objects
-        .iter()
-        .map(|o| o["line"].as_u64().unwrap())
-        .collect();
+    let objects: Vec<serde_json::Value> = out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let lines: Vec<u64> = objects.iter().map(|o| o["line"].as_u64().unwrap()).collect();
     assert_eq!(lines, [1, 3, 3, 4, 5, 6]);
     assert_eq!(objects[0]["report"]["outcome"], "normal");
     assert_eq!(objects[1]["report"][0]["id"], "c1");
@@ -400,17 +344,11 @@ fn scripts_within_scripts() {
     fs::write(&outer, format!("# calls\nsource {}\n", inner.display())).unwrap();
     let mut session = session("beam");
     let error = refused(&mut session, &format!("source {}", outer.display()));
-    assert!(
-        error.contains("outer.stick:2") && error.contains("inner.stick:2"),
-        "{error}"
-    );
+    assert!(error.contains("outer.stick:2") && error.contains("inner.stick:2"), "{error}");
     assert_eq!(session.values()["F2"], 100.0);
     let own = folder.path().join("own.stick");
     fs::write(&own, format!("source {}", own.display())).unwrap();
-    assert!(
-        refused(&mut session, &format!("source {}", own.display()))
-            .contains("scripts within scripts")
-    );
+    assert!(refused(&mut session, &format!("source {}", own.display())).contains("scripts within scripts"));
     shown(&mut session, "status");
 }
 
@@ -441,29 +379,16 @@ fn a_recording_reproduces_the_session() {
     let mut two = session("gap");
     let mut out = Vec::new();
     let mut io = Output::text(&mut out, Style::default(), &Quiet);
-    let ended = script::run(
-        &mut two,
-        "recording",
-        &script,
-        false,
-        &mut io,
-        &mut |error| panic!("{error}\n{script}"),
-    );
+    let ended = script::run(&mut two, "recording", &script, false, &mut io, &mut |error| panic!("{error}\n{script}"));
     assert_eq!(ended.unwrap().status, 0);
     shown(&mut one, "undo");
     assert_eq!(two.as_commands(), one.as_commands());
     assert_eq!(two.answer().unwrap().pairs, one.answer().unwrap().pairs);
     // what the recording shows as comments is what the replay shows
     let shown_again = String::from_utf8(out).unwrap();
-    let answers: Vec<&str> = script
-        .lines()
-        .filter_map(|line| line.strip_prefix("#   "))
-        .collect();
+    let answers: Vec<&str> = script.lines().filter_map(|line| line.strip_prefix("#   ")).collect();
     assert!(
-        answers
-            .iter()
-            .filter(|line| !line.starts_with("expected"))
-            .all(|line| shown_again.contains(line.trim_end()))
+        answers.iter().filter(|line| !line.starts_with("expected")).all(|line| shown_again.contains(line.trim_end()))
     );
     assert!(refused(&mut one, &format!("record {}", file.display())).contains("exists"));
 }
@@ -474,10 +399,7 @@ fn a_journal_brings_everything_back() {
     let place = Path::new("/somewhere");
     let mut one = session("beam");
     one.keep_journal(Journal::new(folder.path(), place));
-    shown(
-        &mut one,
-        "set f 0.37; set F2 += 10; set F2 *= 1.5; undo; set tie-break natural",
-    );
+    shown(&mut one, "set f 0.37; set F2 += 10; set F2 *= 1.5; undo; set tie-break natural");
     shown(&mut one, "load frame; set f 110%");
     let (commands, pairs, depths) = (one.as_commands(), one.pairs(), one.undo_depths());
     drop(one); // a crash, as far as the journal can tell
@@ -515,14 +437,8 @@ fn an_interrupted_command_changes_nothing() {
     for text in ["set F2 150", "load frame", "undo", "solve", "reset"] {
         let before = state(&session);
         let mut out = Vec::new();
-        let result = session.execute(
-            text,
-            &mut Output::text(&mut out, Style::default(), &Stopped),
-        );
-        assert!(
-            matches!(&result, Err(error) if error.is_interrupted() && error.status() == 130),
-            "{result:?}"
-        );
+        let result = session.execute(text, &mut Output::text(&mut out, Style::default(), &Stopped));
+        assert!(matches!(&result, Err(error) if error.is_interrupted() && error.status() == 130), "{result:?}");
         assert_eq!(state(&session), before, "{text}");
     }
 }
@@ -669,20 +585,15 @@ fn ten_thousand_random_lines_neither_panic_nor_change_the_session_wrongly() {
             String::from_utf8_lossy(&bytes).into_owned()
         } else {
             let count = random.random_range(0..6);
-            let words: Vec<&str> = (0..count)
-                .map(|_| WORDS[random.random_range(0..WORDS.len())])
-                .collect();
+            let words: Vec<&str> = (0..count).map(|_| WORDS[random.random_range(0..WORDS.len())]).collect();
             words.join(if random.random_bool(0.05) { "" } else { " " })
         };
         for command in stickslip::session::words::commands(&text) {
             // nothing outside the folder of this test is written
             let writes = stickslip::session::words::split(command).is_ok_and(|words| {
                 words.first().is_some_and(|word| {
-                    [
-                        "save", "sa", "sav", "export", "exp", "expo", "expor", "record", "rec",
-                        "reco", "recor",
-                    ]
-                    .contains(&word.as_str())
+                    ["save", "sa", "sav", "export", "exp", "expo", "expor", "record", "rec", "reco", "recor"]
+                        .contains(&word.as_str())
                 })
             });
             let command = if writes {
@@ -702,10 +613,7 @@ fn ten_thousand_random_lines_neither_panic_nor_change_the_session_wrongly() {
     }
     assert!(failed > 1000, "{failed}");
     // the session still works
-    shown(
-        &mut session,
-        "set auto on; load beam; set f 0.3; set F2 150; expect z_t c6 = 0.003 ± 1e-12",
-    );
+    shown(&mut session, "set auto on; load beam; set f 0.3; set F2 150; expect z_t c6 = 0.003 ± 1e-12");
 }
 
 #[test]
@@ -714,10 +622,7 @@ fn given_numbers_keep_their_digits() {
     shown(&mut session, "set F2 60.00006; set f 0.123456789012");
     for command in ["params", "status"] {
         let text = shown(&mut session, command);
-        assert!(
-            text.contains("60.00006") && text.contains("0.123456789012"),
-            "{text}"
-        );
+        assert!(text.contains("60.00006") && text.contains("0.123456789012"), "{text}");
     }
     assert!(refused(&mut session, "set f=").contains("to what?"));
     assert!(refused(&mut session, "set f=abc").starts_with("`abc`"));
@@ -736,10 +641,7 @@ fn the_lcp_goes_to_a_scenario_and_to_matrix_market() {
         assert!(text.contains(&format!("\n18 {columns}\n")), "{text}");
     }
     assert!(refused(&mut session, &format!("export lcp {}", at("b.csv"))).contains(".mtx"));
-    shown(
-        &mut session,
-        &format!("export lcp {}; load {}", at("b.json"), at("b.json")),
-    );
+    shown(&mut session, &format!("export lcp {}; load {}", at("b.json"), at("b.json")));
     shown(&mut session, "expect outcome normal; expect lcp = 18");
     // Without friction the tightening weight covers nothing: no covering vector of an lcp.
     let text = r#"{ "format": "stickslip/1", "title": "t", "solver": { "covering": "weight" }, "contact_system":

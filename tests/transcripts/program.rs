@@ -14,13 +14,8 @@ fn program() -> Command {
 }
 
 fn piped(arguments: &[&str], input: &[u8]) -> (Vec<u8>, String, i32) {
-    let mut child = program()
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        program().args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_vec();
     let writer = std::thread::spawn(move || {
@@ -46,11 +41,7 @@ fn exit_statuses_of_the_program() {
         (&["solve", "beam", "--set", "nothing=1"], "", 2),
         (&["solve", "beam", "--covering", "none"], "", 2),
         (&["solve", "nowhere"], "", 2),
-        (
-            &["solve", "greco", "--covering", "ones", "--set", "f=2"],
-            "",
-            4,
-        ),
+        (&["solve", "greco", "--covering", "ones", "--set", "f=2"], "", 4),
         (&["solve", "cycling", "--tie-break", "first-row"], "", 4),
         (&["check", "beam", "frame"], "", 0),
         (&["check", "beam", &bad], "", 2),
@@ -79,24 +70,14 @@ fn exit_statuses_of_the_program() {
 
 #[test]
 fn a_pipe_gets_results_only() {
-    let (out, error, status) = piped(
-        &["--width", "60"],
-        b"status\npairs\n\xff\xfe\nset F2 150\r\nplot slip\n",
-    );
+    let (out, error, status) = piped(&["--width", "60"], b"status\npairs\n\xff\xfe\nset F2 150\r\nplot slip\n");
     let out = String::from_utf8(out).unwrap();
     assert!(!out.contains('\u{1b}') && !out.contains("> "), "{out}");
     assert!(out.starts_with("beam"));
-    assert!(
-        out.lines()
-            .all(|line| line.trim_end().chars().count() <= 60),
-        "{out}"
-    );
+    assert!(out.lines().all(|line| line.trim_end().chars().count() <= 60), "{out}");
     assert!(error.contains("unknown command"), "{error}");
     assert_eq!(status, 2);
-    let (out, ..) = piped(
-        &["--ascii"],
-        b"status; pairs; plot slip; plot structure; pivots",
-    );
+    let (out, ..) = piped(&["--ascii"], b"status; pairs; plot slip; plot structure; pivots");
     assert!(out.is_ascii());
     let (out, ..) = piped(&["--color", "always"], b"pairs");
     assert!(out.contains(&0x1b));
@@ -119,23 +100,14 @@ fn replays_repeat_to_the_byte_in_other_processes() {
 
 #[test]
 fn a_closed_pipe_is_success() {
-    let mut child = program()
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = program().stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     let mut stdin = child.stdin.take().unwrap();
     let _ = stdin.write_all("pairs\n".repeat(50).as_bytes());
     drop(stdin);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert!(
-        output.stderr.is_empty(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]
@@ -143,14 +115,8 @@ fn check_names_loose_parts_and_mechanisms() {
     let (out, error, status) = piped(&["check", "plates-free", "gap"], b"");
     let out = String::from_utf8(out).unwrap();
     assert_eq!((status, error.as_str()), (0, ""));
-    let loose = out
-        .lines()
-        .find(|line| line.starts_with("loose: "))
-        .unwrap();
-    assert!(
-        loose.contains("`upper`") && loose.contains("slide along x"),
-        "{out}"
-    );
+    let loose = out.lines().find(|line| line.starts_with("loose: ")).unwrap();
+    assert!(loose.contains("`upper`") && loose.contains("slide along x"), "{out}");
     assert_eq!(out.matches("loose: ").count(), 1, "{out}");
 
     let folder = tempfile::tempdir().unwrap();
@@ -162,10 +128,7 @@ fn check_names_loose_parts_and_mechanisms() {
     fs::write(&path, text).unwrap();
     let (_, error, status) = piped(&["check", path.to_str().unwrap()], b"");
     assert_eq!(status, 2);
-    assert!(
-        error.contains("mechanism") && error.contains("node B"),
-        "{error}"
-    );
+    assert!(error.contains("mechanism") && error.contains("node B"), "{error}");
 }
 
 #[test]

@@ -91,14 +91,7 @@ fn local_line_load(axis: &Axis, hinges: [bool; 2], q: [f64; 2]) -> Vector6 {
         [false, true] => (0.625, 0.125, 0.375, 0.0),
         [true, true] => (0.5, 0.0, 0.5, 0.0),
     };
-    Vector6::from([
-        axial,
-        v1 * total,
-        m1 * total * length,
-        axial,
-        v2 * total,
-        m2 * total * length,
-    ])
+    Vector6::from([axial, v1 * total, m1 * total * length, axial, v2 * total, m2 * total * length])
 }
 
 /// Internal forces (N, Q, M) at the start and at the end, bar axes, for global displacements `u` (the released
@@ -116,8 +109,7 @@ pub fn end_forces(
     q: [f64; 2],
 ) -> [[f64; 3]; 2] {
     let local = rotation(axis) * Vector6::from(*u);
-    let f = local_stiffness(axis.length, e, area, inertia, hinges) * local
-        - local_line_load(axis, hinges, q);
+    let f = local_stiffness(axis.length, e, area, inertia, hinges) * local - local_line_load(axis, hinges, q);
     [[-f[0], f[1], -f[2]], [f[3], -f[4], f[5]]]
 }
 
@@ -138,11 +130,7 @@ fn rotation(axis: &Axis) -> Matrix6 {
 mod tests {
     use super::*;
 
-    const AXIS: Axis = Axis {
-        length: 2.5,
-        cos: 0.6,
-        sin: 0.8,
-    };
+    const AXIS: Axis = Axis { length: 2.5, cos: 0.6, sin: 0.8 };
 
     /// The closed forms against k − k_r k_rᵀ / k_rr worked out from the full matrix.
     #[test]

@@ -33,10 +33,7 @@ impl std::ops::Deref for Slots {
 
 /// See [`Slots`].
 pub fn slots(element: &Element) -> Slots {
-    let mut slots = Slots {
-        at: [None; 8],
-        count: 0,
-    };
+    let mut slots = Slots { at: [None; 8], count: 0 };
     let mut push = |slot| {
         slots.at[slots.count] = slot;
         slots.count += 1;
@@ -62,23 +59,13 @@ pub fn stiffness(structure: &Structure, index: usize) -> Result<Stiffness, MainS
     let element = &structure.elements[index];
     let material = &structure.materials[element.material];
     let refuse = |what: &str| MainSystemError::Element {
-        nodes: element
-            .nodes
-            .iter()
-            .map(|&node| structure.nodes[node].id.clone())
-            .collect(),
+        nodes: element.nodes.iter().map(|&node| structure.nodes[node].id.clone()).collect(),
         what: what.to_owned(),
     };
-    let axis = || {
-        Axis::of(structure, element).ok_or_else(|| refuse("its two nodes are at the same place"))
-    };
+    let axis = || Axis::of(structure, element).ok_or_else(|| refuse("its two nodes are at the same place"));
     let mut stiffness = Stiffness::zeros();
     match &element.kind {
-        ElementKind::Frame {
-            area,
-            inertia,
-            hinges,
-        } => {
+        ElementKind::Frame { area, inertia, hinges } => {
             let k = frame::stiffness(&axis()?, material.youngs_modulus, *area, *inertia, *hinges);
             stiffness.fixed_view_mut::<6, 6>(0, 0).copy_from(&k);
         }
@@ -88,11 +75,8 @@ pub fn stiffness(structure: &Structure, index: usize) -> Result<Stiffness, MainS
         }
         ElementKind::Quad { thickness, plane } => {
             let corners = corners(structure, element);
-            stiffness =
-                quad4::stiffness(&corners, &quad4::elasticity(material, *plane), *thickness)
-                    .ok_or_else(|| {
-                        refuse("it is not convex, or its nodes do not go round counter-clockwise")
-                    })?;
+            stiffness = quad4::stiffness(&corners, &quad4::elasticity(material, *plane), *thickness)
+                .ok_or_else(|| refuse("it is not convex, or its nodes do not go round counter-clockwise"))?;
         }
     }
     Ok(stiffness)
@@ -106,9 +90,7 @@ pub fn line_load(structure: &Structure, index: usize, q: [f64; 2]) -> DVector<f6
         (ElementKind::Frame { hinges, .. }, Some(axis)) => {
             DVector::from_column_slice(frame::line_load(&axis, *hinges, q).as_slice())
         }
-        (ElementKind::Truss { .. }, Some(axis)) => {
-            DVector::from_column_slice(truss::line_load(&axis, q).as_slice())
-        }
+        (ElementKind::Truss { .. }, Some(axis)) => DVector::from_column_slice(truss::line_load(&axis, q).as_slice()),
         _ => DVector::zeros(slots(element).len()),
     }
 }
@@ -136,18 +118,11 @@ impl Axis {
         let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let length = dx.hypot(dy);
-        (length > 0.0).then(|| Axis {
-            length,
-            cos: dx / length,
-            sin: dy / length,
-        })
+        (length > 0.0).then(|| Axis { length, cos: dx / length, sin: dy / length })
     }
 
     /// Components in bar axes (x from start to end, y = x turned +90°) of a global vector.
     pub fn to_local(self, v: [f64; 2]) -> [f64; 2] {
-        [
-            self.cos * v[0] + self.sin * v[1],
-            self.cos * v[1] - self.sin * v[0],
-        ]
+        [self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0]]
     }
 }

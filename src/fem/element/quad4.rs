@@ -73,12 +73,7 @@ pub fn stress_at_centre(corners: &[[f64; 2]; 4], d: &Matrix3, u: &[f64; 8]) -> [
 
 /// (∂N_i/∂x, ∂N_i/∂y) of the four shape functions and det J at (ξ, η).
 fn gradients(corners: &[[f64; 2]; 4], at: [f64; 2]) -> ([[f64; 2]; 4], f64) {
-    let natural = CORNERS.map(|c| {
-        [
-            0.25 * c[0] * (1.0 + c[1] * at[1]),
-            0.25 * c[1] * (1.0 + c[0] * at[0]),
-        ]
-    });
+    let natural = CORNERS.map(|c| [0.25 * c[0] * (1.0 + c[1] * at[1]), 0.25 * c[1] * (1.0 + c[0] * at[0])]);
     let mut j = [[0.0; 2]; 2];
     for (n, corner) in natural.iter().zip(corners) {
         for a in 0..2 {
@@ -89,12 +84,8 @@ fn gradients(corners: &[[f64; 2]; 4], at: [f64; 2]) -> ([[f64; 2]; 4], f64) {
     }
     let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
     let inverse = 1.0 / det;
-    let gradients = natural.map(|[xi, eta]| {
-        [
-            (j[1][1] * xi - j[0][1] * eta) * inverse,
-            (j[0][0] * eta - j[1][0] * xi) * inverse,
-        ]
-    });
+    let gradients =
+        natural.map(|[xi, eta]| [(j[1][1] * xi - j[0][1] * eta) * inverse, (j[0][0] * eta - j[1][0] * xi) * inverse]);
     (gradients, det)
 }
 
@@ -103,12 +94,7 @@ mod tests {
     use super::*;
 
     fn material(e: f64, nu: f64) -> Material {
-        Material {
-            youngs_modulus: e,
-            poisson_ratio: nu,
-            density: 0.0,
-            expansion: 0.0,
-        }
+        Material { youngs_modulus: e, poisson_ratio: nu, density: 0.0, expansion: 0.0 }
     }
 
     /// Unit square, E = 1, ν = 0, t = 1: k_11 = ∫ (N_x² + N_y²/2) = 1/3 + 1/6 = 1/2, and the couplings by hand.

@@ -23,11 +23,7 @@ mod tests {
 
     #[test]
     fn force_is_minus_stiffness_times_displacement() {
-        let spring = Spring {
-            node: 0,
-            direction: [0.6, 0.8],
-            stiffness: 50.0,
-        };
+        let spring = Spring { node: 0, direction: [0.6, 0.8], stiffness: 50.0 };
         let u = [0.3, -0.1];
         let f = -stiffness(&spring) * nalgebra::Vector2::from(u);
         let force = force(&spring, u);

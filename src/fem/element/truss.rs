@@ -35,11 +35,7 @@ mod tests {
     /// A hanging bar: q along the axis, free end at the end: N = qL at the start, 0 at the end.
     #[test]
     fn own_weight_of_a_hanging_bar() {
-        let axis = Axis {
-            length: 3.0,
-            cos: 0.0,
-            sin: -1.0,
-        };
+        let axis = Axis { length: 3.0, cos: 0.0, sin: -1.0 };
         let (e, area, q) = (200.0, 0.5, [0.0, -4.0]);
         // u of the free end: (qL/2) / (EA/L), consistent nodal force.
         let u_end = -(4.0 * 3.0 / 2.0) / (e * area / 3.0);
@@ -51,11 +47,7 @@ mod tests {
     /// Q = dM/dx with M = 0 at both ends of a simple beam under q < 0 (local y up): +|q|L/2, −|q|L/2.
     #[test]
     fn transverse_force_goes_to_the_nodes() {
-        let axis = Axis {
-            length: 3.0,
-            cos: 1.0,
-            sin: 0.0,
-        };
+        let axis = Axis { length: 3.0, cos: 1.0, sin: 0.0 };
         let [start, end] = end_forces(&axis, 1.0, 1.0, &[0.0; 4], [0.0, -4.0]);
         assert_eq!(start, [0.0, 6.0, 0.0]);
         assert_eq!(end, [0.0, -6.0, 0.0]);

@@ -4,8 +4,7 @@ use crate::fem::{MainSystem, MainSystemError};
 use crate::model::pair::{Joint, Law, Pair, joints};
 use crate::model::parameter::Number;
 use crate::model::structure::{
-    Bar, Component, Element, ElementKind, Load, LoadCase, Material, Node, Plane, Plate, Spring,
-    Structure, Support, Tie,
+    Bar, Component, Element, ElementKind, Load, LoadCase, Material, Node, Plane, Plate, Spring, Structure, Support, Tie,
 };
 
 /// A structure being built; materials are made as they are used.
@@ -13,17 +12,11 @@ use crate::model::structure::{
 pub struct Model(pub Structure);
 
 pub fn coulomb() -> Law {
-    Law::Coulomb {
-        friction: Number::Value(0.5),
-        cohesion: Number::Value(0.0),
-        gap: Number::Value(0.0),
-    }
+    Law::Coulomb { friction: Number::Value(0.5), cohesion: Number::Value(0.0), gap: Number::Value(0.0) }
 }
 
 pub fn frictionless() -> Law {
-    Law::Frictionless {
-        gap: Number::Value(0.0),
-    }
+    Law::Frictionless { gap: Number::Value(0.0) }
 }
 
 /// Letters to components.
@@ -41,34 +34,19 @@ pub fn components(letters: &str) -> Vec<Component> {
 
 impl Model {
     pub fn node(&mut self, id: &str, x: f64, y: f64) -> usize {
-        self.0.nodes.push(Node {
-            id: id.into(),
-            position: [x, y],
-        });
+        self.0.nodes.push(Node { id: id.into(), position: [x, y] });
         self.0.nodes.len() - 1
     }
 
     pub fn material(&mut self, e: f64, nu: f64) -> usize {
-        self.0.materials.push(Material {
-            youngs_modulus: e,
-            poisson_ratio: nu,
-            density: 0.0,
-            expansion: 0.0,
-        });
+        self.0.materials.push(Material { youngs_modulus: e, poisson_ratio: nu, density: 0.0, expansion: 0.0 });
         self.0.materials.len() - 1
     }
 
     fn bar(&mut self, nodes: [usize; 2], material: usize, kind: ElementKind) -> usize {
         let index = self.0.elements.len();
-        self.0.elements.push(Element {
-            nodes: nodes.to_vec(),
-            material,
-            kind,
-        });
-        self.0.bars.push(Bar {
-            id: format!("b{}", self.0.bars.len()),
-            elements: index..index + 1,
-        });
+        self.0.elements.push(Element { nodes: nodes.to_vec(), material, kind });
+        self.0.bars.push(Bar { id: format!("b{}", self.0.bars.len()), elements: index..index + 1 });
         index
     }
 
@@ -79,11 +57,7 @@ impl Model {
 
     pub fn hinged(&mut self, a: usize, b: usize, area: f64, inertia: f64, h: [bool; 2]) -> usize {
         let material = self.material(1.0, 0.0);
-        let kind = ElementKind::Frame {
-            area,
-            inertia,
-            hinges: h,
-        };
+        let kind = ElementKind::Frame { area, inertia, hinges: h };
         self.bar([a, b], material, kind)
     }
 
@@ -93,11 +67,7 @@ impl Model {
     }
 
     pub fn quad(&mut self, nodes: [usize; 4], material: usize, thickness: f64, plane: Plane) {
-        self.0.elements.push(Element {
-            nodes: nodes.to_vec(),
-            material,
-            kind: ElementKind::Quad { thickness, plane },
-        });
+        self.0.elements.push(Element { nodes: nodes.to_vec(), material, kind: ElementKind::Quad { thickness, plane } });
     }
 
     /// A plate with its lower left corner at `origin`; returns its node grid `[j][i]`.
@@ -123,20 +93,11 @@ impl Model {
         let first = self.0.elements.len();
         for j in 0..divisions[1] {
             for i in 0..divisions[0] {
-                let nodes = [
-                    grid[j][i],
-                    grid[j][i + 1],
-                    grid[j + 1][i + 1],
-                    grid[j + 1][i],
-                ];
+                let nodes = [grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]];
                 self.quad(nodes, material, thickness, Plane::Strain);
             }
         }
-        self.0.plates.push(Plate {
-            id: id.into(),
-            elements: first..self.0.elements.len(),
-            nodes: grid.clone(),
-        });
+        self.0.plates.push(Plate { id: id.into(), elements: first..self.0.elements.len(), nodes: grid.clone() });
         grid
     }
 
@@ -147,30 +108,17 @@ impl Model {
     }
 
     pub fn tie(&mut self, nodes: &[usize], letters: &str) {
-        self.0.ties.push(Tie {
-            nodes: nodes.to_vec(),
-            components: components(letters),
-        });
+        self.0.ties.push(Tie { nodes: nodes.to_vec(), components: components(letters) });
     }
 
     pub fn spring(&mut self, node: usize, direction: [f64; 2], stiffness: f64) {
-        self.0.springs.push(Spring {
-            node,
-            direction,
-            stiffness,
-        });
+        self.0.springs.push(Spring { node, direction, stiffness });
     }
 
     pub fn pair(&mut self, node: usize, against: Option<usize>, normal: [f64; 2], law: Law) {
         let id = format!("c{}", self.0.pairs.len() + 1);
         let length = normal[0].hypot(normal[1]);
-        self.0.pairs.push(Pair {
-            id,
-            node,
-            against,
-            normal: normal.map(|n| n / length),
-            law,
-        });
+        self.0.pairs.push(Pair { id, node, against, normal: normal.map(|n| n / length), law });
     }
 
     pub fn case(&mut self, loads: Vec<Load>) {
@@ -195,11 +143,7 @@ impl Model {
 }
 
 pub fn point(node: usize, force: [f64; 2]) -> Load {
-    Load::Nodal {
-        node,
-        force,
-        moment: 0.0,
-    }
+    Load::Nodal { node, force, moment: 0.0 }
 }
 
 /// Two plates `length` × `height` × 0.1, one upon the other with `divisions` elements each, the lower one fixed
@@ -228,11 +172,7 @@ pub fn two_plates(size: [f64; 2], divisions: [usize; 2], first: usize) -> Model 
             .into_iter()
             .enumerate()
             .map(|(i, node)| {
-                let share = if i == 0 || i == last {
-                    0.5 * step
-                } else {
-                    step
-                };
+                let share = if i == 0 || i == last { 0.5 * step } else { step };
                 point(node, traction.map(|t| t * share))
             })
             .collect()

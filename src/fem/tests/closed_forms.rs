@@ -8,10 +8,7 @@ use crate::model::structure::{Load, Plane};
 
 #[track_caller]
 fn near(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-10 * expected.abs().max(1e-2),
-        "{found} instead of {expected}"
-    );
+    assert!((found - expected).abs() <= 1e-10 * expected.abs().max(1e-2), "{found} instead of {expected}");
 }
 
 #[track_caller]
@@ -72,10 +69,7 @@ fn propped_cantilever() {
     model.support(a, "xyr");
     model.support(b, "y");
     let q = 3.0;
-    model.case(vec![Load::Line {
-        element: bar,
-        value: [0.0, -q],
-    }]);
+    model.case(vec![Load::Line { element: bar, value: [0.0, -q] }]);
     let (system, u, lambda, factors) = main_answer(&model);
     let reactions = system.reactions(&model.0, &u, &lambda, &factors);
     near(reactions[0].force[1], 5.0 * q * 5.0 / 8.0);
@@ -85,11 +79,8 @@ fn propped_cantilever() {
     near_forces(member.start, [0.0, 5.0 * q * 5.0 / 8.0, -q * 25.0 / 8.0]);
     near_forces(member.end, [0.0, -3.0 * q * 5.0 / 8.0, 0.0]);
     // The same with the clamp's rotation held by a hinge at the far end: nothing changes but θ_b, which is gone.
-    model.0.elements[bar].kind = crate::model::structure::ElementKind::Frame {
-        area: 1.0,
-        inertia: 2.0,
-        hinges: [false, true],
-    };
+    model.0.elements[bar].kind =
+        crate::model::structure::ElementKind::Frame { area: 1.0, inertia: 2.0, hinges: [false, true] };
     let (system, u, ..) = main_answer(&model);
     let hinged = system.member_forces(&model.0, &u, &factors)[0];
     near_forces(hinged.start, [0.0, 5.0 * q * 5.0 / 8.0, -q * 25.0 / 8.0]);
@@ -107,14 +98,7 @@ fn gerber_beam() {
     model.support(nodes[0], "xyr");
     model.support(nodes[2], "y");
     let q = 4.0;
-    model.case(
-        [first, second]
-            .map(|element| Load::Line {
-                element,
-                value: [0.0, -q],
-            })
-            .to_vec(),
-    );
+    model.case([first, second].map(|element| Load::Line { element, value: [0.0, -q] }).to_vec());
     let (system, u, lambda, factors) = main_answer(&model);
     let reactions = system.reactions(&model.0, &u, &lambda, &factors);
     // The hung span is simple: q·3/2 at each end; the clamp carries q·2 + q·3/2 and q·2²/2 + (q·3/2)·2.
@@ -173,25 +157,11 @@ fn springs_and_tied_supports() {
 #[test]
 fn patch_of_distorted_quads() {
     let mut model = Model::default();
-    let places = [
-        [0.0, 0.0],
-        [0.24, 0.0],
-        [0.24, 0.12],
-        [0.0, 0.12],
-        [0.04, 0.02],
-        [0.18, 0.03],
-        [0.16, 0.08],
-        [0.08, 0.08],
-    ];
+    let places =
+        [[0.0, 0.0], [0.24, 0.0], [0.24, 0.12], [0.0, 0.12], [0.04, 0.02], [0.18, 0.03], [0.16, 0.08], [0.08, 0.08]];
     let n = places.map(|[x, y]| model.node("n", x, y));
     let material = model.material(1e6, 0.25);
-    for quad in [
-        [0, 1, 5, 4],
-        [1, 2, 6, 5],
-        [2, 3, 7, 6],
-        [3, 0, 4, 7],
-        [4, 5, 6, 7],
-    ] {
+    for quad in [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]] {
         model.quad(quad.map(|i| n[i]), material, 0.001, Plane::Stress);
     }
     // Two supports, and pairs that impose the field on the rest of the boundary.
@@ -256,9 +226,7 @@ fn unit_square_element() {
 fn bar_on_frictional_supports() {
     let (m, length, ea) = (6, 3.0, 500.0);
     let mut model = Model::default();
-    let n: Vec<usize> = (0..m)
-        .map(|i| model.node("n", length * i as f64, 0.0))
-        .collect();
+    let n: Vec<usize> = (0..m).map(|i| model.node("n", length * i as f64, 0.0)).collect();
     for pair in n.windows(2) {
         model.frame(pair[0], pair[1], ea, 20.0);
     }
@@ -339,9 +307,7 @@ fn pair_between_two_bars() {
 fn frame_on_turned_supports() {
     for normal in [[0.0, 1.0], [-1.0, 1.0]] {
         let mut model = Model::default();
-        let n: Vec<usize> = (0..7)
-            .map(|i| model.node("n", 2.0 * i as f64, 0.0))
-            .collect();
+        let n: Vec<usize> = (0..7).map(|i| model.node("n", 2.0 * i as f64, 0.0)).collect();
         for pair in n.windows(2) {
             model.frame(pair[0], pair[1], 2.1e6, 2.1e4);
         }
@@ -386,17 +352,11 @@ fn units_do_not_matter() {
             material.youngs_modulus *= force / length.powi(2);
         }
         for element in &mut model.0.elements {
-            if let crate::model::structure::ElementKind::Quad { thickness, .. } = &mut element.kind
-            {
+            if let crate::model::structure::ElementKind::Quad { thickness, .. } = &mut element.kind {
                 *thickness *= length;
             }
         }
-        for load in model
-            .0
-            .load_cases
-            .iter_mut()
-            .flat_map(|case| &mut case.loads)
-        {
+        for load in model.0.load_cases.iter_mut().flat_map(|case| &mut case.loads) {
             if let Load::Nodal { force: f, .. } = load {
                 *f = f.map(|f| f * force);
             }

@@ -124,11 +124,7 @@ fn internal_mechanism_of_a_large_truss() {
     }
     let system = model.solve();
     assert_eq!(system.kernel().ncols(), 4);
-    let internal = system
-        .kernel_motions()
-        .iter()
-        .filter(|m| m.internal)
-        .count();
+    let internal = system.kernel_motions().iter().filter(|m| m.internal).count();
     assert_eq!(internal, 1);
     assert!((system.stiffness() * system.kernel()).amax() < 1e-15 * system.stiffness().amax());
 }

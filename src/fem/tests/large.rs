@@ -55,9 +55,7 @@ fn elimination_satisfies_the_joints() {
     let dofs = Dofs::new(&model.0);
     let joints = model.joints();
     let elimination = Elimination::new(&model.0, &dofs, &joints).unwrap();
-    let v: Vec<f64> = (0..elimination.masters())
-        .map(|i| (i as f64).sin())
-        .collect();
+    let v: Vec<f64> = (0..elimination.masters()).map(|i| (i as f64).sin()).collect();
     let z = DVector::from_fn(joints.len(), |i, _| (i as f64).cos());
     let u = dofs.scatter(&elimination.expand(&v, z.as_slice()));
     let found = crate::fem::kernel::mutual_displacements(&joints, &u);

@@ -44,18 +44,12 @@ impl Plate {
             2 * count,
             |visit| terms.iter().for_each(|&(column, _)| visit(column)),
             |visit| {
-                terms
-                    .iter()
-                    .for_each(|&(column, row)| visit(row, column, 1.0));
+                terms.iter().for_each(|&(column, row)| visit(row, column, 1.0));
                 Ok(())
             },
         )
         .expect("no term fails");
-        Plate {
-            node: (0..2 * count as u32).map(|unknown| unknown / 2).collect(),
-            coordinates,
-            matrix,
-        }
+        Plate { node: (0..2 * count as u32).map(|unknown| unknown / 2).collect(), coordinates, matrix }
     }
 
     fn is_on_edge(&self, unknown: usize) -> bool {
@@ -63,11 +57,7 @@ impl Plate {
     }
 
     fn order(&self, last: &[bool]) -> Vec<u32> {
-        let places = Places {
-            node: &self.node,
-            coordinates: &self.coordinates,
-            last,
-        };
+        let places = Places { node: &self.node, coordinates: &self.coordinates, last };
         elimination_order(&self.matrix, places, &Quiet).expect("nothing fails")
     }
 
@@ -122,10 +112,7 @@ fn little_fill_in_a_square_plate() {
     let plate = Plate::new(47, 47);
     let entries = plate.fill(&plate.order(&vec![false; plate.node.len()])) as f64;
     let dissected = 4.0 * 7.75 * k.powi(2) * k.log2();
-    assert!(
-        entries < dissected,
-        "{entries} entries, dissected {dissected}"
-    );
+    assert!(entries < dissected, "{entries} entries, dissected {dissected}");
     assert!(entries < 4.0 * k.powi(3));
 }
 
@@ -136,17 +123,12 @@ fn little_fill_in_a_square_plate() {
 fn what_comes_last_fills_only_where_it_touches() {
     let fill = |nx: usize| {
         let plate = Plate::new(nx, 4);
-        let last: Vec<bool> = (0..plate.node.len())
-            .map(|unknown| plate.is_on_edge(unknown))
-            .collect();
+        let last: Vec<bool> = (0..plate.node.len()).map(|unknown| plate.is_on_edge(unknown)).collect();
         let edge = last.iter().filter(|last| **last).count();
         // Without the dense triangle of the edge itself, which no order avoids.
         plate.fill(&plate.order(&last)) - edge * (edge + 1) / 2
     };
     let (short, long) = (fill(100) as f64, fill(400) as f64);
     let growth = (long / short).log(4.0);
-    assert!(
-        growth < 1.3,
-        "entries grow as the length to the power {growth:.2}"
-    );
+    assert!(growth < 1.3, "entries grow as the length to the power {growth:.2}");
 }

@@ -78,9 +78,7 @@ fn joints_round_a_ring_of_pairs() {
     }
     let text = message(&model);
     assert!(
-        text.starts_with(
-            "the normal joint of c3 is already held by the normal joint of c1 and the normal joint of c2"
-        ),
+        text.starts_with("the normal joint of c3 is already held by the normal joint of c1 and the normal joint of c2"),
         "{text}"
     );
 }
@@ -141,16 +139,10 @@ fn mechanisms_name_node_and_direction() {
     let (mut model, [_, b]) = bar();
     let c = model.node("C", 5.0, 0.0);
     model.hinged(b, c, 10.0, 1.0, [true, false]);
-    let MainSystemError::Mechanism {
-        node, direction, ..
-    } = model.try_solve().unwrap_err()
-    else {
+    let MainSystemError::Mechanism { node, direction, .. } = model.try_solve().unwrap_err() else {
         panic!("a mechanism expected");
     };
-    assert_eq!(
-        (node, direction),
-        (c, FreeDirection::Component(Component::Y))
-    );
+    assert_eq!((node, direction), (c, FreeDirection::Component(Component::Y)));
 
     // A node that nothing holds.
     let (mut model, _) = bar();
@@ -181,10 +173,7 @@ fn truss_mechanisms() {
         model.support(0, "xy");
         model.support(2, "y");
         let error = model.try_solve().unwrap_err();
-        assert!(
-            matches!(error, MainSystemError::Mechanism { .. }),
-            "{bays}: {error}"
-        );
+        assert!(matches!(error, MainSystemError::Mechanism { .. }), "{bays}: {error}");
         // The missing diagonal makes it sound.
         model.truss(0, 3, 1.0);
         assert!(model.try_solve().is_ok(), "{bays}");
@@ -195,9 +184,7 @@ fn truss_mechanisms() {
 #[test]
 fn ill_conditioned_structures_are_not_refused() {
     let mut model = Model::default();
-    let n: Vec<usize> = (0..=1000)
-        .map(|i| model.node("n", 0.01 * i as f64, 0.0))
-        .collect();
+    let n: Vec<usize> = (0..=1000).map(|i| model.node("n", 0.01 * i as f64, 0.0)).collect();
     for nodes in n.windows(2) {
         model.frame(nodes[0], nodes[1], 1.0, 1e-6);
     }
@@ -222,11 +209,7 @@ fn moment_at_a_pin() {
     model.truss(a, b, 10.0);
     model.support(a, "xy");
     model.support(b, "y");
-    model.case(vec![Load::Nodal {
-        node: b,
-        force: [0.0, 0.0],
-        moment: 1.0,
-    }]);
+    model.case(vec![Load::Nodal { node: b, force: [0.0, 0.0], moment: 1.0 }]);
     assert!(message(&model).starts_with("load case case1 has a moment at node B"));
 }
 
@@ -237,10 +220,7 @@ fn shapeless_elements() {
     model.truss(a, b, 10.0);
     model.support(a, "xy");
     model.support(b, "xy");
-    assert_eq!(
-        message(&model),
-        "the element with the nodes A, B cannot be used: its two nodes are at the same place"
-    );
+    assert_eq!(message(&model), "the element with the nodes A, B cannot be used: its two nodes are at the same place");
 }
 
 #[test]

@@ -46,19 +46,14 @@ impl Parametric {
         let size = start.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut normals = start.clone();
         let imposed = |normals: &[f64]| -> Vec<f64> {
-            let of = |&(i, _, k): &(usize, usize, Option<usize>)| {
-                extra[i] - change[i] * k.map_or(0.0, |k| normals[k])
-            };
+            let of = |&(i, _, k): &(usize, usize, Option<usize>)| extra[i] - change[i] * k.map_or(0.0, |k| normals[k]);
             slipping.iter().map(of).collect()
         };
         let mut settled = slipping.is_empty();
         for _ in 0..60 {
             let mut next = start.clone();
             add_response(&mut next, &influence, &imposed(&normals));
-            let moved = next
-                .iter()
-                .zip(&normals)
-                .fold(0.0, |a: f64, (next, now)| a.max((next - now).abs()));
+            let moved = next.iter().zip(&normals).fold(0.0, |a: f64, (next, now)| a.max((next - now).abs()));
             normals = next;
             if moved <= 4.0 * f64::EPSILON * size {
                 settled = true;
@@ -68,21 +63,14 @@ impl Parametric {
         if !settled {
             return None;
         }
-        let terms: Vec<(usize, f64)> = slipping
-            .iter()
-            .zip(imposed(&normals))
-            .map(|(&(_, c, _), imposed)| (c, imposed))
-            .collect();
+        let terms: Vec<(usize, f64)> =
+            slipping.iter().zip(imposed(&normals)).map(|(&(_, c, _), imposed)| (c, imposed)).collect();
         let mut value = d.value.clone();
         for (value, change) in value.iter_mut().zip(d.combined_columns(&terms)) {
             *value += change;
         }
         let n = lcp.whole_size;
-        let mut point = Point {
-            z: vec![0.0; n],
-            w: vec![0.0; n],
-            p: 0.0,
-        };
+        let mut point = Point { z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
         for (r, &local) in d.row.iter().enumerate() {
             match self.stand.variable(local, false) {
                 Variable::Z(k) => point.z[k] = value[r],

@@ -63,14 +63,7 @@ pub struct Path {
 impl Path {
     /// The scheme at the end.
     pub fn last_scheme(&self) -> Basis {
-        let z = self
-            .knots
-            .last()
-            .map_or(Vec::new(), |knot| knot.scheme.clone());
-        Basis {
-            active: z.clone(),
-            z,
-            p: false,
-        }
+        let z = self.knots.last().map_or(Vec::new(), |knot| knot.scheme.clone());
+        Basis { active: z.clone(), z, p: false }
     }
 }

@@ -19,9 +19,7 @@ impl Stand {
         let p_rate = self.dictionary.rate(Local::P, c, &self.column);
         tied.iter()
             .max_by(|a, b| a.fall.total_cmp(&b.fall))
-            .map_or(0.0, |blocking| {
-                blocking.fall / self.rate_size(blocking.variable, self.rate_total(c), p_rate)
-            })
+            .map_or(0.0, |blocking| blocking.fall / self.rate_size(blocking.variable, self.rate_total(c), p_rate))
     }
 
     /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it: a small residual
@@ -119,14 +117,7 @@ struct Numbers<'a> {
 
 impl<'a> Numbers<'a> {
     fn new(stand: &'a Stand, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a> {
-        let mut numbers = Numbers {
-            stand,
-            held,
-            entering,
-            shift,
-            p: 0.0,
-            w: DVector::zeros(0),
-        };
+        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: DVector::zeros(0) };
         let z: Vec<f64> = std::iter::zip(0.., &stand.dictionary.turned)
             .map(|(i, &turned)| {
                 let z = numbers.of(Local::Z(i));
@@ -155,9 +146,7 @@ impl<'a> Numbers<'a> {
     /// `w` of row i where it is turned round, from the w of the primary rows, and the other way.
     fn turned(&self, i: usize, w: impl Fn(usize) -> f64) -> f64 {
         match &self.stand.lcp.mirrors[i] {
-            Some(mirror) if self.stand.dictionary.turned[i] => {
-                mirror.reflect(i, w, self.p, self.shift)
-            }
+            Some(mirror) if self.stand.dictionary.turned[i] => mirror.reflect(i, w, self.p, self.shift),
             _ => w(i),
         }
     }
@@ -169,8 +158,7 @@ impl<'a> Numbers<'a> {
         (0..stand.lcp.size())
             .map(|i| {
                 let held = self.turned(i, |row| self.of(Local::W(row)));
-                let natural =
-                    stand.rate_size(Local::W(i), size, self.p) + self.shift * stand.sizes.q[i];
+                let natural = stand.rate_size(Local::W(i), size, self.p) + self.shift * stand.sizes.q[i];
                 (self.w[i] - held).abs() / natural.max(f64::MIN_POSITIVE)
             })
             .fold(0.0, larger)

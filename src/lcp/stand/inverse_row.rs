@@ -12,13 +12,7 @@ impl Stand {
         tied: &'a [Candidate],
         table_row: &'a dyn Fn(Variable) -> usize,
     ) -> Vec<InverseRow<'a>> {
-        tied.iter()
-            .map(|candidate| InverseRow {
-                stand: self,
-                candidate,
-                table_row,
-            })
-            .collect()
+        tied.iter().map(|candidate| InverseRow { stand: self, candidate, table_row }).collect()
     }
 
     /// Column of the nonbasic w that stands in row `whole` of the whole LCP.

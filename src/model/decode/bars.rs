@@ -19,27 +19,14 @@ pub struct BarOutline<'d> {
 
 /// Reads one bar; its nodes are resolved by [`divide`], once those of the plates are known.
 pub fn bar<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<BarOutline<'d>> {
-    let fields = cursor.fields(&[
-        "id",
-        "nodes",
-        "kind",
-        "material",
-        "section",
-        "divisions",
-        "hinges",
-    ])?;
+    let fields = cursor.fields(&["id", "nodes", "kind", "material", "section", "divisions", "hinges"])?;
     let id = id_of(builder, &fields, "bar");
     let outline = bar_outline(builder, cursor, &fields, id);
     if outline.is_none() {
         builder.broken.extend(id);
         // The rest of the entry is wrong, but its nodes are looked up all the same.
-        let ends = fields
-            .optional("nodes")
-            .filter(|nodes| nodes.is_list())
-            .and_then(Cursor::list);
-        builder
-            .ends_of_broken_bars
-            .extend(ends.into_iter().flatten().filter(|end| end.is_string()));
+        let ends = fields.optional("nodes").filter(|nodes| nodes.is_list()).and_then(Cursor::list);
+        builder.ends_of_broken_bars.extend(ends.into_iter().flatten().filter(|end| end.is_string()));
     }
     outline
 }
@@ -105,22 +92,11 @@ fn bar_outline<'d>(
             );
             return None;
         };
-        ElementKind::Frame {
-            area: section.area,
-            inertia,
-            hinges: hinges?,
-        }
+        ElementKind::Frame { area: section.area, inertia, hinges: hinges? }
     } else {
         ElementKind::Truss { area: section.area }
     };
-    Some(BarOutline {
-        cursor,
-        id: id?,
-        ends: ends?,
-        divisions: divisions?,
-        material: material?,
-        kind,
-    })
+    Some(BarOutline { cursor, id: id?, ends: ends?, divisions: divisions?, material: material?, kind })
 }
 
 fn hinges(cursor: Cursor<'_>) -> Option<[bool; 2]> {
@@ -139,21 +115,13 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
         builder.broken.insert(bar.id);
         return;
     };
-    let (from, to) = (
-        builder.structure.nodes[start].position,
-        builder.structure.nodes[end].position,
-    );
+    let (from, to) = (builder.structure.nodes[start].position, builder.structure.nodes[end].position);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-    let size = [from[0], from[1], to[0], to[1]]
-        .iter()
-        .fold(0.0_f64, |size, x| size.max(x.abs()));
+    let size = [from[0], from[1], to[0], to[1]].iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     // Written so that an unknown place (NaN, reported at the node) passes.
     if start == end || length <= 1e-12 * size {
         bar.cursor.problem(
-            format!(
-                "the bar \"{}\" has no length: both ends are at ({}, {})",
-                bar.id, from[0], from[1]
-            ),
+            format!("the bar \"{}\" has no length: both ends are at ({}, {})", bar.id, from[0], from[1]),
             "join two nodes at different places",
         );
         builder.broken.insert(bar.id);
@@ -164,10 +132,7 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
         let t = inner as f64 / bar.divisions as f64;
         let node = Node {
             id: format!("{}/{inner}", bar.id),
-            position: [
-                from[0] + t * (to[0] - from[0]),
-                from[1] + t * (to[1] - from[1]),
-            ],
+            position: [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])],
         };
         chain.push(builder.add_node(node, place.clone()));
     }
@@ -180,16 +145,9 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
             hinges[0] &= index == 0;
             hinges[1] &= index + 1 == bar.divisions;
         }
-        builder.structure.elements.push(Element {
-            nodes: pair.to_vec(),
-            material: bar.material,
-            kind,
-        });
+        builder.structure.elements.push(Element { nodes: pair.to_vec(), material: bar.material, kind });
         builder.places.elements.push(place.clone());
     }
     builder.bars.insert(bar.id, builder.structure.bars.len());
-    builder.structure.bars.push(Bar {
-        id: bar.id.to_string(),
-        elements: first..builder.structure.elements.len(),
-    });
+    builder.structure.bars.push(Bar { id: bar.id.to_string(), elements: first..builder.structure.elements.len() });
 }

@@ -21,11 +21,7 @@ const SYMMETRY: f64 = 1e-8;
 const KERNEL: f64 = 1e-8;
 
 /// Reads a contact system; `path` is the scenario file, for the file of the matrix.
-pub fn read(
-    cursor: Cursor<'_>,
-    parameters: &Parameters,
-    path: Option<&Path>,
-) -> Option<GivenContactSystem> {
+pub fn read(cursor: Cursor<'_>, parameters: &Parameters, path: Option<&Path>) -> Option<GivenContactSystem> {
     let fields = cursor.fields(&[
         "pairs",
         "positions",
@@ -55,14 +51,7 @@ pub fn read(
         (Some(cursor), Some(stiffness)) => Some(kernel(cursor, count, stiffness)?),
         _ => None,
     };
-    Some(GivenContactSystem {
-        pairs,
-        positions,
-        stiffness: stiffness?,
-        loads: loads?,
-        laws: laws?,
-        kernel,
-    })
+    Some(GivenContactSystem { pairs, positions, stiffness: stiffness?, loads: loads?, laws: laws?, kernel })
 }
 
 fn pair_ids(cursor: Cursor<'_>) -> Option<Vec<String>> {
@@ -81,10 +70,7 @@ fn pair_ids(cursor: Cursor<'_>) -> Option<Vec<String>> {
             );
             is_right = false;
         } else if !seen.insert(id) {
-            entry.problem(
-                format!("duplicate id {}", quoted(id)),
-                "every pair has an id of its own",
-            );
+            entry.problem(format!("duplicate id {}", quoted(id)), "every pair has an id of its own");
             is_right = false;
         }
         ids.push(id.to_string());
@@ -99,9 +85,7 @@ fn pair_ids(cursor: Cursor<'_>) -> Option<Vec<String>> {
 /// `c1`, and as the pairs of an edge are called, `joint[0]`.
 fn is_pair_id(text: &str) -> bool {
     match text.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
-        Some((id, index)) => {
-            is_id(id) && !index.is_empty() && index.bytes().all(|byte| byte.is_ascii_digit())
-        }
+        Some((id, index)) => is_id(id) && !index.is_empty() && index.bytes().all(|byte| byte.is_ascii_digit()),
         None => is_id(text),
     }
 }
@@ -109,10 +93,7 @@ fn is_pair_id(text: &str) -> bool {
 fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<f64>>> {
     let size = 2 * pairs;
     if let Some(refusal) = memory::refusal(memory::for_joints(size as f64)) {
-        cursor.problem(
-            format!("the contact system is too large: with {pairs} pairs it {refusal}"),
-            "use fewer pairs",
-        );
+        cursor.problem(format!("the contact system is too large: with {pairs} pairs it {refusal}"), "use fewer pairs");
         return None;
     }
     let (matrix, at): (_, Option<Cursor<'_>>) = if cursor.is_object() {
@@ -156,10 +137,7 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
 }
 
 fn largest(matrix: &[Vec<f64>]) -> f64 {
-    matrix
-        .iter()
-        .flatten()
-        .fold(0.0_f64, |largest, entry| largest.max(entry.abs()))
+    matrix.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()))
 }
 
 fn from_file(cursor: Cursor<'_>, size: usize, path: Option<&Path>) -> Option<Vec<Vec<f64>>> {
@@ -185,10 +163,7 @@ fn from_file(cursor: Cursor<'_>, size: usize, path: Option<&Path>) -> Option<Vec
     match matrix_market::read(&text, size) {
         Ok(matrix) => Some(matrix),
         Err(error) => {
-            cursor.problem(
-                format!("{name}:{}: {}", error.line, error.message),
-                error.help,
-            );
+            cursor.problem(format!("{name}:{}: {}", error.line, error.message), error.help);
             None
         }
     }
@@ -204,15 +179,9 @@ fn load_cases(cursor: Cursor<'_>, pairs: usize, parameters: &Parameters) -> Opti
             continue;
         };
         let factor = factor(&fields, parameters);
-        let vector = fields
-            .required("vector")
-            .and_then(|cursor| cursor.numbers(2 * pairs, TWO_EACH));
+        let vector = fields.required("vector").and_then(|cursor| cursor.numbers(2 * pairs, TWO_EACH));
         match (factor, vector) {
-            (Some(factor), Some(vector)) => cases.push(GivenLoad {
-                name: entry.name().to_string(),
-                factor,
-                vector,
-            }),
+            (Some(factor), Some(vector)) => cases.push(GivenLoad { name: entry.name().to_string(), factor, vector }),
             _ => is_right = false,
         }
     }
@@ -238,12 +207,7 @@ fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Ve
         }
         let force = stiffness
             .iter()
-            .map(|row| {
-                row.iter()
-                    .zip(&motion)
-                    .map(|(r, z)| r * (z / size))
-                    .sum::<f64>()
-            })
+            .map(|row| row.iter().zip(&motion).map(|(r, z)| r * (z / size)).sum::<f64>())
             .fold(0.0_f64, |force, row| force.max(row.abs()));
         if force > KERNEL * scale {
             entry.problem(
@@ -293,9 +257,7 @@ fn laws(fields: &Fields<'_>, pairs: usize, parameters: &Parameters) -> Option<Ve
     if !is_right {
         return None;
     }
-    let law = |(pair, kind): (usize, LawKind)| {
-        kind.with(|key| numbers.get(key).map(|values| values[pair].clone()))
-    };
+    let law = |(pair, kind): (usize, LawKind)| kind.with(|key| numbers.get(key).map(|values| values[pair].clone()));
     Some(kinds.into_iter().enumerate().map(law).collect())
 }
 
@@ -308,10 +270,7 @@ fn only_where_taken(cursor: Cursor<'_>, key: &str, kinds: &[LawKind], values: &[
     for ((entry, kind), value) in entries.zip(kinds).zip(values) {
         if !kind.takes(key) && *value != Number::Value(0.0) {
             entry.problem(
-                format!(
-                    "`{key}` does not belong to the law {} of this pair",
-                    kind.word()
-                ),
+                format!("`{key}` does not belong to the law {} of this pair", kind.word()),
                 "write 0 here, or change `law`",
             );
             is_right = false;

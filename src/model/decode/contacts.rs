@@ -29,10 +29,7 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
         let place: Arc<str> = format!("contacts[{index}]").into();
         sources.push((cursor, pairs.len()));
         builder.structure.pairs.extend(pairs);
-        builder
-            .places
-            .pairs
-            .resize(builder.structure.pairs.len(), place);
+        builder.places.pairs.resize(builder.structure.pairs.len(), place);
     }
     refuse_too_many(&sources)?;
     report_repeated_joints(builder, &sources);
@@ -40,10 +37,8 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
 }
 
 fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair>> {
-    let fields = cursor.fields(&[
-        "id", "node", "edge", "against", "normal", "law", "friction", "cohesion", "gap", "bound",
-        "skip",
-    ])?;
+    let fields = cursor
+        .fields(&["id", "node", "edge", "against", "normal", "law", "friction", "cohesion", "gap", "bound", "skip"])?;
     let id = fields.required("id").and_then(|cursor| {
         let id = cursor.string()?;
         builder.register(cursor.place(), id, "contact");
@@ -92,22 +87,15 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         })
         .unwrap_or(Some(HashSet::new()));
     let (id, law, sides, numbers, skipped) = (id?, law?, sides?, numbers?, skipped?);
-    let pairs = sides
-        .pairs
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| !skipped.contains(index))
-        .map(|(index, &(node, against))| Pair {
-            id: if is_edge {
-                format!("{id}[{index}]")
-            } else {
-                id.to_string()
-            },
+    let pairs = sides.pairs.iter().enumerate().filter(|(index, _)| !skipped.contains(index)).map(
+        |(index, &(node, against))| Pair {
+            id: if is_edge { format!("{id}[{index}]") } else { id.to_string() },
             node,
             against,
             normal: sides.normal,
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
-        });
+        },
+    );
     Some(pairs.collect())
 }
 
@@ -123,36 +111,26 @@ struct Sides {
 
 fn node_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
     let node = builder.node(at);
-    let normal = fields
-        .required("normal")
-        .and_then(|cursor| cursor.direction("normal"));
-    let against = fields
-        .required("against")
-        .and_then(|cursor| match cursor.string()? {
-            GROUND => Some(None),
-            word if is_misspelt_ground(builder, word) => {
-                cursor.unknown("node", word, &[GROUND]);
-                None
-            }
-            _ => Some(Some((cursor, builder.node(cursor)?))),
-        })?;
+    let normal = fields.required("normal").and_then(|cursor| cursor.direction("normal"));
+    let against = fields.required("against").and_then(|cursor| match cursor.string()? {
+        GROUND => Some(None),
+        word if is_misspelt_ground(builder, word) => {
+            cursor.unknown("node", word, &[GROUND]);
+            None
+        }
+        _ => Some(Some((cursor, builder.node(cursor)?))),
+    })?;
     let node = node?;
     if let Some((cursor, other)) = against
         && other == node
     {
         cursor.problem(
-            format!(
-                "the node \"{}\" is in contact with itself",
-                builder.node_id(node)
-            ),
+            format!("the node \"{}\" is in contact with itself", builder.node_id(node)),
             "name two different nodes, or \"ground\"",
         );
         return None;
     }
-    Some(Sides {
-        pairs: vec![(node, against.map(|(_, other)| other))],
-        normal: normal?,
-    })
+    Some(Sides { pairs: vec![(node, against.map(|(_, other)| other))], normal: normal? })
 }
 
 fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
@@ -181,10 +159,7 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
         Spot::Edge { plate, side } => (plate, side),
         Spot::Node(_) => {
             against.problem(
-                format!(
-                    "expected an edge or \"ground\", found the node {}",
-                    against.quoted()
-                ),
+                format!("expected an edge or \"ground\", found the node {}", against.quoted()),
                 "an edge meets an edge with as many nodes, or the ground",
             );
             return None;
@@ -199,13 +174,8 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
     }
     let partners = partners(builder, at, against, &nodes, (other_plate, other_side))?;
     Some(Sides {
-        normal: normal.unwrap_or_else(|| {
-            other_side.outward_normal(&structure.plates[other_plate], &structure.nodes)
-        }),
-        pairs: nodes
-            .into_iter()
-            .zip(partners.into_iter().map(Some))
-            .collect(),
+        normal: normal.unwrap_or_else(|| other_side.outward_normal(&structure.plates[other_plate], &structure.nodes)),
+        pairs: nodes.into_iter().zip(partners.into_iter().map(Some)).collect(),
     })
 }
 
@@ -239,8 +209,7 @@ fn partners<'d>(
     // Edges have at least two nodes.
     let near = NEAR * distance(nodes[0], nodes[nodes.len() - 1]);
     // Of two plates turned towards each other one counts its edge the other way round.
-    if distance(nodes[0], others[0]) > near && distance(nodes[0], others[others.len() - 1]) <= near
-    {
+    if distance(nodes[0], others[0]) > near && distance(nodes[0], others[others.len() - 1]) <= near {
         others.reverse();
     }
     for (&node, &other) in nodes.iter().zip(&others) {
@@ -271,13 +240,7 @@ fn refuse_foreign_numbers(fields: &Fields<'_>, law: LawKind) {
             let owners: Vec<&str> = laws.iter().map(|law| law.word()).collect();
             fields.refuse(
                 &[key],
-                |key| {
-                    format!(
-                        "`{key}` does not belong to the law {}, but to {}",
-                        law.word(),
-                        owners.join(" and ")
-                    )
-                },
+                |key| format!("`{key}` does not belong to the law {}, but to {}", law.word(), owners.join(" and ")),
                 "remove it, or change `law`",
             );
         }
@@ -310,9 +273,7 @@ fn law_numbers<'d>(
         let values = if is_edge {
             per_pair(cursor, key, count, true, builder.parameters)
         } else {
-            cursor
-                .non_negative(key, builder.parameters)
-                .map(|number| vec![number])
+            cursor.non_negative(key, builder.parameters).map(|number| vec![number])
         };
         match values {
             Some(values) => {
@@ -389,9 +350,8 @@ fn report_repeated_joints(builder: &Builder<'_>, sources: &[(Cursor<'_>, usize)]
             JointDirection::Tangential => pair.tangent(),
         };
         let earlier = taken.entry(key).or_default();
-        let parallel = earlier
-            .iter()
-            .find(|(other, _)| (direction[0] * other[1] - direction[1] * other[0]).abs() < 1e-9);
+        let parallel =
+            earlier.iter().find(|(other, _)| (direction[0] * other[1] - direction[1] * other[0]).abs() < 1e-9);
         let repeated = match (parallel, &earlier[..]) {
             (Some((_, first)), _) => Some(*first),
             (None, [_, (_, second), ..]) => Some(*second),

@@ -17,28 +17,16 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
     sections(builder, fields);
     let bars = entries(fields, "bars");
     let plates = entries(fields, "plates");
-    let plates: Vec<(Cursor<'d>, PlateGrid)> = plates
-        .into_iter()
-        .filter_map(|cursor| Some((cursor, plate(builder, cursor)?)))
-        .collect();
-    let bars: Vec<BarOutline<'d>> = bars
-        .into_iter()
-        .filter_map(|cursor| bar(builder, cursor))
-        .collect();
+    let plates: Vec<(Cursor<'d>, PlateGrid)> =
+        plates.into_iter().filter_map(|cursor| Some((cursor, plate(builder, cursor)?))).collect();
+    let bars: Vec<BarOutline<'d>> = bars.into_iter().filter_map(|cursor| bar(builder, cursor)).collect();
     refuse_too_large(builder, &bars, &plates)?;
 
     for (index, (_, plate)) in plates.iter().enumerate() {
         let nodes = plate.append_nodes(&mut builder.structure.nodes);
-        builder.structure.plates.push(Plate {
-            id: plate.id.clone(),
-            elements: 0..0,
-            nodes,
-        });
+        builder.structure.plates.push(Plate { id: plate.id.clone(), elements: 0..0, nodes });
         let place: Arc<str> = format!("plates[{index}]").into();
-        builder
-            .places
-            .nodes
-            .resize(builder.structure.nodes.len(), place);
+        builder.places.nodes.resize(builder.structure.nodes.len(), place);
     }
     for (index, bar) in bars.into_iter().enumerate() {
         divide(builder, bar, format!("bars[{index}]").into());
@@ -47,15 +35,10 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
         builder.node(end);
     }
     for (index, (_, plate)) in plates.iter().enumerate() {
-        let Structure {
-            plates, elements, ..
-        } = &mut builder.structure;
+        let Structure { plates, elements, .. } = &mut builder.structure;
         plates[index].elements = plate.append_elements(&plates[index].nodes, elements);
         let place: Arc<str> = format!("plates[{index}]").into();
-        builder
-            .places
-            .elements
-            .resize(builder.structure.elements.len(), place);
+        builder.places.elements.resize(builder.structure.elements.len(), place);
     }
     for (index, cursor) in entries(fields, "quads").into_iter().enumerate() {
         if let Some(element) = quad(builder, cursor) {
@@ -69,11 +52,7 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
 
 /// The entries of a list that may be left out.
 pub fn entries<'d>(fields: &Fields<'d>, key: &str) -> Vec<Cursor<'d>> {
-    fields
-        .optional(key)
-        .and_then(Cursor::list)
-        .map(Iterator::collect)
-        .unwrap_or_default()
+    fields.optional(key).and_then(Cursor::list).map(Iterator::collect).unwrap_or_default()
 }
 
 fn materials<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
@@ -90,9 +69,7 @@ fn materials<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
             density: 0.0,
             expansion: 0.0,
         });
-        builder
-            .materials
-            .insert(entry.name(), builder.structure.materials.len());
+        builder.materials.insert(entry.name(), builder.structure.materials.len());
         builder.structure.materials.push(material);
     }
 }
@@ -100,11 +77,9 @@ fn materials<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
 fn material(cursor: Cursor<'_>) -> Option<Material> {
     let fields = cursor.fields(&["E", "nu", "density", "expansion"])?;
     let modulus = fields.required("E").and_then(|c| c.positive("E"));
-    let ratio = fields.required("nu").and_then(|cursor| {
-        cursor.number_that("nu", "greater than -1 and at most 0.5", |nu| {
-            nu > -1.0 && nu <= 0.5
-        })
-    });
+    let ratio = fields
+        .required("nu")
+        .and_then(|cursor| cursor.number_that("nu", "greater than -1 and at most 0.5", |nu| nu > -1.0 && nu <= 0.5));
     let density = match fields.optional("density") {
         Some(cursor) => cursor.number_that("density", "0 or more", |value| value >= 0.0),
         None => Some(0.0),
@@ -113,12 +88,7 @@ fn material(cursor: Cursor<'_>) -> Option<Material> {
         Some(cursor) => cursor.number(),
         None => Some(0.0),
     };
-    Some(Material {
-        youngs_modulus: modulus?,
-        poisson_ratio: ratio?,
-        density: density?,
-        expansion: expansion?,
-    })
+    Some(Material { youngs_modulus: modulus?, poisson_ratio: ratio?, density: density?, expansion: expansion? })
 }
 
 fn sections<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
@@ -128,10 +98,7 @@ fn sections<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
             let message = format!("{} cannot name a section", quoted(entry.name()));
             entry.key_problem(message, ID_RULE);
         }
-        let section = section(entry.value()).unwrap_or(Section {
-            area: 1.0,
-            inertia: Some(1.0),
-        });
+        let section = section(entry.value()).unwrap_or(Section { area: 1.0, inertia: Some(1.0) });
         builder.sections.insert(entry.name(), section);
     }
 }
@@ -143,10 +110,7 @@ fn section(cursor: Cursor<'_>) -> Option<Section> {
         Some(cursor) => Some(cursor.positive("inertia")?),
         None => None,
     };
-    Some(Section {
-        area: area?,
-        inertia,
-    })
+    Some(Section { area: area?, inertia })
 }
 
 /// The index of the material that `material` names.
@@ -163,11 +127,7 @@ pub fn material_of<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<usi
 }
 
 /// The `id` of an entry, made known.
-pub fn id_of<'d>(
-    builder: &mut Builder<'d>,
-    fields: &Fields<'d>,
-    kind: &'static str,
-) -> Option<&'d str> {
+pub fn id_of<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>, kind: &'static str) -> Option<&'d str> {
     let cursor = fields.required("id")?;
     let id = cursor.string()?;
     builder.register(cursor.place(), id, kind);
@@ -175,15 +135,9 @@ pub fn id_of<'d>(
 }
 
 /// Reports a mesh that would not fit in memory, at its largest part, before it is made.
-fn refuse_too_large(
-    builder: &Builder<'_>,
-    bars: &[BarOutline<'_>],
-    plates: &[(Cursor<'_>, PlateGrid)],
-) -> Option<()> {
+fn refuse_too_large(builder: &Builder<'_>, bars: &[BarOutline<'_>], plates: &[(Cursor<'_>, PlateGrid)]) -> Option<()> {
     let bars = bars.iter().map(|bar| (bar.cursor, bar.divisions as f64));
-    let plates = plates
-        .iter()
-        .map(|(cursor, plate)| (*cursor, plate.node_count()));
+    let plates = plates.iter().map(|(cursor, plate)| (*cursor, plate.node_count()));
     let parts: Vec<(Cursor<'_>, f64)> = bars.chain(plates).collect();
     let generated: f64 = parts.iter().map(|(_, nodes)| nodes).sum();
     let nodes = generated + builder.structure.nodes.len() as f64;
@@ -195,19 +149,12 @@ fn refuse_too_large(
         return Some(());
     };
     largest.problem(
-        format!(
-            "the model is too large: with {} nodes it {refusal}",
-            count(nodes)
-        ),
+        format!("the model is too large: with {} nodes it {refusal}", count(nodes)),
         "lower the `divisions`, here first",
     );
     None
 }
 
 fn count(nodes: f64) -> String {
-    if nodes < 1e6 {
-        format!("{nodes}")
-    } else {
-        format!("about {nodes:.1e}")
-    }
+    if nodes < 1e6 { format!("{nodes}") } else { format!("about {nodes:.1e}") }
 }

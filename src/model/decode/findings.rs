@@ -26,11 +26,7 @@ impl Findings {
         self.total.set(self.total.get() + 1);
         let mut kept = self.kept.borrow_mut();
         if kept.len() < KEPT {
-            kept.push(Finding {
-                offset,
-                message,
-                help,
-            });
+            kept.push(Finding { offset, message, help });
         }
     }
 
@@ -61,11 +57,7 @@ impl Findings {
                 }
             })
             .collect();
-        Some(Problems {
-            file: file.to_string(),
-            more: total - problems.len(),
-            problems,
-        })
+        Some(Problems { file: file.to_string(), more: total - problems.len(), problems })
     }
 }
 

@@ -22,11 +22,8 @@ pub const NUMBERS: [(&str, &[LawKind]); 4] = [
 
 impl LawKind {
     /// The words in files.
-    pub const WORDS: [(&'static str, LawKind); 3] = [
-        ("coulomb", LawKind::Coulomb),
-        ("frictionless", LawKind::Frictionless),
-        ("bound", LawKind::Bound),
-    ];
+    pub const WORDS: [(&'static str, LawKind); 3] =
+        [("coulomb", LawKind::Coulomb), ("frictionless", LawKind::Frictionless), ("bound", LawKind::Bound)];
 
     /// The word in files.
     pub fn word(self) -> &'static str {
@@ -39,24 +36,18 @@ impl LawKind {
 
     /// Whether a number belongs to this law.
     pub fn takes(self, key: &str) -> bool {
-        NUMBERS
-            .iter()
-            .any(|(name, laws)| *name == key && laws.contains(&self))
+        NUMBERS.iter().any(|(name, laws)| *name == key && laws.contains(&self))
     }
 
     /// The law with its numbers, given by key; 0 where none is given.
     pub fn with(self, number: impl Fn(&str) -> Option<Number>) -> Law {
         let number = |key| number(key).unwrap_or(Number::Value(0.0));
         match self {
-            LawKind::Coulomb => Law::Coulomb {
-                friction: number("friction"),
-                cohesion: number("cohesion"),
-                gap: number("gap"),
-            },
+            LawKind::Coulomb => {
+                Law::Coulomb { friction: number("friction"), cohesion: number("cohesion"), gap: number("gap") }
+            }
             LawKind::Frictionless => Law::Frictionless { gap: number("gap") },
-            LawKind::Bound => Law::Bound {
-                bound: number("bound"),
-            },
+            LawKind::Bound => Law::Bound { bound: number("bound") },
         }
     }
 }
@@ -74,8 +65,6 @@ pub fn per_pair(
         return Some(vec![number; count]);
     }
     let entries = cursor.list_of(count, "one per pair")?;
-    let numbers: Vec<Option<Number>> = entries
-        .map(|entry| entry.non_negative(key, parameters))
-        .collect();
+    let numbers: Vec<Option<Number>> = entries.map(|entry| entry.non_negative(key, parameters)).collect();
     numbers.into_iter().collect()
 }

@@ -23,17 +23,13 @@ pub fn read(cursor: Cursor<'_>, parameters: &Parameters) -> Option<GivenLcp> {
     let like_m = "as many as M has rows";
     let q: Option<Vec<Number>> = q.and_then(|q| {
         let entries = q.list_of(count, like_m)?;
-        let entries: Vec<_> = entries
-            .map(|entry| entry.number_or_parameter(parameters))
-            .collect();
+        let entries: Vec<_> = entries.map(|entry| entry.number_or_parameter(parameters)).collect();
         entries.into_iter().collect()
     });
     let covering = match fields.optional("covering") {
         Some(cursor) => {
             let entries = cursor.list_of(count, like_m)?;
-            let entries: Vec<_> = entries
-                .map(|entry| entry.positive("an entry of the covering vector"))
-                .collect();
+            let entries: Vec<_> = entries.map(|entry| entry.positive("an entry of the covering vector")).collect();
             Some(entries.into_iter().collect::<Option<Vec<f64>>>()?)
         }
         None => None,
@@ -42,12 +38,7 @@ pub fn read(cursor: Cursor<'_>, parameters: &Parameters) -> Option<GivenLcp> {
         Some(cursor) => names(cursor, count, like_m),
         None => Some((1..=count).map(|row| row.to_string()).collect()),
     };
-    Some(GivenLcp {
-        matrix: matrix?,
-        q: q?,
-        covering,
-        names: names?,
-    })
+    Some(GivenLcp { matrix: matrix?, q: q?, covering, names: names? })
 }
 
 /// A square matrix, row by row.
@@ -77,10 +68,7 @@ fn names(cursor: Cursor<'_>, count: usize, what: &str) -> Option<Vec<String>> {
             );
             is_right = false;
         } else if !seen.insert(name) {
-            entry.problem(
-                format!("duplicate name {}", quoted(name)),
-                "every row has a name of its own",
-            );
+            entry.problem(format!("duplicate name {}", quoted(name)), "every row has a name of its own");
             is_right = false;
         }
         names.push(name.to_string());

@@ -44,11 +44,7 @@ fn load_case<'d>(builder: &Builder<'d>, entry: Entry<'d>) -> Option<LoadCase> {
         // A wrong item was reported; the others are read on.
         loads.extend(item(builder, cursor).unwrap_or_default());
     }
-    Some(LoadCase {
-        name: entry.name().to_string(),
-        factor: factor?,
-        loads,
-    })
+    Some(LoadCase { name: entry.name().to_string(), factor: factor?, loads })
 }
 
 fn item<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
@@ -59,19 +55,12 @@ fn item<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
             cursor.problem(
                 format!(
                     "a load has one key, found {}",
-                    present
-                        .iter()
-                        .map(|entry| format!("`{}`", entry.name()))
-                        .collect::<Vec<_>>()
-                        .join(" and ")
+                    present.iter().map(|entry| format!("`{}`", entry.name())).collect::<Vec<_>>().join(" and ")
                 ),
                 "write one object for each load",
             );
         } else if cursor.entries()?.is_empty() {
-            cursor.problem(
-                "the load is empty",
-                "expected { \"point\": … }, { \"traction\": … } or { \"line\": … }",
-            );
+            cursor.problem("the load is empty", "expected { \"point\": … }, { \"traction\": … } or { \"line\": … }");
         }
         return None;
     };
@@ -101,16 +90,12 @@ fn point<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     match spot? {
         Spot::Node(node) => {
             let moment = match moment {
-                Some((cursor, moment)) => builder
-                    .demand_rotation(cursor, node, "no `moment` can act there")
-                    .then_some(moment)?,
+                Some((cursor, moment)) => {
+                    builder.demand_rotation(cursor, node, "no `moment` can act there").then_some(moment)?
+                }
                 None => 0.0,
             };
-            Some(vec![Load::Nodal {
-                node,
-                force: force?,
-                moment,
-            }])
+            Some(vec![Load::Nodal { node, force: force?, moment }])
         }
         Spot::Edge { plate, side } => {
             if let Some((cursor, _)) = moment {
@@ -140,19 +125,13 @@ fn traction<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
     let ((plate, side), value) = (edge?, value?);
     let edge = builder.edge_nodes(plate, side);
     let lengths = tributary_lengths(&edge, &builder.structure.nodes);
-    let shares = edge
-        .into_iter()
-        .zip(lengths)
-        .map(|(node, length)| nodal(node, [value[0] * length, value[1] * length]));
+    let shares =
+        edge.into_iter().zip(lengths).map(|(node, length)| nodal(node, [value[0] * length, value[1] * length]));
     Some(shares.collect())
 }
 
 fn nodal(node: usize, force: [f64; 2]) -> Load {
-    Load::Nodal {
-        node,
-        force,
-        moment: 0.0,
-    }
+    Load::Nodal { node, force, moment: 0.0 }
 }
 
 fn line<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
@@ -170,9 +149,5 @@ fn line<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     };
     let value = value?;
     let elements = builder.structure.bars[bar].elements.clone();
-    Some(
-        elements
-            .map(|element| Load::Line { element, value })
-            .collect(),
-    )
+    Some(elements.map(|element| Load::Line { element, value }).collect())
 }

@@ -14,10 +14,7 @@ pub struct MatrixError {
 
 /// Reads a square matrix of the given size, row by row.
 pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
-    let mut lines = text
-        .lines()
-        .enumerate()
-        .map(|(k, line)| (k + 1, line.trim()));
+    let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
     let (number, banner) = lines.next().unwrap_or((1, ""));
     let header = Header::parse(banner).map_err(|message| {
         error(
@@ -28,17 +25,12 @@ pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
     })?;
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('%'));
     let last = text.lines().count().max(1);
-    let (number, sizes) = lines
-        .next()
-        .ok_or_else(|| error(last, "the line with the sizes is missing", ""))?;
+    let (number, sizes) = lines.next().ok_or_else(|| error(last, "the line with the sizes is missing", ""))?;
     let sizes = words::<usize>(number, sizes, if header.coordinate { 3 } else { 2 })?;
     if sizes[0] != size || sizes[1] != size {
         return Err(error(
             number,
-            format!(
-                "the matrix is {} × {}, expected 2m × 2m = {size} × {size}",
-                sizes[0], sizes[1]
-            ),
+            format!("the matrix is {} × {}, expected 2m × 2m = {size} × {size}", sizes[0], sizes[1]),
             "rows and columns: all normals, then all tangentials",
         ));
     }
@@ -54,20 +46,12 @@ pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
             })
             .collect()
     };
-    let expected = if header.coordinate {
-        sizes[2]
-    } else {
-        places.len()
-    };
+    let expected = if header.coordinate { sizes[2] } else { places.len() };
     let mut count = 0;
     let mut seen = vec![false; if header.coordinate { size * size } else { 0 }];
     for (number, line) in lines {
         if count == expected {
-            return Err(error(
-                number,
-                format!("found more than the {expected} entries announced"),
-                "",
-            ));
+            return Err(error(number, format!("found more than the {expected} entries announced"), ""));
         }
         let (i, j, value) = if header.coordinate {
             let (i, j, value) = header.coordinate_entry(number, line, size)?;
@@ -90,11 +74,7 @@ pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
         count += 1;
     }
     if count < expected {
-        return Err(error(
-            last,
-            format!("the file ends after {count} of {expected} entries"),
-            "",
-        ));
+        return Err(error(last, format!("the file ends after {count} of {expected} entries"), ""));
     }
     Ok(matrix)
 }
@@ -115,9 +95,7 @@ impl Header {
             "coordinate" => true,
             "array" => false,
             other => {
-                return Err(format!(
-                    "unknown layout `{other}`, expected array or coordinate"
-                ));
+                return Err(format!("unknown layout `{other}`, expected array or coordinate"));
             }
         };
         if !matches!(field, "real" | "integer" | "double") {
@@ -127,36 +105,20 @@ impl Header {
             "symmetric" => true,
             "general" => false,
             other => {
-                return Err(format!(
-                    "the matrix is `{other}`, expected general or symmetric"
-                ));
+                return Err(format!("the matrix is `{other}`, expected general or symmetric"));
             }
         };
-        Ok(Header {
-            coordinate,
-            symmetric,
-        })
+        Ok(Header { coordinate, symmetric })
     }
 
-    fn coordinate_entry(
-        &self,
-        number: usize,
-        line: &str,
-        size: usize,
-    ) -> Result<(usize, usize, f64), MatrixError> {
+    fn coordinate_entry(&self, number: usize, line: &str, size: usize) -> Result<(usize, usize, f64), MatrixError> {
         let parts = words::<&str>(number, line, 3)?;
         let index = |word: &str| {
             word.parse::<usize>()
                 .ok()
                 .filter(|index| (1..=size).contains(index))
                 .map(|index| index - 1)
-                .ok_or_else(|| {
-                    error(
-                        number,
-                        format!("`{word}` is no row or column, expected 1 to {size}"),
-                        "",
-                    )
-                })
+                .ok_or_else(|| error(number, format!("`{word}` is no row or column, expected 1 to {size}"), ""))
         };
         let (i, j) = (index(parts[0])?, index(parts[1])?);
         if self.symmetric && j > i {
@@ -175,26 +137,13 @@ fn real(number: usize, word: &str) -> Result<f64, MatrixError> {
     word.parse::<f64>()
         .ok()
         .filter(|value| value.abs() <= 1e150)
-        .ok_or_else(|| {
-            error(
-                number,
-                format!("expected a finite number, found `{}`", shortened(word)),
-                "",
-            )
-        })
+        .ok_or_else(|| error(number, format!("expected a finite number, found `{}`", shortened(word)), ""))
 }
 
-fn words<'l, T: TryFromWord<'l>>(
-    number: usize,
-    line: &'l str,
-    count: usize,
-) -> Result<Vec<T>, MatrixError> {
+fn words<'l, T: TryFromWord<'l>>(number: usize, line: &'l str, count: usize) -> Result<Vec<T>, MatrixError> {
     let found: Vec<&str> = line.split_whitespace().collect();
     if found.len() != count {
-        let message = format!(
-            "expected {count} numbers on this line, found {}",
-            found.len()
-        );
+        let message = format!("expected {count} numbers on this line, found {}", found.len());
         return Err(error(number, message, ""));
     }
     found
@@ -232,11 +181,7 @@ fn error(line: usize, message: impl Into<String>, help: &str) -> MatrixError {
     MatrixError {
         line,
         message: message.into(),
-        help: if help.is_empty() {
-            "correct this line of the matrix file".into()
-        } else {
-            help.into()
-        },
+        help: if help.is_empty() { "correct this line of the matrix file".into() } else { help.into() },
     }
 }
 
@@ -269,18 +214,10 @@ mod tests {
         let banner = "%%MatrixMarket matrix coordinate real symmetric\n";
         for (text, line, part) in [
             ("".to_string(), 1, "not a Matrix Market file"),
-            (
-                "%%MatrixMarket matrix array complex general\n".into(),
-                1,
-                "complex",
-            ),
+            ("%%MatrixMarket matrix array complex general\n".into(), 1, "complex"),
             (banner.to_string(), 1, "sizes"),
             (format!("{banner}2 2\n"), 2, "expected 3 numbers"),
-            (
-                format!("{banner}999999999 999999999 1\n"),
-                2,
-                "999999999 × 999999999",
-            ),
+            (format!("{banner}999999999 999999999 1\n"), 2, "999999999 × 999999999"),
             (format!("{banner}2 2 1\n3 1 1.0\n"), 3, "`3`"),
             (format!("{banner}2 2 1\n1 2 1.0\n"), 3, "above the diagonal"),
             (format!("{banner}2 2 1\n1 1 nan\n"), 3, "finite"),

@@ -36,30 +36,11 @@ pub(super) use words::did_you_mean;
 const FORMAT: &str = "stickslip/1";
 
 /// Keys of any scenario.
-const COMMON: [&str; 7] = [
-    "format",
-    "title",
-    "description",
-    "units",
-    "parameters",
-    "stages",
-    "solver",
-];
+const COMMON: [&str; 7] = ["format", "title", "description", "units", "parameters", "stages", "solver"];
 
 /// Keys of the source *structure*.
-const STRUCTURE: [&str; 11] = [
-    "materials",
-    "sections",
-    "nodes",
-    "bars",
-    "plates",
-    "quads",
-    "ties",
-    "supports",
-    "springs",
-    "contacts",
-    "loads",
-];
+const STRUCTURE: [&str; 11] =
+    ["materials", "sections", "nodes", "bars", "plates", "quads", "ties", "supports", "springs", "contacts", "loads"];
 
 /// Keys of the other two sources.
 const OTHER_SOURCES: [&str; 2] = ["contact_system", "lcp"];
@@ -98,12 +79,7 @@ pub fn scenario(name: &str, text: &str, path: Option<PathBuf>) -> Result<Scenari
 }
 
 fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Option<Scenario> {
-    let known: Vec<&'static str> = COMMON
-        .iter()
-        .chain(&STRUCTURE)
-        .chain(&OTHER_SOURCES)
-        .copied()
-        .collect();
+    let known: Vec<&'static str> = COMMON.iter().chain(&STRUCTURE).chain(&OTHER_SOURCES).copied().collect();
     let fields = root.fields(&known)?;
     format(&fields);
     let title = title(&fields);
@@ -112,10 +88,7 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
         None => None,
     };
     let units = fields.optional("units").and_then(units).unwrap_or_default();
-    let parameters = fields
-        .optional("parameters")
-        .and_then(parameters)
-        .unwrap_or_default();
+    let parameters = fields.optional("parameters").and_then(parameters).unwrap_or_default();
     let solver = fields.optional("solver");
     let rules = solver.and_then(rules).unwrap_or_default();
 
@@ -128,9 +101,7 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
         }
         SourceKey::ContactSystem(cursor) => {
             let system = contact_system::read(cursor, &parameters, path.as_deref())?;
-            places.pairs = (0..system.pairs.len())
-                .map(|pair| format!("contact_system.pairs[{pair}]").into())
-                .collect();
+            places.pairs = (0..system.pairs.len()).map(|pair| format!("contact_system.pairs[{pair}]").into()).collect();
             Source::ContactSystem(system)
         }
         SourceKey::Lcp(cursor) => {
@@ -141,18 +112,11 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
     let stages = match (fields.entry("stages"), &source) {
         (None, _) => Some(Vec::new()),
         (Some(entry), Source::Lcp(_)) => {
-            entry.key_problem(
-                "an lcp has no `stages`: it has no load cases",
-                "remove `stages`",
-            );
+            entry.key_problem("an lcp has no `stages`: it has no load cases", "remove `stages`");
             None
         }
         (Some(entry), Source::Structure(structure)) => {
-            let cases: Vec<&str> = structure
-                .load_cases
-                .iter()
-                .map(|case| case.name.as_str())
-                .collect();
+            let cases: Vec<&str> = structure.load_cases.iter().map(|case| case.name.as_str()).collect();
             stages::read(entry, &cases, &parameters)
         }
         (Some(entry), Source::ContactSystem(system)) => {
@@ -204,16 +168,8 @@ fn title<'d>(fields: &Fields<'d>) -> Option<&'d str> {
 
 fn units(cursor: Cursor<'_>) -> Option<Units> {
     let fields = cursor.fields(&["length", "force"])?;
-    let label = |key| {
-        fields
-            .optional(key)
-            .and_then(Cursor::string)
-            .map(str::to_string)
-    };
-    Some(Units {
-        length: label("length"),
-        force: label("force"),
-    })
+    let label = |key| fields.optional(key).and_then(Cursor::string).map(str::to_string);
+    Some(Units { length: label("length"), force: label("force") })
 }
 
 fn parameters(cursor: Cursor<'_>) -> Option<Parameters> {
@@ -221,10 +177,7 @@ fn parameters(cursor: Cursor<'_>) -> Option<Parameters> {
     for entry in cursor.entries()? {
         let name = entry.name();
         if !is_id(name) {
-            entry.key_problem(
-                format!("{} cannot be the name of a parameter", quoted(name)),
-                ID_RULE,
-            );
+            entry.key_problem(format!("{} cannot be the name of a parameter", quoted(name)), ID_RULE);
         } else if RESERVED.contains(&name) {
             entry.key_problem(
                 format!("the parameter name \"{name}\" is reserved"),
@@ -242,22 +195,12 @@ fn parameter(entry: Entry<'_>) -> Option<Parameter> {
     if !cursor.is_object() {
         if cursor.is_string() || cursor.is_list() {
             cursor.problem(
-                format!(
-                    "expected a number or an object with `value`, found {}",
-                    cursor.found()
-                ),
+                format!("expected a number or an object with `value`, found {}", cursor.found()),
                 "write e.g. 0.3 or { \"value\": 0.3, \"min\": 0, \"max\": 1 }",
             );
             return None;
         }
-        return Some(Parameter {
-            value: cursor.number()?,
-            min: None,
-            max: None,
-            step: None,
-            unit: None,
-            about: None,
-        });
+        return Some(Parameter { value: cursor.number()?, min: None, max: None, step: None, unit: None, about: None });
     }
     let fields = cursor.fields(&["value", "min", "max", "step", "unit", "about"])?;
     let value = fields.required("value");
@@ -267,10 +210,7 @@ fn parameter(entry: Entry<'_>) -> Option<Parameter> {
     if let (Some(min), Some(max), Some(at)) = (min, max, fields.optional("max"))
         && min > max
     {
-        at.problem(
-            format!("max {max} is less than min {min}"),
-            "exchange them, or leave one out",
-        );
+        at.problem(format!("max {max} is less than min {min}"), "exchange them, or leave one out");
     } else if let (Some(value), Some(number)) = (value, number) {
         let below = min.is_some_and(|min| number < min);
         let above = max.is_some_and(|max| number > max);
@@ -278,29 +218,13 @@ fn parameter(entry: Entry<'_>) -> Option<Parameter> {
             let (end, limit) = if below { ("min", min) } else { ("max", max) };
             // One of the two is there, or neither test could hold.
             let limit = limit.unwrap_or(number);
-            value.problem(
-                format!("the value {number} lies beyond {end} {limit}"),
-                format!("change the value or {end}"),
-            );
+            value
+                .problem(format!("the value {number} lies beyond {end} {limit}"), format!("change the value or {end}"));
         }
     }
-    let step = fields
-        .optional("step")
-        .and_then(|cursor| cursor.positive("step"));
-    let label = |key| {
-        fields
-            .optional(key)
-            .and_then(Cursor::string)
-            .map(str::to_string)
-    };
-    Some(Parameter {
-        value: number?,
-        min,
-        max,
-        step,
-        unit: label("unit"),
-        about: label("about"),
-    })
+    let step = fields.optional("step").and_then(|cursor| cursor.positive("step"));
+    let label = |key| fields.optional(key).and_then(Cursor::string).map(str::to_string);
+    Some(Parameter { value: number?, min, max, step, unit: label("unit"), about: label("about") })
 }
 
 fn rules(cursor: Cursor<'_>) -> Option<Rules> {
@@ -320,10 +244,7 @@ fn rule<T: Default + std::str::FromStr<Err = UnknownChoice>>(fields: &Fields<'_>
         return T::default();
     };
     word.parse().unwrap_or_else(|error: UnknownChoice| {
-        cursor.problem(
-            format!("unknown {} {}", error.what, quoted(word)),
-            format!("expected {}", error.expected),
-        );
+        cursor.problem(format!("unknown {} {}", error.what, quoted(word)), format!("expected {}", error.expected));
         T::default()
     })
 }

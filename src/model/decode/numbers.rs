@@ -44,10 +44,7 @@ impl Cursor<'_> {
         }
         if value.abs() > LARGEST {
             self.problem(
-                format!(
-                    "the number {} is too large to compute with",
-                    shortened(literal)
-                ),
+                format!("the number {} is too large to compute with", shortened(literal)),
                 "numbers go up to 1e150: choose other units",
             );
             return None;
@@ -56,12 +53,7 @@ impl Cursor<'_> {
     }
 
     /// A finite number that passes `is_right`; `expected` completes "… must be".
-    pub fn number_that(
-        self,
-        what: &str,
-        expected: &str,
-        is_right: impl Fn(f64) -> bool,
-    ) -> Option<f64> {
+    pub fn number_that(self, what: &str, expected: &str, is_right: impl Fn(f64) -> bool) -> Option<f64> {
         let value = self.number()?;
         if is_right(value) {
             return Some(value);
@@ -86,10 +78,7 @@ impl Cursor<'_> {
             return Some(value as usize);
         }
         self.problem(
-            format!(
-                "{what} must be a whole number from {least}, found {}",
-                self.found()
-            ),
+            format!("{what} must be a whole number from {least}, found {}", self.found()),
             "write it without a fraction",
         );
         None
@@ -116,10 +105,7 @@ impl Cursor<'_> {
             }
             Value::NumberLit(number) => self.magnitude(number.value).map(Number::Value),
             _ => {
-                self.wrong_type(
-                    "a number or the name of a parameter",
-                    "write one of the two",
-                );
+                self.wrong_type("a number or the name of a parameter", "write one of the two");
                 None
             }
         }
@@ -140,9 +126,7 @@ impl Cursor<'_> {
                 let value = parameters.get(name)?.as_ref()?.value;
                 if value < 0.0 {
                     self.problem(
-                        format!(
-                            "{what} must not be negative, but the parameter `{name}` has the value {value}"
-                        ),
+                        format!("{what} must not be negative, but the parameter `{name}` has the value {value}"),
                         format!("give parameters.{name} a value of 0 or more"),
                     );
                     return None;

@@ -36,11 +36,7 @@ pub fn plate<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<PlateG
     grid
 }
 
-fn plate_grid<'d>(
-    builder: &Builder<'d>,
-    fields: &Fields<'d>,
-    id: Option<&'d str>,
-) -> Option<PlateGrid> {
+fn plate_grid<'d>(builder: &Builder<'d>, fields: &Fields<'d>, id: Option<&'d str>) -> Option<PlateGrid> {
     let origin = fields.required("origin").and_then(Cursor::vector);
     let rotation = match fields.optional("rotation") {
         Some(cursor) => cursor.number(),
@@ -50,27 +46,15 @@ fn plate_grid<'d>(
     let common = membrane(builder, fields);
     let [x, y] = lines?;
     let (thickness, material, plane) = common?;
-    Some(PlateGrid {
-        id: id?.to_string(),
-        origin: origin?,
-        rotation: rotation?,
-        x,
-        y,
-        thickness,
-        plane,
-        material,
-    })
+    Some(PlateGrid { id: id?.to_string(), origin: origin?, rotation: rotation?, x, y, thickness, plane, material })
 }
 
 /// Thickness, material and plane of a plate or quad.
 fn membrane<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<(f64, usize, Plane)> {
-    let thickness = fields
-        .required("thickness")
-        .and_then(|cursor| cursor.positive("thickness"));
+    let thickness = fields.required("thickness").and_then(|cursor| cursor.positive("thickness"));
     let material = material_of(builder, fields);
     let at = fields.required("plane");
-    let plane = at
-        .and_then(|cursor| cursor.choice(&[("strain", Plane::Strain), ("stress", Plane::Stress)]));
+    let plane = at.and_then(|cursor| cursor.choice(&[("strain", Plane::Strain), ("stress", Plane::Stress)]));
     if let (Some(material), Some(Plane::Strain), Some(at)) = (material, plane, at)
         && builder.structure.materials[material].poisson_ratio == 0.5
     {
@@ -105,10 +89,7 @@ fn grid_lines(fields: &Fields<'_>) -> Option<[GridLines; 2]> {
             return Some(size);
         }
         cursor.problem(
-            format!(
-                "the size of a plate must be greater than 0, found [{}, {}]",
-                size[0], size[1]
-            ),
+            format!("the size of a plate must be greater than 0, found [{}, {}]", size[0], size[1]),
             "give length and height; `rotation` turns a plate",
         );
         None
@@ -119,10 +100,7 @@ fn grid_lines(fields: &Fields<'_>) -> Option<[GridLines; 2]> {
         Some([counts[0]?, counts[1]?])
     });
     let (size, divisions) = (size?, divisions?);
-    Some([0, 1].map(|axis| GridLines::Uniform {
-        size: size[axis],
-        divisions: divisions[axis],
-    }))
+    Some([0, 1].map(|axis| GridLines::Uniform { size: size[axis], divisions: divisions[axis] }))
 }
 
 fn increasing(cursor: Cursor<'_>) -> Option<Vec<f64>> {
@@ -139,11 +117,7 @@ fn increasing(cursor: Cursor<'_>) -> Option<Vec<f64>> {
     for k in 1..lines.len() {
         if lines[k] <= lines[k - 1] {
             entries[k].problem(
-                format!(
-                    "grid lines must increase, found {} after {}",
-                    lines[k],
-                    lines[k - 1]
-                ),
+                format!("grid lines must increase, found {} after {}", lines[k], lines[k - 1]),
                 "give the distances from `origin` in increasing order, each once",
             );
             return None;
@@ -166,11 +140,7 @@ pub fn quad<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Element
     });
     id?;
     let (thickness, material, plane) = common?;
-    Some(Element {
-        nodes: corners?,
-        material,
-        kind: ElementKind::Quad { thickness, plane },
-    })
+    Some(Element { nodes: corners?, material, kind: ElementKind::Quad { thickness, plane } })
 }
 
 fn check_corners(builder: &Builder<'_>, cursor: Cursor<'_>, nodes: &[usize]) -> bool {
@@ -194,10 +164,8 @@ fn check_corners(builder: &Builder<'_>, cursor: Cursor<'_>, nodes: &[usize]) -> 
         .collect();
     const FLAT: f64 = 1e-9;
     if turns.iter().all(|turn| *turn < -FLAT) {
-        cursor.problem(
-            "the corners of the quad run clockwise",
-            "list them counter-clockwise, i.e. in the reverse order",
-        );
+        cursor
+            .problem("the corners of the quad run clockwise", "list them counter-clockwise, i.e. in the reverse order");
         return false;
     }
     // A corner at an unknown place gives NaN and was reported there.

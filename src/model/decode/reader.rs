@@ -25,16 +25,12 @@ pub struct Cursor<'d> {
 impl<'d> Cursor<'d> {
     /// The outermost value.
     pub fn root(document: &'d Document<'d>, findings: &'d Findings) -> Self {
-        Cursor {
-            value: document.root(),
-            findings,
-        }
+        Cursor { value: document.root(), findings }
     }
 
     /// Reports a problem at this value.
     pub fn problem(self, message: impl Into<String>, help: impl Into<String>) {
-        self.findings
-            .add(self.value.start(), message.into(), help.into());
+        self.findings.add(self.value.start(), message.into(), help.into());
     }
 
     /// How many problems were reported so far, anywhere.
@@ -44,10 +40,7 @@ impl<'d> Cursor<'d> {
 
     /// The place of the value.
     pub fn place(self) -> Place<'d> {
-        Place {
-            offset: self.value.start(),
-            findings: self.findings,
-        }
+        Place { offset: self.value.start(), findings: self.findings }
     }
 
     /// What stands here, for messages: `the number 5`, `the string "x"`, `an object`.
@@ -117,14 +110,7 @@ impl<'d> Cursor<'d> {
             [] => format!("the scenario defines no {what}"),
             _ => format!("expected {}", listed(known)),
         };
-        self.problem(
-            format!(
-                "unknown {what} {}{}",
-                quoted(word),
-                did_you_mean(word, known.iter().copied())
-            ),
-            help,
-        );
+        self.problem(format!("unknown {what} {}{}", quoted(word), did_you_mean(word, known.iter().copied())), help);
     }
 
     /// The entries of a list.
@@ -133,31 +119,17 @@ impl<'d> Cursor<'d> {
             self.wrong_type("a list", "write the entries in [ … ]");
             return None;
         };
-        Some(array.elements.iter().map(move |value| Cursor {
-            value,
-            findings: self.findings,
-        }))
+        Some(array.elements.iter().map(move |value| Cursor { value, findings: self.findings }))
     }
 
     /// The entries of a list that must have `count` of them; `what` says why.
-    pub fn list_of(
-        self,
-        count: usize,
-        what: &str,
-    ) -> Option<impl ExactSizeIterator<Item = Cursor<'d>>> {
+    pub fn list_of(self, count: usize, what: &str) -> Option<impl ExactSizeIterator<Item = Cursor<'d>>> {
         let entries = self.list()?;
         let found = entries.len();
         if found != count {
             self.problem(
-                format!(
-                    "expected {}, {what}, found {found}",
-                    counted(count, "entry", "entries")
-                ),
-                if found < count {
-                    "add the missing ones"
-                } else {
-                    "remove those too many"
-                },
+                format!("expected {}, {what}, found {found}", counted(count, "entry", "entries")),
+                if found < count { "add the missing ones" } else { "remove those too many" },
             );
             return None;
         }
@@ -173,16 +145,10 @@ impl<'d> Cursor<'d> {
         let mut seen: HashMap<&str, ()> = HashMap::new();
         let mut entries = Vec::with_capacity(object.properties.len());
         for property in &object.properties {
-            let entry = Entry {
-                property,
-                findings: self.findings,
-            };
+            let entry = Entry { property, findings: self.findings };
             if seen.insert(entry.name(), ()).is_some() {
                 entry.key_problem(
-                    format!(
-                        "the key {} appears twice in this object",
-                        quoted(entry.name())
-                    ),
+                    format!("the key {} appears twice in this object", quoted(entry.name())),
                     "remove or rename one of the two",
                 );
             } else {
@@ -207,10 +173,7 @@ impl<'d> Cursor<'d> {
                 );
             }
         }
-        Some(Fields {
-            cursor: self,
-            entries,
-        })
+        Some(Fields { cursor: self, entries })
     }
 }
 
@@ -229,18 +192,12 @@ impl<'d> Entry<'d> {
 
     /// The value.
     pub fn value(self) -> Cursor<'d> {
-        Cursor {
-            value: &self.property.value,
-            findings: self.findings,
-        }
+        Cursor { value: &self.property.value, findings: self.findings }
     }
 
     /// The place of the key.
     pub fn key_place(self) -> Place<'d> {
-        Place {
-            offset: self.key_offset(),
-            findings: self.findings,
-        }
+        Place { offset: self.key_offset(), findings: self.findings }
     }
 
     /// Byte offset of the key.
@@ -268,10 +225,7 @@ impl<'d> Fields<'d> {
 
     /// The entry of a key, if the key is there.
     pub fn entry(&self, key: &str) -> Option<Entry<'d>> {
-        self.entries
-            .iter()
-            .find(|entry| entry.name() == key)
-            .copied()
+        self.entries.iter().find(|entry| entry.name() == key).copied()
     }
 
     /// The value of a key, if the key is there.
@@ -283,8 +237,7 @@ impl<'d> Fields<'d> {
     pub fn required(&self, key: &str) -> Option<Cursor<'d>> {
         let found = self.optional(key);
         if found.is_none() {
-            self.cursor
-                .problem(format!("missing key `{key}`"), format!("add \"{key}\": …"));
+            self.cursor.problem(format!("missing key `{key}`"), format!("add \"{key}\": …"));
         }
         found
     }

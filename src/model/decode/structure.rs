@@ -91,13 +91,7 @@ fn author_nodes<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Vec<Place
         // A node without a usable place stays known, with a place that no geometric check complains about.
         let position = entry.value().vector().unwrap_or([f64::NAN; 2]);
         names.push(entry.key_place());
-        builder.add_node(
-            Node {
-                id: entry.name().to_string(),
-                position,
-            },
-            format!("nodes.{}", entry.name()).into(),
-        );
+        builder.add_node(Node { id: entry.name().to_string(), position }, format!("nodes.{}", entry.name()).into());
     }
     names
 }
@@ -179,10 +173,7 @@ impl<'d> Builder<'d> {
                 Some(near) => format!(": did you mean {}?", quoted(&name.replacen(id, near, 1))),
                 None => String::new(),
             };
-            cursor.problem(
-                format!("unknown plate {} in {}{hint}", quoted(id), quoted(name)),
-                self.known_plates(),
-            );
+            cursor.problem(format!("unknown plate {} in {}{hint}", quoted(id), quoted(name)), self.known_plates());
         }
         plate
     }
@@ -199,10 +190,7 @@ impl<'d> Builder<'d> {
 
     fn unknown_spot(&self, cursor: Cursor<'d>, name: &str) {
         let bar = name.split_once('/').map(|(bar, _)| bar);
-        if !self.nodes_are_known
-            || self.broken.contains(name)
-            || bar.is_some_and(|bar| self.broken.contains(bar))
-        {
+        if !self.nodes_are_known || self.broken.contains(name) || bar.is_some_and(|bar| self.broken.contains(bar)) {
             return;
         }
         if self.plates.contains_key(name) {
@@ -217,15 +205,9 @@ impl<'d> Builder<'d> {
             let help = match divisions {
                 1 => format!("the bar \"{id}\" is not divided: give it `divisions`"),
                 2 => format!("its one inner node is \"{id}/1\""),
-                _ => format!(
-                    "its inner nodes are \"{id}/1\" to \"{id}/{}\"",
-                    divisions - 1
-                ),
+                _ => format!("its inner nodes are \"{id}/1\" to \"{id}/{}\"", divisions - 1),
             };
-            cursor.problem(
-                format!("the bar \"{id}\" has no node {}", quoted(name)),
-                help,
-            );
+            cursor.problem(format!("the bar \"{id}\" has no node {}", quoted(name)), help);
             return;
         }
         let hint = super::did_you_mean(name, self.nodes.keys().map(String::as_str));
@@ -300,10 +282,7 @@ impl<'d> Builder<'d> {
             return true;
         }
         cursor.problem(
-            format!(
-                "the node \"{}\" has no rotation: {what}",
-                self.node_id(node)
-            ),
+            format!("the node \"{}\" has no rotation: {what}", self.node_id(node)),
             "only nodes of frame bars have one: remove it here",
         );
         false
@@ -314,9 +293,7 @@ impl<'d> Builder<'d> {
         let structure = &self.structure;
         if structure.elements.is_empty() && structure.springs.is_empty() {
             let message = "the structure has no elements: expected bars, plates, quads or springs";
-            fields
-                .cursor()
-                .problem(message, "add what carries the load");
+            fields.cursor().problem(message, "add what carries the load");
             return;
         }
         let mut touched = vec![false; structure.nodes.len()];

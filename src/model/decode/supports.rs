@@ -32,19 +32,10 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     }
 }
 
-const COMPONENTS: [(&str, Component); 3] = [
-    ("x", Component::X),
-    ("y", Component::Y),
-    ("r", Component::R),
-];
+const COMPONENTS: [(&str, Component); 3] = [("x", Component::X), ("y", Component::Y), ("r", Component::R)];
 
 /// The components in `fixed`; a rotation must exist at every one of the nodes.
-fn components<'d>(
-    builder: &Builder<'d>,
-    cursor: Cursor<'d>,
-    nodes: &[usize],
-    verb: &str,
-) -> Option<Vec<Component>> {
+fn components<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, nodes: &[usize], verb: &str) -> Option<Vec<Component>> {
     let mut components = Vec::new();
     let mut is_right = true;
     for entry in cursor.list()? {
@@ -54,19 +45,14 @@ fn components<'d>(
         };
         if component == Component::R {
             let what = format!("\"r\" cannot be {verb} there");
-            is_right &= nodes
-                .iter()
-                .all(|&node| builder.demand_rotation(entry, node, &what));
+            is_right &= nodes.iter().all(|&node| builder.demand_rotation(entry, node, &what));
         }
         if !components.contains(&component) {
             components.push(component);
         }
     }
     if components.is_empty() && is_right {
-        cursor.problem(
-            "`fixed` is empty",
-            "name any of \"x\", \"y\", \"r\", or remove the entry",
-        );
+        cursor.problem("`fixed` is empty", "name any of \"x\", \"y\", \"r\", or remove the entry");
         return None;
     }
     is_right.then_some(components)
@@ -76,10 +62,7 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
     let fields = cursor.fields(&["nodes", "at", "fixed"])?;
     let nodes = match (fields.optional("nodes"), fields.entry("at")) {
         (Some(_), Some(at)) => {
-            at.key_problem(
-                "`at` cannot stand beside `nodes`",
-                "give the nodes, or an edge whose nodes are all tied",
-            );
+            at.key_problem("`at` cannot stand beside `nodes`", "give the nodes, or an edge whose nodes are all tied");
             None
         }
         (None, Some(at)) => {
@@ -95,10 +78,7 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
         (Some(fixed), nodes) => components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "tied"),
         (None, _) => Some(vec![Component::X, Component::Y]),
     };
-    Some(Tie {
-        nodes: nodes?,
-        components: components?,
-    })
+    Some(Tie { nodes: nodes?, components: components? })
 }
 
 fn tied_nodes<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<usize>> {
@@ -108,10 +88,7 @@ fn tied_nodes<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<usize
         match builder.node(entry) {
             Some(node) if nodes.contains(&node) => {
                 entry.problem(
-                    format!(
-                        "the node \"{}\" is in this tie twice",
-                        builder.node_id(node)
-                    ),
+                    format!("the node \"{}\" is in this tie twice", builder.node_id(node)),
                     "name each node once",
                 );
                 is_right = false;
@@ -137,10 +114,7 @@ fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Support>
         |key| format!("settlements of supports (`{key}`) are not supported yet"),
         "remove `settlement` and `case`",
     );
-    let nodes = fields
-        .required("at")
-        .and_then(|at| builder.spot(at))
-        .map(|spot| builder.spot_nodes(spot));
+    let nodes = fields.required("at").and_then(|at| builder.spot(at)).map(|spot| builder.spot_nodes(spot));
     let components = fields
         .required("fixed")
         .and_then(|fixed| components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed"))?;
@@ -154,17 +128,11 @@ fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Support>
 fn springs<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Spring>> {
     let fields = cursor.fields(&["at", "direction", "stiffness"])?;
     let spot = fields.required("at").and_then(|at| builder.spot(at));
-    let direction = fields
-        .required("direction")
-        .and_then(|cursor| cursor.direction("direction"));
+    let direction = fields.required("direction").and_then(|cursor| cursor.direction("direction"));
     let stiffness = fields
         .required("stiffness")
         .and_then(|cursor| cursor.number_that("stiffness", "0 or more", |value| value >= 0.0));
     let (direction, stiffness) = (direction?, stiffness?);
-    let springs = builder.spot_nodes(spot?).into_iter().map(|node| Spring {
-        node,
-        direction,
-        stiffness,
-    });
+    let springs = builder.spot_nodes(spot?).into_iter().map(|node| Spring { node, direction, stiffness });
     Some(springs.collect())
 }

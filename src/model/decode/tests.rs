@@ -28,20 +28,14 @@ fn structure(scenario: &Scenario) -> &Structure {
 }
 
 fn index(structure: &Structure, id: &str) -> usize {
-    structure
-        .nodes
-        .iter()
-        .position(|node| node.id == id)
-        .unwrap_or_else(|| panic!("no node {id}"))
+    structure.nodes.iter().position(|node| node.id == id).unwrap_or_else(|| panic!("no node {id}"))
 }
 
 /// Sum of the forces, and of their moments about the origin.
 fn resultant(structure: &Structure, case: usize) -> ([f64; 2], f64) {
     let (mut force, mut moment) = ([0.0; 2], 0.0);
     for load in &structure.load_cases[case].loads {
-        let Load::Nodal { node, force: f, .. } = load else {
-            panic!("{load:?}")
-        };
+        let Load::Nodal { node, force: f, .. } = load else { panic!("{load:?}") };
         let at = structure.nodes[*node].position;
         force = [force[0] + f[0], force[1] + f[1]];
         moment += at[0] * f[1] - at[1] * f[0];
@@ -64,11 +58,7 @@ fn a_divided_bar_makes_a_chain_with_hinges_at_its_ends_only() {
   "loads": { "wind": { "factor": "F", "items": [{ "line": { "bar": "AB", "value": [2, 0] } }, { "point": { "at": "AB/2", "force": [0, 1], "moment": 3 } }] } }"#,
     );
     let structure = structure(&scenario);
-    let ids: Vec<&str> = structure
-        .nodes
-        .iter()
-        .map(|node| node.id.as_str())
-        .collect();
+    let ids: Vec<&str> = structure.nodes.iter().map(|node| node.id.as_str()).collect();
     assert_eq!(ids, ["A", "B", "AB/1", "AB/2", "AB/3"]);
     assert_eq!(structure.nodes[3].position, [2.5, 3.0]);
     assert_eq!(structure.bars[0].elements, 0..4);
@@ -86,14 +76,7 @@ fn a_divided_bar_makes_a_chain_with_hinges_at_its_ends_only() {
     let case = &structure.load_cases[0];
     assert_eq!(case.factor, Number::Parameter("F".into()));
     assert_eq!(case.loads.len(), 5);
-    assert!(matches!(
-        case.loads[4],
-        Load::Nodal {
-            node: 3,
-            moment: 3.0,
-            ..
-        }
-    ));
+    assert!(matches!(case.loads[4], Load::Nodal { node: 3, moment: 3.0, .. }));
     assert_eq!(&*scenario.places.nodes[4], "bars[0]");
     assert_eq!(&*scenario.places.nodes[1], "nodes.B");
 }
@@ -128,17 +111,8 @@ fn edge_contacts_pair_nodes_at_the_same_place() {
   ]"#
     ));
     let structure = structure(&scenario);
-    let ids: Vec<&str> = structure
-        .pairs
-        .iter()
-        .map(|pair| pair.id.as_str())
-        .collect();
-    assert_eq!(
-        ids,
-        [
-            "joint[0]", "joint[2]", "joint[3]", "wall[0]", "wall[1]", "pin"
-        ]
-    );
+    let ids: Vec<&str> = structure.pairs.iter().map(|pair| pair.id.as_str()).collect();
+    assert_eq!(ids, ["joint[0]", "joint[2]", "joint[3]", "wall[0]", "wall[1]", "pin"]);
     let joint = &structure.pairs[1];
     assert_eq!(joint.node, index(structure, "upper[2,0]"));
     assert_eq!(joint.against, Some(index(structure, "lower[2,1]")));
@@ -146,11 +120,7 @@ fn edge_contacts_pair_nodes_at_the_same_place() {
     assert_eq!(joint.normal, [0.0, 1.0]);
     assert_eq!(
         joint.law,
-        Law::Coulomb {
-            friction: Number::Value(0.2),
-            cohesion: Number::Value(0.0),
-            gap: Number::Value(0.01)
-        }
+        Law::Coulomb { friction: Number::Value(0.2), cohesion: Number::Value(0.0), gap: Number::Value(0.01) }
     );
     // From the ground into the plate.
     assert_eq!(structure.pairs[3].normal, [-1.0, 0.0]);
@@ -161,10 +131,7 @@ fn edge_contacts_pair_nodes_at_the_same_place() {
     // The corner is held by both supports, but listed once.
     assert_eq!(structure.supports.len(), 8);
     let corner = index(structure, "lower[0,0]");
-    let held = structure
-        .supports
-        .iter()
-        .filter(|support| support.node == corner && support.component == Component::Y);
+    let held = structure.supports.iter().filter(|support| support.node == corner && support.component == Component::Y);
     assert_eq!(held.count(), 1);
 }
 
@@ -180,16 +147,10 @@ fn a_plate_turned_upside_down_meets_its_partner_in_reverse() {
     let structure = structure(&scenario);
     for pair in &structure.pairs {
         let against = pair.against.expect("edge against edge");
-        assert_eq!(
-            structure.nodes[pair.node].position,
-            structure.nodes[against].position
-        );
+        assert_eq!(structure.nodes[pair.node].position, structure.nodes[against].position);
         assert_eq!(pair.normal, [0.0, 1.0]);
     }
-    assert_eq!(
-        structure.nodes[structure.pairs[0].node].position,
-        [3.0, 1.0]
-    );
+    assert_eq!(structure.nodes[structure.pairs[0].node].position, [3.0, 1.0]);
 }
 
 #[test]
@@ -203,10 +164,7 @@ fn bars_may_stand_on_plates_and_quads_on_nodes() {
   {PLATES}"#
     ));
     let structure = structure(&scenario);
-    assert_eq!(
-        structure.elements[0].nodes,
-        [index(structure, "upper[0,1]"), 0]
-    );
+    assert_eq!(structure.elements[0].nodes, [index(structure, "upper[0,1]"), 0]);
     assert_eq!(structure.plates[0].elements, 1..4);
     assert_eq!(structure.elements[7].nodes, [0, 1, 2, 3]);
     assert_eq!(&*scenario.places.elements[7], "quads[0]");
@@ -224,10 +182,7 @@ fn later_stages_place_their_problems_in_the_text() {
     let problems = scenario.problem_at(&scenario.places.pairs[0], "held twice", "use `skip`");
     let problem = &problems.problems[0];
     assert_eq!((problem.line, problem.column), (12, 16));
-    assert_eq!(
-        problems.to_string(),
-        "test.json:12:16: contacts[0]: held twice\n  help: use `skip`"
-    );
+    assert_eq!(problems.to_string(), "test.json:12:16: contacts[0]: held twice\n  help: use `skip`");
     let problems = scenario.problem_at("materials.m.nu", "odd", "");
     assert_eq!(problems.to_string(), "test.json:5:42: materials.m.nu: odd");
     // Nothing there: the place around it.
@@ -263,10 +218,7 @@ fn parameters_keep_to_what_they_are_used_for() {
   "loads": { "pull": { "factor": "F", "items": [] } }"#,
     );
     assert_eq!(scenario.refusal("f", 0.0), None);
-    assert_eq!(
-        scenario.refusal("f", -0.5).unwrap(),
-        "f is the friction of c and must not be negative, found -0.5"
-    );
+    assert_eq!(scenario.refusal("f", -0.5).unwrap(), "f is the friction of c and must not be negative, found -0.5");
     assert_eq!(scenario.refusal("F", -0.5), None);
     assert!(scenario.refusal("F", f64::NAN).is_some());
     assert_eq!(scenario.parameter_values()["F"], 5.0);
@@ -284,23 +236,14 @@ fn contact_systems_and_lcps_are_read_as_given() {
   },
   "solver": { "covering": "ones", "tie_break": "random:7" } }"#;
     let scenario = load_text("t", text, None).unwrap();
-    let Source::ContactSystem(system) = &scenario.source else {
-        panic!()
-    };
-    assert_eq!(
-        system.laws[1],
-        Law::Bound {
-            bound: Number::Value(3.0)
-        }
-    );
+    let Source::ContactSystem(system) = &scenario.source else { panic!() };
+    assert_eq!(system.laws[1], Law::Bound { bound: Number::Value(3.0) });
     assert_eq!(system.kernel.as_ref().unwrap()[0], [0.0, 0.0, 1.0, 1.0]);
     assert_eq!(scenario.rules.tie_break.to_string(), "random:7");
     let text = r#"{ "format": "stickslip/1", "title": "t", "parameters": { "q": -1 },
   "lcp": { "M": [[1, 0], [0, 1]], "q": ["q", 1], "covering": [1, 2] } }"#;
     let scenario = load_text("t", text, None).unwrap();
-    let Source::Lcp(lcp) = &scenario.source else {
-        panic!()
-    };
+    let Source::Lcp(lcp) = &scenario.source else { panic!() };
     assert_eq!(lcp.names, ["1", "2"]);
     assert_eq!(lcp.q[0], Number::Parameter("q".into()));
     assert_eq!(lcp.covering.as_deref(), Some(&[1.0, 2.0][..]));
@@ -318,9 +261,7 @@ fn the_matrix_may_stand_in_a_file_beside_the_scenario() {
     )
     .unwrap();
     let scenario = load_text("scenario.json", text, Some(&path)).unwrap();
-    let Source::ContactSystem(system) = &scenario.source else {
-        panic!()
-    };
+    let Source::ContactSystem(system) = &scenario.source else { panic!() };
     assert_eq!(system.stiffness, [[1.0, -1.0], [-1.0, 1.5]]);
     let problems = load_text("inline", text, None).unwrap_err();
     assert!(problems.to_string().contains("without a file of its own"));

@@ -5,25 +5,14 @@ pub fn quoted(text: &str) -> String {
     const LONGEST: usize = 40;
     let short: String = text.chars().take(LONGEST).collect();
     let dots = if short.len() < text.len() { "…" } else { "" };
-    format!(
-        "\"{}{dots}\"",
-        short
-            .escape_debug()
-            .to_string()
-            .replace("\\'", "'")
-            .replace("\\\"", "\"")
-    )
+    format!("\"{}{dots}\"", short.escape_debug().to_string().replace("\\'", "'").replace("\\\"", "\""))
 }
 
 /// `a, b or c`; at most ten, then how many more.
 pub fn listed(names: &[&str]) -> String {
     const MOST: usize = 10;
     if names.len() > MOST {
-        return format!(
-            "one of {} and {} more",
-            names[..MOST].join(", "),
-            names.len() - MOST
-        );
+        return format!("one of {} and {} more", names[..MOST].join(", "), names.len() - MOST);
     }
     match names {
         [] => "nothing".into(),
@@ -54,9 +43,7 @@ pub fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Opti
             let distance = strsim::osa_distance(&word.to_lowercase(), &name.to_lowercase());
             (distance, name)
         })
-        .filter(|(distance, name)| {
-            *distance <= allowed && *distance < length.min(name.chars().count())
-        })
+        .filter(|(distance, name)| *distance <= allowed && *distance < length.min(name.chars().count()))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
 }
@@ -68,10 +55,7 @@ pub fn counted(count: usize, one: &str, many: &str) -> String {
 
 /// Whether this can be an id: letters, digits, `_`, `-`, starting with a letter.
 pub fn is_id(text: &str) -> bool {
-    text.starts_with(char::is_alphabetic)
-        && text
-            .chars()
-            .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+    text.starts_with(char::is_alphabetic) && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
 }
 
 /// What [`is_id`] asks for.

@@ -35,24 +35,14 @@ fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
 /// The last line that may stand at the top.
 pub fn last_line(state: &State) -> usize {
     let area = layout::places(state).and_then(|places| {
-        places
-            .panes
-            .iter()
-            .find(|(pane, _)| *pane == Pane::Answer)
-            .map(|(_, area)| super::inside(*area))
+        places.panes.iter().find(|(pane, _)| *pane == Pane::Answer).map(|(_, area)| super::inside(*area))
     });
-    area.map_or(0, |area| {
-        lines(state, usize::from(area.width))
-            .len()
-            .saturating_sub(usize::from(area.height))
-    })
+    area.map_or(0, |area| lines(state, usize::from(area.width)).len().saturating_sub(usize::from(area.height)))
 }
 
 /// Draws the pane.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let lines = lines(state, usize::from(area.width));
-    let from = state
-        .answer_scroll
-        .min(lines.len().saturating_sub(usize::from(area.height)));
+    let from = state.answer_scroll.min(lines.len().saturating_sub(usize::from(area.height)));
     super::put_lines(&lines[from..], area, buffer);
 }

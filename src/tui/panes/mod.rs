@@ -46,19 +46,12 @@ pub fn note(state: &State, pane: Pane) -> String {
 
 /// A pane without its border.
 pub fn inside(area: Rect) -> Rect {
-    Rect::new(
-        area.x + 1,
-        area.y + 1,
-        area.width.saturating_sub(2),
-        area.height.saturating_sub(2),
-    )
+    Rect::new(area.x + 1, area.y + 1, area.width.saturating_sub(2), area.height.saturating_sub(2))
 }
 
 /// First of `rows` rows that show the selected one of `count`.
 pub fn window(selected: usize, count: usize, rows: usize) -> usize {
-    selected
-        .saturating_sub(rows / 2)
-        .min(count.saturating_sub(rows))
+    selected.saturating_sub(rows / 2).min(count.saturating_sub(rows))
 }
 
 /// The lines of a report of `width` columns.

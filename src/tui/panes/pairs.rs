@@ -18,10 +18,7 @@ pub fn note(state: &State) -> String {
         return if state.shown.at_ray() {
             "last vertex before the ray".to_owned()
         } else {
-            state
-                .shown
-                .position
-                .map_or(String::new(), |step| format!("pivot {step}"))
+            state.shown.position.map_or(String::new(), |step| format!("pivot {step}"))
         };
     }
     let arrow = if state.descending { "↓" } else { "↑" };
@@ -30,20 +27,11 @@ pub fn note(state: &State) -> String {
 
 /// Heading and a line per pair, in the chosen order.
 fn table(state: &State, order: &[usize], width: usize) -> (Vec<Line<'static>>, usize) {
-    let pairs: Vec<PairState> = order
-        .iter()
-        .map(|index| state.shown.pairs[*index].clone())
-        .collect();
+    let pairs: Vec<PairState> = order.iter().map(|index| state.shown.pairs[*index].clone()).collect();
     let units = &state.shown.scenario.units;
-    let mut lines = super::report(state.look, width, |out, style| {
-        write(out, &pairs, units, style)
-    });
+    let mut lines = super::report(state.look, width, |out, style| write(out, &pairs, units, style));
     // the remark on columns that found no room; no pair begins with a bracket
-    if lines
-        .last()
-        .and_then(|line| line.spans.first())
-        .is_some_and(|span| span.content.trim_start().starts_with('('))
-    {
+    if lines.last().and_then(|line| line.spans.first()).is_some_and(|span| span.content.trim_start().starts_with('(')) {
         lines.pop();
     }
     let heading = lines.len().saturating_sub(pairs.len());
@@ -74,36 +62,21 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
     let order = state.order();
     if order.is_empty() {
-        super::put_text(
-            look,
-            "no contact pairs",
-            look.role(Role::Muted),
-            area,
-            buffer,
-        );
+        super::put_text(look, "no contact pairs", look.role(Role::Muted), area, buffer);
         return;
     }
     let (lines, heading) = table(state, &order, usize::from(area.width.saturating_sub(2)));
-    let body = Rect::new(
-        area.x + 2,
-        area.y,
-        area.width.saturating_sub(2),
-        area.height,
-    );
+    let body = Rect::new(area.x + 2, area.y, area.width.saturating_sub(2), area.height);
     super::put_lines(&lines[..heading.min(lines.len())], body, buffer);
     let rows = usize::from(area.height).saturating_sub(heading);
-    let at = order
-        .iter()
-        .position(|pair| *pair == state.pair)
-        .unwrap_or(0);
+    let at = order.iter().position(|pair| *pair == state.pair).unwrap_or(0);
     let first = super::window(at, order.len(), rows);
     for (row, line) in lines[heading..].iter().skip(first).take(rows).enumerate() {
         let y = area.y + (heading + row) as u16;
         buffer.set_line(body.x, y, line, body.width);
         let index = order[first + row];
         let id = &state.shown.pairs[index].id;
-        let changed = state.shown.position.is_none()
-            && state.shown.changes.iter().any(|change| change.pair == *id);
+        let changed = state.shown.position.is_none() && state.shown.changes.iter().any(|change| change.pair == *id);
         let selected = index == state.pair;
         let mark = match (selected, changed) {
             (true, true) => format!("{}*", look.report(1).mark()),
@@ -117,10 +90,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
             buffer.set_style(row, look.selected());
         } else if selected {
             let row = Rect::new(area.x, y, area.width, 1);
-            buffer.set_style(
-                row,
-                ratatui::style::Style::new().add_modifier(Modifier::BOLD),
-            );
+            buffer.set_style(row, ratatui::style::Style::new().add_modifier(Modifier::BOLD));
         }
     }
 }
@@ -132,18 +102,10 @@ fn draw_solution(state: &State, z: &[f64], w: &[f64], area: Rect, buffer: &mut B
         crate::model::scenario::Source::Lcp(given) => given.names.clone(),
         _ => (1..=z.len()).map(|i| i.to_string()).collect(),
     };
-    let mut lines = vec![Line::styled(
-        format!("{:<8}{:>14}{:>14}", "row", "z", "w"),
-        look.role(Role::Header),
-    )];
+    let mut lines = vec![Line::styled(format!("{:<8}{:>14}{:>14}", "row", "z", "w"), look.role(Role::Header))];
     for (i, (z, w)) in z.iter().zip(w).enumerate() {
         let name = names.get(i).map_or("", String::as_str);
-        lines.push(Line::raw(format!(
-            "{:<8}{:>14}{:>14}",
-            look.fit(name, 8),
-            short(*z),
-            short(*w)
-        )));
+        lines.push(Line::raw(format!("{:<8}{:>14}{:>14}", look.fit(name, 8), short(*z), short(*w))));
     }
     super::put_lines(&lines, area, buffer);
 }
@@ -163,22 +125,14 @@ pub fn about(state: &State) -> Option<String> {
     }
     text.push_str(&format!(" · x_n {}", f(pair.x_n)));
     if pair.law != "frictionless" {
-        text.push_str(&format!(
-            " · x_τ {} within ±{}",
-            short(pair.x_t),
-            f(pair.bound)
-        ));
+        text.push_str(&format!(" · x_τ {} within ±{}", short(pair.x_t), f(pair.bound)));
     }
     if pair.z_n != 0.0 {
         text.push_str(&format!(" · z_n {}", d(pair.z_n)));
     }
     text.push_str(&format!(" · z_τ {}", d(pair.z_t)));
     if pair.law != "frictionless" {
-        text.push_str(&format!(
-            " · reserves x⁺ {} x⁻ {}",
-            short(pair.reserve_plus),
-            short(pair.reserve_minus)
-        ));
+        text.push_str(&format!(" · reserves x⁺ {} x⁻ {}", short(pair.reserve_plus), short(pair.reserve_minus)));
     }
     Some(text)
 }

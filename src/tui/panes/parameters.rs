@@ -19,10 +19,7 @@ const SLIDER: u16 = 6;
 fn widths(state: &State) -> (usize, usize) {
     let names = state.shown.scenario.parameters.keys();
     let name = names.clone().map(|name| name.width()).max().unwrap_or(0);
-    let value = names
-        .map(|name| short(state.value(name)).width())
-        .max()
-        .unwrap_or(0);
+    let value = names.map(|name| short(state.value(name)).width()).max().unwrap_or(0);
     (name.min(NAME), value.max(6))
 }
 
@@ -56,22 +53,11 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         super::put_text(look, text, look.role(Role::Muted), area, buffer);
         return;
     }
-    let outer = Rect::new(
-        area.x.saturating_sub(1),
-        area.y.saturating_sub(1),
-        area.width + 2,
-        area.height + 2,
-    );
+    let outer = Rect::new(area.x.saturating_sub(1), area.y.saturating_sub(1), area.width + 2, area.height + 2);
     let (name_width, value_width) = widths(state);
     let rows = usize::from(area.height);
     let first = super::window(state.parameter, parameters.len(), rows);
-    for (row, (index, (name, parameter))) in parameters
-        .iter()
-        .enumerate()
-        .skip(first)
-        .take(rows)
-        .enumerate()
-    {
+    for (row, (index, (name, parameter))) in parameters.iter().enumerate().skip(first).take(rows).enumerate() {
         let y = area.y + row as u16;
         let selected = index == state.parameter;
         let value = state.value(name);
@@ -81,10 +67,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         if selected && state.focus == Pane::Parameters {
             style = style.add_modifier(Modifier::BOLD);
         }
-        let label = format!(
-            "{mark} {}",
-            pad_right(&look.fit(name, name_width), name_width)
-        );
+        let label = format!("{mark} {}", pad_right(&look.fit(name, name_width), name_width));
         buffer.set_stringn(area.x, y, label, usize::from(area.width), style);
         let x = area.x + 2 + name_width as u16 + 1;
         let waits = state.wanted.contains_key(name);
@@ -121,8 +104,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
             buffer.set_string(place(parameter.value), y, sign, muted);
         }
         let style = look.role(if selected { Role::Accent } else { Role::Plain });
-        let outside = parameter.min.is_some_and(|min| value < min)
-            || parameter.max.is_some_and(|max| value > max);
+        let outside = parameter.min.is_some_and(|min| value < min) || parameter.max.is_some_and(|max| value > max);
         let knob = match (outside, value < parameter.min.unwrap_or(value)) {
             (true, true) => look.sign('◀', '<'),
             (true, false) => look.sign('▶', '>'),

@@ -20,11 +20,7 @@ pub fn note(state: &State) -> String {
     let Some(p) = state.shown.p else {
         return String::new();
     };
-    let Some(answer) = state
-        .shown
-        .answer()
-        .filter(|answer| !answer.pivots.is_empty())
-    else {
+    let Some(answer) = state.shown.answer().filter(|answer| !answer.pivots.is_empty()) else {
         return String::new();
     };
     let unit = force_unit(&state.shown.scenario.units).filter(|_| of_contact(&answer.pivots));
@@ -45,10 +41,7 @@ pub fn step_at(state: &State, area: Rect, y: u16) -> Option<usize> {
 /// Row of the pivot shown.
 fn at(state: &State, pivots: &[PivotRecord]) -> usize {
     let step = state.step();
-    pivots
-        .iter()
-        .position(|pivot| Some(pivot.step) == step)
-        .unwrap_or_default()
+    pivots.iter().position(|pivot| Some(pivot.step) == step).unwrap_or_default()
 }
 
 /// What a pivot turned, in a few words.
@@ -84,10 +77,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let first = super::window(selected, pivots.len(), rows);
     let seen = &pivots[first..(first + rows).min(pivots.len())];
     let arrow = look.report(1).arrow();
-    let numbers: Vec<String> = pivots
-        .iter()
-        .map(|pivot| in_column(pivot.p, scale))
-        .collect();
+    let numbers: Vec<String> = pivots.iter().map(|pivot| in_column(pivot.p, scale)).collect();
     let number = numbers.iter().map(String::len).max().unwrap_or(1).max(3);
     let step = pivots.last().map_or(1, |p| p.step.to_string().len());
     let ties = pivots.iter().any(|pivot| pivot.ties.len() > 1);
@@ -95,48 +85,25 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     // mark, step, what turned, p, ties
     let fixed = 2 + step + 2 + 1 + number + tie;
     // what stopped p, where there is room for it
-    let longest = pivots
-        .iter()
-        .map(|pivot| pivot.leaving.width())
-        .max()
-        .unwrap_or(0);
-    let until = if usize::from(area.width) >= fixed + 24 + longest {
-        longest.max(5) + 3
-    } else {
-        0
-    };
-    let words = usize::from(area.width)
-        .saturating_sub(fixed + until)
-        .clamp(6, 30);
+    let longest = pivots.iter().map(|pivot| pivot.leaving.width()).max().unwrap_or(0);
+    let until = if usize::from(area.width) >= fixed + 24 + longest { longest.max(5) + 3 } else { 0 };
+    let words = usize::from(area.width).saturating_sub(fixed + until).clamp(6, 30);
     let heading = format!(
         "  {} {} {}{}{}",
         pad_left("", step),
         pad_right(" turned", words + 1),
         pad_left("p", number),
-        if until > 0 {
-            pad_right("   until", until)
-        } else {
-            String::new()
-        },
+        if until > 0 { pad_right("   until", until) } else { String::new() },
         if ties { "   ties" } else { "" }
     );
-    buffer.set_stringn(
-        area.x,
-        area.y,
-        heading,
-        usize::from(area.width),
-        look.role(Role::Header),
-    );
+    buffer.set_stringn(area.x, area.y, heading, usize::from(area.width), look.role(Role::Header));
     for (row, pivot) in seen.iter().enumerate() {
         let y = area.y + HEADING + row as u16;
         let here = first + row == selected;
         let mark = if here { look.report(1).mark() } else { ' ' };
         let mut what = turned(pivot, arrow);
         if what.width() > words {
-            what = what
-                .replace(&format!(" {arrow} "), " ")
-                .replace(" in, ", "/")
-                .replace(" out", "");
+            what = what.replace(&format!(" {arrow} "), " ").replace(" in, ", "/").replace(" out", "");
         }
         let text = format!(
             "{mark} {}  {} {}",
@@ -147,14 +114,9 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         let style = look.role(if here { Role::Accent } else { Role::Plain });
         let (x, _) = buffer.set_stringn(area.x, y, text, usize::from(area.width), style);
         let x = if until > 0 {
-            let text = format!(
-                "   {}",
-                pad_right(&look.fit(&pivot.leaving, until - 3), until - 3)
-            );
+            let text = format!("   {}", pad_right(&look.fit(&pivot.leaving, until - 3), until - 3));
             let room = usize::from(area.right().saturating_sub(x));
-            buffer
-                .set_stringn(x, y, text, room, look.role(Role::Muted))
-                .0
+            buffer.set_stringn(x, y, text, room, look.role(Role::Muted)).0
         } else {
             x
         };
@@ -168,10 +130,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
             if state.focus == Pane::Pivots {
                 buffer.set_style(row, look.selected());
             } else {
-                buffer.set_style(
-                    row,
-                    ratatui::style::Style::new().add_modifier(Modifier::BOLD),
-                );
+                buffer.set_style(row, ratatui::style::Style::new().add_modifier(Modifier::BOLD));
             }
         }
     }
@@ -188,12 +147,7 @@ pub fn sentence(state: &State) -> String {
     if state.shown.at_ray()
         && let Some(ray) = &answer.ray
     {
-        return format!(
-            "Ray ({}): {}. {}",
-            crate::view::status::class_word(ray.class),
-            ray.mode,
-            ray.explanation
-        );
+        return format!("Ray ({}): {}. {}", crate::view::status::class_word(ray.class), ray.mode, ray.explanation);
     }
     let step = state.shown.step();
     let Some(pivot) = answer.pivots.iter().find(|pivot| Some(pivot.step) == step) else {

@@ -23,21 +23,13 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         return;
     }
     let plots = state.plots();
-    let from = plots
-        .iter()
-        .position(|plot| *plot == state.plot)
-        .unwrap_or_default();
+    let from = plots.iter().position(|plot| *plot == state.plot).unwrap_or_default();
     let count = (area.height / ROWS).clamp(1, plots.len() as u16);
     let height = area.height / count;
     for i in 0..count {
         let plot = plots[(from + usize::from(i)) % plots.len()];
         let rest = area.height - i * height;
-        let part = Rect::new(
-            area.x,
-            area.y + i * height,
-            area.width,
-            if i + 1 == count { rest } else { height },
-        );
+        let part = Rect::new(area.x, area.y + i * height, area.width, if i + 1 == count { rest } else { height });
         super::put_lines(&lines(state, plot, part), part, buffer);
     }
 }
@@ -72,9 +64,7 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         None => vec![(now_label.as_str(), shown.pairs.as_slice())],
     };
     fitting(area, |height| {
-        super::report(state.look, width, |out, style| {
-            zone::write(out, quantity, &states, units, height, style)
-        })
+        super::report(state.look, width, |out, style| zone::write(out, quantity, &states, units, height, style))
     })
 }
 
@@ -91,14 +81,7 @@ fn pivots(state: &State, area: Rect) -> Vec<Line<'static>> {
     }
     fitting(area, |height| {
         super::report(state.look, usize::from(area.width), |out, style| {
-            trace::write(
-                out,
-                &answer.pivots,
-                shown.position,
-                &shown.scenario.units,
-                height,
-                style,
-            )
+            trace::write(out, &answer.pivots, shown.position, &shown.scenario.units, height, style)
         })
     })
 }

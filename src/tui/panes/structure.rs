@@ -11,8 +11,7 @@ use crate::view::number::short;
 use crate::view::plot::canvas::{Canvas, Stroke};
 use crate::view::plot::chart::{dotted, range};
 use crate::view::plot::structure::{
-    GRID_PITCH, Magnification, arrows, factor, grid_pitch, lines, load_signs, nodal, pair_sign,
-    support_sign, supported,
+    GRID_PITCH, Magnification, arrows, factor, grid_pitch, lines, load_signs, nodal, pair_sign, support_sign, supported,
 };
 use crate::view::plot::zone::zone;
 use crate::view::style::Role;
@@ -32,11 +31,7 @@ pub fn automatic(state: &State) -> f64 {
         return 1.0;
     };
     let shown = displacements(state, structure);
-    let end = state
-        .shown
-        .answer()
-        .and_then(|answer| answer.displacements.as_ref())
-        .map(|u| nodal(structure, u));
+    let end = state.shown.answer().and_then(|answer| answer.displacements.as_ref()).map(|u| nodal(structure, u));
     let moves = |u: &Vec<[f64; 3]>| u.iter().any(|u| u[0] != 0.0 || u[1] != 0.0);
     match (end.filter(moves), shown) {
         (Some(u), _) if !state.shown.at_ray() => factor(structure, &u, Magnification::Auto),
@@ -97,11 +92,8 @@ impl View {
         let high = (top - bottom) + 0.24 * size;
         let flat = top - bottom < 0.05 * size;
         let pitch_y = (dots.1 - 8.0).max(4.0) / high;
-        let pitch = if flat {
-            (dots.0 - 4.0).max(4.0) / wide
-        } else {
-            pitch_y.min((dots.0 - 4.0).max(4.0) / wide)
-        } * state.view.zoom;
+        let pitch = if flat { (dots.0 - 4.0).max(4.0) / wide } else { pitch_y.min((dots.0 - 4.0).max(4.0) / wide) }
+            * state.view.zoom;
         Some(View {
             pitch,
             from: (
@@ -114,10 +106,7 @@ impl View {
     }
 
     fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        (
-            (x - self.from.0) * self.pitch + self.to.0,
-            (y - self.from.1) * self.pitch + self.to.1,
-        )
+        ((x - self.from.0) * self.pitch + self.to.0, (y - self.from.1) * self.pitch + self.to.1)
     }
 
     fn holds(&self, (x, y): (f64, f64)) -> bool {
@@ -160,12 +149,7 @@ fn segment(a: (f64, f64), b: (f64, f64), dots: (f64, f64)) -> Option<((f64, f64)
     }
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let (mut from, mut to) = (0.0f64, 1.0f64);
-    for (p, q) in [
-        (-dx, a.0),
-        (dx, dots.0 - a.0),
-        (-dy, a.1),
-        (dy, dots.1 - a.1),
-    ] {
+    for (p, q) in [(-dx, a.0), (dx, dots.0 - a.0), (-dy, a.1), (dy, dots.1 - a.1)] {
         if p == 0.0 {
             if q < 0.0 {
                 return None;
@@ -176,10 +160,7 @@ fn segment(a: (f64, f64), b: (f64, f64), dots: (f64, f64)) -> Option<((f64, f64)
             to = to.min(q / p);
         }
     }
-    (from <= to).then_some((
-        (a.0 + from * dx, a.1 + from * dy),
-        (a.0 + to * dx, a.1 + to * dy),
-    ))
+    (from <= to).then_some(((a.0 + from * dx, a.1 + from * dy), (a.0 + to * dx, a.1 + to * dy)))
 }
 
 /// Draws the pane.
@@ -210,14 +191,13 @@ impl Legend {
 
     /// States of pairs first: they are what one looks for.
     fn sort(&mut self) {
-        self.0
-            .sort_by_key(|(_, role, word)| match (role, word.as_str()) {
-                (Role::State(_), _) => 0,
-                (_, "load") => 1,
-                (_, "before") => 2,
-                (_, "undeformed") => 4,
-                _ => 3,
-            });
+        self.0.sort_by_key(|(_, role, word)| match (role, word.as_str()) {
+            (Role::State(_), _) => 0,
+            (_, "load") => 1,
+            (_, "before") => 2,
+            (_, "undeformed") => 4,
+            _ => 3,
+        });
     }
 
     fn draw(&self, state: &State, area: Rect, buffer: &mut Buffer) {
@@ -265,10 +245,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
     canvas.draw(Role::Plain, outline.into_iter().map(Stroke::Line).collect());
 
     let faint = |lines: &[Vec<(f64, f64)>], pitch: f64| -> Vec<Stroke> {
-        view.clip(lines)
-            .iter()
-            .map(|line| Stroke::Dots(dotted(line, pitch)))
-            .collect()
+        view.clip(lines).iter().map(|line| Stroke::Dots(dotted(line, pitch))).collect()
     };
     let before = shown
         .before()
@@ -282,10 +259,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         legend.note(look.sign('┈', ':'), Role::Series(1), "before");
     }
     if moves {
-        canvas.draw_under(
-            Role::Muted,
-            faint(&lines(structure, &rest, 0.0).outline, 5.0),
-        );
+        canvas.draw_under(Role::Muted, faint(&lines(structure, &rest, 0.0).outline, 5.0));
         legend.note(look.sign('·', '.'), Role::Muted, "undeformed");
     }
     if grid_pitch(structure, view.pitch) >= GRID_PITCH {
@@ -325,11 +299,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         }
         for (sign, step_x, step_y) in load_signs(arrow.force, look.ascii) {
             // a push stands before its body, a pull behind it: outside in either case
-            let side = if x < middle {
-                -step_x.abs()
-            } else {
-                step_x.abs()
-            };
+            let side = if x < middle { -step_x.abs() } else { step_x.abs() };
             let place = (x + side, y + step_y);
             if view.holds(place) {
                 canvas.put(place.0, place.1, sign, Role::Accent);
@@ -352,16 +322,13 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         if !view.holds((x, y)) {
             continue;
         }
-        let state_shown = directions
-            .and_then(|directions| directions.get(index))
-            .map_or(now.state, in_motion);
+        let state_shown = directions.and_then(|directions| directions.get(index)).map_or(now.state, in_motion);
         let sign = pair_sign(state_shown, pair.tangent(), look.ascii);
         let role = Role::State(state_shown);
         canvas.put(x, y, sign, role);
         canvas.label(x, y, &look.text(&pair.id), Role::Muted);
         legend.note(sign, role, state_shown.word());
-        let changed =
-            shown.position.is_none() && shown.changes.iter().any(|change| change.pair == pair.id);
+        let changed = shown.position.is_none() && shown.changes.iter().any(|change| change.pair == pair.id);
         let selected = index == state.pair && matches!(state.focus, Pane::Pairs | Pane::Structure);
         if let Some((column, row)) = canvas.cell(x, y).filter(|_| changed || selected) {
             marks.push((column, row, selected));
@@ -411,17 +378,10 @@ fn draw_zone(state: &State, area: Rect, buffer: &mut Buffer) {
     let mut legend = Legend::default();
     let (width, y) = (canvas.dots_x(), canvas.dots_y() / 2.0);
     if last > first {
-        canvas.draw(
-            Role::Muted,
-            vec![Stroke::Line(vec![(4.0, y), (width - 4.0, y)])],
-        );
+        canvas.draw(Role::Muted, vec![Stroke::Line(vec![(4.0, y), (width - 4.0, y)])]);
     }
     for (pair, at) in pairs.iter().zip(&zone.abscissas) {
-        let share = if last > first {
-            (at - first) / (last - first)
-        } else {
-            0.5
-        };
+        let share = if last > first { (at - first) / (last - first) } else { 0.5 };
         let x = 4.0 + share * (width - 8.0);
         let sign = pair_sign(pair.state, [1.0, 0.0], look.ascii);
         canvas.put(x, y, sign, Role::State(pair.state));

@@ -50,13 +50,7 @@ impl Canvas {
     /// An empty canvas of at least one character.
     pub fn new(columns: usize, rows: usize) -> Canvas {
         let (columns, rows) = (columns.max(1), rows.max(1));
-        Canvas {
-            columns,
-            rows,
-            cells: vec![None; columns * rows],
-            inks: Vec::new(),
-            labels: Vec::new(),
-        }
+        Canvas { columns, rows, cells: vec![None; columns * rows], inks: Vec::new(), labels: Vec::new() }
     }
 
     /// Largest x of a dot.
@@ -71,32 +65,19 @@ impl Canvas {
 
     /// Adds strokes of one colour; later ones give a shared character its colour.
     pub fn draw(&mut self, role: Role, strokes: Vec<Stroke>) {
-        self.inks.push(Ink {
-            role,
-            strokes,
-            under: false,
-        });
+        self.inks.push(Ink { role, strokes, under: false });
     }
 
     /// Adds strokes that stay out of every character already drawn in: faint lines that must not blur others.
     /// They are drawn after all those of [`Canvas::draw`], in their own order.
     pub fn draw_under(&mut self, role: Role, strokes: Vec<Stroke>) {
-        self.inks.push(Ink {
-            role,
-            strokes,
-            under: true,
-        });
+        self.inks.push(Ink { role, strokes, under: true });
     }
 
     /// Writes `text` below (else above) the character at the dot (x, y), where all of its place is free.
     pub fn label(&mut self, x: f64, y: f64, text: &str, role: Role) {
         if let Some((column, row)) = self.cell(x, y) {
-            self.labels.push(Label {
-                column,
-                row,
-                text: text.to_owned(),
-                role,
-            });
+            self.labels.push(Label { column, row, text: text.to_owned(), role });
         }
     }
 
@@ -132,11 +113,7 @@ impl Canvas {
         // All labels or, where they do not all find room, the first and the last: some of them at random places
         // would only puzzle.
         let mut labelled = over.clone();
-        if self
-            .labels
-            .iter()
-            .all(|label| self.place(label, &mut labelled, &dots))
-        {
+        if self.labels.iter().all(|label| self.place(label, &mut labelled, &dots)) {
             over = labelled;
         } else {
             for label in self.labels.first().into_iter().chain(self.labels.last()) {
@@ -149,16 +126,13 @@ impl Canvas {
                 (None, (0, _)) => (' ', Role::Plain),
                 (None, (ink, role)) if style.ascii => (ascii(ink), role),
                 // Every u8 above U+2800 is a Braille pattern.
-                (None, (ink, role)) => {
-                    (char::from_u32(0x2800 + u32::from(ink)).unwrap_or(' '), role)
-                }
+                (None, (ink, role)) => (char::from_u32(0x2800 + u32::from(ink)).unwrap_or(' '), role),
             }
         };
         (0..self.rows)
             .map(|row| {
-                let cells: Vec<(char, Role)> = (0..self.columns)
-                    .map(|column| character(row * self.columns + column))
-                    .collect();
+                let cells: Vec<(char, Role)> =
+                    (0..self.columns).map(|column| character(row * self.columns + column)).collect();
                 paint_runs(&cells, style)
             })
             .collect()
@@ -170,10 +144,7 @@ impl Canvas {
         if length == 0 || length != label.text.width() || length > self.columns {
             return false;
         }
-        let start = label
-            .column
-            .saturating_sub(length / 2)
-            .min(self.columns - length);
+        let start = label.column.saturating_sub(length / 2).min(self.columns - length);
         let around = start.saturating_sub(1)..(start + length + 1).min(self.columns);
         let rows = [label.row.checked_add(1), label.row.checked_sub(1)];
         for row in rows.into_iter().flatten().filter(|row| *row < self.rows) {
@@ -210,25 +181,16 @@ impl Canvas {
                     Stroke::Line(points) => (true, points),
                     Stroke::Dots(points) => (false, points),
                 };
-                let finite = points
-                    .iter()
-                    .filter(|(x, y)| x.is_finite() && y.is_finite());
+                let finite = points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
                 let points: Vec<(f32, f32)> = finite.map(place).collect();
                 (joined && points.len() > 1, points)
             })
             .collect();
         let shapes: Vec<Shape<'_>> = points
             .iter()
-            .map(|(joined, points)| {
-                if *joined {
-                    Shape::Lines(points)
-                } else {
-                    Shape::Points(points)
-                }
-            })
+            .map(|(joined, points)| if *joined { Shape::Lines(points) } else { Shape::Points(points) })
             .collect();
-        let mut chart =
-            Chart::new_with_y_range(width, height, 0.0, width as f32, 0.0, height as f32);
+        let mut chart = Chart::new_with_y_range(width, height, 0.0, width as f32, 0.0, height as f32);
         let mut chart = &mut chart;
         for shape in &shapes {
             chart = chart.lineplot(shape);
@@ -247,10 +209,7 @@ impl Canvas {
 
 /// A row of characters with as few colour changes as possible.
 pub fn paint_runs(cells: &[(char, Role)], style: &Style) -> String {
-    let end = cells
-        .iter()
-        .rposition(|(c, _)| *c != ' ')
-        .map_or(0, |last| last + 1);
+    let end = cells.iter().rposition(|(c, _)| *c != ' ').map_or(0, |last| last + 1);
     let mut line = String::new();
     let mut run = String::new();
     let mut role = Role::Plain;
@@ -274,10 +233,7 @@ fn ascii(ink: u8) -> char {
     let mean = |bits: [u8; 4]| {
         let set: Vec<usize> = (0..4).filter(|&i| ink & bits[i] != 0).collect();
         let count = set.len();
-        (
-            count,
-            set.iter().sum::<usize>() as f64 / count.max(1) as f64,
-        )
+        (count, set.iter().sum::<usize>() as f64 / count.max(1) as f64)
     };
     let ((left, left_at), (right, right_at)) = (mean(LEFT), mean(RIGHT));
     let rise = left_at - right_at;

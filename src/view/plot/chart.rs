@@ -73,10 +73,7 @@ impl Chart {
         let title = style.fit(&style.text(&self.title), style.width);
         writeln!(out, "{}", style.paint(Role::Title, &title))?;
         let points = || {
-            self.curves
-                .iter()
-                .flat_map(|curve| &curve.series.points)
-                .filter(|(x, y)| x.is_finite() && y.is_finite())
+            self.curves.iter().flat_map(|curve| &curve.series.points).filter(|(x, y)| x.is_finite() && y.is_finite())
         };
         if points().next().is_none() {
             return writeln!(out, "{}", style.fit("nothing to draw", style.width));
@@ -101,20 +98,12 @@ impl Chart {
         // Half a character from the ends, so that markers stand where their point is.
         let width = canvas.dots_x();
         let to_x = |x: f64| {
-            if last > first {
-                (x.clamp(first, last) - first) / (last - first) * width
-            } else {
-                width / 2.0
-            }
+            if last > first { (x.clamp(first, last) - first) / (last - first) * width } else { width / 2.0 }
         };
         let height = canvas.dots_y();
         let to_y = |y: f64| {
             let share = (y.clamp(-HUGE, HUGE) - ticks.low) / (ticks.high - ticks.low);
-            if self.inverted {
-                (1.0 - share) * height
-            } else {
-                share * height
-            }
+            if self.inverted { (1.0 - share) * height } else { share * height }
         };
         for curve in &self.curves {
             let role = Role::Series(curve.number);
@@ -145,10 +134,7 @@ impl Chart {
 
         // The zero line, faint.
         let zero = to_y(0.0);
-        let faint: Vec<(f64, f64)> = (0..columns)
-            .step_by(2)
-            .map(|column| (2.0 * column as f64, zero))
-            .collect();
+        let faint: Vec<(f64, f64)> = (0..columns).step_by(2).map(|column| (2.0 * column as f64, zero)).collect();
         canvas.draw_under(Role::Muted, vec![Stroke::Dots(faint)]);
 
         let mut at_row: Vec<Option<&str>> = vec![None; rows];
@@ -195,11 +181,7 @@ impl Chart {
         columns: usize,
         column: &dyn Fn(f64) -> usize,
     ) -> io::Result<()> {
-        let (corner, plain, tick) = if style.ascii {
-            ('+', '-', '+')
-        } else {
-            ('└', '─', '┴')
-        };
+        let (corner, plain, tick) = if style.ascii { ('+', '-', '+') } else { ('└', '─', '┴') };
         let mut axis = vec![plain; columns];
         // Ticks closer than every third character say nothing.
         if 3 * self.names.len() <= columns.max(9) {
@@ -222,11 +204,7 @@ impl Chart {
             let start = column(*x).saturating_sub(name.width() / 2);
             line.put(start.min(columns.saturating_sub(name.width())), &name);
         }
-        writeln!(
-            out,
-            "{}",
-            format!("{}{}", " ".repeat(indent), line.text()).trim_end()
-        )
+        writeln!(out, "{}", format!("{}{}", " ".repeat(indent), line.text()).trim_end())
     }
 
     fn write_legend(&self, out: &mut dyn Write, style: &Style, indent: usize) -> io::Result<()> {
@@ -244,11 +222,7 @@ impl Chart {
                     (Line::Dotted, false) => '┈',
                     _ => marker(curve.number, style),
                 };
-                (
-                    sign,
-                    Role::Series(curve.number),
-                    style.text(&curve.series.label),
-                )
+                (sign, Role::Series(curve.number), style.text(&curve.series.label))
             })
             .collect();
         write_legend(out, &entries, indent, style)
@@ -311,9 +285,8 @@ pub fn dotted(points: &[(f64, f64)], pitch: f64) -> Vec<(f64, f64)> {
 
 /// Smallest and largest, cut to what can be computed with.
 pub fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
     (low.clamp(-HUGE, HUGE), high.clamp(-HUGE, HUGE))
 }
 
@@ -334,11 +307,7 @@ impl Ticks {
         let (low, high) = range(values.filter(|value| value.is_finite()).chain([0.0]));
         if high - low < TINY {
             // All zero: a scale of no size would divide by zero; only its 0 is named.
-            return Ticks {
-                low: -1.0,
-                high: 1.0,
-                values: vec![0.0],
-            };
+            return Ticks { low: -1.0, high: 1.0, values: vec![0.0] };
         }
         let rough = (high - low) / count.max(1) as f64;
         let power = 10f64.powi(rough.log10().floor() as i32);
@@ -364,9 +333,7 @@ struct Slots {
 
 impl Slots {
     fn new(columns: usize) -> Slots {
-        Slots {
-            cells: vec![' '; columns],
-        }
+        Slots { cells: vec![' '; columns] }
     }
 
     /// Puts `text` at `start` if it and a blank on either side find free room. Texts whose characters are not one

@@ -45,12 +45,7 @@ fn lengths(structure: &Structure, bar: &str) -> Option<Vec<f64>> {
 /// The force along `bar`, over the distance from its start. Between the nodes it is exact under line loads too:
 /// with dM/dx = Q and Q (and N) linear, the values at the ends fix M = M₁ + Q₁ x + (Q₂ − Q₁) x²/2L.
 /// `None` if there is no such bar or no forces of it.
-pub fn series(
-    structure: &Structure,
-    members: &[MemberForces],
-    bar: &str,
-    force: Force,
-) -> Option<Series> {
+pub fn series(structure: &Structure, members: &[MemberForces], bar: &str, force: Force) -> Option<Series> {
     let lengths = lengths(structure, bar)?;
     let value = |end: &EndForces| match force {
         Force::Axial => end.n,
@@ -80,10 +75,7 @@ pub fn series(
         }
         at += length;
     }
-    Some(Series {
-        label: String::new(),
-        points,
-    })
+    Some(Series { label: String::new(), points })
 }
 
 /// The points of `series` at the ends of the elements of `bar`.
@@ -116,19 +108,8 @@ pub struct Diagram<'a> {
 }
 
 /// Draws the force along a bar and names its extremes; says so where there is no such bar.
-pub fn write(
-    out: &mut dyn Write,
-    diagram: &Diagram<'_>,
-    units: &Units,
-    style: &Style,
-) -> io::Result<()> {
-    let Diagram {
-        structure,
-        members,
-        bar,
-        force,
-        height,
-    } = *diagram;
+pub fn write(out: &mut dyn Write, diagram: &Diagram<'_>, units: &Units, style: &Style) -> io::Result<()> {
+    let Diagram { structure, members, bar, force, height } = *diagram;
     let Some(series) = series(structure, members, bar, force) else {
         let text = format!("no member forces of a bar {bar}");
         return writeln!(out, "{}", style.fit(&style.text(&text), style.width));
@@ -156,34 +137,18 @@ pub fn write(
     let length = length_unit(units);
     let told = |word: &str, point: Option<(f64, f64)>| {
         point.map(|(x, y)| {
-            format!(
-                "{word} {} at {}",
-                with_unit(&short(y), unit.as_deref()),
-                with_unit(&short(x), length.as_deref())
-            )
+            format!("{word} {} at {}", with_unit(&short(y), unit.as_deref()), with_unit(&short(x), length.as_deref()))
         })
     };
-    let extremes: Vec<String> = [
-        told("max", extreme(|a, b| a > b)),
-        told("min", extreme(|a, b| a < b)),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    let extremes: Vec<String> =
+        [told("max", extreme(|a, b| a > b)), told("min", extreme(|a, b| a < b))].into_iter().flatten().collect();
     let joints = series
         .points
         .first()
         .zip(series.points.last())
         .map(|(first, last)| vec![(first.0, "start".to_owned()), (last.0, "end".to_owned())]);
-    let nodes = Series {
-        label: String::new(),
-        points: node_points(structure, bar, &series),
-    };
-    let curve = |series: Series, line: Line| Curve {
-        series,
-        number: 0,
-        line,
-    };
+    let nodes = Series { label: String::new(), points: node_points(structure, bar, &series) };
+    let curve = |series: Series, line: Line| Curve { series, number: 0, line };
     Chart {
         title,
         curves: vec![curve(series, Line::Plain), curve(nodes, Line::Points)],

@@ -22,18 +22,9 @@ fn read(quantity: Quantity, pair: &PairState) -> f64 {
 }
 
 /// The curve of one pair and its breakpoints; `case` is the load case of the abscissa of a history.
-pub fn series(
-    path: &PathRecord,
-    quantity: Quantity,
-    pair: usize,
-    case: Option<usize>,
-) -> [Series; 2] {
+pub fn series(path: &PathRecord, quantity: Quantity, pair: usize, case: Option<usize>) -> [Series; 2] {
     let abscissas = path.abscissas(case);
-    let scale = largest(
-        path.places
-            .iter()
-            .flat_map(|place| place.pairs.iter().map(|pair| read(quantity, pair))),
-    );
+    let scale = largest(path.places.iter().flat_map(|place| place.pairs.iter().map(|pair| read(quantity, pair))));
     let points: Vec<(f64, f64)> = abscissas
         .iter()
         .zip(&path.places)
@@ -48,21 +39,9 @@ pub fn series(
         .filter(|(_, place)| !place.change.is_empty())
         .map(|(point, _)| *point)
         .collect();
-    let label = path
-        .places
-        .first()
-        .and_then(|place| place.pairs.get(pair))
-        .map_or(String::new(), |pair| pair.id.clone());
-    [
-        Series {
-            label: label.clone(),
-            points,
-        },
-        Series {
-            label,
-            points: marked,
-        },
-    ]
+    let label =
+        path.places.first().and_then(|place| place.pairs.get(pair)).map_or(String::new(), |pair| pair.id.clone());
+    [Series { label: label.clone(), points }, Series { label, points: marked }]
 }
 
 /// Draws a quantity of the pairs (indices) over what was followed.
@@ -94,16 +73,8 @@ pub fn write(
         let [mut curve, marked] = series(path, quantity, pair, case);
         // One entry of the legend for both.
         curve.label.clear();
-        curves.push(Curve {
-            series: curve,
-            number,
-            line: Line::Plain,
-        });
-        curves.push(Curve {
-            series: marked,
-            number,
-            line: Line::Points,
-        });
+        curves.push(Curve { series: curve, number, line: Line::Plain });
+        curves.push(Curve { series: marked, number, line: Line::Points });
     }
     let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
     Chart {

@@ -45,18 +45,11 @@ const PIECES: usize = 8;
 
 /// u of every node of the structure: (u_x, u_y, rotation), 0 where the list has no such node.
 pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[f64; 3]> {
-    let by_id: HashMap<&str, &NodeDisplacement> = displacements
-        .iter()
-        .map(|node| (node.node.as_str(), node))
-        .collect();
+    let by_id: HashMap<&str, &NodeDisplacement> = displacements.iter().map(|node| (node.node.as_str(), node)).collect();
     structure
         .nodes
         .iter()
-        .map(|node| {
-            by_id
-                .get(node.id.as_str())
-                .map_or([0.0; 3], |u| [u.ux, u.uy, u.rz])
-        })
+        .map(|node| by_id.get(node.id.as_str()).map_or([0.0; 3], |u| [u.ux, u.uy, u.rz]))
         .map(|u| u.map(|u| if u.is_finite() { u } else { 0.0 }))
         .collect()
 }
@@ -78,16 +71,8 @@ pub fn factor(structure: &Structure, u: &[[f64; 3]], magnification: Magnificatio
         return 1.0;
     }
     let power = 10f64.powi(rough.log10().floor() as i32);
-    let nice = [5.0, 2.0, 1.0]
-        .into_iter()
-        .map(|digit| digit * power)
-        .find(|nice| *nice <= rough)
-        .unwrap_or(power);
-    if nice.is_finite() && nice > 0.0 {
-        nice
-    } else {
-        1.0
-    }
+    let nice = [5.0, 2.0, 1.0].into_iter().map(|digit| digit * power).find(|nice| *nice <= rough).unwrap_or(power);
+    if nice.is_finite() && nice > 0.0 { nice } else { 1.0 }
 }
 
 /// Lines of the structure in the plane, displaced by `factor` × u: bars (bent as the element bends), plate outlines,
@@ -148,13 +133,7 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
 }
 
 /// Shape of a frame element: linear along it, cubic across it; at a hinge its end turns freely.
-fn bent(
-    structure: &Structure,
-    element: &Element,
-    hinges: [bool; 2],
-    u: &[[f64; 3]],
-    factor: f64,
-) -> Vec<(f64, f64)> {
+fn bent(structure: &Structure, element: &Element, hinges: [bool; 2], u: &[[f64; 3]], factor: f64) -> Vec<(f64, f64)> {
     let &[a, b] = &element.nodes[..] else {
         return Vec::new();
     };
@@ -162,10 +141,7 @@ fn bent(
         return Vec::new();
     };
     let (p, q) = (start.position, end.position);
-    let (ua, ub) = (
-        u.get(a).copied().unwrap_or_default(),
-        u.get(b).copied().unwrap_or_default(),
-    );
+    let (ua, ub) = (u.get(a).copied().unwrap_or_default(), u.get(b).copied().unwrap_or_default());
     let length = (q[0] - p[0]).hypot(q[1] - p[1]);
     if length <= 0.0 || !length.is_finite() {
         return vec![(p[0], p[1])];
@@ -201,11 +177,7 @@ fn bent(
 /// Sign of a pair in a picture. A slip points the way the second side moves over the first.
 pub fn pair_sign(state: State, tangent: [f64; 2], ascii: bool) -> char {
     let towards = |direction: [f64; 2]| {
-        let signs = if ascii {
-            ['>', '<', '^', 'v']
-        } else {
-            ['▶', '◀', '▲', '▼']
-        };
+        let signs = if ascii { ['>', '<', '^', 'v'] } else { ['▶', '◀', '▲', '▼'] };
         if direction[0].abs() >= direction[1].abs() {
             signs[usize::from(direction[0] < 0.0)]
         } else {
@@ -275,10 +247,7 @@ pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow>
                 },
             };
             let place = *places.entry(nodes.clone()).or_insert_with(|| {
-                arrows.push(Arrow {
-                    nodes,
-                    force: [0.0; 2],
-                });
+                arrows.push(Arrow { nodes, force: [0.0; 2] });
                 arrows.len() - 1
             });
             arrows[place].force[0] += factor * force[0];
@@ -297,11 +266,7 @@ const COMPONENT: f64 = 0.05;
 /// Signs of the components of a load and the steps from its node to their places, in dots: a force down or up stands
 /// before its node, one sideways behind it.
 pub fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
-    let signs = if ascii {
-        ['V', 'U', '{', '}']
-    } else {
-        ['↓', '↑', '←', '→']
-    };
+    let signs = if ascii { ['V', 'U', '{', '}'] } else { ['↓', '↑', '←', '→'] };
     let least = COMPONENT * force[0].hypot(force[1]);
     let mut shown = Vec::new();
     if force[1].abs() > least {
@@ -316,17 +281,10 @@ pub fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
     shown
 }
 
-fn draw(
-    out: &mut dyn Write,
-    picture: &Picture<'_>,
-    arrows: &[Arrow],
-    style: &Style,
-) -> io::Result<()> {
+fn draw(out: &mut dyn Write, picture: &Picture<'_>, arrows: &[Arrow], style: &Style) -> io::Result<()> {
     let structure = picture.structure;
     let rest = vec![[0.0; 3]; structure.nodes.len()];
-    let u = picture
-        .displacements
-        .map(|displacements| nodal(structure, displacements));
+    let u = picture.displacements.map(|displacements| nodal(structure, displacements));
     let moved = u.as_ref().unwrap_or(&rest);
     let factor = factor(structure, moved, picture.magnification);
     let mut title = picture.title.to_owned();
@@ -345,12 +303,7 @@ fn draw(
             .chain(&now.outline)
             .flatten()
             .copied()
-            .chain(
-                structure
-                    .nodes
-                    .iter()
-                    .map(|n| (n.position[0], n.position[1])),
-            )
+            .chain(structure.nodes.iter().map(|n| (n.position[0], n.position[1])))
             .filter(|(x, y)| x.is_finite() && y.is_finite())
     };
     if all().next().is_none() || style.width < 8 {
@@ -370,10 +323,7 @@ fn draw(
     }
     let rows = (((high * pitch) / 4.0).ceil() as usize + 2).clamp(3, most);
     let mut canvas = Canvas::new(columns, rows);
-    let (shift_x, shift_y) = (
-        (canvas.dots_x() - wide * pitch) / 2.0,
-        (canvas.dots_y() - high * pitch) / 2.0,
-    );
+    let (shift_x, shift_y) = ((canvas.dots_x() - wide * pitch) / 2.0, (canvas.dots_y() - high * pitch) / 2.0);
     let place = |(x, y): (f64, f64)| ((x - left) * pitch + shift_x, (y - bottom) * pitch + shift_y);
     let ends = (canvas.dots_x(), canvas.dots_y());
     let placed = |lines: &[Vec<(f64, f64)>]| -> Vec<Vec<(f64, f64)>> {
@@ -381,26 +331,17 @@ fn draw(
             .iter()
             .map(|line| {
                 let finite = line.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-                finite
-                    .map(|&point| place(point))
-                    .map(|(x, y)| (x.clamp(0.0, ends.0), y.clamp(0.0, ends.1)))
-                    .collect()
+                finite.map(|&point| place(point)).map(|(x, y)| (x.clamp(0.0, ends.0), y.clamp(0.0, ends.1))).collect()
             })
             .collect()
     };
     let is_deformed = moved.iter().any(|u| *u != [0.0; 3]) && factor != 0.0;
     if is_deformed {
-        let strokes = placed(&before.outline)
-            .iter()
-            .map(|line| Stroke::Dots(dotted(line, 4.0)))
-            .collect();
+        let strokes = placed(&before.outline).iter().map(|line| Stroke::Dots(dotted(line, 4.0))).collect();
         canvas.draw_under(Role::Muted, strokes);
     }
     if grid_pitch(structure, pitch) >= GRID_PITCH {
-        let strokes = placed(&now.grid)
-            .iter()
-            .map(|line| Stroke::Dots(dotted(line, 2.0)))
-            .collect();
+        let strokes = placed(&now.grid).iter().map(|line| Stroke::Dots(dotted(line, 2.0))).collect();
         canvas.draw_under(Role::Muted, strokes);
     }
     let strokes = placed(&now.outline).into_iter().map(Stroke::Line).collect();
@@ -427,16 +368,10 @@ fn draw(
     for (index, pair) in structure.pairs.iter().enumerate() {
         let state = picture.pairs.and_then(|states| states.get(index));
         let (sign, role, word) = match state {
-            Some(state) => (
-                pair_sign(state.state, pair.tangent(), style.ascii),
-                Role::State(state.state),
-                state.state.word(),
-            ),
-            None => (
-                if style.ascii { 'o' } else { '◦' },
-                Role::Accent,
-                "contact pair",
-            ),
+            Some(state) => {
+                (pair_sign(state.state, pair.tangent(), style.ascii), Role::State(state.state), state.state.word())
+            }
+            None => (if style.ascii { 'o' } else { '◦' }, Role::Accent, "contact pair"),
         };
         let (x, y) = at(pair.node);
         canvas.put(x, y, sign, role);

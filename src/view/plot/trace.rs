@@ -16,10 +16,7 @@ pub fn p_series(label: &str, pivots: &[PivotRecord]) -> Series {
     let scale = largest(pivots.iter().map(|pivot| pivot.p));
     Series {
         label: label.to_owned(),
-        points: pivots
-            .iter()
-            .map(|pivot| (pivot.step as f64, denoised(pivot.p, scale)))
-            .collect(),
+        points: pivots.iter().map(|pivot| (pivot.step as f64, denoised(pivot.p, scale))).collect(),
     }
 }
 
@@ -34,19 +31,12 @@ pub fn write(
 ) -> io::Result<()> {
     let unit = force_unit(units).filter(|_| of_contact(pivots));
     let series = p_series("", pivots);
-    let mut curves = vec![Curve {
-        series: series.clone(),
-        number: 0,
-        line: Line::Marked,
-    }];
+    let mut curves = vec![Curve { series: series.clone(), number: 0, line: Line::Marked }];
     if let Some(current) = current
         && let Some(&point) = series.points.iter().find(|(x, _)| *x == current as f64)
     {
         curves.push(Curve {
-            series: Series {
-                label: format!("step {current}"),
-                points: vec![point],
-            },
+            series: Series { label: format!("step {current}"), points: vec![point] },
             number: 1,
             line: Line::Marked,
         });
@@ -57,10 +47,7 @@ pub fn write(
             None => "p over the pivots".into(),
         },
         curves,
-        names: pivots
-            .iter()
-            .map(|pivot| (pivot.step as f64, pivot.step.to_string()))
-            .collect(),
+        names: pivots.iter().map(|pivot| (pivot.step as f64, pivot.step.to_string())).collect(),
         height,
         ..Chart::default()
     }

@@ -50,27 +50,14 @@ pub fn zone(pairs: &[PairState]) -> Zone {
     }
     let usable = abscissas.len() == pairs.len() && at.is_finite() && (at > 0.0 || pairs.len() == 1);
     if usable {
-        Zone {
-            abscissas,
-            is_length: true,
-        }
+        Zone { abscissas, is_length: true }
     } else {
-        Zone {
-            abscissas: (1..=pairs.len()).map(|number| number as f64).collect(),
-            is_length: false,
-        }
+        Zone { abscissas: (1..=pairs.len()).map(|number| number as f64).collect(), is_length: false }
     }
 }
 
 fn over_zone(label: &str, pairs: &[PairState], value: impl Fn(&PairState) -> f64) -> Series {
-    Series {
-        label: label.to_owned(),
-        points: zone(pairs)
-            .abscissas
-            .into_iter()
-            .zip(pairs.iter().map(value))
-            .collect(),
-    }
+    Series { label: label.to_owned(), points: zone(pairs).abscissas.into_iter().zip(pairs.iter().map(value)).collect() }
 }
 
 /// Slip z_τ over the zone.
@@ -112,10 +99,7 @@ pub fn write(
 ) -> io::Result<()> {
     let (name, unit) = match quantity {
         Quantity::Slip => ("Slip z_τ", length_unit(units)),
-        Quantity::Force => (
-            "Friction force x_τ and its bound ±(f x_n + c)",
-            force_unit(units),
-        ),
+        Quantity::Force => ("Friction force x_τ and its bound ±(f x_n + c)", force_unit(units)),
         Quantity::Gap => ("Opening z_n", length_unit(units)),
         Quantity::Pressure => ("Pressing force x_n", force_unit(units)),
     };
@@ -123,18 +107,10 @@ pub fn write(
     let several = states.len() > 1;
     for (number, (label, pairs)) in states.iter().enumerate() {
         let mut push = |series: Series, line: Line| {
-            curves.push(Curve {
-                series,
-                number,
-                line,
-            });
+            curves.push(Curve { series, number, line });
         };
         let named = |single: &str| {
-            if several {
-                (*label).to_owned()
-            } else {
-                single.to_owned()
-            }
+            if several { (*label).to_owned() } else { single.to_owned() }
         };
         match quantity {
             Quantity::Slip => push(slip_series(&named(""), pairs), Line::Marked),
@@ -142,11 +118,7 @@ pub fn write(
             Quantity::Pressure => push(pressure_series(&named(""), pairs), Line::Marked),
             Quantity::Force => {
                 let [force, mut plus, minus] = force_series(&named("x_τ"), pairs);
-                plus.label = if several {
-                    format!("{label}: bound")
-                } else {
-                    "±(f x_n + c)".into()
-                };
+                plus.label = if several { format!("{label}: bound") } else { "±(f x_n + c)".into() };
                 push(plus, Line::Dotted);
                 push(minus, Line::Dotted);
                 push(force, Line::Marked);
@@ -182,11 +154,7 @@ pub fn mode(
     let curves = [along("z̄_n", |d| d.z_n), along("z̄_τ", |d| d.z_t)]
         .into_iter()
         .enumerate()
-        .map(|(number, series)| Curve {
-            series,
-            number,
-            line: Line::Marked,
-        })
+        .map(|(number, series)| Curve { series, number, line: Line::Marked })
         .collect();
     let title = format!("Direction of the ray: {}", ray.mode);
     chart(&title, None, curves, pairs, units, height).write(out, style)
