@@ -5,11 +5,11 @@
 use nalgebra::DMatrix;
 
 use super::dof::Dofs;
-use super::element::{line_load, slots, spring, stiffness};
+use super::element::{ROWS, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
-use crate::model::structure::{Component, Load, Structure};
+use crate::model::structure::{Component, Structure};
 
 /// Terms of one block of work between two looks at the watcher.
 const ELEMENTS_PER_LOOK: usize = 4096;
@@ -25,7 +25,7 @@ pub fn assemble(
 ) -> Result<SymmetricSparse, MainSystemError> {
     let element_dofs = |index: usize, visit: &mut dyn FnMut(&[Option<usize>])| {
         let slots = slots(&structure.elements[index]);
-        let mut at = [None; 8];
+        let mut at = [None; ROWS];
         for (at, slot) in std::iter::zip(&mut at, slots.iter()) {
             *at = slot.and_then(|(node, component)| dofs.of(node, component));
         }
@@ -77,51 +77,6 @@ pub fn assemble(
             Ok(())
         },
     )
-}
-
-/// F per load case and unit factor on the base dofs.
-///
-/// # Errors
-/// A moment where there is no rotation.
-pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>, MainSystemError> {
-    let mut vectors = Vec::with_capacity(structure.load_cases.len());
-    for (load_case, case) in structure.load_cases.iter().enumerate() {
-        let mut f = vec![0.0; dofs.count()];
-        let mut add = |node: usize, component: Component, value: f64| {
-            let dof = dofs.of(node, component);
-            if let Some(dof) = dof {
-                f[dof] += value;
-            }
-            dof.is_some() || value == 0.0
-        };
-        for load in &case.loads {
-            match *load {
-                Load::Nodal { node, force, moment } => {
-                    add(node, Component::X, force[0]);
-                    add(node, Component::Y, force[1]);
-                    if !add(node, Component::R, moment) {
-                        return Err(MainSystemError::MomentWithoutRotation {
-                            load_case,
-                            case: case.name.clone(),
-                            node,
-                            node_id: structure.nodes[node].id.clone(),
-                        });
-                    }
-                }
-                Load::Line { element, value } => {
-                    let forces = line_load(structure, element, value);
-                    let at = slots(&structure.elements[element]);
-                    for (slot, force) in at.iter().zip(&forces) {
-                        if let Some((node, component)) = *slot {
-                            add(node, component, *force);
-                        }
-                    }
-                }
-            }
-        }
-        vectors.push(f);
-    }
-    Ok(vectors)
 }
 
 /// K_m, C and D of the main system.

@@ -72,7 +72,7 @@ impl Parts {
         // Elements that share an edge.
         let mut edges = Vec::new();
         for (index, element) in structure.elements.iter().enumerate() {
-            let corners = element.nodes.len();
+            let corners = element.corners();
             let sides = if corners == 2 { 1 } else { corners };
             for side in 0..sides {
                 let a = element.nodes[side];

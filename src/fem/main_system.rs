@@ -11,12 +11,13 @@ use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::assembly::{assemble, load_vectors, main_matrices, on_joints, on_masters};
+use super::assembly::{assemble, main_matrices, on_joints, on_masters};
 use super::dof::Dofs;
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::{Factor, FactorError};
 use super::kernel::{self, RigidKernel};
+use super::loads::load_vectors;
 use super::loose::{Motion, loose_motions};
 use super::order::Places;
 use super::sparse::SymmetricSparse;

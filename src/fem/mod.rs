@@ -12,7 +12,7 @@
 //! The joints reach this module as rows of B ([`crate::model::pair::Joint`]); it knows no contact law.
 //!
 //! Order of reading: `dof`, `elimination` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor` (sparse
-//! Cholesky with the joints, by `supernodes`), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, reactions).
+//! Cholesky with the joints, by `supernodes`), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, stresses, reactions).
 
 pub mod main_system;
 pub mod recovery;
@@ -27,6 +27,7 @@ mod error;
 mod factor;
 mod joint_rows;
 mod kernel;
+mod loads;
 mod loose;
 mod memory;
 mod order;
@@ -37,8 +38,9 @@ mod watch;
 #[cfg(test)]
 mod tests;
 
+pub use element::bar_load::Piece;
 pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub use loose::Motion;
 pub use main_system::{Displacements, MainSystem, Seconds, Unknowns};
-pub use recovery::{EndForces, MemberForces, QuadStress, Reaction};
+pub use recovery::{EndForces, MemberDiagram, MemberForces, MembraneStress, NodeStress, Reaction};
 pub use sparse::SymmetricSparse;

@@ -2,9 +2,12 @@
 
 use nalgebra::DVector;
 
-use super::element::{Axis, corners, frame, quad4, slots, spring, truss};
+use super::element::bar_load::{BarLoad, Piece};
+use super::element::shape::Shape;
+use super::element::{Axis, BarElement, slots, spring, with_membrane};
+use super::loads::{bar_loads, free_strains};
 use super::main_system::{Displacements, MainSystem};
-use crate::model::structure::{Component, ElementKind, Load, Spring, Structure};
+use crate::model::structure::{Component, ElementKind, Spring, Structure};
 
 /// Internal forces at one end of an element in bar axes: local x from start to end, local y = x turned +90°.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,13 +33,33 @@ pub struct MemberForces {
     pub end: EndForces,
 }
 
-/// Stress at the centre of a quad, tension positive.
+/// Internal forces along a whole bar: exact between the nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MemberDiagram {
+    /// Index into [`Structure::bars`].
+    pub bar: usize,
+    /// Length of the bar.
+    pub length: f64,
+    /// From its start to its end without a gap; ranges are distances along the bar.
+    pub pieces: Vec<Piece>,
+}
+
+/// Stress of one membrane element at its centre, tension positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadStress {
+pub struct MembraneStress {
     /// Index into [`Structure::elements`].
     pub element: usize,
-    /// (σ_xx, σ_yy, σ_xy).
-    pub stress: [f64; 3],
+    /// (σ_xx, σ_yy, σ_xy, σ_zz).
+    pub stress: [f64; 4],
+}
+
+/// Stress at a node, tension positive: the mean of what its membrane elements say there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeStress {
+    /// The node.
+    pub node: usize,
+    /// (σ_xx, σ_yy, σ_xy, σ_zz).
+    pub stress: [f64; 4],
 }
 
 /// Force of the supports of a node on the structure.
@@ -53,19 +76,11 @@ pub struct Reaction {
 impl MainSystem {
     /// N, Q, M at both ends of every bar element under Σ factor·F and the displacements `u`.
     pub fn member_forces(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberForces> {
-        let mut line = vec![[0.0; 2]; structure.elements.len()];
-        for (case, factor) in std::iter::zip(&structure.load_cases, factors) {
-            for load in &case.loads {
-                if let Load::Line { element, value } = load {
-                    line[*element][0] += factor * value[0];
-                    line[*element][1] += factor * value[1];
-                }
-            }
-        }
+        let (loads, none) = (bar_loads(structure, factors), BarLoad::default());
         let mut members = Vec::new();
         for (bar, data) in structure.bars.iter().enumerate() {
             for (position, index) in data.elements.clone().enumerate() {
-                let ends = bar_end_forces(structure, index, u, line[index]);
+                let ends = bar_end_forces(structure, index, u, loads.get(&index).unwrap_or(&none));
                 let [start, end] = ends.map(|[normal, shear, moment]| EndForces { normal, shear, moment });
                 members.push(MemberForces { bar, element: position, start, end });
             }
@@ -73,25 +88,63 @@ impl MainSystem {
         members
     }
 
-    /// Stresses at the centres of all quads.
-    pub fn quad_stresses(&self, structure: &Structure, u: &Displacements) -> Vec<QuadStress> {
-        let quads = structure.elements.iter().enumerate().filter_map(|(index, element)| match &element.kind {
-            ElementKind::Quad { plane, .. } => Some((index, element, *plane)),
-            _ => None,
+    /// N, Q, M along every bar under Σ factor·F and the displacements `u`.
+    pub fn member_diagrams(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberDiagram> {
+        let (loads, none) = (bar_loads(structure, factors), BarLoad::default());
+        let diagrams = structure.bars.iter().enumerate().map(|(bar, data)| {
+            let mut diagram = MemberDiagram { bar, length: 0.0, pieces: Vec::new() };
+            for index in data.elements.clone() {
+                let Some(axis) = Axis::of(structure, &structure.elements[index]) else { continue };
+                let load = loads.get(&index).unwrap_or(&none);
+                let [start, _] = bar_end_forces(structure, index, u, load);
+                let from = diagram.length;
+                diagram.pieces.extend(
+                    load.pieces(start, axis.length)
+                        .into_iter()
+                        .map(|piece| Piece { range: piece.range.map(|s| from + s), ..piece }),
+                );
+                diagram.length += axis.length;
+            }
+            diagram
         });
-        quads
-            .map(|(index, element, plane)| {
-                let d = quad4::elasticity(&structure.materials[element.material], plane);
-                let mut values = [0.0; 8];
-                for (i, &node) in element.nodes.iter().enumerate() {
-                    values[2 * i] = u.0[node][0];
-                    values[2 * i + 1] = u.0[node][1];
+        diagrams.collect()
+    }
+
+    /// Stresses at the centres of all membrane elements under the displacements `u` and Σ factor·case.
+    pub fn element_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MembraneStress> {
+        let free = free_strains(structure, factors);
+        let stresses = (0..structure.elements.len()).filter_map(|element| {
+            let strain = free.get(&element).copied().unwrap_or(0.0);
+            let u = membrane_displacements(structure, element, u);
+            let stress = with_membrane(structure, element, |m| m.stress(m.shape.centre(), &u, strain))?;
+            Some(MembraneStress { element, stress })
+        });
+        stresses.collect()
+    }
+
+    /// Stresses at all nodes of membrane elements, in the order of the nodes: means over the elements that meet there,
+    /// each extrapolated from the points where its stresses are best.
+    pub fn node_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<NodeStress> {
+        let free = free_strains(structure, factors);
+        let mut sums = vec![([0.0; 4], 0_u32); structure.nodes.len()];
+        for (index, element) in structure.elements.iter().enumerate() {
+            let (ElementKind::Membrane { .. }, Some(shape)) = (&element.kind, Shape::of(element.nodes.len())) else {
+                continue;
+            };
+            let strain = free.get(&index).copied().unwrap_or(0.0);
+            let u = membrane_displacements(structure, index, u);
+            for (&node, &at) in element.nodes.iter().zip(shape.nodes()) {
+                let stress = with_membrane(structure, index, |m| m.stress(at, &u, strain)).unwrap_or_default();
+                let (sum, count) = &mut sums[node];
+                for (sum, stress) in sum.iter_mut().zip(stress) {
+                    *sum += stress;
                 }
-                QuadStress {
-                    element: index,
-                    stress: quad4::stress_at_centre(&corners(structure, element), &d, &values),
-                }
-            })
+                *count += 1;
+            }
+        }
+        let means = sums.into_iter().enumerate().filter(|(_, (_, count))| *count > 0);
+        means
+            .map(|(node, (sum, count))| NodeStress { node, stress: sum.map(|stress| stress / f64::from(count)) })
             .collect()
     }
 
@@ -150,13 +203,9 @@ impl MainSystem {
 }
 
 /// (N, Q, M) at the start and end of a bar element; zeros for anything else.
-fn bar_end_forces(structure: &Structure, index: usize, u: &Displacements, line: [f64; 2]) -> [[f64; 3]; 2] {
-    let element = &structure.elements[index];
-    let material = &structure.materials[element.material];
-    let Some(axis) = Axis::of(structure, element) else {
-        return [[0.0; 3]; 2];
-    };
-    let values: Vec<f64> = slots(element)
+fn bar_end_forces(structure: &Structure, index: usize, u: &Displacements, load: &BarLoad) -> [[f64; 3]; 2] {
+    let Some(bar) = BarElement::of(structure, index) else { return [[0.0; 3]; 2] };
+    let values: Vec<f64> = slots(&structure.elements[index])
         .iter()
         .map(|slot| match slot {
             Some((node, Component::X)) => u.0[*node][0],
@@ -165,14 +214,12 @@ fn bar_end_forces(structure: &Structure, index: usize, u: &Displacements, line: 
             None => 0.0,
         })
         .collect();
-    let e = material.youngs_modulus;
-    match (&element.kind, &values[..]) {
-        (ElementKind::Frame { area, inertia, hinges }, &[a, b, c, d, f, g]) => {
-            frame::end_forces(&axis, e, *area, *inertia, *hinges, &[a, b, c, d, f, g], line)
-        }
-        (ElementKind::Truss { area }, &[a, b, c, d]) => truss::end_forces(&axis, e, *area, &[a, b, c, d], line),
-        _ => [[0.0; 3]; 2],
-    }
+    bar.end_forces(&values, load)
+}
+
+/// u_x, u_y of the nodes of an element in turn.
+fn membrane_displacements(structure: &Structure, index: usize, u: &Displacements) -> Vec<f64> {
+    structure.elements[index].nodes.iter().flat_map(|&node| [u.0[node][0], u.0[node][1]]).collect()
 }
 
 /// Mean length of the frame elements; 1 if there are none.

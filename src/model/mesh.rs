@@ -88,7 +88,7 @@ impl PlateGrid {
                 elements.push(Element {
                     nodes: vec![lower[0], lower[1], upper[1], upper[0]],
                     material: self.material,
-                    kind: ElementKind::Quad { thickness: self.thickness, plane: self.plane },
+                    kind: ElementKind::Membrane { thickness: self.thickness, plane: self.plane },
                 });
             }
         }

@@ -51,12 +51,14 @@ pub enum Plane {
 /// What an element is made of and how it carries force.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ElementKind {
-    /// Two-node Euler–Bernoulli frame element, `nodes` = [start, end].
+    /// Two-node frame element, `nodes` = [start, end].
     Frame {
         /// Cross-section area.
         area: f64,
         /// Second moment of area.
         inertia: f64,
+        /// Shear area; `None` for a bar that does not yield to shear.
+        shear_area: Option<f64>,
         /// Moment hinge at start, at end.
         hinges: [bool; 2],
     },
@@ -65,8 +67,8 @@ pub enum ElementKind {
         /// Cross-section area.
         area: f64,
     },
-    /// Four-node bilinear membrane, `nodes` counter-clockwise.
-    Quad {
+    /// Membrane of 3, 4, 6 or 8 nodes, counter-clockwise: corners, then the middles of the sides 1-2, 2-3, ….
+    Membrane {
         /// Thickness out of the plane.
         thickness: f64,
         /// Stress state.
@@ -74,15 +76,36 @@ pub enum ElementKind {
     },
 }
 
+impl ElementKind {
+    /// What a length (bars) or an area (membranes) of it is multiplied with to give its volume.
+    pub fn area(&self) -> f64 {
+        match self {
+            ElementKind::Frame { area, .. } | ElementKind::Truss { area } => *area,
+            ElementKind::Membrane { thickness, .. } => *thickness,
+        }
+    }
+}
+
 /// One finite element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {
-    /// 2 nodes (frame, truss) or 4 (quad).
+    /// 2 nodes (frame, truss), or 3, 4, 6, 8 (membrane).
     pub nodes: Vec<usize>,
     /// Index into [`Structure::materials`].
     pub material: usize,
     /// Kind and its data.
     pub kind: ElementKind,
+}
+
+impl Element {
+    /// How many of its nodes are corners (the ends of a bar): they come first.
+    pub fn corners(&self) -> usize {
+        match self.nodes.len() {
+            6 => 3,
+            8 => 4,
+            count => count,
+        }
+    }
 }
 
 /// A bar of the file: a chain of equal elements.
@@ -147,12 +170,41 @@ pub enum Load {
         /// Moment; not zero only at nodes with a rotation.
         moment: f64,
     },
-    /// Uniform force per unit length on one frame or truss element, global axes.
+    /// Force per unit length of one frame or truss element, linear along it, global axes.
     Line {
         /// Index into [`Structure::elements`].
         element: usize,
-        /// (q_x, q_y).
+        /// Distances from the start of the element between which it acts.
+        range: [f64; 2],
+        /// (q_x, q_y) at both of them.
+        value: [[f64; 2]; 2],
+    },
+    /// Force and moment between the nodes of one frame or truss element.
+    BarPoint {
+        /// Index into [`Structure::elements`].
+        element: usize,
+        /// Distance from the start of the element.
+        distance: f64,
+        /// (F_x, F_y), global axes.
+        force: [f64; 2],
+        /// Moment, counter-clockwise.
+        moment: f64,
+    },
+    /// Uniform force per volume on any element, global axes.
+    Body {
+        /// Index into [`Structure::elements`].
+        element: usize,
+        /// (b_x, b_y).
         value: [f64; 2],
+    },
+    /// What an element would do if nothing held it: temperature, lack of fit, prestress.
+    FreeStrain {
+        /// Index into [`Structure::elements`].
+        element: usize,
+        /// Along a bar; in all directions of a membrane.
+        strain: f64,
+        /// Of a frame bar, > 0 when the −y side is the longer one.
+        curvature: f64,
     },
 }
 

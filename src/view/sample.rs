@@ -159,7 +159,7 @@ pub fn beam_structure() -> Structure {
             .map(|i| Element {
                 nodes: vec![i, i + 1],
                 material: 0,
-                kind: ElementKind::Frame { area: 0.01, inertia: 1e-4, hinges: [false; 2] },
+                kind: ElementKind::Frame { area: 0.01, inertia: 1e-4, shear_area: None, hinges: [false; 2] },
             })
             .collect(),
         bars: vec![Bar { id: "AF".into(), elements: 0..SUPPORTS - 1 }],
@@ -198,7 +198,7 @@ pub fn plates() -> Structure {
                 structure.elements.push(Element {
                     nodes: vec![index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)],
                     material: 0,
-                    kind: ElementKind::Quad { thickness: 0.1, plane: Plane::Strain },
+                    kind: ElementKind::Membrane { thickness: 0.1, plane: Plane::Strain },
                 });
             }
         }
@@ -238,7 +238,7 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
     structure.load_cases = vec![LoadCase {
         name: "line".into(),
         factor: Number::Value(1.0),
-        loads: (0..2).map(|element| Load::Line { element, value: [0.0, -q] }).collect(),
+        loads: (0..2).map(|element| Load::Line { element, range: [0.0, 2.0], value: [[0.0, -q]; 2] }).collect(),
     }];
     let at = |x: f64| EndForces { n: 0.0, q: q * (l - x), m: -q * (l - x) * (l - x) / 2.0 };
     let members = [(0, 0.0, 2.0), (1, 2.0, 4.0)]

@@ -57,12 +57,18 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
                 Load::Nodal { node, force, moment } => {
                     add(*node, at(*node), force.map(|f| factor * f), factor * moment)
                 }
-                Load::Line { element, value } => {
+                Load::Line { element, range: [from, to], value: [first, last] } => {
                     let [a, b] = [0, 1].map(|end| structure.elements[*element].nodes[end]);
                     let ([xa, ya], [xb, yb]) = (at(a), at(b));
                     let length = (xb - xa).hypot(yb - ya);
-                    let middle = [(xa + xb) / 2.0, (ya + yb) / 2.0];
-                    add(a, middle, value.map(|q| factor * q * length), 0.0);
+                    // Simpson's rule is exact for the force and its moment.
+                    for (s, weight) in [(*from, 1.0), (0.5 * (from + to), 4.0), (*to, 1.0)] {
+                        let t = s / length;
+                        let place = [xa + t * (xb - xa), ya + t * (yb - ya)];
+                        let share = if to > from { (s - from) / (to - from) } else { 0.0 };
+                        let q = [0, 1].map(|i| first[i] + share * (last[i] - first[i]));
+                        add(a, place, q.map(|q| factor * q * weight * (to - from) / 6.0), 0.0);
+                    }
                 }
                 #[allow(unreachable_patterns)] // loads of later issues
                 _ => return f64::NAN,
@@ -135,7 +141,7 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
         largest[1] = largest[1].max(force[2].abs());
     };
     for element in &structure.elements {
-        if matches!(element.kind, stickslip::model::structure::ElementKind::Quad { .. }) {
+        if matches!(element.kind, stickslip::model::structure::ElementKind::Membrane { .. }) {
             element.nodes.iter().for_each(|&node| bars_only[node] = false);
         }
     }

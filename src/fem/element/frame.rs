@@ -1,7 +1,8 @@
-//! Two-node Euler–Bernoulli frame element with moment hinges.
+//! Two-node frame element, shear-flexible where its section has a shear area, with moment hinges.
 //!
 //! ```text
-//!            EA/L on (u1, u2);      with a = 12EI/L³, b = 6EI/L², c = 4EI/L, d = 2EI/L
+//!            EA/L on (u1, u2);      with Φ = 12EI/(G A_s L²), 0 without a shear area (Euler–Bernoulli)
+//!            a = 12EI/L³(1+Φ), b = 6EI/L²(1+Φ), c = (4+Φ)EI/L(1+Φ), d = (2−Φ)EI/L(1+Φ)
 //!
 //!         v1  θ1  v2  θ2
 //!     [   a   b  −a   b ]           local x from start to end, local y = x turned +90°,
@@ -11,106 +12,153 @@
 //! ```
 //!
 //! A hinge releases the element's own rotation at that end, which is condensed out:
-//! k ← k − k_r k_rᵀ / k_rr, f ← f − k_r f_r / k_rr (Przemieniecki, *Theory of Matrix Structural Analysis*,
-//! 1968, ch. 5 and 6). Its row and column are then zero.
+//! k ← k − k_r k_rᵀ / k_rr, f ← f − k_r f_r / k_rr. Its row and column are then zero. Loads between the nodes become
+//! nodal forces by the exact displacements of the unloaded element, so that nodes move as in beam theory
+//! (Przemieniecki, *Theory of Matrix Structural Analysis*, 1968, ch. 5 and 6).
 
 use nalgebra::{SMatrix, SVector};
 
 use super::Axis;
+use super::bar_load::{BarLoad, Internal};
 
 type Matrix6 = SMatrix<f64, 6, 6>;
 type Vector6 = SVector<f64, 6>;
 
-/// Stiffness in global axes, rows u_x, u_y, θ of the start, then of the end.
-pub fn stiffness(axis: &Axis, e: f64, area: f64, inertia: f64, hinges: [bool; 2]) -> Matrix6 {
-    let k = local_stiffness(axis.length, e, area, inertia, hinges);
-    let t = rotation(axis);
-    let k = t.transpose() * k * t;
-    (k + k.transpose()) * 0.5
+/// A frame element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Length and direction.
+    pub axis: Axis,
+    /// EA.
+    pub axial: f64,
+    /// EI.
+    pub bending: f64,
+    /// G A_s; `None` for a bar that does not yield to shear.
+    pub shear: Option<f64>,
+    /// Moment hinge at start, at end.
+    pub hinges: [bool; 2],
 }
 
-/// Stiffness in bar axes.
-fn local_stiffness(length: f64, e: f64, area: f64, inertia: f64, hinges: [bool; 2]) -> Matrix6 {
-    let ea = e * area / length;
-    let ei = e * inertia;
-    let a = 12.0 * ei / length.powi(3);
-    let b = 6.0 * ei / length.powi(2);
-    let c = 4.0 * ei / length;
-    let d = 2.0 * ei / length;
-    #[rustfmt::skip]
-    let full = Matrix6::from_row_slice(&[
-         ea, 0.0, 0.0, -ea, 0.0, 0.0,
-        0.0,   a,   b, 0.0,  -a,   b,
-        0.0,   b,   c, 0.0,  -b,   d,
-        -ea, 0.0, 0.0,  ea, 0.0, 0.0,
-        0.0,  -a,  -b, 0.0,   a,  -b,
-        0.0,   b,   d, 0.0,  -b,   c,
-    ]);
-    // The closed forms of the condensed matrices, so that zeros are exact zeros.
-    let a3 = 3.0 * ei / length.powi(3);
-    let b3 = 3.0 * ei / length.powi(2);
-    let c3 = 3.0 * ei / length;
-    let bending: Option<[(usize, f64); 4]> = match hinges {
-        [false, false] => return full,
-        // M = c3·(θ − chord rotation) at the end that is not released.
-        [true, false] => Some([(1, a3), (2, 0.0), (4, -a3), (5, b3)]),
-        [false, true] => Some([(1, a3), (2, b3), (4, -a3), (5, 0.0)]),
-        [true, true] => None,
-    };
-    let mut k = Matrix6::zeros();
-    for (i, j, sign) in [(0, 0, 1.0), (3, 3, 1.0), (0, 3, -1.0), (3, 0, -1.0)] {
-        k[(i, j)] = sign * ea;
+impl Frame {
+    /// Stiffness in global axes, rows u_x, u_y, θ of the start, then of the end.
+    pub fn stiffness(&self) -> Matrix6 {
+        let k = self.local_stiffness();
+        let t = rotation(&self.axis);
+        let k = t.transpose() * k * t;
+        (k + k.transpose()) * 0.5
     }
-    if let Some(shear) = bending {
-        // Row v1 is `shear`; row v2 its negative; the rotation that is left: b3·(v1 − v2) + c3·θ.
-        for (j, value) in shear {
-            k[(1, j)] = value;
-            k[(4, j)] = -value;
+
+    /// Φ = 12EI/(G A_s L²).
+    fn shear_number(&self) -> f64 {
+        self.shear.map_or(0.0, |shear| 12.0 * self.bending / (shear * self.axis.length.powi(2)))
+    }
+
+    /// Stiffness in bar axes without hinges.
+    fn rigid_ended(&self) -> Matrix6 {
+        let (length, phi) = (self.axis.length, self.shear_number());
+        let ea = self.axial / length;
+        let ei = self.bending / (1.0 + phi);
+        let a = 12.0 * ei / length.powi(3);
+        let b = 6.0 * ei / length.powi(2);
+        let c = (4.0 + phi) * ei / length;
+        let d = (2.0 - phi) * ei / length;
+        #[rustfmt::skip]
+        let full = Matrix6::from_row_slice(&[
+             ea, 0.0, 0.0, -ea, 0.0, 0.0,
+            0.0,   a,   b, 0.0,  -a,   b,
+            0.0,   b,   c, 0.0,  -b,   d,
+            -ea, 0.0, 0.0,  ea, 0.0, 0.0,
+            0.0,  -a,  -b, 0.0,   a,  -b,
+            0.0,   b,   d, 0.0,  -b,   c,
+        ]);
+        full
+    }
+
+    /// Stiffness in bar axes.
+    fn local_stiffness(&self) -> Matrix6 {
+        let length = self.axis.length;
+        let ea = self.axial / length;
+        // The closed forms of the condensed matrices, so that zeros are exact zeros.
+        let ei = 3.0 * self.bending / (1.0 + 0.25 * self.shear_number());
+        let a3 = ei / length.powi(3);
+        let b3 = ei / length.powi(2);
+        let c3 = ei / length;
+        let bending: Option<[(usize, f64); 4]> = match self.hinges {
+            [false, false] => return self.rigid_ended(),
+            // M = c3·(θ − chord rotation) at the end that is not released.
+            [true, false] => Some([(1, a3), (2, 0.0), (4, -a3), (5, b3)]),
+            [false, true] => Some([(1, a3), (2, b3), (4, -a3), (5, 0.0)]),
+            [true, true] => None,
+        };
+        let mut k = Matrix6::zeros();
+        for (i, j, sign) in [(0, 0, 1.0), (3, 3, 1.0), (0, 3, -1.0), (3, 0, -1.0)] {
+            k[(i, j)] = sign * ea;
         }
-        let r = if hinges[0] { 5 } else { 2 };
-        k[(r, 1)] = b3;
-        k[(r, 4)] = -b3;
-        k[(r, r)] = c3;
+        if let Some(shear) = bending {
+            // Row v1 is `shear`; row v2 its negative; the rotation that is left: b3·(v1 − v2) + c3·θ.
+            for (j, value) in shear {
+                k[(1, j)] = value;
+                k[(4, j)] = -value;
+            }
+            let r = if self.hinges[0] { 5 } else { 2 };
+            k[(r, 1)] = b3;
+            k[(r, 4)] = -b3;
+            k[(r, r)] = c3;
+        }
+        k
     }
-    k
-}
 
-/// Nodal forces in global axes that stand for a uniform global force `q` per unit length.
-pub fn line_load(axis: &Axis, hinges: [bool; 2], q: [f64; 2]) -> Vector6 {
-    rotation(axis).transpose() * local_line_load(axis, hinges, q)
-}
+    /// Displacements (along x, along y, rotation of the section) at a distance from the start when row `row` of the
+    /// element without hinges is displaced by 1 and nothing acts between its nodes.
+    fn shape(&self, row: usize, s: f64) -> [f64; 3] {
+        let (length, phi) = (self.axis.length, self.shear_number());
+        let x = s / length;
+        let (x2, x3, over) = (x * x, x * x * x, 1.0 / (1.0 + phi));
+        match row {
+            0 => [1.0 - x, 0.0, 0.0],
+            3 => [x, 0.0, 0.0],
+            1 => [0.0, (1.0 - 3.0 * x2 + 2.0 * x3 + phi * (1.0 - x)) * over, 6.0 / length * (x2 - x) * over],
+            4 => [0.0, (3.0 * x2 - 2.0 * x3 + phi * x) * over, 6.0 / length * (x - x2) * over],
+            2 => [
+                0.0,
+                length * (x - 2.0 * x2 + x3 + 0.5 * phi * (x - x2)) * over,
+                (1.0 - 4.0 * x + 3.0 * x2 + phi * (1.0 - x)) * over,
+            ],
+            _ => [0.0, length * (x3 - x2 - 0.5 * phi * (x - x2)) * over, (3.0 * x2 - 2.0 * x + phi * x) * over],
+        }
+    }
 
-/// The same in bar axes: qL/2 and ± qL²/12; with a hinge 3/8, 5/8 of qL and qL²/8 at the other end.
-fn local_line_load(axis: &Axis, hinges: [bool; 2], q: [f64; 2]) -> Vector6 {
-    let length = axis.length;
-    let [qx, qy] = axis.to_local(q);
-    let (total, axial) = (qy * length, 0.5 * qx * length);
-    let (v1, m1, v2, m2) = match hinges {
-        [false, false] => (0.5, 1.0 / 12.0, 0.5, -1.0 / 12.0),
-        [true, false] => (0.375, 0.0, 0.625, -0.125),
-        [false, true] => (0.625, 0.125, 0.375, 0.0),
-        [true, true] => (0.5, 0.0, 0.5, 0.0),
-    };
-    Vector6::from([axial, v1 * total, m1 * total * length, axial, v2 * total, m2 * total * length])
-}
+    /// Nodal forces in global axes that stand for the load between the nodes.
+    pub fn nodal_forces(&self, load: &BarLoad) -> Vector6 {
+        rotation(&self.axis).transpose() * self.local_forces(load)
+    }
 
-/// Internal forces (N, Q, M) at the start and at the end, bar axes, for global displacements `u` (the released
-/// rotations are ignored) and the uniform global force `q` on the element.
-///
-/// N > 0 tension, Q = dM/dx, M > 0 tension on the −y side: with f the forces on the element's ends,
-/// start (−f_x1, f_y1, −m_1), end (f_x2, −f_y2, m_2).
-pub fn end_forces(
-    axis: &Axis,
-    e: f64,
-    area: f64,
-    inertia: f64,
-    hinges: [bool; 2],
-    u: &[f64; 6],
-    q: [f64; 2],
-) -> [[f64; 3]; 2] {
-    let local = rotation(axis) * Vector6::from(*u);
-    let f = local_stiffness(axis.length, e, area, inertia, hinges) * local - local_line_load(axis, hinges, q);
-    [[-f[0], f[1], -f[2]], [f[3], -f[4], f[5]]]
+    fn local_forces(&self, load: &BarLoad) -> Vector6 {
+        let mut f = Vector6::from_fn(|row, _| load.work(&|s| self.shape(row, s)));
+        let (normal, moment) = (self.axial * load.strain, self.bending * load.curvature);
+        f += Vector6::from([-normal, 0.0, -moment, normal, 0.0, moment]);
+        if self.hinges != [false; 2] {
+            let mut k = self.rigid_ended();
+            for (r, _) in [(2, 0), (5, 1)].into_iter().filter(|(_, end)| self.hinges[*end]) {
+                let column: Vector6 = k.column(r).into();
+                f -= column * (f[r] / k[(r, r)]);
+                f[r] = 0.0;
+                k -= column * column.transpose() / column[r];
+            }
+        }
+        f
+    }
+
+    /// Internal forces at the start and at the end for global displacements `u` (the released rotations are ignored)
+    /// and the load between the nodes.
+    ///
+    /// N > 0 tension, Q = dM/dx, M > 0 tension on the −y side: with f the forces on the element's ends,
+    /// start (−f_x1, f_y1, −m_1), end (f_x2, −f_y2, m_2).
+    pub fn end_forces(&self, u: &[f64; 6], load: &BarLoad) -> [Internal; 2] {
+        let local = rotation(&self.axis) * Vector6::from(*u);
+        let f = self.local_stiffness() * local - self.local_forces(load);
+        [[-f[0], f[1], -f[2]], [f[3], -f[4], f[5]]]
+    }
 }
 
 /// Global to bar axes.
@@ -128,37 +176,129 @@ fn rotation(axis: &Axis) -> Matrix6 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bar_load::{PointForce, Span};
     use super::*;
 
     const AXIS: Axis = Axis { length: 2.5, cos: 0.6, sin: 0.8 };
+    const HINGES: [[bool; 2]; 4] = [[false; 2], [true, false], [false, true], [true, true]];
+
+    fn frame(hinges: [bool; 2], shear: Option<f64>) -> Frame {
+        Frame { axis: AXIS, axial: 21.0, bending: 14.0, shear, hinges }
+    }
+
+    fn uniform(q: [f64; 2]) -> BarLoad {
+        BarLoad { spans: vec![Span { range: [0.0, AXIS.length], force: [q, q] }], ..BarLoad::default() }
+    }
 
     /// The closed forms against k − k_r k_rᵀ / k_rr worked out from the full matrix.
     #[test]
     fn hinges_are_condensed_rotations() {
-        let full = local_stiffness(2.5, 7.0, 3.0, 2.0, [false; 2]);
-        let q = [0.3, -1.7];
-        for hinges in [[true, false], [false, true], [true, true]] {
-            let mut k = full;
-            let mut f = local_line_load(&AXIS, [false; 2], q);
-            for (r, released) in [(2, hinges[0]), (5, hinges[1])] {
-                if released {
-                    let column: Vector6 = k.column(r).into();
-                    let pivot = k[(r, r)];
-                    f -= column * (f[r] / pivot);
-                    k -= column * column.transpose() / pivot;
+        for shear in [None, Some(5.0)] {
+            let full = frame([false; 2], shear).local_stiffness();
+            for hinges in HINGES {
+                let mut k = full;
+                for (r, released) in [(2, hinges[0]), (5, hinges[1])] {
+                    if released {
+                        let column: Vector6 = k.column(r).into();
+                        k -= column * column.transpose() / column[r];
+                    }
                 }
+                let closed = frame(hinges, shear).local_stiffness();
+                assert!((closed - k).amax() < 1e-13 * full.amax(), "{hinges:?}");
             }
-            let closed = local_stiffness(2.5, 7.0, 3.0, 2.0, hinges);
-            assert!((closed - k).amax() < 1e-13 * full.amax(), "{hinges:?}");
-            let closed = local_line_load(&AXIS, hinges, q);
-            assert!((closed - f).amax() < 1e-13, "{hinges:?}");
         }
+    }
+
+    /// qL/2 and ± qL²/12; with a hinge 3/8, 5/8 of qL and qL²/8 at the other end.
+    #[test]
+    fn uniform_load() {
+        let (qx, qy, l) = (0.3, -1.7, AXIS.length);
+        for (hinges, [v1, m1, v2, m2]) in HINGES.into_iter().zip([
+            [0.5, 1.0 / 12.0, 0.5, -1.0 / 12.0],
+            [0.375, 0.0, 0.625, -0.125],
+            [0.625, 0.125, 0.375, 0.0],
+            [0.5, 0.0, 0.5, 0.0],
+        ]) {
+            let f = frame(hinges, None).local_forces(&uniform([qx, qy]));
+            let t = qy * l;
+            let right = Vector6::from([0.5 * qx * l, v1 * t, m1 * t * l, 0.5 * qx * l, v2 * t, m2 * t * l]);
+            assert!((f - right).amax() < 1e-14, "{hinges:?}: {f}");
+        }
+    }
+
+    /// Fixed-end moments of a force P at a from the start, b from the end: P a b²/L², −P a² b/L² (Roark); of a triangle
+    /// from 0 to w: wL²/30, −wL²/20; of a couple m: m b(2a − b)/L², m a(2b − a)/L².
+    #[test]
+    fn fixed_end_moments() {
+        let l = AXIS.length;
+        let (a, p, w, m) = (0.8, 3.0, 2.0, 4.0);
+        let b = l - a;
+        let point = |force, moment| BarLoad { points: vec![PointForce { at: a, force, moment }], ..BarLoad::default() };
+        let triangle =
+            BarLoad { spans: vec![Span { range: [0.0, l], force: [[0.0, 0.0], [0.0, w]] }], ..BarLoad::default() };
+        let cases = [
+            (point([0.0, p], 0.0), [p * a * b * b / (l * l), -p * a * a * b / (l * l)]),
+            (triangle, [w * l * l / 30.0, -w * l * l / 20.0]),
+            (point([0.0, 0.0], m), [-m * b * (2.0 * a - b) / (l * l), -m * a * (2.0 * b - a) / (l * l)]),
+        ];
+        for (load, [start, end]) in cases {
+            let f = frame([false; 2], None).local_forces(&load);
+            assert!((f[2] - start).abs() < 1e-14 && (f[5] - end).abs() < 1e-14, "{load:?}: {f}");
+        }
+    }
+
+    /// A part load is the difference of two that reach the end, and loads keep resultant and moment with any hinges
+    /// and with shear: Σ f_y = P, Σ m + f_y2 L = P a.
+    #[test]
+    fn loads_keep_their_resultant() {
+        let l = AXIS.length;
+        for shear in [None, Some(5.0)] {
+            for hinges in HINGES {
+                let load = BarLoad {
+                    spans: vec![Span { range: [0.4, 1.9], force: [[0.5, 1.0], [-0.3, -2.5]] }],
+                    points: vec![PointForce { at: 2.1, force: [0.7, -1.2], moment: 0.6 }],
+                    ..BarLoad::default()
+                };
+                let f = frame(hinges, shear).local_forces(&load);
+                // ∫ q_y = −0.75·1.5; its moment ∫ s q ds by Simpson, exact for a quadratic.
+                let q = |s: f64| 1.0 + (s - 0.4) / 1.5 * -3.5;
+                let first = 1.5 / 6.0 * (0.4 * q(0.4) + 4.0 * 1.15 * q(1.15) + 1.9 * q(1.9));
+                let (force, moment) = (-0.75 * 1.5 - 1.2, first - 1.2 * 2.1 + 0.6);
+                assert!((f[1] + f[4] - force).abs() < 1e-14, "{hinges:?}");
+                assert!((f[2] + f[5] + f[4] * l - moment).abs() < 1e-13, "{hinges:?}");
+                assert!((f[0] + f[3] - (0.1 * 1.5 + 0.7)).abs() < 1e-14);
+            }
+        }
+    }
+
+    /// Free axial strain and curvature: u = ε₀ x, v = κ₀ x²/2 leaves no internal force.
+    #[test]
+    fn free_deformation_makes_no_force() {
+        let axis = Axis { length: 2.0, cos: 1.0, sin: 0.0 };
+        let load = BarLoad { strain: 0.01, curvature: 0.03, ..BarLoad::default() };
+        for shear in [None, Some(5.0)] {
+            let frame = Frame { axis, axial: 3.0, bending: 7.0, shear, hinges: [false; 2] };
+            let ends = frame.end_forces(&[0.0, 0.0, 0.0, 0.02, 0.06, 0.06], &load);
+            assert!(ends.iter().flatten().all(|value| value.abs() < 1e-14), "{ends:?}");
+        }
+    }
+
+    /// Cantilever with a shear area under a tip force: v = PL³/3EI + PL/GA_s.
+    #[test]
+    fn shear_adds_its_share() {
+        let axis = Axis { length: 2.0, cos: 1.0, sin: 0.0 };
+        let frame = Frame { axis, axial: 3.0, bending: 7.0, shear: Some(5.0), hinges: [false; 2] };
+        let k = frame.stiffness();
+        let v = 8.0 / 21.0 + 2.0 / 5.0;
+        let theta = 4.0 / 14.0;
+        let force = [k[(4, 4)] * v + k[(4, 5)] * theta, k[(5, 4)] * v + k[(5, 5)] * theta];
+        assert!((force[0] - 1.0).abs() < 1e-13 && force[1].abs() < 1e-13, "{force:?}");
     }
 
     #[test]
     fn rigid_motions_cost_nothing() {
-        for hinges in [[false; 2], [true, false], [false, true], [true, true]] {
-            let k = stiffness(&AXIS, 7.0, 3.0, 2.0, hinges);
+        for hinges in HINGES {
+            let k = frame(hinges, Some(5.0)).stiffness();
             // Rotation by 1 about the start: the end moves by (−L sin, L cos).
             let turn = Vector6::from([0.0, 0.0, 1.0, -2.5 * 0.8, 2.5 * 0.6, 1.0]);
             let shift = Vector6::from([0.3, -0.4, 0.0, 0.3, -0.4, 0.0]);

@@ -2,24 +2,33 @@
 //!
 //! Sizes are fixed and small (nalgebra); the degrees of freedom of an element are named by [`slots`].
 
+pub mod bar_load;
 pub mod frame;
-pub mod quad4;
+pub mod membrane;
+pub mod shape;
 pub mod spring;
 pub mod truss;
 
-use nalgebra::{DVector, SMatrix};
+use nalgebra::SMatrix;
 
+use self::bar_load::{BarLoad, Internal};
+use self::frame::Frame;
+use self::membrane::Membrane;
+use self::shape::{MOST, Shape};
 use super::error::MainSystemError;
 use crate::model::structure::{Component, Element, ElementKind, Structure};
+
+/// Most rows of an element's stiffness.
+pub const ROWS: usize = 2 * MOST;
 
 /// A place in an element's stiffness: node and component; `None` for a rotation released by a hinge.
 pub type Slot = Option<(usize, Component)>;
 
-/// The slots of an element's rows in their order: frame u_x, u_y, θ per node; truss and quad u_x, u_y per node. A
+/// The slots of an element's rows in their order: frame u_x, u_y, θ per node; truss and membrane u_x, u_y per node. A
 /// released (hinged) end of a frame has no slot for its rotation: its row is condensed out and zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Slots {
-    at: [Slot; 8],
+    at: [Slot; ROWS],
     count: usize,
 }
 
@@ -33,7 +42,7 @@ impl std::ops::Deref for Slots {
 
 /// See [`Slots`].
 pub fn slots(element: &Element) -> Slots {
-    let mut slots = Slots { at: [None; 8], count: 0 };
+    let mut slots = Slots { at: [None; ROWS], count: 0 };
     let mut push = |slot| {
         slots.at[slots.count] = slot;
         slots.count += 1;
@@ -49,56 +58,102 @@ pub fn slots(element: &Element) -> Slots {
 }
 
 /// Stiffness of an element, in the upper left corner of an array that holds the largest.
-pub type Stiffness = SMatrix<f64, 8, 8>;
+pub type Stiffness = SMatrix<f64, ROWS, ROWS>;
 
 /// Stiffness of element number `index` in global axes, rows as in [`slots`]; forces per displacement.
 ///
 /// # Errors
-/// A bar without length or a quad that is not convex and counter-clockwise.
+/// A bar without length or a membrane that is turned inside out somewhere.
 pub fn stiffness(structure: &Structure, index: usize) -> Result<Stiffness, MainSystemError> {
     let element = &structure.elements[index];
-    let material = &structure.materials[element.material];
     let refuse = |what: &str| MainSystemError::Element {
         nodes: element.nodes.iter().map(|&node| structure.nodes[node].id.clone()).collect(),
         what: what.to_owned(),
     };
-    let axis = || Axis::of(structure, element).ok_or_else(|| refuse("its two nodes are at the same place"));
     let mut stiffness = Stiffness::zeros();
-    match &element.kind {
-        ElementKind::Frame { area, inertia, hinges } => {
-            let k = frame::stiffness(&axis()?, material.youngs_modulus, *area, *inertia, *hinges);
-            stiffness.fixed_view_mut::<6, 6>(0, 0).copy_from(&k);
+    match element.kind {
+        ElementKind::Frame { .. } | ElementKind::Truss { .. } => {
+            match BarElement::of(structure, index).ok_or_else(|| refuse("its two nodes are at the same place"))? {
+                BarElement::Frame(frame) => {
+                    stiffness.fixed_view_mut::<6, 6>(0, 0).copy_from(&frame.stiffness());
+                }
+                BarElement::Truss(axis, axial) => {
+                    stiffness.fixed_view_mut::<4, 4>(0, 0).copy_from(&truss::stiffness(&axis, axial));
+                }
+            }
         }
-        ElementKind::Truss { area } => {
-            let k = truss::stiffness(&axis()?, material.youngs_modulus, *area);
-            stiffness.fixed_view_mut::<4, 4>(0, 0).copy_from(&k);
-        }
-        ElementKind::Quad { thickness, plane } => {
-            let corners = corners(structure, element);
-            stiffness = quad4::stiffness(&corners, &quad4::elasticity(material, *plane), *thickness)
+        ElementKind::Membrane { .. } => {
+            stiffness = with_membrane(structure, index, |membrane| membrane.stiffness())
+                .flatten()
                 .ok_or_else(|| refuse("it is not convex, or its nodes do not go round counter-clockwise"))?;
         }
     }
     Ok(stiffness)
 }
 
-/// Nodal forces that stand for a uniform force `q` per unit length on the bar `index`, global axes, rows as in
-/// [`slots`]. Zero for a bar without length (refused by [`stiffness`]) and for a quad (it has no line).
-pub fn line_load(structure: &Structure, index: usize, q: [f64; 2]) -> DVector<f64> {
-    let element = &structure.elements[index];
-    match (&element.kind, Axis::of(structure, element)) {
-        (ElementKind::Frame { hinges, .. }, Some(axis)) => {
-            DVector::from_column_slice(frame::line_load(&axis, *hinges, q).as_slice())
+/// A frame or truss element with its stiffnesses.
+pub enum BarElement {
+    /// Bends.
+    Frame(Frame),
+    /// Axial force only: EA.
+    Truss(Axis, f64),
+}
+
+impl BarElement {
+    /// Element number `index`; `None` for a membrane or a bar without length.
+    pub fn of(structure: &Structure, index: usize) -> Option<BarElement> {
+        let element = &structure.elements[index];
+        let material = &structure.materials[element.material];
+        let e = material.youngs_modulus;
+        match &element.kind {
+            ElementKind::Frame { area, inertia, shear_area, hinges } => Some(BarElement::Frame(Frame {
+                axis: Axis::of(structure, element)?,
+                axial: e * area,
+                bending: e * inertia,
+                shear: shear_area.map(|area| e / (2.0 * (1.0 + material.poisson_ratio)) * area),
+                hinges: *hinges,
+            })),
+            ElementKind::Truss { area } => Some(BarElement::Truss(Axis::of(structure, element)?, e * area)),
+            ElementKind::Membrane { .. } => None,
         }
-        (ElementKind::Truss { .. }, Some(axis)) => DVector::from_column_slice(truss::line_load(&axis, q).as_slice()),
-        _ => DVector::zeros(slots(element).len()),
+    }
+
+    /// Length and direction.
+    pub fn axis(&self) -> &Axis {
+        match self {
+            BarElement::Frame(frame) => &frame.axis,
+            BarElement::Truss(axis, _) => axis,
+        }
+    }
+
+    /// Nodal forces in global axes that stand for the load between the nodes, rows as in [`slots`].
+    pub fn nodal_forces(&self, load: &BarLoad) -> Vec<f64> {
+        match self {
+            BarElement::Frame(frame) => frame.nodal_forces(load).as_slice().to_vec(),
+            BarElement::Truss(axis, axial) => truss::nodal_forces(axis, *axial, load).as_slice().to_vec(),
+        }
+    }
+
+    /// (N, Q, M) at the start and at the end for the displacements `u` of its rows.
+    pub fn end_forces(&self, u: &[f64], load: &BarLoad) -> [Internal; 2] {
+        match self {
+            BarElement::Frame(frame) => frame.end_forces(&std::array::from_fn(|i| u[i]), load),
+            BarElement::Truss(axis, axial) => truss::end_forces(axis, *axial, &std::array::from_fn(|i| u[i]), load),
+        }
     }
 }
 
-/// Corners of a quad.
-pub fn corners(structure: &Structure, element: &Element) -> [[f64; 2]; 4] {
-    // A checked quad has four nodes.
-    std::array::from_fn(|i| structure.nodes[element.nodes[i]].position)
+/// What `run` makes of element number `index` as a membrane; `None` for a bar.
+pub fn with_membrane<T>(structure: &Structure, index: usize, run: impl FnOnce(&Membrane<'_>) -> T) -> Option<T> {
+    let element = &structure.elements[index];
+    let ElementKind::Membrane { thickness, plane } = element.kind else { return None };
+    let shape = Shape::of(element.nodes.len())?;
+    let mut nodes = [[0.0; 2]; MOST];
+    for (at, &node) in nodes.iter_mut().zip(&element.nodes) {
+        *at = structure.nodes[node].position;
+    }
+    let nodes = &nodes[..element.nodes.len()];
+    Some(run(&Membrane { shape, nodes, material: &structure.materials[element.material], plane, thickness }))
 }
 
 /// Length and direction of a bar.
@@ -124,5 +179,10 @@ impl Axis {
     /// Components in bar axes (x from start to end, y = x turned +90°) of a global vector.
     pub fn to_local(self, v: [f64; 2]) -> [f64; 2] {
         [self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0]]
+    }
+
+    /// Global components of a vector in bar axes.
+    pub fn to_global(self, v: [f64; 2]) -> [f64; 2] {
+        [self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1]]
     }
 }

@@ -57,7 +57,7 @@ impl Model {
 
     pub fn hinged(&mut self, a: usize, b: usize, area: f64, inertia: f64, h: [bool; 2]) -> usize {
         let material = self.material(1.0, 0.0);
-        let kind = ElementKind::Frame { area, inertia, hinges: h };
+        let kind = ElementKind::Frame { area, inertia, shear_area: None, hinges: h };
         self.bar([a, b], material, kind)
     }
 
@@ -67,7 +67,11 @@ impl Model {
     }
 
     pub fn quad(&mut self, nodes: [usize; 4], material: usize, thickness: f64, plane: Plane) {
-        self.0.elements.push(Element { nodes: nodes.to_vec(), material, kind: ElementKind::Quad { thickness, plane } });
+        self.0.elements.push(Element {
+            nodes: nodes.to_vec(),
+            material,
+            kind: ElementKind::Membrane { thickness, plane },
+        });
     }
 
     /// A plate with its lower left corner at `origin`; returns its node grid `[j][i]`.

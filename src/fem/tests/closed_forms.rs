@@ -69,7 +69,7 @@ fn propped_cantilever() {
     model.support(a, "xyr");
     model.support(b, "y");
     let q = 3.0;
-    model.case(vec![Load::Line { element: bar, value: [0.0, -q] }]);
+    model.case(vec![Load::Line { element: bar, range: [0.0, 5.0], value: [[0.0, -q]; 2] }]);
     let (system, u, lambda, factors) = main_answer(&model);
     let reactions = system.reactions(&model.0, &u, &lambda, &factors);
     near(reactions[0].force[1], 5.0 * q * 5.0 / 8.0);
@@ -79,8 +79,12 @@ fn propped_cantilever() {
     near_forces(member.start, [0.0, 5.0 * q * 5.0 / 8.0, -q * 25.0 / 8.0]);
     near_forces(member.end, [0.0, -3.0 * q * 5.0 / 8.0, 0.0]);
     // The same with the clamp's rotation held by a hinge at the far end: nothing changes but θ_b, which is gone.
-    model.0.elements[bar].kind =
-        crate::model::structure::ElementKind::Frame { area: 1.0, inertia: 2.0, hinges: [false, true] };
+    model.0.elements[bar].kind = crate::model::structure::ElementKind::Frame {
+        area: 1.0,
+        inertia: 2.0,
+        shear_area: None,
+        hinges: [false, true],
+    };
     let (system, u, ..) = main_answer(&model);
     let hinged = system.member_forces(&model.0, &u, &factors)[0];
     near_forces(hinged.start, [0.0, 5.0 * q * 5.0 / 8.0, -q * 25.0 / 8.0]);
@@ -98,7 +102,11 @@ fn gerber_beam() {
     model.support(nodes[0], "xyr");
     model.support(nodes[2], "y");
     let q = 4.0;
-    model.case([first, second].map(|element| Load::Line { element, value: [0.0, -q] }).to_vec());
+    model.case(
+        [(first, 2.0), (second, 3.0)]
+            .map(|(element, length)| Load::Line { element, range: [0.0, length], value: [[0.0, -q]; 2] })
+            .to_vec(),
+    );
     let (system, u, lambda, factors) = main_answer(&model);
     let reactions = system.reactions(&model.0, &u, &lambda, &factors);
     // The hung span is simple: q·3/2 at each end; the clamp carries q·2 + q·3/2 and q·2²/2 + (q·3/2)·2.
@@ -185,7 +193,7 @@ fn patch_of_distorted_quads() {
         }
     }
     // MacNeal & Harder 1985: σ_x = σ_y = 1333, τ = 400.
-    for stress in system.quad_stresses(&model.0, &u) {
+    for stress in system.element_stresses(&model.0, &u, &[]) {
         near(stress.stress[0], 4000.0 / 3.0);
         near(stress.stress[1], 4000.0 / 3.0);
         near(stress.stress[2], 400.0);
@@ -352,7 +360,7 @@ fn units_do_not_matter() {
             material.youngs_modulus *= force / length.powi(2);
         }
         for element in &mut model.0.elements {
-            if let crate::model::structure::ElementKind::Quad { thickness, .. } = &mut element.kind {
+            if let crate::model::structure::ElementKind::Membrane { thickness, .. } = &mut element.kind {
                 *thickness *= length;
             }
         }

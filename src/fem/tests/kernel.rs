@@ -181,7 +181,7 @@ fn loads_balance_on_the_kernel() {
                     crate::model::structure::Load::Nodal { node, force, .. } => {
                         force[0] * motion.u[*node][0] + force[1] * motion.u[*node][1]
                     }
-                    crate::model::structure::Load::Line { .. } => 0.0,
+                    other => panic!("only nodal loads here: {other:?}"),
                 })
                 .sum();
             assert!((trace.dot(rf) + work).abs() < 1e-13 * rf.amax() * trace.amax() * 17.0);

@@ -92,7 +92,7 @@ fn bar_outline<'d>(
             );
             return None;
         };
-        ElementKind::Frame { area: section.area, inertia, hinges: hinges? }
+        ElementKind::Frame { area: section.area, inertia, shear_area: None, hinges: hinges? }
     } else {
         ElementKind::Truss { area: section.area }
     };

@@ -149,5 +149,10 @@ fn line<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     };
     let value = value?;
     let elements = builder.structure.bars[bar].elements.clone();
-    Some(elements.map(|element| Load::Line { element, value }).collect())
+    let length = |element: usize| {
+        let ends = &builder.structure.elements[element].nodes;
+        let [a, b] = [0, 1].map(|end| builder.structure.nodes[ends[end]].position);
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    };
+    Some(elements.map(|element| Load::Line { element, range: [0.0, length(element)], value: [value; 2] }).collect())
 }

@@ -140,7 +140,7 @@ pub fn quad<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Element
     });
     id?;
     let (thickness, material, plane) = common?;
-    Some(Element { nodes: corners?, material, kind: ElementKind::Quad { thickness, plane } })
+    Some(Element { nodes: corners?, material, kind: ElementKind::Membrane { thickness, plane } })
 }
 
 fn check_corners(builder: &Builder<'_>, cursor: Cursor<'_>, nodes: &[usize]) -> bool {

@@ -102,8 +102,8 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
             ElementKind::Frame { hinges, .. } => {
                 outline.push(bent(structure, element, *hinges, u, factor));
             }
-            ElementKind::Quad { .. } if in_plate(index) => {}
-            ElementKind::Quad { .. } => {
+            ElementKind::Membrane { .. } if in_plate(index) => {}
+            ElementKind::Membrane { .. } => {
                 let ring = element.nodes.iter().chain(element.nodes.first());
                 outline.push(ring.map(|&node| at(node)).collect());
             }
@@ -239,13 +239,15 @@ pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow>
     for case in &structure.load_cases {
         let factor = case.factor.value(parameters);
         for load in &case.loads {
+            let at = |element: usize| structure.elements.get(element).map(|element| element.nodes.clone());
             let (nodes, force) = match load {
-                Load::Nodal { node, force, .. } => (vec![*node], force),
-                Load::Line { element, value } => match structure.elements.get(*element) {
-                    Some(element) => (element.nodes.clone(), value),
-                    None => continue,
-                },
+                Load::Nodal { node, force, .. } => (Some(vec![*node]), *force),
+                Load::Line { element, value: [a, b], .. } => (at(*element), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]),
+                Load::BarPoint { element, force, .. } => (at(*element), *force),
+                // They act everywhere, or along no direction.
+                Load::Body { .. } | Load::FreeStrain { .. } => continue,
             };
+            let Some(nodes) = nodes else { continue };
             let place = *places.entry(nodes.clone()).or_insert_with(|| {
                 arrows.push(Arrow { nodes, force: [0.0; 2] });
                 arrows.len() - 1

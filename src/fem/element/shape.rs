@@ -1,0 +1,242 @@
+//! Shape functions, integration points and sides of the plane elements.
+//!
+//! ```text
+//!     3 nodes  L1 = 1 − ξ − η, L2 = ξ, L3 = η                      one point
+//!     6 nodes  L(2L − 1) at the corners, 4 L L at the middles of 1-2, 2-3, 3-1; three points
+//!     4 nodes  (1 + ξ_i ξ)(1 + η_i η)/4                            2 × 2 Gauss points
+//!     8 nodes  serendipity: corners, then the middles of 1-2, 2-3, 3-4, 4-1; 3 × 3 Gauss points
+//! ```
+//! Hughes, *The Finite Element Method*, 1987, §3.2, §3.7, §3.8 and appendix 3.I.
+
+/// Most nodes of a plane element.
+pub const MOST: usize = 8;
+
+/// Shape of a plane element; its nodes go round counter-clockwise, corners first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// Linear triangle.
+    Triangle3,
+    /// Quadratic triangle.
+    Triangle6,
+    /// Bilinear quadrilateral.
+    Quad4,
+    /// Serendipity quadrilateral.
+    Quad8,
+}
+
+const QUAD_CORNERS: [[f64; 2]; 8] = [
+    [-1.0, -1.0],
+    [1.0, -1.0],
+    [1.0, 1.0],
+    [-1.0, 1.0],
+    // Middles of the sides, for eight nodes.
+    [0.0, -1.0],
+    [1.0, 0.0],
+    [0.0, 1.0],
+    [-1.0, 0.0],
+];
+
+const TRIANGLE_NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
+
+/// An integration point: (ξ, η) and weight.
+pub type Point = ([f64; 2], f64);
+
+impl Shape {
+    /// The shape with this number of nodes.
+    pub fn of(nodes: usize) -> Option<Shape> {
+        match nodes {
+            3 => Some(Shape::Triangle3),
+            4 => Some(Shape::Quad4),
+            6 => Some(Shape::Triangle6),
+            8 => Some(Shape::Quad8),
+            _ => None,
+        }
+    }
+
+    /// (ξ, η) of the nodes.
+    pub fn nodes(self) -> &'static [[f64; 2]] {
+        match self {
+            Shape::Triangle3 => &TRIANGLE_NODES[..3],
+            Shape::Triangle6 => &TRIANGLE_NODES,
+            Shape::Quad4 => &QUAD_CORNERS[..4],
+            Shape::Quad8 => &QUAD_CORNERS,
+        }
+    }
+
+    /// (ξ, η) of the centroid of the parent element.
+    pub fn centre(self) -> [f64; 2] {
+        match self {
+            Shape::Triangle3 | Shape::Triangle6 => [1.0 / 3.0; 2],
+            Shape::Quad4 | Shape::Quad8 => [0.0; 2],
+        }
+    }
+
+    /// Points of the stiffness and of the loads on the area.
+    pub fn points(self) -> Vec<Point> {
+        let product = |line: &[(f64, f64)]| {
+            line.iter().flat_map(|&(eta, b)| line.iter().map(move |&(xi, a)| ([xi, eta], a * b))).collect()
+        };
+        match self {
+            Shape::Triangle3 => vec![([1.0 / 3.0; 2], 0.5)],
+            Shape::Triangle6 => {
+                [[1.0 / 6.0; 2], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0]].map(|at| (at, 1.0 / 6.0)).to_vec()
+            }
+            Shape::Quad4 => {
+                let g = 1.0 / 3.0_f64.sqrt();
+                QUAD_CORNERS[..4].iter().map(|corner| ([corner[0] * g, corner[1] * g], 1.0)).collect()
+            }
+            Shape::Quad8 => {
+                let g = 0.6_f64.sqrt();
+                product(&[(-g, 5.0 / 9.0), (0.0, 8.0 / 9.0), (g, 5.0 / 9.0)])
+            }
+        }
+    }
+
+    /// N_i at (ξ, η); entries beyond the number of nodes are zero.
+    pub fn values(self, [x, y]: [f64; 2]) -> [f64; MOST] {
+        let mut n = [0.0; MOST];
+        match self {
+            Shape::Triangle3 => n[..3].copy_from_slice(&[1.0 - x - y, x, y]),
+            Shape::Triangle6 => {
+                let l = [1.0 - x - y, x, y];
+                for i in 0..3 {
+                    n[i] = l[i] * (2.0 * l[i] - 1.0);
+                    n[3 + i] = 4.0 * l[i] * l[(i + 1) % 3];
+                }
+            }
+            Shape::Quad4 => {
+                for (n, c) in n.iter_mut().zip(&QUAD_CORNERS[..4]) {
+                    *n = 0.25 * (1.0 + c[0] * x) * (1.0 + c[1] * y);
+                }
+            }
+            Shape::Quad8 => {
+                for (i, c) in QUAD_CORNERS.iter().enumerate() {
+                    let (a, b) = (c[0] * x, c[1] * y);
+                    n[i] = match i {
+                        0..4 => 0.25 * (1.0 + a) * (1.0 + b) * (a + b - 1.0),
+                        4 | 6 => 0.5 * (1.0 - x * x) * (1.0 + b),
+                        _ => 0.5 * (1.0 + a) * (1.0 - y * y),
+                    };
+                }
+            }
+        }
+        n
+    }
+
+    /// (∂N_i/∂ξ, ∂N_i/∂η) at (ξ, η); entries beyond the number of nodes are zero.
+    pub fn gradients(self, [x, y]: [f64; 2]) -> [[f64; 2]; MOST] {
+        let mut n = [[0.0; 2]; MOST];
+        match self {
+            Shape::Triangle3 => n[..3].copy_from_slice(&[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]),
+            Shape::Triangle6 => {
+                let l = [1.0 - x - y, x, y];
+                let dl = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
+                for i in 0..3 {
+                    let j = (i + 1) % 3;
+                    for a in 0..2 {
+                        n[i][a] = (4.0 * l[i] - 1.0) * dl[i][a];
+                        n[3 + i][a] = 4.0 * (dl[i][a] * l[j] + l[i] * dl[j][a]);
+                    }
+                }
+            }
+            Shape::Quad4 => {
+                for (n, c) in n.iter_mut().zip(&QUAD_CORNERS[..4]) {
+                    *n = [0.25 * c[0] * (1.0 + c[1] * y), 0.25 * c[1] * (1.0 + c[0] * x)];
+                }
+            }
+            Shape::Quad8 => {
+                for (i, c) in QUAD_CORNERS.iter().enumerate() {
+                    let (a, b) = (c[0] * x, c[1] * y);
+                    n[i] = match i {
+                        0..4 => [0.25 * c[0] * (1.0 + b) * (2.0 * a + b), 0.25 * c[1] * (1.0 + a) * (a + 2.0 * b)],
+                        4 | 6 => [-x * (1.0 + b), 0.5 * (1.0 - x * x) * c[1]],
+                        _ => [0.5 * c[0] * (1.0 - y * y), -y * (1.0 + a)],
+                    };
+                }
+            }
+        }
+        n
+    }
+
+    /// Values at the nodes of the function through the values at the integration points: constant (3 nodes), linear
+    /// (6), bilinear through 2 × 2 points (4 and 8: for 8 the 2 × 2 points where its stresses are best).
+    pub fn stress_points(self) -> Vec<[f64; 2]> {
+        match self {
+            Shape::Quad8 => Shape::Quad4.stress_points(),
+            _ => self.points().into_iter().map(|(at, _)| at).collect(),
+        }
+    }
+
+    /// Weights of the values at the [`stress_points`](Self::stress_points) that give the value at (ξ, η).
+    pub fn extrapolation(self, [x, y]: [f64; 2]) -> Vec<f64> {
+        match self {
+            Shape::Triangle3 => vec![1.0],
+            Shape::Triangle6 => {
+                // The points are the corners of a triangle of half the size about the same centroid.
+                let (a, b) = (2.0 * x - 1.0 / 3.0, 2.0 * y - 1.0 / 3.0);
+                vec![1.0 - a - b, a, b]
+            }
+            Shape::Quad4 | Shape::Quad8 => {
+                let g = 3.0_f64.sqrt();
+                Shape::Quad4.values([g * x, g * y])[..4].to_vec()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Shape; 4] = [Shape::Triangle3, Shape::Triangle6, Shape::Quad4, Shape::Quad8];
+
+    #[test]
+    fn one_at_its_own_node_and_zero_at_the_others() {
+        for shape in ALL {
+            for (i, &at) in shape.nodes().iter().enumerate() {
+                for (j, n) in shape.values(at)[..shape.nodes().len()].iter().enumerate() {
+                    assert!((n - f64::from(i == j)).abs() < 1e-15, "{shape:?} {i} {j}");
+                }
+            }
+        }
+    }
+
+    /// Gradients against central differences, exact for the quadratics here up to rounding.
+    #[test]
+    fn gradients_are_derivatives_and_sum_to_zero() {
+        let (at, h) = ([0.23, 0.31], 1e-4);
+        for shape in ALL {
+            let exact = shape.gradients(at);
+            for a in 0..2 {
+                let shifted = |sign: f64| {
+                    let mut at = at;
+                    at[a] += sign * h;
+                    shape.values(at)
+                };
+                let (up, down) = (shifted(1.0), shifted(-1.0));
+                let mut sum = 0.0;
+                for i in 0..shape.nodes().len() {
+                    // Serendipity functions are cubic: the error of the difference is h²/6 times a small constant.
+                    assert!(((up[i] - down[i]) / (2.0 * h) - exact[i][a]).abs() < 1e-8, "{shape:?} {i}");
+                    sum += exact[i][a];
+                }
+                assert!(sum.abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn weights_sum_to_the_area_and_extrapolation_reproduces_linear_functions() {
+        for shape in ALL {
+            let area: f64 = shape.points().iter().map(|(_, w)| w).sum();
+            let parent = if shape.nodes().len() % 3 == 0 && shape.nodes().len() < 8 { 0.5 } else { 4.0 };
+            assert!((area - parent).abs() < 1e-14, "{shape:?}");
+            let linear = |[x, y]: [f64; 2]| if shape == Shape::Triangle3 { 2.0 } else { 2.0 + 3.0 * x - 5.0 * y };
+            for &at in shape.nodes() {
+                let weights = shape.extrapolation(at);
+                let value: f64 = shape.stress_points().iter().zip(&weights).map(|(p, w)| w * linear(*p)).sum();
+                assert!((value - linear(at)).abs() < 1e-13, "{shape:?}");
+            }
+        }
+    }
+}
