@@ -2,55 +2,47 @@
 
 use super::pairs::JointState;
 use super::record::Check;
-use crate::contact::complementarity::load_with_gaps;
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::sums::{Sum, displacement_share, pair_sums};
 use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
-use crate::model::pair::Law;
 
-/// Largest relative violation that an answer may have.
+/// Largest relative violation that an answer may have where sizes are those of a whole problem.
 pub const TOLERANCE: f64 = 1e-9;
+/// Largest share of the terms of its own row by which a law may be violated: what rounding leaves of a sum.
+pub const ROUNDING: f64 = TOLERANCE;
 
-/// Checks an answer over the joints. Forces are relative to the largest joint force or load (gaps closed by force are
-/// a load), displacements to the largest |z|, products to both. `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
+/// Checks an answer over the joints, row by row: forces and reserves as shares of the terms they are summed from (loads,
+/// gaps closed by force, R z), displacements as the share of those forces that hangs on them, products of the two shares.
+/// `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
 pub fn check_contact(
     system: &ContactSystem,
     numbers: &ContactNumbers,
     state: &JointState,
     equilibrium: Option<f64>,
 ) -> Check {
-    let force = state.force.amax().max(numbers.load.amax()).max(load_with_gaps(system, numbers).amax());
-    let length = state.z.amax();
-    let relative = |value: f64, size: f64| if size > 0.0 { value / size } else { value };
+    let forces: Vec<Sum> = (0..system.joint_count()).map(|joint| state.sum(joint)).collect();
     let mut check = Check { equilibrium, ..Check::default() };
-    let mut couple = |x: f64, z: f64| {
-        check.min_w = check.min_w.min(relative(x, force));
-        check.min_z = check.min_z.min(relative(z, length));
-        let product = relative(x, force) * relative(z, length);
-        check.complementarity = check.complementarity.max(product.abs());
+    let share = |joint: usize| displacement_share(system, &state.z, &forces, joint);
+    let mut couple = |x: Sum, z: f64, share: f64| {
+        check.min_w = check.min_w.min(x.share());
+        check.min_z = check.min_z.min(if z < 0.0 { -share } else { 0.0 });
+        let product = if z == 0.0 { 0.0 } else { (x.share() * share).abs() };
+        check.complementarity = check.complementarity.max(product);
     };
     for (i, pair) in system.pairs.iter().enumerate() {
-        let x_n = state.force[i];
-        let bound = match pair.law {
-            Law::Bound { .. } => numbers.bound[i],
-            Law::Coulomb { .. } => {
-                couple(x_n, state.z[i]);
-                numbers.friction[i] * x_n + numbers.cohesion[i]
-            }
-            Law::Frictionless { .. } => {
-                couple(x_n, state.z[i]);
-                continue;
-            }
-        };
-        let Some(joint) = pair.tangential else {
-            continue;
-        };
-        let (x_t, z_t) = (state.force[joint], state.z[joint]);
-        couple(bound + x_t, z_t.max(0.0));
-        couple(bound - x_t, (-z_t).max(0.0));
+        let sums = pair_sums(system, numbers, &forces, i);
+        if let Some(normal) = sums.normal {
+            couple(normal, state.z[i], share(i));
+        }
+        if let (Some([plus, minus]), Some(joint)) = (sums.reserves, pair.tangential) {
+            let (slip, share) = (state.z[joint], share(joint));
+            couple(plus, slip.max(0.0), share);
+            couple(minus, (-slip).max(0.0), share);
+        }
     }
-    check.passed = accepted(&check);
+    check.passed = accepted(&check, ROUNDING);
     check
 }
 
@@ -71,14 +63,14 @@ pub fn check_plain(lcp: &MirroredLcp, point: &Point) -> Check {
         check.min_z = check.min_z.min(z);
         check.complementarity = check.complementarity.max((w * z).abs());
     }
-    check.passed = accepted(&check);
+    check.passed = accepted(&check, TOLERANCE);
     check
 }
 
-fn accepted(check: &Check) -> bool {
+fn accepted(check: &Check, tolerance: f64) -> bool {
     // Written so that a NaN anywhere is a failure.
-    check.min_w >= -TOLERANCE
-        && check.min_z >= -TOLERANCE
-        && check.complementarity <= TOLERANCE
+    check.min_w >= -tolerance
+        && check.min_z >= -tolerance
+        && check.complementarity <= tolerance
         && check.equilibrium.is_none_or(|residual| residual <= TOLERANCE)
 }

@@ -211,7 +211,7 @@ fn random_mixture(random: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSyst
         keep.push(m + pair);
     }
     system.stiffness = system.stiffness.select_rows(&keep).select_columns(&keep);
-    numbers.load = numbers.load.select_rows(&keep);
+    numbers.set_load(numbers.load.select_rows(&keep));
     (system, numbers)
 }
 

@@ -125,7 +125,7 @@ pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Releas
         }
         let vector =
             DVector::from_fn(kept.len(), |a, _| load.vector[kept[a]]) - coupling.transpose() * (&inverse * &tangential);
-        loads.push(JointLoad { name: load.name.clone(), vector });
+        loads.push(JointLoad::exactly(load.name.clone(), vector));
         released_loads.push(tangential);
     }
     // Motions of the kept joints alone that cost nothing: those of the whole, restricted.
@@ -149,7 +149,7 @@ pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Releas
         })
         .collect();
     let recovery = ReleasedTangentials { pairs: released, flexibility: -inverse, coupling, loads: released_loads };
-    Ok((ContactSystem { pairs, stiffness, loads, kernel }, recovery))
+    Ok((ContactSystem { pairs, stiffness, loads, rounded: false, kernel }, recovery))
 }
 
 /// Orthonormal basis of the span of some vectors of length n; nearly dependent ones count once.

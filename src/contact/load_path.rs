@@ -28,7 +28,7 @@ pub fn is_answer(lcp: &MirroredLcp, basis: &Basis) -> bool {
 pub fn path_lcp(system: &ContactSystem, numbers: &ContactNumbers, increment: &DVector<f64>) -> ContactLcp {
     let mut reference = numbers.clone();
     if load_with_gaps(system, numbers).amax() == 0.0 {
-        reference.load = increment.clone();
+        reference.set_load(increment.clone());
     }
     // `ones` covers everything; only the matrix, the units and the rows are taken from it.
     let mut contact = match contact_lcp(system, &reference, Covering::Ones) {

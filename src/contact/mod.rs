@@ -11,5 +11,6 @@ pub mod numbers;
 pub mod scheme_solve;
 pub mod scheme_word;
 pub mod sharpen;
+pub mod sums;
 pub mod system;
 pub mod whole;

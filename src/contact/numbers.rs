@@ -15,4 +15,20 @@ pub struct ContactNumbers {
     pub bound: Vec<f64>,
     /// Σ factor·RF over the joints.
     pub load: DVector<f64>,
+    /// Σ |factor|·magnitude of RF: what `load` was summed from, the measure of its rounding.
+    pub load_terms: DVector<f64>,
+}
+
+impl ContactNumbers {
+    /// Adds a load.
+    pub fn add_load(&mut self, factor: f64, vector: &DVector<f64>, terms: &DVector<f64>) {
+        self.load += factor * vector;
+        self.load_terms += factor.abs() * terms;
+    }
+
+    /// Puts a load in the place of the present one; its entries count as exact.
+    pub fn set_load(&mut self, load: DVector<f64>) {
+        self.load_terms = load.abs();
+        self.load = load;
+    }
 }

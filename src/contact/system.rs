@@ -27,6 +27,15 @@ pub struct JointLoad {
     pub name: String,
     /// RF of the case per unit factor, one entry per joint.
     pub vector: DVector<f64>,
+    /// Sum of the magnitudes of the terms that went into each entry of RF.
+    pub terms: DVector<f64>,
+}
+
+impl JointLoad {
+    /// A load whose entries are exact.
+    pub fn exactly(name: String, vector: DVector<f64>) -> JointLoad {
+        JointLoad { name, terms: vector.abs(), vector }
+    }
 }
 
 /// λ = R z + Σ factor·RF over the joints: m normals, then the tangentials of the pairs that have one.
@@ -38,6 +47,9 @@ pub struct ContactSystem {
     pub stiffness: DMatrix<f64>,
     /// RF per load case.
     pub loads: Vec<JointLoad>,
+    /// Whether the entries of R are results of a condensation, each known to a few ε √(R_ii R_kk) only: a true zero is
+    /// stored as noise. Otherwise they are data, exact to the last digit.
+    pub rounded: bool,
     /// Orthonormal basis Z of the kernel of R, k × r (r = 0 when the structure stands without its contacts).
     pub kernel: DMatrix<f64>,
 }

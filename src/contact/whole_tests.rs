@@ -28,6 +28,7 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
             })
             .collect(),
         kernel: DMatrix::zeros(2 * m, 0),
+        rounded: false,
         loads: Vec::new(),
         stiffness,
     }
@@ -42,6 +43,7 @@ pub(crate) fn plain(f: f64, load: &[f64]) -> ContactNumbers {
         gap: vec![0.0; m],
         bound: vec![0.0; m],
         load: DVector::from_row_slice(load),
+        load_terms: DVector::from_row_slice(load).abs(),
     }
 }
 
@@ -134,6 +136,7 @@ fn laws_mix() {
         gap: vec![1.0, 0.0, 0.0],
         bound: vec![0.0, 3.0, 0.0],
         load: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
+        load_terms: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
     };
     let lcp = whole_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
     let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();

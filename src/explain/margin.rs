@@ -120,6 +120,7 @@ pub fn load_margin(
         gap: vec![0.0; m],
         bound: vec![0.0; m],
         load: unit.clone(),
+        load_terms: unit.abs(),
     };
     // Only M and q of this LCP are used: any covering that can be written will do.
     let change = contact_lcp(scheme.system, &rate, Covering::Ones).ok()?;

@@ -159,7 +159,7 @@ fn load(
     let width = (end - other).abs().min(end.abs().max(f64::MIN_POSITIVE));
     let inside = end + (other - end).signum() * INSIDE * width;
     let mut changed = numbers.clone();
-    changed.load = fixed + inside * unit;
+    changed.set_load(fixed + inside * unit);
     Some(Remedy::Load {
         case: name.to_owned(),
         present: factor,

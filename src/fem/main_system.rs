@@ -232,6 +232,17 @@ impl MainSystem {
         &self.rf
     }
 
+    /// Largest nodal force or joint force of each load case per unit factor: what rounding in its RF is measured by.
+    pub fn load_sizes(&self) -> Vec<f64> {
+        let rotation = self.dofs.is_rotation();
+        std::iter::zip(&self.f, &self.rf)
+            .map(|(f, rf)| {
+                let nodal = std::iter::zip(f, &rotation).filter(|(_, rotation)| !**rotation).map(|(f, _)| f.abs());
+                nodal.fold(rf.amax(), f64::max)
+            })
+            .collect()
+    }
+
     /// u under Σ factor·F and the mutual displacements `z` of the joints (the whole mutual displacement B u: with
     /// an initial gap g it is z_n − g).
     ///

@@ -232,7 +232,7 @@ impl Follower<'_> {
     fn pairs(&self, place: &Place) -> Vec<PairState> {
         let state = state_of(self.system, &place.numbers, &place.contact, &place.point);
         let mut pairs = pair_states(self.system, &place.numbers, &place.contact, &state);
-        self.prepared.add_released_slips(&mut pairs, &place.numbers, &self.factors, &state);
+        self.prepared.add_released_slips(&mut pairs, &place.numbers, &self.factors, &state.z);
         pairs
     }
 

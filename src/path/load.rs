@@ -286,7 +286,7 @@ impl LoadPath {
     /// The numbers of the laws and the load at a factor.
     pub fn numbers(&self, factor: f64) -> ContactNumbers {
         let mut numbers = self.start_numbers.clone();
-        numbers.load += (factor - self.start) * &self.direction;
+        numbers.add_load(factor - self.start, &self.direction, &self.direction.abs());
         numbers
     }
 
@@ -317,7 +317,7 @@ impl LoadPath {
         let numbers = self.numbers(factor);
         let state = state_of(system, &numbers, &self.contact, point);
         let mut pairs = pair_states(system, &numbers, &self.contact, &state);
-        prepared.add_released_slips(&mut pairs, &numbers, &self.case_factors(factor), &state);
+        prepared.add_released_slips(&mut pairs, &numbers, &self.case_factors(factor), &state.z);
         pairs
     }
 

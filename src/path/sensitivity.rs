@@ -2,7 +2,6 @@
 
 use super::rate::{number_rates, rate, rate_lcp};
 use super::start::{PathError, final_basis};
-use crate::answer::pairs::JointState;
 use crate::answer::record::PairState;
 use crate::contact::complementarity::load_with_gaps;
 use crate::lcp::vertex::vertex;
@@ -72,17 +71,17 @@ pub fn sensitivity(
         let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
-        let state = JointState { force: &system.stiffness * &z + load_with_gaps(system, &rates), z, p: 0.0 };
+        let force = &system.stiffness * &z + load_with_gaps(system, &rates);
         // The released slips are linear in all of this, so their rates follow from the rates.
         let mut shown = solved.answer.pairs.clone();
-        prepared.add_released_slips(&mut shown, &rates, &factor_rates, &state);
+        prepared.add_released_slips(&mut shown, &rates, &factor_rates, &z);
         let pairs = system
             .pairs
             .iter()
             .enumerate()
             .map(|(i, pair)| {
                 let row = |row: Option<usize>| row.map(|row| direction.w[row] * contact.force_unit);
-                let x_n = row(contact.normal_row[i]).unwrap_or(state.force[i]);
+                let x_n = row(contact.normal_row[i]).unwrap_or(force[i]);
                 let reserves = (row(contact.plus_row[i]), row(contact.minus_row[i]));
                 PairRate {
                     pair: pair.id.clone(),
@@ -91,8 +90,8 @@ pub fn sensitivity(
                         (Some(plus), Some(minus)) => 0.5 * (plus - minus),
                         _ => 0.0,
                     },
-                    z_n: contact.normal_row[i].map_or(0.0, |_| state.z[i]),
-                    z_t: pair.tangential.map_or(shown[i].z_t, |joint| state.z[joint]),
+                    z_n: contact.normal_row[i].map_or(0.0, |_| z[i]),
+                    z_t: pair.tangential.map_or(shown[i].z_t, |joint| z[joint]),
                 }
             })
             .collect();

@@ -260,7 +260,7 @@ impl<'a> Walk<'a> {
             }
         }
         let mut pairs = pair_states(system, &numbers, &found.contact, &state);
-        prepared.add_released_slips(&mut pairs, &numbers, &none, &state);
+        prepared.add_released_slips(&mut pairs, &numbers, &none, &state.z);
         Ok(Walk { prepared, system, numbers, watch, factors: none, z: state.z, force: state.force, pairs })
     }
 
@@ -286,7 +286,7 @@ impl<'a> Walk<'a> {
     /// The laws under the load of these factors and the dislocation of a committed slip.
     fn numbers_at(&self, factors: &[f64], committed: &DVector<f64>) -> ContactNumbers {
         let mut numbers = self.numbers.clone();
-        numbers.load = self.load(factors) + &self.system.stiffness * committed;
+        numbers.set_load(self.load(factors) + &self.system.stiffness * committed);
         numbers
     }
 
@@ -452,7 +452,7 @@ impl<'a> Walk<'a> {
                 shown.z_t = total.z[joint];
             }
         }
-        self.prepared.add_released_slips(&mut pairs, &numbers, factors, &total);
+        self.prepared.add_released_slips(&mut pairs, &numbers, factors, &total.z);
         self.factors = factors.to_vec();
         self.z = total.z;
         self.force = total.force;
@@ -488,8 +488,7 @@ impl<'a> Walk<'a> {
         let Geometry::Structure { main, .. } = &self.prepared.geometry else {
             return None;
         };
-        let state = JointState { z: moment.z.clone(), force: moment.force.clone(), p: 0.0 };
-        Some(main.displacements(&moment.factors, &dislocation(&self.numbers, &state)))
+        Some(main.displacements(&moment.factors, &dislocation(&self.numbers, &moment.z)))
     }
 
     /// Dissipation, and for structures the balance of energy; both exact, because forces and displacements are

@@ -90,9 +90,9 @@ impl Session {
                 .answers
                 .iter()
                 .map(|answer| {
-                    let state = JointState { z: answer.state.z.clone(), force: answer.state.force.clone(), p: 0.0 };
+                    let state = JointState::at(system, numbers, answer.state.z.clone(), 0.0);
                     let mut pairs = pair_states(system, numbers, contact, &state);
-                    prepared.add_released_slips(&mut pairs, numbers, factors, &state);
+                    prepared.add_released_slips(&mut pairs, numbers, factors, &state.z);
                     OneAnswer {
                         shown: solved.answer.is_answer() && same(&pairs, &solved.answer.pairs),
                         pairs,

@@ -3,6 +3,8 @@
 
 use std::ops::ControlFlow;
 
+use nalgebra::DVector;
+
 use super::prepared::Prepared;
 use super::solved::{SolveError, Solved};
 use crate::contact::complementarity::contact_lcp_like;
@@ -37,7 +39,7 @@ impl Prepared {
             return Ok(None);
         }
         let mut rest = numbers.clone();
-        rest.load.fill(0.0);
+        rest.set_load(DVector::zeros(system.joint_count()));
         let path = path_lcp(system, &rest, &numbers.load);
         let nothing = Basis { z: Vec::new(), active: Vec::new(), p: false };
         let Some(mut engine) = Parametric::new(path.lcp.clone(), &nothing, order(&path)) else {

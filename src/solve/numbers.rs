@@ -27,6 +27,7 @@ pub(crate) fn numbers_by(system: &ContactSystem, factors: &[f64], value: &dyn Fn
         gap: vec![0.0; m],
         bound: vec![0.0; m],
         load: DVector::zeros(system.joint_count()),
+        load_terms: DVector::zeros(system.joint_count()),
     };
     for (i, pair) in system.pairs.iter().enumerate() {
         match &pair.law {
@@ -40,7 +41,7 @@ pub(crate) fn numbers_by(system: &ContactSystem, factors: &[f64], value: &dyn Fn
         }
     }
     for (load, factor) in system.loads.iter().zip(factors) {
-        numbers.load += *factor * &load.vector;
+        numbers.add_load(*factor, &load.vector, &load.terms);
     }
     numbers
 }

@@ -195,9 +195,21 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         .load_cases
         .iter()
         .zip(main.loads())
-        .map(|(case, vector)| JointLoad { name: case.name.clone(), vector: vector.clone() })
+        .zip(main.load_sizes())
+        .map(|((case, vector), size)| JointLoad {
+            name: case.name.clone(),
+            // A joint far from the load carries the rounding of forces that pass elsewhere.
+            terms: vector.map(|force| force.abs().max(size)),
+            vector: vector.clone(),
+        })
         .collect();
-    let mut system = ContactSystem { pairs, stiffness: main.stiffness().clone(), loads, kernel: main.kernel().clone() };
+    let mut system = ContactSystem {
+        pairs,
+        stiffness: main.stiffness().clone(),
+        loads,
+        rounded: true,
+        kernel: main.kernel().clone(),
+    };
     system.settle();
     let seconds = main.timings();
     Ok(Prepared {

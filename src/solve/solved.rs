@@ -237,7 +237,7 @@ impl Prepared {
 
         let state = joint_state(system, numbers, &contact, &run.point);
         answer.pairs = pair_states(system, numbers, &contact, &state);
-        self.add_released_slips(&mut answer.pairs, numbers, factors, &state);
+        self.add_released_slips(&mut answer.pairs, numbers, factors, &state.z);
         let mut ray = None;
         if let Outcome::Ray(direction) = &run.outcome {
             let cases = self.named_factors(factors);
@@ -284,7 +284,7 @@ impl Prepared {
         let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: Vec::new(), point };
         let mut answer = empty_answer(&run, words, self.size(system, &contact));
         answer.pairs = pair_states(system, numbers, &contact, &state);
-        self.add_released_slips(&mut answer.pairs, numbers, factors, &state);
+        self.add_released_slips(&mut answer.pairs, numbers, factors, &state.z);
         self.complete(&mut answer, system, numbers, factors, &state);
         Solved {
             answer,
@@ -326,7 +326,7 @@ impl Prepared {
     ) {
         let mut equilibrium = None;
         if let Geometry::Structure { main, structure, .. } = &self.geometry {
-            let u = main.displacements(factors, &dislocation(numbers, state));
+            let u = main.displacements(factors, &dislocation(numbers, &state.z));
             equilibrium = Some(main.equilibrium_residual(structure, &u, &state.force, factors));
             answer.members = Some(
                 main.member_forces(structure, &u, factors)
@@ -373,14 +373,14 @@ impl Prepared {
         pairs: &mut [PairState],
         numbers: &ContactNumbers,
         factors: &[f64],
-        state: &JointState,
+        z: &DVector<f64>,
     ) {
         match &self.geometry {
             Geometry::Structure { main, structure, .. } => {
                 if !structure.pairs.iter().any(|pair| matches!(pair.law, Law::Frictionless { .. })) {
                     return;
                 }
-                let u = main.displacements(factors, &dislocation(numbers, state));
+                let u = main.displacements(factors, &dislocation(numbers, z));
                 for (pair, shown) in structure.pairs.iter().zip(pairs) {
                     if matches!(pair.law, Law::Frictionless { .. }) {
                         let t = pair.tangent();
@@ -390,7 +390,7 @@ impl Prepared {
                 }
             }
             Geometry::Contact { released, .. } => {
-                let slips = released.displacements(&dislocation(numbers, state), factors);
+                let slips = released.displacements(&dislocation(numbers, z), factors);
                 for (&pair, slip) in released.pairs.iter().zip(slips.iter()) {
                     pairs[pair].z_t = *slip;
                 }
@@ -401,8 +401,8 @@ impl Prepared {
 }
 
 /// The whole mutual displacement of the joints: z with the gaps taken off.
-pub(crate) fn dislocation(numbers: &ContactNumbers, state: &JointState) -> DVector<f64> {
-    let mut z = state.z.clone();
+pub(crate) fn dislocation(numbers: &ContactNumbers, z: &DVector<f64>) -> DVector<f64> {
+    let mut z = z.clone();
     for (i, gap) in numbers.gap.iter().enumerate() {
         z[i] -= gap;
     }
@@ -565,7 +565,7 @@ impl Solved {
         };
         let state = self.state_at(prepared, step)?;
         let mut pairs = pair_states(prepared.system()?, numbers, contact, &state);
-        prepared.add_released_slips(&mut pairs, numbers, factors, &state);
+        prepared.add_released_slips(&mut pairs, numbers, factors, &state.z);
         Some(pairs)
     }
 
@@ -577,7 +577,7 @@ impl Solved {
             return None;
         };
         let state = self.state_at(prepared, step)?;
-        Some(named(structure, &main.displacements(factors, &dislocation(numbers, &state))))
+        Some(named(structure, &main.displacements(factors, &dislocation(numbers, &state.z))))
     }
 
     /// z and w of a bare LCP after pivot `step`.

@@ -19,11 +19,13 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> (C
         gap: vec![0.0; m],
         bound: vec![0.0; m],
         load: load.clone(),
+        load_terms: load.abs(),
     };
     let system = ContactSystem {
         pairs,
         stiffness,
-        loads: vec![JointLoad { name: "load".into(), vector: load }],
+        loads: vec![JointLoad::exactly("load".into(), load)],
+        rounded: false,
         kernel: DMatrix::zeros(2 * m, 0),
     };
     (system, numbers)

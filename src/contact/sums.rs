@@ -1,0 +1,129 @@
+//! Forces and reserves of a state, each with the magnitudes of the terms it was summed from.
+//!
+//! A value computed as a sum is known to a few ε of the sum of the magnitudes of its terms, whatever the largest force,
+//! bound or stiffness elsewhere (theory §4, "No tolerance without a source"). Everything that asks whether a force, a
+//! reserve or a displacement is zero or negative asks here.
+
+use nalgebra::DVector;
+
+use super::numbers::ContactNumbers;
+use super::system::ContactSystem;
+use super::whole::{fixed_bound, friction};
+use crate::lcp::problem::NOISE;
+use crate::model::pair::Law;
+
+/// A value and the sum of the magnitudes of its terms.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sum {
+    /// The value.
+    pub value: f64,
+    /// Σ |term|.
+    pub magnitude: f64,
+}
+
+impl Sum {
+    /// A number that is exact.
+    pub fn exactly(value: f64) -> Sum {
+        Sum { value, magnitude: value.abs() }
+    }
+
+    /// This sum and `factor` times another.
+    #[must_use]
+    pub fn plus(self, factor: f64, other: Sum) -> Sum {
+        Sum { value: self.value + factor * other.value, magnitude: self.magnitude + factor.abs() * other.magnitude }
+    }
+
+    /// The value as a share of its terms, −1 … 1; 0 where all terms are zero.
+    pub fn share(self) -> f64 {
+        if self.magnitude > 0.0 { self.value / self.magnitude } else { self.value }
+    }
+
+    /// Whether rounding alone can have made the value.
+    pub fn is_zero(self) -> bool {
+        self.value.abs() <= NOISE * self.magnitude
+    }
+
+    /// The value, 0 where it is rounding.
+    pub fn cleaned(self) -> f64 {
+        if self.is_zero() { 0.0 } else { self.value }
+    }
+}
+
+/// √R_ii of a joint.
+fn root(system: &ContactSystem, joint: usize) -> f64 {
+    system.stiffness[(joint, joint)].max(0.0).sqrt()
+}
+
+/// λ = R (z − (g, 0)) + RF over the joints. Where R is [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik|
+/// in the magnitudes.
+pub fn joint_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<Sum> {
+    let mut forces: Vec<Sum> = (numbers.load.iter())
+        .zip(&numbers.load_terms)
+        .map(|(value, magnitude)| Sum { value: *value, magnitude: *magnitude })
+        .collect();
+    let mut scaled = 0.0;
+    for k in 0..system.joint_count() {
+        let gap = numbers.gap.get(k).copied().unwrap_or(0.0);
+        // The distance open and the gap cancel each other: each is a term of its own.
+        let (moved, size) = (z[k] - gap, z[k].abs() + gap.abs());
+        if size == 0.0 {
+            continue;
+        }
+        let column = system.stiffness.column(k);
+        if system.rounded {
+            scaled += root(system, k) * size;
+            forces.iter_mut().zip(column.iter()).for_each(|(force, entry)| force.value += entry * moved);
+        } else {
+            for (force, entry) in forces.iter_mut().zip(column.iter()) {
+                force.value += entry * moved;
+                force.magnitude += entry.abs() * size;
+            }
+        }
+    }
+    if scaled > 0.0 {
+        forces.iter_mut().enumerate().for_each(|(i, force)| force.magnitude += root(system, i) * scaled);
+    }
+    forces
+}
+
+/// What the laws bound from below in a pair: each ≥ 0 in an answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairSums {
+    /// x_n; `None` where the normal joint is bilateral.
+    pub normal: Option<Sum>,
+    /// x⁺ and x⁻; `None` without friction.
+    pub reserves: Option<[Sum; 2]>,
+}
+
+/// x_n and the reserves of a pair under joint forces.
+pub fn pair_sums(system: &ContactSystem, numbers: &ContactNumbers, forces: &[Sum], pair: usize) -> PairSums {
+    let normal = (!matches!(system.pairs[pair].law, Law::Bound { .. })).then(|| forces[pair]);
+    let reserves = system.pairs[pair].tangential.map(|joint| {
+        let bound =
+            Sum::exactly(fixed_bound(system, numbers, pair)).plus(friction(system, numbers, pair), forces[pair]);
+        [bound.plus(1.0, forces[joint]), bound.plus(-1.0, forces[joint])]
+    });
+    PairSums { normal, reserves }
+}
+
+/// What share of the forces hangs on the displacement of a joint: max over the rows of |R_ik z_k| / Σ |terms|, 0 … 1. A z
+/// whose share is a few ε cannot be told from 0 by any force. A joint that no force feels is measured by the largest z.
+pub fn displacement_share(system: &ContactSystem, z: &DVector<f64>, forces: &[Sum], joint: usize) -> f64 {
+    let moved = z[joint].abs();
+    if moved == 0.0 {
+        return 0.0;
+    }
+    let column = system.stiffness.column(joint);
+    if column.amax() == 0.0 {
+        return moved / z.amax();
+    }
+    let felt = column.iter().zip(forces).filter(|(entry, _)| **entry != 0.0);
+    felt.map(|(entry, force)| entry.abs() * moved / force.magnitude).fold(0.0, f64::max)
+}
+
+/// Whether the displacement of a joint is rounding: no force can tell it from 0.
+pub fn is_still(system: &ContactSystem, z: &DVector<f64>, forces: &[Sum], joint: usize) -> bool {
+    // The joint's own force says so at once in most cases.
+    let own = system.stiffness[(joint, joint)].abs() * z[joint].abs();
+    own <= NOISE * forces[joint].magnitude && displacement_share(system, z, forces, joint) <= NOISE
+}
