@@ -3,6 +3,8 @@
 
 use serde::Serialize;
 
+use crate::model::uses::Redone;
+
 /// How the run ended, as the user reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -340,6 +342,8 @@ pub struct Answer {
     pub timings: Timings,
     /// From where it was found.
     pub start: Start,
+    /// What was computed anew for it.
+    pub redone: Redone,
     /// Remarks for the user that are no errors (cohesion in an open pair, several answers …).
     pub notes: Vec<String>,
     /// Why there is no answer, where `outcome` is no ray and no answer.

@@ -56,9 +56,38 @@ pub struct ReleasedTangentials {
     coupling: DMatrix<f64>,
     /// RF_τ per load case.
     loads: Vec<DVector<f64>>,
+    /// Rows of the whole that are kept.
+    kept: Vec<usize>,
+    /// Basis of the released motions that nothing resists.
+    free: DMatrix<f64>,
 }
 
 impl ReleasedTangentials {
+    /// The load vectors of the joints that are kept, those of the released ones taken along.
+    ///
+    /// # Errors
+    /// A load along a motion that nothing resists.
+    pub fn take_loads(&mut self, given: &GivenContactSystem) -> Result<Vec<JointLoad>, GivenError> {
+        let m = given.pairs.len();
+        let mut loads = Vec::new();
+        self.loads.clear();
+        for load in &given.loads {
+            let tangential = DVector::from_fn(self.pairs.len(), |a, _| load.vector[m + self.pairs[a]]);
+            let size = load.vector.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            let unheld = self.free.transpose() * &tangential;
+            if unheld.amax() > 1e-9 * size {
+                let worst = tangential.iamax();
+                let pair = given.pairs[self.pairs[worst]].clone();
+                return Err(GivenError::Unheld { case: load.name.clone(), pair });
+            }
+            let vector = DVector::from_fn(self.kept.len(), |a, _| load.vector[self.kept[a]])
+                + self.coupling.transpose() * (&self.flexibility * &tangential);
+            loads.push(JointLoad::exactly(load.name.clone(), vector));
+            self.loads.push(tangential);
+        }
+        Ok(loads)
+    }
+
     /// z_τ of each released joint under joint displacements z (with the gap already taken off z_n) and factors.
     pub fn displacements(&self, z: &DVector<f64>, factors: &[f64]) -> DVector<f64> {
         let mut force = &self.coupling * z;
@@ -113,21 +142,6 @@ pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Releas
     stiffness -= coupling.transpose() * &inverse * &coupling;
     let stiffness = 0.5 * (&stiffness + stiffness.transpose());
 
-    let mut loads = Vec::new();
-    let mut released_loads = Vec::new();
-    for load in &given.loads {
-        let tangential = DVector::from_fn(released.len(), |a, _| load.vector[m + released[a]]);
-        let size = load.vector.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let unheld = free.transpose() * &tangential;
-        if unheld.amax() > 1e-9 * size {
-            let worst = tangential.iamax();
-            return Err(GivenError::Unheld { case: load.name.clone(), pair: given.pairs[released[worst]].clone() });
-        }
-        let vector =
-            DVector::from_fn(kept.len(), |a, _| load.vector[kept[a]]) - coupling.transpose() * (&inverse * &tangential);
-        loads.push(JointLoad::exactly(load.name.clone(), vector));
-        released_loads.push(tangential);
-    }
     // Motions of the kept joints alone that cost nothing: those of the whole, restricted.
     let restricted: Vec<DVector<f64>> =
         motions.iter().map(|motion| DVector::from_fn(kept.len(), |a, _| motion[kept[a]])).collect();
@@ -148,7 +162,9 @@ pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Releas
             }
         })
         .collect();
-    let recovery = ReleasedTangentials { pairs: released, flexibility: -inverse, coupling, loads: released_loads };
+    let mut recovery =
+        ReleasedTangentials { pairs: released, flexibility: -inverse, coupling, loads: Vec::new(), kept, free };
+    let loads = recovery.take_loads(given)?;
     Ok((ContactSystem { pairs, stiffness, loads, rounded: false, kernel }, recovery))
 }
 

@@ -22,6 +22,7 @@ const SURELY_POSITIVE: f64 = 4.0 * ZERO_EIGENVALUE;
 const UNFELT: f64 = 1e-10;
 
 /// Rigid motions and their trace on the joints.
+#[derive(Clone)]
 pub struct RigidKernel {
     /// Orthonormal basis of their mutual displacements, k × r.
     pub z: DMatrix<f64>,

@@ -7,6 +7,7 @@
 //! ```
 
 use std::fmt;
+use std::sync::Arc;
 use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
@@ -58,19 +59,22 @@ pub struct Seconds {
 }
 
 /// R, RF, the kernel, and what is needed to return from the joints to the structure.
+#[derive(Clone)]
 pub struct MainSystem {
     pub(super) dofs: Dofs,
     pub(super) elimination: Elimination,
     pub(super) joints: Vec<Joint>,
     /// K on the base dofs.
-    pub(super) k: SymmetricSparse,
+    pub(super) k: Arc<SymmetricSparse>,
     /// F per load case on the base dofs.
     pub(super) f: Vec<Vec<f64>>,
-    factor: Factor,
+    factor: Arc<Factor>,
     c: Vec<(u32, u32, f64)>,
     r: DMatrix<f64>,
     rf: Vec<DVector<f64>>,
     z: DMatrix<f64>,
+    /// Of the first of the motions; internal ones follow.
+    rigid: RigidKernel,
     motions: Vec<Motion>,
     seconds: Seconds,
 }
@@ -133,34 +137,53 @@ impl MainSystem {
         let clock = Instant::now();
         watch.progress(&format!("condensing to {} joints", joints.len()), 0.0);
         let mut r = factor.schur(std::mem::take(&mut main.d));
-        let loads: Vec<Vec<f64>> = f.iter().map(|f| on_masters(&elimination, f)).collect();
-        let condensed = factor.project(&loads);
-        drop(loads);
-        let rf = f.iter().zip(condensed.column_iter()).map(|(f, column)| {
-            let mut rf = column - DVector::from_vec(on_joints(&elimination, f));
-            balance(&mut rf, &rigid, &motions, f, &dofs);
-            rf
-        });
-        let rf = rf.collect();
         kernel::project(&mut r, &rigid.z);
         let mut system = MainSystem {
             dofs,
             elimination,
             joints: joints.to_vec(),
-            k,
-            f,
-            factor,
+            k: Arc::new(k),
+            f: Vec::new(),
+            factor: Arc::new(factor),
             c: main.c,
             r,
-            rf,
-            z: rigid.z,
+            rf: Vec::new(),
+            z: rigid.z.clone(),
+            rigid,
             motions,
             seconds,
         };
+        system.take_loads(f);
         system.add_internal_mechanisms()?;
         system.seconds.condense = clock.elapsed().as_secs_f64();
         watch.progress(&format!("condensing to {} joints", joints.len()), 1.0);
         Ok(system)
+    }
+
+    /// The same structure under other loads: F and RF anew, with the factorization kept.
+    ///
+    /// # Errors
+    /// A moment where nothing turns.
+    pub fn with_loads(&self, structure: &Structure) -> Result<MainSystem, MainSystemError> {
+        let clock = Instant::now();
+        let mut system = self.clone();
+        system.take_loads(load_vectors(structure, &self.dofs)?);
+        system.seconds = Seconds { condense: clock.elapsed().as_secs_f64(), ..Seconds::default() };
+        Ok(system)
+    }
+
+    /// F per load case, and RF from it.
+    fn take_loads(&mut self, f: Vec<Vec<f64>>) {
+        let loads: Vec<Vec<f64>> = f.iter().map(|f| on_masters(&self.elimination, f)).collect();
+        let condensed = self.factor.project(&loads);
+        let motions = &self.motions[..self.rigid.coefficients.nrows()];
+        let rf = f.iter().zip(condensed.column_iter()).map(|(f, column)| {
+            let mut rf = column - DVector::from_vec(on_joints(&self.elimination, f));
+            balance(&mut rf, &self.rigid, motions, f, &self.dofs);
+            rf
+        });
+        self.rf = rf.collect();
+        self.f = f;
     }
 
     /// K_m, for measuring other solvers on the same matrix.

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use super::decode;
 use super::embedded;
 use super::locate::position;
+use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
+use super::words::did_you_mean;
 
 /// Reads and checks a scenario file; the scenario's name is the path as given.
 pub fn load_file(path: &Path) -> Result<Scenario, Problems> {
@@ -42,7 +44,15 @@ pub fn load_file(path: &Path) -> Result<Scenario, Problems> {
 
 /// Checks the text of a scenario. `path` is the file it came from: other files it names are relative to it.
 pub fn load_text(name: &str, text: &str, path: Option<&Path>) -> Result<Scenario, Problems> {
-    decode::scenario(name, text, path.map(PathBuf::from))
+    decode::scenario(name, text, path.map(PathBuf::from), None)
+}
+
+/// The scenario read once more, with its numbers under other values of its parameters.
+///
+/// # Errors
+/// A model that these values make invalid, with the place.
+pub fn at_values(scenario: &Scenario, values: &ParameterValues) -> Result<Scenario, Problems> {
+    decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), Some(values))
 }
 
 /// Loads what a user names: an embedded scenario, or a file if the word holds a slash, ends in `.json` or is the
@@ -66,7 +76,7 @@ fn unknown(word: &str) -> Problems {
     let names: Vec<&str> = embedded::names().collect();
     Problems::of_file(
         word,
-        format!("no embedded scenario and no file has this name{}", decode::did_you_mean(word, names.iter().copied())),
+        format!("no embedded scenario and no file has this name{}", did_you_mean(word, names.iter().copied())),
         format!("expected the path of a scenario file or one of {}", names.join(", ")),
     )
 }

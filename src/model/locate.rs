@@ -21,10 +21,11 @@ pub struct SyntaxError {
     pub help: &'static str,
 }
 
-const STRICT: ParseOptions = ParseOptions {
-    allow_comments: false,
+/// JSON with comments and trailing commas, nothing else.
+const OPTIONS: ParseOptions = ParseOptions {
+    allow_comments: true,
     allow_loose_object_property_names: false,
-    allow_trailing_commas: false,
+    allow_trailing_commas: true,
     allow_missing_commas: false,
     allow_single_quoted_strings: false,
     allow_hexadecimal_numbers: false,
@@ -35,7 +36,7 @@ const STRICT: ParseOptions = ParseOptions {
 };
 
 impl<'t> Document<'t> {
-    /// Parses strict JSON: no comments, no trailing commas, no `NaN`.
+    /// Parses JSON in which comments and trailing commas may stand.
     pub fn parse(text: &'t str) -> Result<Self, SyntaxError> {
         if text.starts_with('\u{feff}') {
             return Err(SyntaxError {
@@ -45,7 +46,7 @@ impl<'t> Document<'t> {
             });
         }
         // serde_json is the judge of what is JSON; the tree with ranges, whose messages are kinder, comes first.
-        let tree = parse_to_ast(text, &CollectOptions::default(), &STRICT);
+        let tree = parse_to_ast(text, &CollectOptions::default(), &OPTIONS);
         match tree {
             Err(error) => Err(SyntaxError {
                 offset: error.range().start.min(text.len()),
@@ -60,7 +61,7 @@ impl<'t> Document<'t> {
                         help: "a scenario is a JSON object: { \"format\": \"stickslip/1\", … }",
                     });
                 };
-                if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(text) {
+                if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(&strict(text)) {
                     let place = (error.line(), error.column());
                     let message = error.to_string();
                     let message =
@@ -154,6 +155,47 @@ impl<'t> Document<'t> {
     }
 }
 
+/// The text with blanks in the place of comments and trailing commas, so that every byte keeps its place.
+fn strict(text: &str) -> std::borrow::Cow<'_, str> {
+    let bytes = text.as_bytes();
+    let mut blank: Vec<std::ops::Range<usize>> = Vec::new();
+    let mut comma = None;
+    let mut at = 0;
+    while at < bytes.len() {
+        let rest = &bytes[at..];
+        let length = match rest {
+            [b'"', ..] => {
+                let mut end = 1;
+                while end < rest.len() && rest[end] != b'"' {
+                    end += if rest[end] == b'\\' { 2 } else { 1 };
+                }
+                end + 1
+            }
+            [b'/', b'/', ..] => rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len()),
+            [b'/', b'*', ..] => text[at..].find("*/").map_or(rest.len(), |end| end + 2),
+            _ => 1,
+        };
+        match rest[0] {
+            b'/' => blank.push(at..at + length),
+            b',' => comma = Some(at),
+            b'}' | b']' => blank.extend(comma.take().map(|at| at..at + 1)),
+            byte if !byte.is_ascii_whitespace() => comma = None,
+            _ => {}
+        }
+        at += length;
+    }
+    if blank.is_empty() {
+        return text.into();
+    }
+    let mut strict = bytes.to_vec();
+    for range in blank {
+        // Line ends stay: the place of what is wrong is counted in lines.
+        strict[range].iter_mut().filter(|byte| !matches!(byte, b'\n' | b'\r')).for_each(|byte| *byte = b' ');
+    }
+    // Whole characters were replaced, so it still is UTF-8.
+    String::from_utf8(strict).unwrap_or_default().into()
+}
+
 /// Line and column, in characters and from 1, of a byte offset.
 pub fn position(text: &str, offset: usize) -> (usize, usize) {
     let mut offset = offset.min(text.len());
@@ -210,10 +252,6 @@ fn advice(kind: &ParseErrorKind, rest: &str) -> &'static str {
         _ if ["NaN", "Infinity", "-Infinity", "nan", "inf", "-inf"].iter().any(|word| rest.starts_with(word)) => {
             "every number of a scenario is finite"
         }
-        ParseErrorKind::CommentsNotAllowed => {
-            "remove the comment; `description` and a parameter's `about` hold remarks"
-        }
-        ParseErrorKind::TrailingCommasNotAllowed => "remove the comma after the last entry",
         ParseErrorKind::ExpectedComma => "put a comma between the entries",
         ParseErrorKind::NonFiniteNumbersNotAllowed => "every number of a scenario is finite",
         ParseErrorKind::SingleQuotedStringsNotAllowed | ParseErrorKind::ExpectedStringObjectProperty => {

@@ -6,6 +6,8 @@
 mod decode;
 pub mod edge;
 pub mod embedded;
+pub mod expression;
+pub mod jet;
 pub mod load;
 pub mod locate;
 mod memory;
@@ -17,3 +19,5 @@ pub mod rules;
 pub mod scenario;
 pub mod schema;
 pub mod structure;
+pub mod uses;
+mod words;

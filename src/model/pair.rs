@@ -11,12 +11,12 @@ pub enum Law {
         friction: Number,
         /// Cohesion c ≥ 0.
         cohesion: Number,
-        /// Initial gap g ≥ 0.
+        /// Initial gap g; negative: an interference.
         gap: Number,
     },
     /// Unilateral contact without friction: x_τ = 0.
     Frictionless {
-        /// Initial gap g ≥ 0.
+        /// Initial gap g; negative: an interference.
         gap: Number,
     },
     /// Bilateral along n, with a known friction bound along t.
@@ -36,7 +36,7 @@ impl Law {
         }
     }
 
-    /// Its numbers, each ≥ 0, with their keys in files.
+    /// Its numbers with their keys in files; all but the gap are ≥ 0.
     pub fn numbers(&self) -> Vec<(&'static str, &Number)> {
         match self {
             Law::Coulomb { friction, cohesion, gap } => {

@@ -7,10 +7,11 @@ use indexmap::IndexMap;
 
 use super::locate::Document;
 use super::pair::Law;
-use super::parameter::{Number, Parameter, ParameterValues};
+use super::parameter::{Formulas, Number, Parameter, ParameterValues};
 use super::problem::{Problem, Problems};
 use super::rules::Rules;
 use super::structure::Structure;
+use super::uses::Uses;
 
 /// Labels of the author's units; nothing is converted.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -113,7 +114,11 @@ pub struct Scenario {
     pub units: Units,
     /// Parameters in the order of the file.
     pub parameters: IndexMap<String, Parameter>,
-    /// What is described.
+    /// The formulas among them, each after those it needs.
+    pub formulas: Arc<Formulas>,
+    /// Where the parameters stand.
+    pub uses: Uses,
+    /// What is described; its plain numbers are those under the parameter values it was read with.
     pub source: Source,
     /// Load history; empty without one.
     pub stages: Vec<Stage>,
@@ -145,27 +150,66 @@ impl Scenario {
         problems
     }
 
-    /// Why the parameter cannot take this value: friction, cohesion, gap and bound must stay ≥ 0. `None` if it can.
+    /// Why the parameter cannot take this value whatever the others are: a formula, a value that is not finite, a
+    /// negative friction, cohesion or bound. `None` if it can.
     pub fn refusal(&self, parameter: &str, value: f64) -> Option<String> {
+        if let Some(formula) = self.parameters.get(parameter).and_then(|parameter| parameter.formula.as_ref()) {
+            let free: Vec<String> = self.formulas.free(formula.parameters()).into_iter().collect();
+            let instead = match &free[..] {
+                [] => "change it in the file".to_owned(),
+                free => format!("set {}", free.join(" or ")),
+            };
+            return Some(format!("{parameter} is a formula, {}: it is computed, not set; {instead}", formula.text()));
+        }
         if !value.is_finite() {
             return Some(format!("{parameter} must be a finite number"));
         }
         if value >= 0.0 {
             return None;
         }
+        self.signed_numbers().into_iter().find_map(|(id, what, number)| {
+            (number.parameter() == Some(parameter))
+                .then(|| format!("{parameter} is the {what} of {id} and must not be negative, found {value}"))
+        })
+    }
+
+    /// Why the laws of contact cannot take these values: a negative friction, cohesion or bound, or a number that is
+    /// not finite. `None` if they can.
+    pub fn law_refusal(&self, values: &ParameterValues) -> Option<String> {
+        if let Some((name, value)) = values.iter().find(|(_, value)| !value.is_finite()) {
+            return Some(match values.formula(name) {
+                Some(formula) => format!("{name} = {} must be a finite number, found {value}", formula.text()),
+                None => format!("{name} must be a finite number"),
+            });
+        }
+        self.signed_numbers().into_iter().find_map(|(id, what, number)| {
+            let value = number.value(values);
+            match number {
+                _ if value >= 0.0 => None,
+                Number::Parameter(name) => {
+                    Some(format!("{name} is the {what} of {id} and must not be negative, found {value}"))
+                }
+                _ => Some(format!("{} is the {what} of {id} and must not be negative, found {value}", number.text())),
+            }
+        })
+    }
+
+    /// Pair, key and number of everything in the laws that must not be negative.
+    fn signed_numbers(&self) -> Vec<(&str, &'static str, &Number)> {
         let laws: Vec<(&str, &Law)> = match &self.source {
             Source::Structure(structure) => structure.pairs.iter().map(|pair| (pair.id.as_str(), &pair.law)).collect(),
             Source::ContactSystem(system) => system.pairs.iter().map(String::as_str).zip(&system.laws).collect(),
             Source::Lcp(_) => Vec::new(),
         };
-        laws.into_iter().find_map(|(id, law)| {
-            let (what, _) = law.numbers().into_iter().find(|(_, number)| number.parameter() == Some(parameter))?;
-            Some(format!("{parameter} is the {what} of {id} and must not be negative, found {value}"))
-        })
+        let all = laws.into_iter().flat_map(|(id, law)| {
+            law.numbers().into_iter().filter(|(key, _)| *key != "gap").map(move |(key, number)| (id, key, number))
+        });
+        all.collect()
     }
 
     /// Every parameter at the value of the file.
     pub fn parameter_values(&self) -> ParameterValues {
-        self.parameters.iter().map(|(name, parameter)| (name.clone(), parameter.value)).collect()
+        let values = self.parameters.iter().map(|(name, parameter)| (name.clone(), parameter.value)).collect();
+        ParameterValues::with_formulas(values, Arc::clone(&self.formulas))
     }
 }

@@ -26,6 +26,9 @@ use serde_json::{Map, Value};
     ] },
 ]))]
 struct Scenario {
+    /// Where the schema of this file is, for editors
+    #[schemars(rename = "$schema")]
+    schema: Option<String>,
     /// Version of the format
     #[schemars(extend("const" = "stickslip/1"))]
     format: String,
@@ -36,10 +39,10 @@ struct Scenario {
     description: Option<String>,
     /// Labels of the author's consistent units
     units: Option<Units>,
-    /// What the user varies, by name; wherever a number may be a parameter, its name stands instead
+    /// What the user varies, by name; a number of the model may be written as the name of one, or as an expression
     parameters: Option<BTreeMap<String, Parameter>>,
     /// Load history: for each stage what multiplies the factors of the load cases; cases not named count 0
-    stages: Option<Vec<BTreeMap<String, NumberOrParameter>>>,
+    stages: Option<Vec<BTreeMap<String, Number>>>,
     /// Rules of the solver
     solver: Option<Solver>,
     /// Materials by id
@@ -47,7 +50,7 @@ struct Scenario {
     /// Cross-sections of bars by id
     sections: Option<BTreeMap<String, Section>>,
     /// Nodes by id: [x, y]
-    nodes: Option<BTreeMap<String, [f64; 2]>>,
+    nodes: Option<BTreeMap<String, [Number; 2]>>,
     /// Frame and truss bars
     bars: Option<Vec<Bar>>,
     /// Rectangular plates of bilinear elements
@@ -80,32 +83,40 @@ struct Units {
     force: Option<String>,
 }
 
-/// A number, or the name of a parameter
+/// A number, the name of a parameter, or an expression of parameters
 #[derive(JsonSchema)]
 #[schemars(untagged)]
-enum NumberOrParameter {
+enum Number {
     /// The number itself
-    Number(f64),
-    /// Name of a parameter
-    Parameter(String),
+    Value(f64),
+    /// The name of a parameter, or an expression like 2*F + 1
+    Expression(String),
 }
 
-/// A value, or the value with its range
+/// A value, or an object with it or with a formula
 #[derive(JsonSchema)]
 #[schemars(untagged)]
 enum Parameter {
     /// The value alone
     Value(f64),
-    /// The value with its range
-    Ranged(RangedParameter),
+    /// The value with its range, or a formula
+    Object(ParameterObject),
 }
 
-/// A parameter with what a slider needs
+/// A parameter with what a slider needs, or one that is computed from others
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-struct RangedParameter {
+#[schemars(extend("oneOf" = [
+    { "required": ["value"], "not": { "required": ["formula"] } },
+    { "required": ["formula"], "not": { "anyOf": [
+        { "required": ["value"] }, { "required": ["min"] }, { "required": ["max"] }, { "required": ["step"] },
+    ] } },
+]))]
+struct ParameterObject {
     /// Value in the file, within min and max
-    value: f64,
+    value: Option<f64>,
+    /// An expression of other parameters, which gives the value
+    formula: Option<String>,
     /// Low end of the slider
     min: Option<f64>,
     /// High end of the slider
@@ -154,15 +165,15 @@ enum Engine {
 struct Material {
     /// Young's modulus
     #[schemars(rename = "E", extend("exclusiveMinimum" = 0))]
-    modulus: f64,
+    modulus: Number,
     /// Poisson's ratio; 0.5 is excluded in plane strain
     #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
-    nu: f64,
+    nu: Number,
     /// Mass per volume; 0 if left out
-    #[schemars(range(min = 0))]
-    density: Option<f64>,
+    #[schemars(extend("minimum" = 0))]
+    density: Option<Number>,
     /// Thermal expansion; 0 if left out
-    expansion: Option<f64>,
+    expansion: Option<Number>,
 }
 
 /// Cross-section of a bar
@@ -171,10 +182,10 @@ struct Material {
 struct Section {
     /// Area
     #[schemars(extend("exclusiveMinimum" = 0))]
-    area: f64,
+    area: Number,
     /// Second moment of area; not needed by trusses
     #[schemars(extend("exclusiveMinimum" = 0))]
-    inertia: Option<f64>,
+    inertia: Option<Number>,
 }
 
 /// A straight bar
@@ -223,20 +234,20 @@ struct Plate {
     /// Id
     id: String,
     /// Place of node [0,0]
-    origin: [f64; 2],
+    origin: [Number; 2],
     /// Length and height
-    size: Option<[f64; 2]>,
+    size: Option<[Number; 2]>,
     /// Elements along the length and the height
     divisions: Option<[u32; 2]>,
     /// Grid lines along the length, from the origin
-    x: Option<Vec<f64>>,
+    x: Option<Vec<Number>>,
     /// Grid lines along the height, from the origin
-    y: Option<Vec<f64>>,
+    y: Option<Vec<Number>>,
     /// Degrees counter-clockwise about the origin; 0 if left out
-    rotation: Option<f64>,
+    rotation: Option<Number>,
     /// Thickness
     #[schemars(extend("exclusiveMinimum" = 0))]
-    thickness: f64,
+    thickness: Number,
     /// Id of the material
     material: String,
     /// Plane strain or plane stress
@@ -260,7 +271,7 @@ struct Quad {
     nodes: [String; 4],
     /// Thickness
     #[schemars(extend("exclusiveMinimum" = 0))]
-    thickness: f64,
+    thickness: Number,
     /// Id of the material
     material: String,
     /// Plane strain or plane stress
@@ -297,7 +308,7 @@ struct Support {
     /// Held displacements
     fixed: Vec<Component>,
     /// Imposed displacement, scaled by the factor of `case`
-    settlement: Option<[f64; 2]>,
+    settlement: Option<[Number; 2]>,
     /// Load case of the settlement
     case: Option<String>,
 }
@@ -309,10 +320,10 @@ struct Spring {
     /// Node or edge
     at: String,
     /// Any non-zero vector
-    direction: [f64; 2],
+    direction: [Number; 2],
     /// Force per displacement; at an edge, of each node
-    #[schemars(range(min = 0))]
-    stiffness: f64,
+    #[schemars(extend("minimum" = 0))]
+    stiffness: Number,
 }
 
 #[derive(JsonSchema)]
@@ -328,9 +339,9 @@ enum Law {
 #[schemars(untagged)]
 enum PerPair {
     /// For all pairs
-    All(NumberOrParameter),
+    All(Number),
     /// Pair by pair
-    Each(Vec<NumberOrParameter>),
+    Each(Vec<Number>),
 }
 
 /// Frictional contact of a node or of the nodes of an edge
@@ -347,14 +358,14 @@ struct Contact {
     /// Another node or edge, or "ground"
     against: String,
     /// From `against` to `node`; an edge has its own
-    normal: Option<[f64; 2]>,
+    normal: Option<[Number; 2]>,
     /// `coulomb` if left out
     law: Option<Law>,
     /// Friction coefficient f ≥ 0
     friction: Option<PerPair>,
     /// Cohesion c ≥ 0
     cohesion: Option<PerPair>,
-    /// Gap g ≥ 0
+    /// Gap g; negative: an interference
     gap: Option<PerPair>,
     /// Friction bound r_f ≥ 0 of the law `bound`
     bound: Option<PerPair>,
@@ -367,7 +378,7 @@ struct Contact {
 #[schemars(deny_unknown_fields)]
 struct LoadCase {
     /// 1 if left out
-    factor: Option<NumberOrParameter>,
+    factor: Option<Number>,
     /// The loads
     items: Vec<Load>,
 }
@@ -394,9 +405,9 @@ struct PointLoad {
     /// Node or edge
     at: String,
     /// Force [Fx, Fy]
-    force: [f64; 2],
+    force: [Number; 2],
     /// Counter-clockwise
-    moment: Option<f64>,
+    moment: Option<Number>,
 }
 
 #[derive(JsonSchema)]
@@ -405,7 +416,7 @@ struct Traction {
     /// Edge
     edge: String,
     /// Force per unit length of edge
-    value: [f64; 2],
+    value: [Number; 2],
 }
 
 #[derive(JsonSchema)]
@@ -414,21 +425,21 @@ struct LineLoad {
     /// Bar
     bar: String,
     /// Force per unit length, global axes
-    value: [f64; 2],
+    value: [Number; 2],
 }
 
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct Gravity {
     /// Acceleration [gx, gy]
-    acceleration: [f64; 2],
+    acceleration: [Number; 2],
 }
 
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct Temperature {
     /// Degrees
-    change: f64,
+    change: Number,
     /// Ids of the elements
     on: Vec<String>,
 }
@@ -440,7 +451,7 @@ struct ContactSystem {
     /// Ids of the m pairs
     pairs: Vec<String>,
     /// Places of the pairs, for plots
-    positions: Option<Vec<f64>>,
+    positions: Option<Vec<Number>>,
     /// 2m × 2m: all normals, then all tangentials
     stiffness: Stiffness,
     /// Load cases by name
@@ -448,15 +459,15 @@ struct ContactSystem {
     /// Law of each pair; coulomb if left out
     law: Option<Vec<Law>>,
     /// f of each pair; 0 if left out
-    friction: Option<Vec<NumberOrParameter>>,
+    friction: Option<Vec<Number>>,
     /// c of each pair; 0 if left out
-    cohesion: Option<Vec<NumberOrParameter>>,
+    cohesion: Option<Vec<Number>>,
     /// g of each pair; 0 if left out
-    gap: Option<Vec<NumberOrParameter>>,
+    gap: Option<Vec<Number>>,
     /// r_f of each pair, where the law is `bound`
-    bound: Option<Vec<NumberOrParameter>>,
+    bound: Option<Vec<Number>>,
     /// Motions z with R z = 0
-    kernel: Option<Vec<Vec<f64>>>,
+    kernel: Option<Vec<Vec<Number>>>,
 }
 
 /// A symmetric matrix
@@ -464,7 +475,7 @@ struct ContactSystem {
 #[schemars(untagged)]
 enum Stiffness {
     /// Its rows
-    Rows(Vec<Vec<f64>>),
+    Rows(Vec<Vec<Number>>),
     /// In a Matrix Market file
     File(MatrixFile),
 }
@@ -481,9 +492,9 @@ struct MatrixFile {
 #[schemars(deny_unknown_fields)]
 struct JointLoad {
     /// 1 if left out
-    factor: Option<NumberOrParameter>,
+    factor: Option<Number>,
     /// 2m entries: all normals, then all tangentials
-    vector: Vec<f64>,
+    vector: Vec<Number>,
 }
 
 /// w = M z + q, w ≥ 0, z ≥ 0, wᵀz = 0
@@ -492,11 +503,11 @@ struct JointLoad {
 struct Lcp {
     /// Rows of the matrix
     #[schemars(rename = "M")]
-    matrix: Vec<Vec<f64>>,
+    matrix: Vec<Vec<Number>>,
     /// Right-hand side
-    q: Vec<NumberOrParameter>,
+    q: Vec<Number>,
     /// Covering vector d; ones if left out
-    covering: Option<Vec<f64>>,
+    covering: Option<Vec<Number>>,
     /// Names of the rows
     names: Option<Vec<String>>,
 }

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::change::{Change, changes, sentence};
-use super::rate::{number_rates, rate, rate_lcp};
+use super::rate::{fixed_place, number_rates, rate, rate_lcp};
 use super::start::{PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
@@ -22,7 +22,9 @@ use crate::explain::words::short;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
 use crate::lcp::vertex::{Basis, vertex};
-use crate::model::parameter::ParameterValues;
+use crate::model::jet::Dependence;
+use crate::model::pair::Law;
+use crate::model::parameter::{Number, ParameterValues};
 use crate::model::rules::Covering;
 use crate::model::scenario::Scenario;
 use crate::solve::numbers::{contact_numbers, factors};
@@ -102,11 +104,14 @@ impl FrictionPath {
     }
 }
 
-/// Whether a parameter is the friction of some pair (and so can be followed here).
-pub fn is_friction(prepared: &Prepared, name: &str) -> bool {
+/// Whether the friction of some pair depends on a parameter (which so can be followed here).
+pub fn is_friction(prepared: &Prepared, values: &ParameterValues, name: &str) -> bool {
+    let along = values.along(name);
     prepared.system().is_some_and(|system| {
-        let (rates, _) = number_rates(prepared, system, name);
-        rates.friction.iter().any(|rate| *rate != 0.0)
+        system.pairs.iter().any(|pair| match &pair.law {
+            Law::Coulomb { friction, .. } => along.dependence(friction) != Dependence::Constant,
+            Law::Frictionless { .. } | Law::Bound { .. } => false,
+        })
     })
 }
 
@@ -115,7 +120,6 @@ struct Follower<'a> {
     system: &'a ContactSystem,
     values: &'a ParameterValues,
     name: &'a str,
-    rates: ContactNumbers,
     factors: Vec<f64>,
     /// +1 upwards, −1 downwards.
     sign: f64,
@@ -147,18 +151,21 @@ pub fn trace(
     watch: &dyn Watch,
 ) -> Result<FrictionPath, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
-    let (rates, factor_rates) = number_rates(prepared, system, name);
-    let moves_others =
-        [&rates.cohesion, &rates.gap, &rates.bound].iter().any(|list| list.iter().any(|rate| *rate != 0.0))
-            || factor_rates.iter().any(|rate| *rate != 0.0);
-    if moves_others {
-        return Err(PathError::Mixed {
-            name: name.to_owned(),
-            why: "it is a friction coefficient and something else as well; give them parameters of their own"
-                .to_owned(),
-        });
+    let mixed = |why: String| PathError::Mixed { name: name.to_owned(), why };
+    if let Some(why) = fixed_place(scenario, name) {
+        return Err(mixed(why));
     }
-    if let Some(refusal) = scenario.refusal(name, to) {
+    let along = values.along(name);
+    let moves = |number: &Number| along.dependence(number) != Dependence::Constant;
+    let others = |law: &Law| law.numbers().into_iter().any(|(key, number)| key != "friction" && moves(number));
+    if system.pairs.iter().any(|pair| others(&pair.law)) || prepared.cases.iter().any(|(_, factor)| moves(factor)) {
+        return Err(mixed(
+            "it is a friction coefficient and something else as well; give them parameters of their own".to_owned(),
+        ));
+    }
+    let mut at_target = values.clone();
+    at_target.insert(name.to_owned(), to);
+    if let Some(refusal) = scenario.refusal(name, to).or_else(|| scenario.law_refusal(&at_target)) {
         return Err(PathError::Target(refusal));
     }
     // `is_friction` holds for a parameter of the scenario only.
@@ -168,7 +175,6 @@ pub fn trace(
         system,
         values,
         name,
-        rates,
         factors: factors(prepared, values),
         sign: if to < start { -1.0 } else { 1.0 },
     };
@@ -193,17 +199,26 @@ pub fn trace(
 }
 
 impl Follower<'_> {
-    fn numbers(&self, value: f64) -> ContactNumbers {
+    fn values(&self, value: f64) -> ParameterValues {
         let mut values = self.values.clone();
         values.insert(self.name.to_owned(), value);
-        contact_numbers(self.system, &self.factors, &values)
+        values
+    }
+
+    fn numbers(&self, value: f64) -> ContactNumbers {
+        contact_numbers(self.system, &self.factors, &self.values(value))
+    }
+
+    /// d(numbers)/dθ at a value: an expression has another rate everywhere.
+    fn rates(&self, value: f64) -> ContactNumbers {
+        number_rates(self.prepared, self.system, &self.values(value), self.name).0
     }
 
     fn place(&self, value: f64, basis: &Basis) -> Option<Place> {
         let numbers = self.numbers(value);
         let contact = contact_lcp(self.system, &numbers, Covering::Ones).ok()?;
         let point = vertex(&contact.lcp, basis)?;
-        let lcp = rate_lcp(self.system, &numbers, &contact, &point, &self.rates, self.sign);
+        let lcp = rate_lcp(self.system, &numbers, &contact, &point, &self.rates(value), self.sign);
         let slope = rate(&lcp, basis)?;
         let mut place = Place { value, margins: Vec::new(), slopes: Vec::new(), numbers, contact, point };
         let largest = |values: &[f64]| {
@@ -338,7 +353,8 @@ impl Follower<'_> {
 
     /// The scheme just beyond a place, from the LCP of the rates there.
     fn scheme_beyond(&self, place: &Place, basis: &Basis) -> Result<Basis, ()> {
-        let lcp = rate_lcp(self.system, &place.numbers, &place.contact, &place.point, &self.rates, self.sign);
+        let rates = self.rates(place.value);
+        let lcp = rate_lcp(self.system, &place.numbers, &place.contact, &place.point, &rates, self.sign);
         let order = order(&place.contact);
         let mut engine = Parametric::new(Arc::new(lcp), basis, order).ok_or(())?;
         let reach = Reach {

@@ -6,7 +6,6 @@ use crate::answer::record::Ray;
 use crate::explain::ray;
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::Scenario;
-use crate::solve::numbers::factors;
 use crate::solve::{Prepared, Solved};
 use crate::watch::Watch;
 
@@ -44,7 +43,7 @@ pub fn limit(
 ) -> Result<Limit, PathError> {
     let reach = LoadReach { to: None, through: false };
     let path = trace(prepared, scenario, values, solved, name, reach, watch)?;
-    let present = path.parameter.value(&factors(prepared, values));
+    let present = path.parameter.present;
     let factor = path.limit();
     let mut limit = Limit {
         present,

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::change::{Change, changes, sentence};
+use super::rate::fixed_place;
 use super::start::{PIVOTS, PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
@@ -19,36 +20,83 @@ use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{End, Parametric, Path, Reach};
 use crate::lcp::vertex::{Basis, vertex};
+use crate::model::jet::Dependence;
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::Scenario;
 use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::{Prepared, Solved};
 use crate::watch::Watch;
 
-/// What a load path varies: the factor of a case, or of all cases that one parameter drives.
+/// What a load path varies: the factor of a case, or a parameter in which the factors of some cases are affine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadParameter {
     /// As asked for: the case or the parameter.
     pub name: String,
-    /// Indices of the cases.
-    pub cases: Vec<usize>,
+    /// The cases it drives.
+    pub cases: Vec<DrivenCase>,
+    /// Its present value.
+    pub present: f64,
+}
+
+/// A case whose factor is offset + rate · θ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenCase {
+    /// Index of the case.
+    pub case: usize,
+    /// Factor at θ = 0.
+    pub offset: f64,
+    /// Growth of the factor per unit of θ.
+    pub rate: f64,
 }
 
 impl LoadParameter {
-    /// Finds a case of this name, or the cases whose factor is the parameter of this name.
+    /// Finds a case of this name, or the cases whose factor depends on the parameter of this name.
     ///
     /// # Errors
-    /// An unknown name; a parameter that moves the laws of contact too.
-    pub fn find(prepared: &Prepared, scenario: &Scenario, name: &str) -> Result<LoadParameter, PathError> {
+    /// An unknown name; a parameter that moves something else too, or a factor in another way than a + b θ.
+    pub fn find(
+        prepared: &Prepared,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        name: &str,
+    ) -> Result<LoadParameter, PathError> {
         let system = prepared.system().ok_or(PathError::Plain("trace"))?;
         if let Some(case) = prepared.cases.iter().position(|(known, _)| known == name) {
-            return Ok(LoadParameter { name: name.to_owned(), cases: vec![case] });
+            let cases = vec![DrivenCase { case, offset: 0.0, rate: 1.0 }];
+            return Ok(LoadParameter { name: name.to_owned(), cases, present: prepared.cases[case].1.value(values) });
         }
-        let cases: Vec<usize> =
-            (0..prepared.cases.len()).filter(|&case| prepared.cases[case].1.parameter() == Some(name)).collect();
+        let Some(present) = values.get(name).copied() else {
+            return Err(PathError::Unknown { name: name.to_owned(), known: known(prepared, scenario) });
+        };
+        let mixed = |why: String| PathError::Mixed { name: name.to_owned(), why };
+        if let Some(refusal) = values.formula(name).and_then(|_| scenario.refusal(name, present)) {
+            return Err(PathError::Target(refusal));
+        }
+        if let Some(why) = fixed_place(scenario, name) {
+            return Err(mixed(why));
+        }
+        let along = values.along(name);
+        let mut at_zero = values.clone();
+        at_zero.insert(name.to_owned(), 0.0);
+        let mut cases = Vec::new();
+        for (case, (known, factor)) in prepared.cases.iter().enumerate() {
+            let jet = factor.along(&along);
+            match jet.dependence {
+                Dependence::Constant => {}
+                Dependence::Affine => {
+                    cases.push(DrivenCase { case, offset: factor.value(&at_zero), rate: jet.rate });
+                }
+                Dependence::Nonlinear => {
+                    return Err(mixed(format!(
+                        "the factor of case {known}, {}, is no linear function of it: `sweep {name} A..B` varies it",
+                        factor.text()
+                    )));
+                }
+            }
+        }
         let law = system.pairs.iter().find_map(|pair| {
             let numbers = pair.law.numbers();
-            let (what, _) = numbers.into_iter().find(|(_, number)| number.parameter() == Some(name))?;
+            let (what, _) = numbers.into_iter().find(|(_, number)| along.dependence(number) != Dependence::Constant)?;
             Some(format!("it is the {what} of pair {}", pair.id))
         });
         if let Some(why) = law {
@@ -57,25 +105,26 @@ impl LoadParameter {
             } else {
                 " and the factor of a load case as well; give them parameters of their own"
             };
-            return Err(PathError::Mixed { name: name.to_owned(), why: format!("{why}{rest}") });
+            return Err(mixed(format!("{why}{rest}")));
         }
         if cases.is_empty() {
             return Err(PathError::Unknown { name: name.to_owned(), known: known(prepared, scenario) });
         }
-        Ok(LoadParameter { name: name.to_owned(), cases })
+        Ok(LoadParameter { name: name.to_owned(), cases, present })
     }
 
-    /// Its present value.
-    pub fn value(&self, factors: &[f64]) -> f64 {
-        // `find` leaves no empty list.
-        self.cases.first().map_or(0.0, |&case| factors[case])
+    /// Puts the factors of the cases to their values at θ.
+    fn drive(&self, factors: &mut [f64], value: f64) {
+        for driven in &self.cases {
+            factors[driven.case] = driven.offset + driven.rate * value;
+        }
     }
 
     /// RF per unit of it.
     fn direction(&self, system: &ContactSystem) -> DVector<f64> {
-        self.cases
-            .iter()
-            .fold(DVector::zeros(system.joint_count()), |sum: DVector<f64>, &case| sum + &system.loads[case].vector)
+        self.cases.iter().fold(DVector::zeros(system.joint_count()), |sum: DVector<f64>, driven| {
+            sum + driven.rate * &system.loads[driven.case].vector
+        })
     }
 }
 
@@ -174,7 +223,7 @@ pub fn trace(
     watch: &dyn Watch,
 ) -> Result<LoadPath, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
-    let parameter = LoadParameter::find(prepared, scenario, name)?;
+    let parameter = LoadParameter::find(prepared, scenario, values, name)?;
     if let Some(to) = reach.to
         && !to.is_finite()
     {
@@ -187,12 +236,10 @@ pub fn trace(
     }
     let present = solved.and_then(final_basis);
     let from_zero = present.is_none();
+    let start = if from_zero { 0.0 } else { parameter.present };
     if from_zero {
-        for &case in &parameter.cases {
-            all_factors[case] = 0.0;
-        }
+        parameter.drive(&mut all_factors, start);
     }
-    let start = parameter.value(&all_factors);
     let numbers = contact_numbers(system, &all_factors, values);
     let sign = match reach.to {
         Some(to) if to < start => -1.0,
@@ -293,9 +340,7 @@ impl LoadPath {
     /// The factors of all cases at a factor of the followed one.
     pub fn case_factors(&self, factor: f64) -> Vec<f64> {
         let mut all = self.all_factors.clone();
-        for &case in &self.parameter.cases {
-            all[case] = factor;
-        }
+        self.parameter.drive(&mut all, factor);
         all
     }
 

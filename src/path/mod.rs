@@ -5,7 +5,7 @@ pub mod friction;
 pub mod grid;
 pub mod limit;
 pub mod load;
-mod rate;
+pub(crate) mod rate;
 pub mod record;
 pub mod sensitivity;
 pub mod stages;

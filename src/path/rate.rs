@@ -8,15 +8,33 @@ use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::variable::Variable;
 use crate::lcp::vertex::{Basis, direction};
 use crate::model::pair::Law;
-use crate::model::parameter::Number;
+use crate::model::parameter::{Number, ParameterValues};
+use crate::model::scenario::Scenario;
+use crate::model::uses::Region;
 use crate::solve::Prepared;
 use crate::solve::numbers::numbers_by;
 
-/// d(numbers)/dθ and d(factors)/dθ for a parameter θ: numbers are θ itself or do not depend on it.
-pub(crate) fn number_rates(prepared: &Prepared, system: &ContactSystem, name: &str) -> (ContactNumbers, Vec<f64>) {
-    let is = |number: &Number| f64::from(number.parameter() == Some(name));
-    let factors: Vec<f64> = prepared.cases.iter().map(|(_, factor)| is(factor)).collect();
-    (numbers_by(system, &factors, &is), factors)
+/// d(numbers)/dθ and d(factors)/dθ at these values for a parameter θ, with R and RF as they are.
+pub(crate) fn number_rates(
+    prepared: &Prepared,
+    system: &ContactSystem,
+    values: &ParameterValues,
+    name: &str,
+) -> (ContactNumbers, Vec<f64>) {
+    let along = values.along(name);
+    let rate = |number: &Number| number.along(&along).rate;
+    let factors: Vec<f64> = prepared.cases.iter().map(|(_, factor)| rate(factor)).collect();
+    (numbers_by(system, &factors, &rate), factors)
+}
+
+/// Where a parameter stands apart from laws and factors, in words: those places cannot be followed. `None` if nowhere.
+pub(crate) fn fixed_place(scenario: &Scenario, name: &str) -> Option<String> {
+    let place = |region| scenario.uses.place(name, region);
+    if let Some(path) = place(Region::Geometry) {
+        return Some(format!("it stands in the geometry or stiffness ({path}): `sweep {name} A..B` varies it"));
+    }
+    let path = place(Region::Load).or_else(|| place(Region::Amount))?;
+    Some(format!("it stands in the loads ({path}): `sweep {name} A..B` varies it"))
 }
 
 /// The LCP at `point` with d = dM/dθ z + dq/dθ as covering: to first order w = M z + q + (θ − θ₀) d.

@@ -1,6 +1,6 @@
 //! Sensitivity: derivatives of slips and forces with respect to every parameter, from the final scheme.
 
-use super::rate::{number_rates, rate, rate_lcp};
+use super::rate::{fixed_place, number_rates, rate, rate_lcp};
 use super::start::{PathError, final_basis};
 use crate::answer::record::PairState;
 use crate::contact::complementarity::load_with_gaps;
@@ -47,7 +47,7 @@ pub struct Sensitivity {
     pub on_limit: Vec<String>,
 }
 
-/// Derivatives with respect to every parameter of the scenario.
+/// Derivatives with respect to every parameter of the scenario that stands in laws and factors only.
 ///
 /// # Errors
 /// Where there is no answer, or a bare LCP.
@@ -66,8 +66,9 @@ pub fn sensitivity(
     // Afresh, forces included: a warm answer keeps only its displacements.
     let point = vertex(&contact.lcp, &basis).ok_or_else(singular)?;
     let mut parameters = Vec::new();
-    for name in scenario.parameters.keys() {
-        let (rates, factor_rates) = number_rates(prepared, system, name);
+    let settable = scenario.parameters.iter().filter(|(_, parameter)| parameter.formula.is_none());
+    for name in settable.map(|(name, _)| name).filter(|name| fixed_place(scenario, name).is_none()) {
+        let (rates, factor_rates) = number_rates(prepared, system, values, name);
         let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;

@@ -13,7 +13,7 @@ use crate::answer::record::{Answer, OutcomeKind, State};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
-use crate::solve::Prepared;
+use crate::solve::{PrepareError, Prepared, Solved};
 use crate::watch::Watch;
 
 /// Points that are solved before they are written.
@@ -130,7 +130,7 @@ impl Sweep<'_> {
                 hash.add(&entry.to_bits().to_le_bytes());
             }
         }
-        for (name, value) in self.values {
+        for (name, value) in self.values.free() {
             if self.grid.axes.iter().all(|axis| axis.name != *name) {
                 hash.add(name.as_bytes());
                 hash.add(&value.to_bits().to_le_bytes());
@@ -231,6 +231,18 @@ impl Sweep<'_> {
         }
     }
 
+    /// The answer at one point; a refusal in words, or `None` where `watch` asked to stop.
+    fn solve_at(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<Solved, Option<String>> {
+        let renewed = self.prepared.renewed(self.scenario, values, watch).map_err(|error| match error {
+            PrepareError::Interrupted => None,
+            PrepareError::Problems(problems) => Some(problems.to_string()),
+        })?;
+        let prepared = renewed.as_ref().map_or(self.prepared, |(prepared, _)| prepared);
+        prepared
+            .solve_briefly(self.scenario, values, self.rules, watch)
+            .map_err(|error| (!error.is_interrupted()).then(|| error.to_string()))
+    }
+
     /// `None` where `watch` asked to stop.
     fn row(&self, index: usize, watch: &dyn Watch) -> Option<Row> {
         let point = self.grid.point(index);
@@ -238,15 +250,14 @@ impl Sweep<'_> {
         for (axis, value) in self.grid.axes.iter().zip(&point) {
             values.insert(axis.name.clone(), *value);
         }
-        let solved = self.prepared.solve_briefly(self.scenario, &values, self.rules, &StopOnly(watch));
-        let (fields, is_answer) = match solved {
+        let (fields, is_answer) = match self.solve_at(&values, &StopOnly(watch)) {
             Ok(solved) => (fields(&solved.answer), solved.answer.is_answer()),
-            Err(error) if error.is_interrupted() => return None,
-            Err(error) => {
+            Err(None) => return None,
+            Err(Some(refusal)) => {
                 let mut fields = vec![Value::Null; self.columns().len() - point.len()];
                 fields[0] = json!("refused");
                 if let Some(failure) = fields.last_mut() {
-                    *failure = json!(error.to_string());
+                    *failure = json!(refusal);
                 }
                 (fields, false)
             }

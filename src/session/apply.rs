@@ -8,7 +8,9 @@ use serde_json::{Value, json};
 
 use crate::answer::record::Start;
 use crate::model::embedded;
-use crate::model::load::load_named_or_file;
+use crate::model::load::{at_values, load_named_or_file};
+use crate::model::uses::Redone;
+use crate::solve::Prepared;
 use crate::solve::resume::same_answer;
 use crate::view::number::short;
 use crate::view::status;
@@ -88,9 +90,18 @@ impl Session {
         notes: &[String],
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let before = self.now.clone();
+        let mut before = self.now.clone();
         let news = !before.same_choice(&next);
+        if !self.auto && !self.deferred && before.scenario.uses.between(&before.values, &next.values) > Redone::Lcp {
+            // Nothing is solved now, but values that make the model invalid are refused all the same.
+            at_values(&next.scenario, &next.values).map_err(CommandError::Scenario)?;
+        }
         self.enter(next, true, io)?;
+        let same = |a: &Arc<Prepared>, b: &Option<Arc<Prepared>>| b.as_ref().is_some_and(|b| Arc::ptr_eq(a, b));
+        if Arc::ptr_eq(&before.scenario, &self.now.scenario) {
+            // One factorization for each step of a slider would fill the memory: `undo` computes it anew.
+            before.prepared = before.prepared.filter(|prepared| same(prepared, &self.now.prepared));
+        }
         if news {
             self.undo.push(Change { command: text.to_owned(), setup: before });
             self.redo.clear();
@@ -214,6 +225,9 @@ impl Session {
                     }
                 }
                 next.values.insert(name, value);
+                if let Some(refusal) = scenario.law_refusal(&next.values).filter(|_| !self.deferred) {
+                    return Err(values::SetError::Value(refusal).into());
+                }
             }
             Setting::Covering(covering) => next.rules.covering = covering,
             Setting::TieBreak(tie_break) => next.rules.tie_break = tie_break,
@@ -254,6 +268,9 @@ impl Session {
             Some("engine") => next.rules.engine = rules.engine,
             Some(name) => {
                 let value = *file.get(name).ok_or_else(|| values::unknown_parameter(name, &next.scenario))?;
+                if let Some(refusal) = next.scenario.refusal(name, value) {
+                    return Err(CommandError::Refused(refusal));
+                }
                 next.values.insert(name.to_owned(), value);
             }
         }

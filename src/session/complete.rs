@@ -66,7 +66,7 @@ impl Session {
             Source::Lcp(_) => Vec::new(),
         };
         Vocabulary {
-            parameters: self.values().iter().map(|(name, value)| (name.clone(), *value)).collect(),
+            parameters: self.values().free().map(|(name, value)| (name.clone(), value)).collect(),
             pairs,
             nodes,
             bars,

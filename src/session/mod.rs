@@ -36,10 +36,12 @@ pub use crate::answer::record::Answer;
 use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
-use crate::model::scenario::Scenario;
+use crate::model::scenario::{Scenario, Source};
+use crate::model::structure::Structure;
+use crate::model::uses::Redone;
 use crate::path::record::PathRecord;
-pub use crate::solve::Solved;
-use crate::solve::{self, Prepared};
+use crate::solve;
+pub use crate::solve::{Prepared, Solved};
 use crate::watch::Watch;
 
 pub use apply::write_scenarios;
@@ -212,6 +214,15 @@ impl Session {
     /// The prepared geometry, shared.
     pub fn prepared(&self) -> Option<Arc<Prepared>> {
         self.now.prepared.clone()
+    }
+
+    /// The structure under the parameter values of the present answer, if the scenario is one.
+    pub fn structure(&self) -> Option<&Structure> {
+        match (&self.now.prepared, &self.now.scenario.source) {
+            (Some(prepared), _) => prepared.structure(),
+            (None, Source::Structure(structure)) => Some(structure),
+            (None, _) => None,
+        }
     }
 
     /// The answer before the last change.
@@ -391,7 +402,7 @@ impl Session {
         let mut sets: Vec<String> = self
             .now
             .values
-            .iter()
+            .free()
             .filter(|(name, value)| {
                 scenario.parameters.get(*name).is_none_or(|parameter| parameter.value.to_bits() != value.to_bits())
             })
@@ -455,17 +466,21 @@ impl Setup {
         let prepared = self.prepared.clone();
         let (values, rules) = (self.values.clone(), self.rules);
         let (prepared, solved) = worker::run(watch, move |watch| {
-            let prepared = match prepared {
-                Some(prepared) => prepared,
-                None => Arc::new(solve::prepare(&scenario, watch)?),
+            let (prepared, redone) = match prepared {
+                Some(prepared) => match prepared.renewed(&scenario, &values, watch)? {
+                    Some((renewed, redone)) => (Arc::new(renewed), redone),
+                    None => (prepared, Redone::Lcp),
+                },
+                None => (Arc::new(solve::prepare_at(&scenario, &values, watch)?), Redone::Stiffness),
             };
-            let solved = match last {
+            let solved = match last.filter(|_| redone < Redone::Stiffness) {
                 Some(last) => prepared.solve_from(&last, &scenario, &values, rules, watch),
                 None => prepared.solve(&scenario, &values, rules, watch),
             };
-            let solved = solved.map_err(|error| {
+            let mut solved = solved.map_err(|error| {
                 if error.is_interrupted() { CommandError::Interrupted } else { CommandError::Solve(error.to_string()) }
             })?;
+            solved.answer.redone = redone;
             Ok::<_, CommandError>((prepared, Arc::new(solved)))
         })??;
         self.prepared = Some(prepared);

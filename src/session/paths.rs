@@ -11,6 +11,7 @@ use crate::path::friction::{self, is_friction};
 use crate::path::grid::{Axis, Grid, GridError, POINTS};
 use crate::path::limit;
 use crate::path::load::{self, LoadReach};
+use crate::path::rate::fixed_place;
 use crate::path::record::PathRecord;
 use crate::path::sensitivity::sensitivity;
 use crate::path::stages;
@@ -106,7 +107,7 @@ impl Session {
         let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
         let what = name.to_owned();
         let is_load = prepared.cases.iter().any(|(case, _)| *case == what);
-        if is_friction(&prepared, name) && !is_load {
+        if is_friction(&prepared, &values, name) && !is_load {
             let to = to.unwrap_or_else(|| {
                 let slider = scenario.parameters.get(name).and_then(|p| p.max);
                 let present = values.get(name).copied().unwrap_or_default();
@@ -199,6 +200,12 @@ impl Session {
             && !self.now.values.contains_key(name)
         {
             return Err(super::values::unknown_parameter(name, &self.now.scenario).into());
+        }
+        if let Some(name) = parameter
+            && let Some(refusal) =
+                self.now.scenario.refusal(name, 0.0).or_else(|| fixed_place(&self.now.scenario, name))
+        {
+            return Err(CommandError::Refused(format!("no derivatives with respect to {name}: {refusal}")));
         }
         let ground = self.ground(io)?;
         let found = sensitivity(&ground.prepared, &self.now.scenario, &ground.solved, &self.now.values)?;

@@ -3,7 +3,6 @@
 use serde_json::{Value, json};
 
 use crate::answer::record::{NodeDisplacement, PairState};
-use crate::model::scenario::Source;
 use crate::view::plot::diagram::{self, Force};
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
@@ -144,9 +143,7 @@ impl Session {
 
     fn plot_structure(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         self.need_answer()?;
-        let Source::Structure(structure) = &self.now.scenario.source else {
-            return Err(not_a_structure());
-        };
+        let structure = self.structure().ok_or_else(not_a_structure)?;
         let displacements = self.displacements();
         let pairs = self.pairs();
         let title = match self.position {
@@ -174,9 +171,7 @@ impl Session {
     /// The motion of the structure along the ray.
     fn plot_mode(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         self.need_answer()?;
-        let Source::Structure(structure) = &self.now.scenario.source else {
-            return Err(not_a_structure());
-        };
+        let structure = self.structure().ok_or_else(not_a_structure)?;
         let mode = self
             .solved
             .as_ref()
@@ -218,9 +213,7 @@ impl Session {
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let Source::Structure(structure) = &self.now.scenario.source else {
-            return Err(not_a_structure());
-        };
+        let structure = self.structure().ok_or_else(not_a_structure)?;
         let Some(members) = &answer.members else {
             return Err(CommandError::Refused("no member forces: there is no answer".into()));
         };

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use crate::contact::critical::Coverage;
 use crate::explain::margin::Margin;
 use crate::model::scenario::Source;
+use crate::model::uses::Region;
 use crate::solve::all_answers::{AllAnswers, QuestionError};
 use crate::solve::{Prepared, Solved};
 use crate::view;
@@ -141,6 +142,11 @@ impl Session {
     pub(super) fn critical(&self, friction: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
         let name = friction.to_owned();
+        if self.now.scenario.uses.place(&name, Region::Geometry).is_some() {
+            return Err(CommandError::Refused(format!(
+                "{name} stands in the geometry or stiffness as well: `critical` varies friction alone"
+            )));
+        }
         let found = self.ask(io, move |prepared, _, watch| prepared.critical_friction(&values, &name, watch))?;
         let pairs = self.pairs();
         let ids: Vec<&str> = pairs.iter().map(|pair| pair.id.as_str()).collect();

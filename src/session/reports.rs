@@ -82,6 +82,7 @@ impl Session {
                             "name": name,
                             "value": value,
                             "file": file.map(|p| p.value),
+                            "formula": file.and_then(|p| Some(p.formula.as_ref()?.text().to_owned())),
                             "min": file.and_then(|p| p.min),
                             "max": file.and_then(|p| p.max),
                             "step": file.and_then(|p| p.step),

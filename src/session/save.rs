@@ -58,7 +58,7 @@ fn edited(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &Pa
     let root =
         CstRootNode::parse(&scenario.text, &ParseOptions::default()).map_err(|_| shape("the outermost object"))?;
     let object = root.object_value().ok_or_else(|| shape("the outermost object"))?;
-    for (name, value) in values {
+    for (name, value) in values.free() {
         let Some(file) = scenario.parameters.get(name) else {
             return Err(shape(name));
         };
@@ -69,7 +69,7 @@ fn edited(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &Pa
             .object_value("parameters")
             .and_then(|parameters| parameters.get(name))
             .ok_or_else(|| shape(&format!("parameters.{name}")))?;
-        let number = CstInputValue::Number(literal(*value));
+        let number = CstInputValue::Number(literal(value));
         match parameter.object_value() {
             Some(parameter) => {
                 parameter.get("value").ok_or_else(|| shape(&format!("parameters.{name}.value")))?.set_value(number)

@@ -20,6 +20,7 @@ use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::vertex::Basis;
+use crate::model::jet::Dependence;
 use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Rules};
@@ -179,25 +180,28 @@ impl Prepared {
         let Some(system) = self.system() else {
             return refused("a bare LCP has no friction".to_owned());
         };
-        let has = system.pairs.iter().any(|pair| match &pair.law {
-            Law::Coulomb { friction, .. } => friction.parameter() == Some(parameter),
-            _ => false,
-        });
-        if !has {
-            let mut names: Vec<String> = Vec::new();
-            for pair in &system.pairs {
-                if let Law::Coulomb { friction, .. } = &pair.law
-                    && let Some(name) = friction.parameter()
-                    && !names.iter().any(|known| known == name)
-                {
-                    names.push(name.to_owned());
-                }
-            }
+        let along = values.along(parameter);
+        let frictions = || {
+            system.pairs.iter().filter_map(|pair| match &pair.law {
+                Law::Coulomb { friction, .. } => Some((pair, friction)),
+                Law::Frictionless { .. } | Law::Bound { .. } => None,
+            })
+        };
+        if frictions().all(|(_, friction)| along.dependence(friction) == Dependence::Constant) {
+            let names = values.formulas().free(frictions().flat_map(|(_, friction)| friction.names()));
+            let names: Vec<String> = values.keys().filter(|name| names.contains(*name)).cloned().collect();
             return refused(if names.is_empty() {
                 "no pair has a friction that is a parameter".to_owned()
             } else {
                 format!("`{parameter}` is not the friction of any pair; expected {}", names.join(" or "))
             });
+        }
+        if let Some((pair, friction)) = frictions().find(|(_, f)| along.dependence(f) == Dependence::Nonlinear) {
+            return refused(format!(
+                "the friction of pair {}, {}, is no linear function of {parameter}: `critical` needs one",
+                pair.id,
+                friction.text()
+            ));
         }
         let factors = factors(self, values);
         let friction = |value: f64| {
@@ -205,6 +209,9 @@ impl Prepared {
             values.insert(parameter.to_owned(), value);
             contact_numbers(system, &factors, &values).friction
         };
+        if friction(0.0).iter().any(|f| *f < 0.0) {
+            return refused(format!("at {parameter} = 0 a friction is negative: `critical` goes up from 0"));
+        }
         let found = critical_friction(system, &friction, SAMPLES, SEED, &mut |examined| {
             if examined.is_multiple_of(1024) {
                 watch.progress(&format!("block {examined}"), 0.0);

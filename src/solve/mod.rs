@@ -15,5 +15,5 @@ pub mod solved;
 pub mod warm;
 mod written;
 
-pub use prepared::{PrepareError, Prepared, prepare};
+pub use prepared::{PrepareError, Prepared, prepare, prepare_at};
 pub use solved::{SolveError, Solved};

@@ -1,5 +1,5 @@
-//! What depends on the geometry alone: factorization, R, RF per load case. Computed once per scenario and reused
-//! for every change of f, c, gap and load factors.
+//! What depends on geometry, stiffness and loads alone: factorization, R, RF per load case. Reused for every change of
+//! laws and load factors; a change of a number in the loads or in the geometry computes what it must anew.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -11,11 +11,13 @@ use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
 use crate::fem::{MainSystem, MainSystemError};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
+use crate::model::load::at_values;
 use crate::model::pair::{JointDirection, joints};
-use crate::model::parameter::Number;
+use crate::model::parameter::{Number, ParameterValues};
 use crate::model::problem::{LISTED, Problems};
 use crate::model::scenario::{GivenLcp, Scenario, Source};
 use crate::model::structure::Structure;
+use crate::model::uses::Redone;
 use crate::watch::Watch;
 
 /// What kind of thing is solved.
@@ -53,6 +55,8 @@ pub enum Geometry {
 pub struct Prepared {
     /// What is solved.
     pub geometry: Geometry,
+    /// The parameter values under which its plain numbers were read.
+    values: ParameterValues,
     /// Name and factor of each load case.
     pub cases: Vec<(String, Number)>,
     /// Seconds for the factorization of the main system.
@@ -81,28 +85,38 @@ impl PrepareError {
     }
 }
 
-/// Prepares a scenario.
+/// Prepares a scenario under the parameter values of its file.
 ///
 /// # Errors
-/// Dependent joints, a mechanism in the main system, a model too large for memory, an unusable given matrix: each
-/// with its place in the file.
+/// As [`prepare_at`].
 pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
+    prepare_at(scenario, &scenario.parameter_values(), watch)
+}
+
+/// Prepares a scenario under other parameter values.
+///
+/// # Errors
+/// Values that make the model invalid; dependent joints, a mechanism in the main system, a model too large for memory, an unusable given matrix: each
+/// with its place in the file.
+pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
+    let again;
+    let scenario = match scenario.uses.between(&scenario.parameter_values(), values) {
+        Redone::Lcp => scenario,
+        Redone::Loads | Redone::Stiffness => {
+            again = at_values(scenario, values).map_err(PrepareError::Problems)?;
+            &again
+        }
+    };
     let start = Instant::now();
     crate::lcp::compute_sequentially();
     let mut prepared = match &scenario.source {
         Source::Structure(structure) => prepare_structure(scenario, structure, watch)?,
         Source::ContactSystem(given) => {
-            let (mut system, released) = given_system(given).map_err(|error| {
-                let path = match &error {
-                    GivenError::Indefinite { .. } => "contact_system.stiffness".to_owned(),
-                    GivenError::NoKernel { index, .. } => format!("contact_system.kernel[{index}]"),
-                    GivenError::Unheld { case, .. } => format!("contact_system.loads.{case}"),
-                };
-                PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
-            })?;
+            let (mut system, released) = given_system(given).map_err(|error| given_problem(scenario, error))?;
             system.settle();
             Prepared {
                 geometry: Geometry::Contact { system, released },
+                values: ParameterValues::new(),
                 cases: given.loads.iter().map(|load| (load.name.clone(), load.factor.clone())).collect(),
                 factor_seconds: 0.0,
                 condense_seconds: 0.0,
@@ -112,7 +126,18 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
         Source::Lcp(given) => prepare_plain(given),
     };
     prepared.seconds = start.elapsed().as_secs_f64();
+    prepared.values = values.clone();
     Ok(prepared)
+}
+
+/// Gives an error of a given contact system its place in the file.
+fn given_problem(scenario: &Scenario, error: GivenError) -> PrepareError {
+    let path = match &error {
+        GivenError::Indefinite { .. } => "contact_system.stiffness".to_owned(),
+        GivenError::NoKernel { index, .. } => format!("contact_system.kernel[{index}]"),
+        GivenError::Unheld { case, .. } => format!("contact_system.loads.{case}"),
+    };
+    PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
 }
 
 fn prepare_plain(given: &GivenLcp) -> Prepared {
@@ -133,6 +158,7 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
             names: given.names.clone(),
             covering_given: given.covering.is_some(),
         },
+        values: ParameterValues::new(),
         cases: Vec::new(),
         factor_seconds: 0.0,
         condense_seconds: 0.0,
@@ -173,6 +199,19 @@ fn main_system_problem(scenario: &Scenario, structure: &Structure, error: MainSy
     PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
 }
 
+/// RF of every load case with its name and the magnitude of its terms.
+fn joint_loads(structure: &Structure, main: &MainSystem) -> Vec<JointLoad> {
+    let cases = structure.load_cases.iter().zip(main.loads()).zip(main.load_sizes());
+    cases
+        .map(|((case, vector), size)| JointLoad {
+            name: case.name.clone(),
+            // A joint far from the load carries the rounding of forces that pass elsewhere.
+            terms: vector.map(|force| force.abs().max(size)),
+            vector: vector.clone(),
+        })
+        .collect()
+}
+
 fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
     let joints = joints(&structure.pairs);
     let main =
@@ -191,18 +230,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
             tangential: tangential(i),
         })
         .collect();
-    let loads = structure
-        .load_cases
-        .iter()
-        .zip(main.loads())
-        .zip(main.load_sizes())
-        .map(|((case, vector), size)| JointLoad {
-            name: case.name.clone(),
-            // A joint far from the load carries the rounding of forces that pass elsewhere.
-            terms: vector.map(|force| force.abs().max(size)),
-            vector: vector.clone(),
-        })
-        .collect();
+    let loads = joint_loads(structure, &main);
     let mut system = ContactSystem {
         pairs,
         stiffness: main.stiffness().clone(),
@@ -214,6 +242,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     let seconds = main.timings();
     Ok(Prepared {
         geometry: Geometry::Structure { system, main: Box::new(main), structure: structure.clone() },
+        values: ParameterValues::new(),
         cases: structure.load_cases.iter().map(|case| (case.name.clone(), case.factor.clone())).collect(),
         factor_seconds: seconds.factor,
         condense_seconds: seconds.condense,
@@ -222,6 +251,65 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
 }
 
 impl Prepared {
+    /// The same scenario made ready for other parameter values, and what was computed anew for them; `None` where this
+    /// is ready for them already.
+    ///
+    /// # Errors
+    /// As [`prepare_at`].
+    pub fn renewed(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        watch: &dyn Watch,
+    ) -> Result<Option<(Prepared, Redone)>, PrepareError> {
+        match scenario.uses.between(&self.values, values) {
+            Redone::Lcp => Ok(None),
+            Redone::Loads => {
+                let again = at_values(scenario, values).map_err(PrepareError::Problems)?;
+                match self.with_loads(&again, values)? {
+                    Some(prepared) => Ok(Some((prepared, Redone::Loads))),
+                    None => Ok(Some((prepare_at(scenario, values, watch)?, Redone::Stiffness))),
+                }
+            }
+            Redone::Stiffness => Ok(Some((prepare_at(scenario, values, watch)?, Redone::Stiffness))),
+        }
+    }
+
+    /// RF anew with the kept factorization; `scenario` was read under `values`. `None` where the sources do not match.
+    fn with_loads(&self, scenario: &Scenario, values: &ParameterValues) -> Result<Option<Prepared>, PrepareError> {
+        let start = Instant::now();
+        let geometry = match (&self.geometry, &scenario.source) {
+            (Geometry::Structure { system, main, .. }, Source::Structure(structure)) => {
+                let main =
+                    main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
+                let system = ContactSystem { loads: joint_loads(structure, &main), ..system.clone() };
+                Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }
+            }
+            (Geometry::Contact { system, released }, Source::ContactSystem(given)) => {
+                let mut released = released.clone();
+                let loads = released.take_loads(given).map_err(|error| given_problem(scenario, error))?;
+                Geometry::Contact { system: ContactSystem { loads, ..system.clone() }, released }
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(Prepared {
+            geometry,
+            values: values.clone(),
+            cases: self.cases.clone(),
+            factor_seconds: 0.0,
+            condense_seconds: start.elapsed().as_secs_f64(),
+            seconds: start.elapsed().as_secs_f64(),
+        }))
+    }
+
+    /// The structure under its parameter values, if this is one.
+    pub fn structure(&self) -> Option<&Structure> {
+        match &self.geometry {
+            Geometry::Structure { structure, .. } => Some(structure),
+            Geometry::Contact { .. } | Geometry::Plain { .. } => None,
+        }
+    }
+
     /// The contact system, unless this is a bare LCP.
     pub fn system(&self) -> Option<&ContactSystem> {
         match &self.geometry {

@@ -44,7 +44,7 @@ impl Prepared {
         if large
             && usual
             && last.answer.is_answer()
-            && values.iter().all(|(name, value)| scenario.refusal(name, *value).is_none())
+            && scenario.law_refusal(values).is_none()
             && let Some(solved) = self.follow(last, values, rules, watch)
         {
             return Ok(solved);

@@ -33,6 +33,7 @@ use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 use crate::model::scenario::Scenario;
+use crate::model::uses::Redone;
 use crate::watch::Watch;
 
 /// Why nothing was solved; the session stays as it was.
@@ -154,10 +155,8 @@ impl Prepared {
         brief: bool,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        for (name, value) in values {
-            if let Some(refusal) = scenario.refusal(name, *value) {
-                return Err(SolveError::Value(refusal));
-            }
+        if let Some(refusal) = scenario.law_refusal(values) {
+            return Err(SolveError::Value(refusal));
         }
         let start = Instant::now();
         let mut solved = match &self.geometry {
@@ -473,6 +472,7 @@ pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer 
         size,
         timings: Timings::default(),
         start: Start::Cold,
+        redone: Redone::default(),
         notes: Vec::new(),
         failure,
     }

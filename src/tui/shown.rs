@@ -6,10 +6,9 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
-use crate::session::Session;
-use crate::session::Solved;
 use crate::session::complete::Vocabulary;
 use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, Start};
+use crate::session::{Prepared, Session, Solved};
 use crate::view::difference::{self, Change};
 
 /// A session at one moment.
@@ -17,6 +16,8 @@ use crate::view::difference::{self, Change};
 pub struct Shown {
     /// The scenario.
     pub scenario: Arc<Scenario>,
+    /// It made ready to be solved, with its structure under the present values.
+    prepared: Option<Arc<Prepared>>,
     /// Present parameter values.
     pub values: ParameterValues,
     /// Present rules.
@@ -52,6 +53,7 @@ impl Shown {
         };
         Shown {
             scenario: session.shared_scenario(),
+            prepared: session.prepared(),
             values: session.values().clone(),
             rules: session.rules(),
             solved: session.solved(),
@@ -79,9 +81,10 @@ impl Shown {
 
     /// The structure, if the scenario is one.
     pub fn structure(&self) -> Option<&Structure> {
-        match &self.scenario.source {
-            Source::Structure(structure) => Some(structure),
-            _ => None,
+        match (&self.prepared, &self.scenario.source) {
+            (Some(prepared), _) => prepared.structure(),
+            (None, Source::Structure(structure)) => Some(structure),
+            (None, _) => None,
         }
     }
 

@@ -697,7 +697,7 @@ proptest! {
         tenths in any::<i8>(),
         share in any::<f64>(),
     ) {
-        let parameter = crate::model::parameter::Parameter { value, min, max, step, unit: None, about: None };
+        let parameter = crate::model::parameter::Parameter { value, formula: None, min, max, step, unit: None, about: None };
         let _ = vary::varied(value, &parameter, tenths);
         if let Some(place) = vary::share(value, &parameter) {
             prop_assert!((0.0..=1.0).contains(&place));

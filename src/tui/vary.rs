@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     fn parameter(min: Option<f64>, max: Option<f64>, step: Option<f64>) -> Parameter {
-        Parameter { value: 0.0, min, max, step, unit: None, about: None }
+        Parameter { value: 0.0, formula: None, min, max, step, unit: None, about: None }
     }
 
     #[test]

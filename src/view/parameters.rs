@@ -43,8 +43,11 @@ pub fn write(out: &mut dyn Write, scenario: &Scenario, values: &ParameterValues,
     table.write(out, style)
 }
 
-/// `0 … 400 by 10`.
+/// `0 … 400 by 10`, or the formula.
 fn range(parameter: &Parameter) -> String {
+    if let Some(formula) = &parameter.formula {
+        return format!("= {}", formula.text());
+    }
     let mut text = match (parameter.min, parameter.max) {
         (Some(min), Some(max)) => format!("{} … {}", in_full(min), in_full(max)),
         (Some(min), None) => format!("≥ {}", in_full(min)),

@@ -123,6 +123,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         pairs,
         timings: Timings::default(),
         start: crate::answer::record::Start::Cold,
+        redone: Default::default(),
         notes: Vec::new(),
         failure: None,
     }
@@ -283,6 +284,7 @@ fn ground_pair(id: &str, node: usize) -> Pair {
 pub fn scenario() -> Scenario {
     let parameter = |value: f64, max: f64, step: f64, unit: Option<&str>, about: &str| Parameter {
         value,
+        formula: None,
         min: Some(0.0),
         max: Some(max),
         step: Some(step),
@@ -301,6 +303,8 @@ pub fn scenario() -> Scenario {
         description: None,
         units: units(),
         parameters,
+        formulas: std::sync::Arc::default(),
+        uses: crate::model::uses::Uses::default(),
         source: Source::Structure(beam_structure()),
         stages: Vec::new(),
         places: Places::default(),

@@ -10,6 +10,7 @@ use super::{force_unit, length_unit};
 use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, Start, State, Verdict};
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::{Scenario, Source, Units};
+use crate::model::uses::Redone;
 
 /// The word of an outcome, as in results.
 pub fn outcome_word(outcome: OutcomeKind) -> &'static str {
@@ -117,7 +118,7 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
     let (head, role) = headline(answer);
     match answer.outcome {
         OutcomeKind::Trivial | OutcomeKind::Normal if !answer.pairs.is_empty() => {
-            let count = pivot_count(answer);
+            let count = counted(answer, previous);
             let states = state_counts(&answer.pairs);
             let (extreme, before) = extreme(answer, previous, units);
             let with_before = match before {
@@ -138,14 +139,14 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
             finished(fitting.unwrap_or_else(|| joined(&head, &[], style)), role, style)
         }
         OutcomeKind::Trivial | OutcomeKind::Normal => {
-            finished(joined(&head, &[pivot_count(answer)], style), role, style)
+            finished(joined(&head, &[counted(answer, previous)], style), role, style)
         }
         OutcomeKind::Ray => {
             let mut parts = Vec::new();
             if let Some(ray) = &answer.ray {
                 let p = with_unit(&short(ray.p), p_unit(answer, units).as_deref());
                 parts.push(format!("p {p}"));
-                parts.push(pivot_count(answer));
+                parts.push(counted(answer, previous));
                 if let Some(verdict) = ray.verdict {
                     parts.push(verdict_word(verdict).into());
                 }
@@ -156,10 +157,19 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
             finished(joined(&head, &parts, style), role, style)
         }
         OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => {
-            let mut parts = vec![pivot_count(answer)];
+            let mut parts = vec![counted(answer, previous)];
             parts.extend(answer.failure.clone());
             finished(joined(&head, &parts, style), role, style)
         }
+    }
+}
+
+/// The pivots, and before them what was computed anew for a change, if that was more than the LCP.
+fn counted(answer: &Answer, previous: Option<&Answer>) -> String {
+    let pivots = pivot_count(answer);
+    match answer.redone {
+        Redone::Loads | Redone::Stiffness if previous.is_some() => format!("new {}, {pivots}", answer.redone.symbol()),
+        _ => pivots,
     }
 }
 

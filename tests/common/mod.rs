@@ -53,7 +53,7 @@ impl Case {
     pub fn solved(&self, set: &[(&str, f64)], rules: Rules) -> Solved {
         let mut values = self.scenario.parameter_values();
         for (name, value) in set {
-            *values.get_mut(*name).expect("a parameter") = *value;
+            values.insert((*name).to_owned(), *value).expect("a parameter");
         }
         self.prepared.solve(&self.scenario, &values, rules, &Quiet).unwrap_or_else(|e| panic!("{e}"))
     }

@@ -12,7 +12,7 @@ fn load(name: &str, set: &[(&str, f64)]) -> (Scenario, Prepared, ParameterValues
     let scenario = embedded::load(name).expect("embedded");
     let mut values = scenario.parameter_values();
     for (name, value) in set {
-        *values.get_mut(*name).expect("a parameter") = *value;
+        values.insert((*name).to_owned(), *value).expect("a parameter");
     }
     let prepared = prepare(&scenario, &Quiet).expect("sound");
     (scenario, prepared, values)
@@ -98,9 +98,9 @@ fn sensitivities_agree_with_differences() {
         for rate in &found.parameters {
             let at = |sign: f64| {
                 let mut moved = values.clone();
-                let value = moved.get_mut(&rate.parameter).expect("a parameter");
+                let value = moved[&rate.parameter];
                 let step = 1e-6 * value.abs().max(1e-3);
-                *value += sign * step;
+                moved.insert(rate.parameter.clone(), value + sign * step);
                 (solve(&scenario, &prepared, &moved).answer.pairs, step)
             };
             let ((plus, step), (minus, _)) = (at(1.0), at(-1.0));

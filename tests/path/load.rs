@@ -18,7 +18,7 @@ impl Case {
         let scenario = embedded::load(name).expect("embedded");
         let mut values = scenario.parameter_values();
         for (name, value) in set {
-            *values.get_mut(*name).expect("a parameter") = *value;
+            values.insert((*name).to_owned(), *value).expect("a parameter");
         }
         Case { prepared: prepare(&scenario, &Quiet).expect("sound"), values, scenario }
     }
@@ -142,14 +142,14 @@ fn the_path_passes_through_the_answers_of_its_loads() {
     ] {
         let mut case = Case::new(name, &[(load, 0.0)]);
         if name == "plates-free" {
-            *case.values.get_mut("f").expect("a parameter") = 0.75;
+            case.values.insert("f".to_owned(), 0.75).expect("a parameter");
         }
         for factor in factors {
-            *case.values.get_mut(load).expect("a parameter") = 0.0;
+            case.values.insert(load.to_owned(), 0.0).expect("a parameter");
             let path = case.trace(load, Some(factor));
             assert_eq!(path.end, LoadEnd::Target, "{name} {factor}");
             let found = path.pairs.last().expect("the end");
-            *case.values.get_mut(load).expect("a parameter") = factor;
+            case.values.insert(load.to_owned(), factor).expect("a parameter");
             let solved = case.solve();
             let size = |k: fn(&stickslip::answer::record::PairState) -> f64| {
                 solved.answer.pairs.iter().map(|p| k(p).abs()).fold(0.0, f64::max)
@@ -170,7 +170,7 @@ fn the_path_passes_through_the_answers_of_its_loads() {
 fn a_warm_answer_can_be_followed_and_differentiated() {
     let mut case = Case::new("plates-free", &[("f", 0.75), ("q", 100.0), ("T", 60.0)]);
     let before = case.solve();
-    *case.values.get_mut("T").expect("a parameter") = 110.0;
+    case.values.insert("T".to_owned(), 110.0).expect("a parameter");
     let rules = case.scenario.rules;
     let warm = case.prepared.follow(&before, &case.values, rules, &Quiet).expect("a way");
     let cold = case.solve();

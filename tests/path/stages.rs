@@ -17,7 +17,7 @@ fn run(name: &str, stages: &str, set: &[(&str, f64)]) -> (Scenario, Prepared, Hi
     let prepared = prepare(&scenario, &Quiet).expect("sound");
     let mut values = scenario.parameter_values();
     for (name, value) in set {
-        *values.get_mut(*name).expect("a parameter") = *value;
+        values.insert((*name).to_owned(), *value).expect("a parameter");
     }
     let history = follow(&prepared, &scenario, &values, &Quiet).expect("a history");
     (scenario, prepared, history)

@@ -14,7 +14,7 @@ pub fn check(case: &Case, set: &[(&str, f64)], rules: Rules) -> bool {
     let answer = case.solve_under(set, rules);
     let mut values = case.scenario.parameter_values();
     for (name, value) in set {
-        values[*name] = *value;
+        values.insert((*name).to_owned(), *value);
     }
     if !answer.is_answer() {
         assert!(answer.ray.is_some(), "{set:?} {rules:?}: {:?}", answer.failure);

@@ -7,12 +7,13 @@ use super::law::{LawKind, NUMBERS, per_pair};
 use super::lcp::square;
 use super::loads::{check_case_name, factor};
 use super::matrix_market;
-use super::reader::{Cursor, Fields, Parameters};
+use super::reader::{Cursor, Fields};
 use super::words::{counted, is_id, quoted};
 use crate::model::memory;
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
 use crate::model::scenario::{GivenContactSystem, GivenLoad};
+use crate::model::uses::Region;
 
 /// R may differ from its transpose by this much of its largest entry.
 const SYMMETRY: f64 = 1e-8;
@@ -21,7 +22,7 @@ const SYMMETRY: f64 = 1e-8;
 const KERNEL: f64 = 1e-8;
 
 /// Reads a contact system; `path` is the scenario file, for the file of the matrix.
-pub fn read(cursor: Cursor<'_>, parameters: &Parameters, path: Option<&Path>) -> Option<GivenContactSystem> {
+pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSystem> {
     let fields = cursor.fields(&[
         "pairs",
         "positions",
@@ -44,9 +45,9 @@ pub fn read(cursor: Cursor<'_>, parameters: &Parameters, path: Option<&Path>) ->
         Some(cursor) => Some(cursor.numbers(count, "one per pair")?),
         None => None,
     };
-    let laws = laws(&fields, count, parameters);
+    let laws = laws(&fields, count);
     let stiffness = stiffness.and_then(|cursor| csm(cursor, count, path));
-    let loads = loads.and_then(|cursor| load_cases(cursor, count, parameters));
+    let loads = loads.and_then(|cursor| load_cases(cursor, count));
     let kernel = match (fields.optional("kernel"), &stiffness) {
         (Some(cursor), Some(stiffness)) => Some(kernel(cursor, count, stiffness)?),
         _ => None,
@@ -169,7 +170,7 @@ fn from_file(cursor: Cursor<'_>, size: usize, path: Option<&Path>) -> Option<Vec
     }
 }
 
-fn load_cases(cursor: Cursor<'_>, pairs: usize, parameters: &Parameters) -> Option<Vec<GivenLoad>> {
+fn load_cases(cursor: Cursor<'_>, pairs: usize) -> Option<Vec<GivenLoad>> {
     let mut cases = Vec::new();
     let mut is_right = true;
     for entry in cursor.entries()? {
@@ -178,8 +179,9 @@ fn load_cases(cursor: Cursor<'_>, pairs: usize, parameters: &Parameters) -> Opti
             is_right = false;
             continue;
         };
-        let factor = factor(&fields, parameters);
-        let vector = fields.required("vector").and_then(|cursor| cursor.numbers(2 * pairs, TWO_EACH));
+        let factor = factor(&fields);
+        let vector =
+            fields.required("vector").and_then(|cursor| cursor.of(Region::Amount).numbers(2 * pairs, TWO_EACH));
         match (factor, vector) {
             (Some(factor), Some(vector)) => cases.push(GivenLoad { name: entry.name().to_string(), factor, vector }),
             _ => is_right = false,
@@ -224,7 +226,7 @@ fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Ve
     is_right.then_some(motions)
 }
 
-fn laws(fields: &Fields<'_>, pairs: usize, parameters: &Parameters) -> Option<Vec<Law>> {
+fn laws(fields: &Fields<'_>, pairs: usize) -> Option<Vec<Law>> {
     let kinds: Option<Vec<LawKind>> = match fields.optional("law") {
         Some(cursor) => {
             let entries = cursor.list_of(pairs, "one per pair")?;
@@ -239,7 +241,7 @@ fn laws(fields: &Fields<'_>, pairs: usize, parameters: &Parameters) -> Option<Ve
         let Some(cursor) = fields.optional(key) else {
             continue;
         };
-        match per_pair(cursor, key, pairs, false, parameters) {
+        match per_pair(cursor, key, pairs, false) {
             Some(values) => {
                 if let Some(kinds) = &kinds {
                     is_right &= only_where_taken(cursor, key, kinds, &values);

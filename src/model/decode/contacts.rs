@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::elements::entries;
-use super::law::{LawKind, NUMBERS, per_pair};
+use super::law::{self, LawKind, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::structure::{Builder, Spot};
 use super::words::nearest;
@@ -74,7 +74,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         }
     };
     let count = sides.as_ref().map(|sides| sides.pairs.len());
-    let numbers = law_numbers(builder, &fields, law, count, is_edge);
+    let numbers = law_numbers(&fields, law, count, is_edge);
     let skipped = fields
         .entry("skip")
         .map(|entry| {
@@ -248,9 +248,8 @@ fn refuse_foreign_numbers(fields: &Fields<'_>, law: LawKind) {
 }
 
 /// The numbers of the law by key, one per pair. Without a known count, or law, they are checked one by one.
-fn law_numbers<'d>(
-    builder: &Builder<'d>,
-    fields: &Fields<'d>,
+fn law_numbers(
+    fields: &Fields<'_>,
     law: Option<LawKind>,
     count: Option<usize>,
     is_edge: bool,
@@ -271,9 +270,9 @@ fn law_numbers<'d>(
             None => 1,
         };
         let values = if is_edge {
-            per_pair(cursor, key, count, true, builder.parameters)
+            per_pair(cursor, key, count, true)
         } else {
-            cursor.non_negative(key, builder.parameters).map(|number| vec![number])
+            law::number(cursor, key).map(|number| vec![number])
         };
         match values {
             Some(values) => {

@@ -1,8 +1,9 @@
 //! Laws of contact and the numbers that belong to each.
 
-use super::reader::{Cursor, Parameters};
+use super::reader::Cursor;
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
+use crate::model::uses::Region;
 
 /// A law without its numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -52,19 +53,19 @@ impl LawKind {
     }
 }
 
-/// One number ≥ 0 per pair: from a list with one entry each, or, where `may_be_single`, from a single one.
-pub fn per_pair(
-    cursor: Cursor<'_>,
-    key: &str,
-    count: usize,
-    may_be_single: bool,
-    parameters: &Parameters,
-) -> Option<Vec<Number>> {
+/// A number of a law: a gap may be negative (an interference), the others not.
+pub fn number(cursor: Cursor<'_>, key: &str) -> Option<Number> {
+    let cursor = cursor.of(Region::Law);
+    if key == "gap" { cursor.any_number() } else { cursor.non_negative(key) }
+}
+
+/// One number per pair: from a list with one entry each, or, where `may_be_single`, from a single one.
+pub fn per_pair(cursor: Cursor<'_>, key: &str, count: usize, may_be_single: bool) -> Option<Vec<Number>> {
     if may_be_single && !cursor.is_list() {
-        let number = cursor.non_negative(key, parameters)?;
+        let number = number(cursor, key)?;
         return Some(vec![number; count]);
     }
     let entries = cursor.list_of(count, "one per pair")?;
-    let numbers: Vec<Option<Number>> = entries.map(|entry| entry.non_negative(key, parameters)).collect();
+    let numbers: Vec<Option<Number>> = entries.map(|entry| number(entry, key)).collect();
     numbers.into_iter().collect()
 }

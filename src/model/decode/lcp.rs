@@ -2,13 +2,14 @@
 
 use std::collections::HashSet;
 
-use super::reader::{Cursor, Parameters};
+use super::reader::Cursor;
 use super::words::quoted;
 use crate::model::parameter::Number;
 use crate::model::scenario::GivenLcp;
+use crate::model::uses::Region;
 
 /// Reads a bare LCP.
-pub fn read(cursor: Cursor<'_>, parameters: &Parameters) -> Option<GivenLcp> {
+pub fn read(cursor: Cursor<'_>) -> Option<GivenLcp> {
     let fields = cursor.fields(&["M", "q", "covering", "names"])?;
     let rows = fields.required("M").and_then(|matrix| {
         let rows = matrix.list()?;
@@ -23,7 +24,7 @@ pub fn read(cursor: Cursor<'_>, parameters: &Parameters) -> Option<GivenLcp> {
     let like_m = "as many as M has rows";
     let q: Option<Vec<Number>> = q.and_then(|q| {
         let entries = q.list_of(count, like_m)?;
-        let entries: Vec<_> = entries.map(|entry| entry.number_or_parameter(parameters)).collect();
+        let entries: Vec<_> = entries.map(|entry| entry.of(Region::Law).any_number()).collect();
         entries.into_iter().collect()
     });
     let covering = match fields.optional("covering") {

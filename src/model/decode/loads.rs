@@ -6,6 +6,7 @@ use super::words::{ID_RULE, is_id, quoted};
 use crate::model::edge::tributary_lengths;
 use crate::model::parameter::Number;
 use crate::model::structure::{Load, LoadCase};
+use crate::model::uses::Region;
 
 const KINDS: [&str; 5] = ["point", "traction", "line", "gravity", "temperature"];
 
@@ -29,18 +30,18 @@ pub fn check_case_name(entry: Entry<'_>) {
 }
 
 /// `factor` of a load case; 1 without one.
-pub fn factor(fields: &Fields<'_>, parameters: &super::reader::Parameters) -> Option<Number> {
+pub fn factor(fields: &Fields<'_>) -> Option<Number> {
     match fields.optional("factor") {
-        Some(cursor) => cursor.number_or_parameter(parameters),
+        Some(cursor) => cursor.of(Region::Factor).any_number(),
         None => Some(Number::Value(1.0)),
     }
 }
 
 fn load_case<'d>(builder: &Builder<'d>, entry: Entry<'d>) -> Option<LoadCase> {
     let fields = entry.value().fields(&["factor", "items"])?;
-    let factor = factor(&fields, builder.parameters);
+    let factor = factor(&fields);
     let mut loads = Vec::new();
-    for cursor in fields.required("items")?.list()? {
+    for cursor in fields.required("items")?.of(Region::Amount).list()? {
         // A wrong item was reported; the others are read on.
         loads.extend(item(builder, cursor).unwrap_or_default());
     }

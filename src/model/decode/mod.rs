@@ -10,6 +10,7 @@ mod lcp;
 mod loads;
 mod matrix_market;
 mod numbers;
+mod parameters;
 mod plates;
 mod reader;
 mod stages;
@@ -17,26 +18,23 @@ mod structure;
 mod supports;
 #[cfg(test)]
 mod tests;
-mod words;
 
 use std::path::PathBuf;
-
-use indexmap::IndexMap;
+use std::sync::Arc;
 
 use super::locate::{Document, position};
-use super::parameter::Parameter;
+use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::rules::{Covering, Engine, Rules, TieBreak, UnknownChoice};
 use super::scenario::{Places, Scenario, Source, Units};
-use reader::{Cursor, Entry, Fields, Findings, Parameters};
-use words::{ID_RULE, is_id, quoted};
-
-pub(super) use words::did_you_mean;
+use super::uses::Uses;
+use super::words::{self, quoted};
+use reader::{Cursor, Entry, Fields, Reading};
 
 const FORMAT: &str = "stickslip/1";
 
 /// Keys of any scenario.
-const COMMON: [&str; 7] = ["format", "title", "description", "units", "parameters", "stages", "solver"];
+const COMMON: [&str; 8] = ["$schema", "format", "title", "description", "units", "parameters", "stages", "solver"];
 
 /// Keys of the source *structure*.
 const STRUCTURE: [&str; 11] =
@@ -45,11 +43,13 @@ const STRUCTURE: [&str; 11] =
 /// Keys of the other two sources.
 const OTHER_SOURCES: [&str; 2] = ["contact_system", "lcp"];
 
-/// Names that `set` in the program's own language already uses.
-const RESERVED: [&str; 4] = ["auto", "covering", "tie-break", "engine"];
-
-/// Checks the text of a scenario.
-pub fn scenario(name: &str, text: &str, path: Option<PathBuf>) -> Result<Scenario, Problems> {
+/// Checks the text of a scenario under the parameter values of the file, or those given.
+pub fn scenario(
+    name: &str,
+    text: &str,
+    path: Option<PathBuf>,
+    values: Option<&ParameterValues>,
+) -> Result<Scenario, Problems> {
     let document = Document::parse(text).map_err(|error| {
         let (line, column) = position(text, error.offset);
         Problems {
@@ -64,10 +64,16 @@ pub fn scenario(name: &str, text: &str, path: Option<PathBuf>) -> Result<Scenari
             more: 0,
         }
     })?;
-    let findings = Findings::default();
-    let decoded = read(Cursor::root(&document, &findings), name, text, path);
-    match (findings.into_problems(name, &document), decoded) {
-        (None, Some(scenario)) => Ok(scenario),
+    let reading = Reading::default();
+    let decoded = read(Cursor::root(&document, &reading), name, text, path, values);
+    let parameters = reading.parameters.into_inner().unwrap_or_default();
+    match (reading.findings.into_problems(name, &document), decoded) {
+        (None, Some(mut scenario)) => {
+            let places = reading.uses.into_inner();
+            let places = places.into_iter().map(|((name, region), offset)| (name, region, document.path_at(offset)));
+            scenario.uses = Uses::new(places, parameters.formulas());
+            Ok(scenario)
+        }
         (Some(problems), _) => Err(problems),
         // Whatever is left out was reported; said all the same if that is ever broken.
         (None, None) => Err(Problems::of_file(
@@ -78,7 +84,13 @@ pub fn scenario(name: &str, text: &str, path: Option<PathBuf>) -> Result<Scenari
     }
 }
 
-fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Option<Scenario> {
+fn read(
+    root: Cursor<'_>,
+    name: &str,
+    text: &str,
+    path: Option<PathBuf>,
+    values: Option<&ParameterValues>,
+) -> Option<Scenario> {
     let known: Vec<&'static str> = COMMON.iter().chain(&STRUCTURE).chain(&OTHER_SOURCES).copied().collect();
     let fields = root.fields(&known)?;
     format(&fields);
@@ -88,25 +100,29 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
         None => None,
     };
     let units = fields.optional("units").and_then(units).unwrap_or_default();
-    let parameters = fields.optional("parameters").and_then(parameters).unwrap_or_default();
+    let _ = fields.optional("$schema").map(Cursor::string);
+    if let Some(cursor) = fields.optional("parameters") {
+        // Nothing has asked for them before.
+        let _ = root.reading.parameters.set(parameters::read(cursor, values));
+    }
     let solver = fields.optional("solver");
     let rules = solver.and_then(rules).unwrap_or_default();
 
     let mut places = Places::default();
     let source = match source_key(&fields)? {
         SourceKey::Structure => {
-            let (structure, found) = structure::read(&fields, &parameters)?;
+            let (structure, found) = structure::read(&fields)?;
             places = found;
             Source::Structure(structure)
         }
         SourceKey::ContactSystem(cursor) => {
-            let system = contact_system::read(cursor, &parameters, path.as_deref())?;
+            let system = contact_system::read(cursor, path.as_deref())?;
             places.pairs = (0..system.pairs.len()).map(|pair| format!("contact_system.pairs[{pair}]").into()).collect();
             Source::ContactSystem(system)
         }
         SourceKey::Lcp(cursor) => {
             refuse_covering(solver);
-            Source::Lcp(lcp::read(cursor, &parameters)?)
+            Source::Lcp(lcp::read(cursor)?)
         }
     };
     let stages = match (fields.entry("stages"), &source) {
@@ -117,11 +133,11 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
         }
         (Some(entry), Source::Structure(structure)) => {
             let cases: Vec<&str> = structure.load_cases.iter().map(|case| case.name.as_str()).collect();
-            stages::read(entry, &cases, &parameters)
+            stages::read(entry, &cases)
         }
         (Some(entry), Source::ContactSystem(system)) => {
             let cases: Vec<&str> = system.loads.iter().map(|load| load.name.as_str()).collect();
-            stages::read(entry, &cases, &parameters)
+            stages::read(entry, &cases)
         }
     };
     Some(Scenario {
@@ -131,14 +147,13 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>) -> Opti
         title: title?.to_string(),
         description,
         units,
-        parameters: parameters
-            .into_iter()
-            .map(|(name, parameter)| Some((name, parameter?)))
-            .collect::<Option<IndexMap<_, _>>>()?,
+        parameters: root.parameters().complete()?,
         source,
         stages: stages?,
         rules,
         places,
+        formulas: Arc::new(root.parameters().formulas().clone()),
+        uses: Uses::default(),
     })
 }
 
@@ -170,61 +185,6 @@ fn units(cursor: Cursor<'_>) -> Option<Units> {
     let fields = cursor.fields(&["length", "force"])?;
     let label = |key| fields.optional(key).and_then(Cursor::string).map(str::to_string);
     Some(Units { length: label("length"), force: label("force") })
-}
-
-fn parameters(cursor: Cursor<'_>) -> Option<Parameters> {
-    let mut parameters = Parameters::new();
-    for entry in cursor.entries()? {
-        let name = entry.name();
-        if !is_id(name) {
-            entry.key_problem(format!("{} cannot be the name of a parameter", quoted(name)), ID_RULE);
-        } else if RESERVED.contains(&name) {
-            entry.key_problem(
-                format!("the parameter name \"{name}\" is reserved"),
-                format!("`set {name} …` is a command: choose another name"),
-            );
-        }
-        // Registered even if wrong, so that its uses are not reported as well.
-        parameters.insert(name.to_string(), parameter(entry));
-    }
-    Some(parameters)
-}
-
-fn parameter(entry: Entry<'_>) -> Option<Parameter> {
-    let cursor = entry.value();
-    if !cursor.is_object() {
-        if cursor.is_string() || cursor.is_list() {
-            cursor.problem(
-                format!("expected a number or an object with `value`, found {}", cursor.found()),
-                "write e.g. 0.3 or { \"value\": 0.3, \"min\": 0, \"max\": 1 }",
-            );
-            return None;
-        }
-        return Some(Parameter { value: cursor.number()?, min: None, max: None, step: None, unit: None, about: None });
-    }
-    let fields = cursor.fields(&["value", "min", "max", "step", "unit", "about"])?;
-    let value = fields.required("value");
-    let number = value.and_then(Cursor::number);
-    let optional = |key| fields.optional(key).and_then(Cursor::number);
-    let (min, max) = (optional("min"), optional("max"));
-    if let (Some(min), Some(max), Some(at)) = (min, max, fields.optional("max"))
-        && min > max
-    {
-        at.problem(format!("max {max} is less than min {min}"), "exchange them, or leave one out");
-    } else if let (Some(value), Some(number)) = (value, number) {
-        let below = min.is_some_and(|min| number < min);
-        let above = max.is_some_and(|max| number > max);
-        if below || above {
-            let (end, limit) = if below { ("min", min) } else { ("max", max) };
-            // One of the two is there, or neither test could hold.
-            let limit = limit.unwrap_or(number);
-            value
-                .problem(format!("the value {number} lies beyond {end} {limit}"), format!("change the value or {end}"));
-        }
-    }
-    let step = fields.optional("step").and_then(|cursor| cursor.positive("step"));
-    let label = |key| fields.optional(key).and_then(Cursor::string).map(str::to_string);
-    Some(Parameter { value: number?, min, max, step, unit: label("unit"), about: label("about") })
 }
 
 fn rules(cursor: Cursor<'_>) -> Option<Rules> {

@@ -1,37 +1,140 @@
-//! Reading numbers, vectors and names of parameters.
+//! Reading numbers and vectors: the one place where a number of the model becomes a value.
 
 use jsonc_parser::ast::Value;
+use jsonc_parser::common::Ranged;
 
 use super::reader::Cursor;
 use super::words::{is_id, quoted};
-use crate::model::parameter::{Number, Parameter};
+use crate::model::expression::Expression;
+use crate::model::jet::Jet;
+use crate::model::parameter::Number;
 
 /// Numbers beyond this are refused: their squares must stay finite.
 const LARGEST: f64 = 1e150;
 
-const PLAIN_NUMBER: &str = "write a plain number, like 0.5 or 2e8";
-const NO_PARAMETER: &str = "write a plain number: only factors, friction, cohesion, gap, bound and the q of an lcp take the name of a parameter";
-
-/// Parameters by name; `None` where the definition itself is wrong.
-pub type Parameters = indexmap::IndexMap<String, Option<Parameter>>;
+const LITERAL: &str = "write a plain number, like 0.5 or 2e8";
+const NUMBER: &str = "write a number, like 0.5 or 2e8, the name of a parameter or an expression, like \"2*F + 1\"";
 
 impl Cursor<'_> {
-    /// A finite number.
-    pub fn number(self) -> Option<f64> {
-        let Value::NumberLit(number) = self.value else {
-            let is_name = matches!(self.value, Value::StringLit(string) if is_id(&string.value));
-            let help = if is_name { NO_PARAMETER } else { PLAIN_NUMBER };
-            self.wrong_type("a number", help);
-            return None;
+    /// A finite number, written out.
+    pub fn literal(self) -> Option<f64> {
+        match self.value {
+            Value::NumberLit(number) => self.magnitude(number.value),
+            _ => {
+                self.wrong_type("a number", LITERAL);
+                None
+            }
+        }
+    }
+
+    /// A number as it stands: written out, a parameter, or an expression. Its region is noted as one in which the
+    /// parameters of it stand.
+    pub fn symbolic(self) -> Option<Number> {
+        let number = match self.value {
+            Value::NumberLit(number) => return self.magnitude(number.value).map(Number::Value),
+            Value::StringLit(string) => self.named_or_formula(&string.value)?,
+            _ => {
+                self.wrong_type("a number, a parameter or an expression", NUMBER);
+                return None;
+            }
         };
-        self.magnitude(number.value)
+        let mut uses = self.reading.uses.borrow_mut();
+        for name in number.names() {
+            uses.entry((name.to_owned(), self.region)).or_insert(self.value.start());
+        }
+        Some(number)
+    }
+
+    fn named_or_formula(self, text: &str) -> Option<Number> {
+        let parameters = self.parameters();
+        if parameters.contains(text) {
+            return Some(Number::Parameter(text.to_owned()));
+        }
+        let names = parameters.names();
+        if is_id(text) && !names.is_empty() && text != "pi" {
+            self.unknown("parameter", text, &names);
+            return None;
+        }
+        if is_id(text) && text != "pi" {
+            self.problem(
+                format!("unknown parameter {}: the scenario has none", quoted(text)),
+                "write a number, or define the name under `parameters`",
+            );
+            return None;
+        }
+        let expression = self.expression(text, &names)?;
+        Some(match expression.single_parameter() {
+            Some(name) => Number::Parameter(name.to_owned()),
+            None => Number::Expression(expression),
+        })
+    }
+
+    /// The expression in the string here.
+    pub fn expression(self, text: &str, names: &[&str]) -> Option<Expression> {
+        match Expression::parse(text, names) {
+            Ok(expression) => Some(expression),
+            Err(error) => {
+                // Behind the quotation mark; without a place of its own where escapes shift the characters.
+                let shift = if self.is_written_plainly() { 1 + error.at } else { 0 };
+                let message = format!("in {}: {}", quoted(text), error.message);
+                self.reading.findings.add(self.value.start() + shift, message, error.help);
+                None
+            }
+        }
+    }
+
+    fn is_written_plainly(self) -> bool {
+        matches!(self.value, Value::StringLit(string) if string.range.end - string.range.start == string.value.len() + 2)
+    }
+
+    /// A finite number under the present values of the parameters.
+    pub fn number(self) -> Option<f64> {
+        let number = self.symbolic()?;
+        self.value_of(&number)
+    }
+
+    /// The value of a number that stands here; `None`, and nothing reported, where a parameter in it is wrong itself.
+    pub fn value_of(self, number: &Number) -> Option<f64> {
+        let parameters = self.parameters();
+        let value = match number {
+            Number::Value(value) => return Some(*value),
+            Number::Parameter(name) => parameters.value(name)?,
+            Number::Expression(expression) => {
+                if expression.parameters().any(|name| parameters.value(name).is_none()) {
+                    return None;
+                }
+                expression.evaluate(&|name| Jet::constant(parameters.value(name).unwrap_or(f64::NAN))).value
+            }
+        };
+        if value.is_finite() && value.abs() <= LARGEST {
+            return Some(value);
+        }
+        let names: Vec<String> =
+            number.names().iter().filter_map(|name| Some(format!("{name} = {}", parameters.value(name)?))).collect();
+        let at = if names.is_empty() { String::new() } else { format!(" at {}", names.join(", ")) };
+        self.problem(
+            match value.is_finite() {
+                true => format!("the value {value:e} of {} is too large to compute with{at}", self.quoted()),
+                false => format!("{} is not a finite number{at}", self.quoted()),
+            },
+            "numbers are finite and go up to 1e150: change the expression or the values of its parameters",
+        );
+        None
+    }
+
+    /// What stands here with its value, for messages: `the number 5`, `"2*F" = 10`.
+    pub(super) fn found_number(self, value: f64) -> String {
+        match self.value {
+            Value::StringLit(string) => format!("{} = {value}", quoted(&string.value)),
+            _ => self.found(),
+        }
     }
 
     fn magnitude(self, literal: &str) -> Option<f64> {
         let value: f64 = match literal.parse() {
             Ok(value) => value,
             Err(_) => {
-                self.wrong_type("a number", PLAIN_NUMBER);
+                self.wrong_type("a number", LITERAL);
                 return None;
             }
         };
@@ -59,7 +162,7 @@ impl Cursor<'_> {
             return Some(value);
         }
         self.problem(
-            format!("{what} must be {expected}, found {}", self.found()),
+            format!("{what} must be {expected}, found {}", self.found_number(value)),
             format!("give {what} a value that is {expected}"),
         );
         None
@@ -72,7 +175,7 @@ impl Cursor<'_> {
 
     /// A whole number ≥ `least`.
     pub fn whole(self, what: &str, least: usize) -> Option<usize> {
-        let value = self.number()?;
+        let value = self.literal()?;
         // Up to 1e15 every whole number is exact in f64 and fits in usize.
         if value.fract() == 0.0 && value >= least as f64 && value <= 1e15 {
             return Some(value as usize);
@@ -84,57 +187,30 @@ impl Cursor<'_> {
         None
     }
 
-    /// A number or the name of a parameter.
-    pub fn number_or_parameter(self, parameters: &Parameters) -> Option<Number> {
-        match self.value {
-            Value::StringLit(string) => {
-                let name = string.value.as_ref();
-                if parameters.contains_key(name) {
-                    return Some(Number::Parameter(name.to_string()));
-                }
-                let known: Vec<&str> = parameters.keys().map(String::as_str).collect();
-                if known.is_empty() {
-                    self.problem(
-                        format!("unknown parameter {}: the scenario has none", quoted(name)),
-                        "write a number, or define the name under `parameters`",
-                    );
-                } else {
-                    self.unknown("parameter", name, &known);
-                }
-                None
-            }
-            Value::NumberLit(number) => self.magnitude(number.value).map(Number::Value),
-            _ => {
-                self.wrong_type("a number or the name of a parameter", "write one of the two");
-                None
-            }
+    /// A number ≥ 0 of the region [`Region::Law`] or another that stays symbolic, checked at the present values.
+    pub fn non_negative(self, what: &str) -> Option<Number> {
+        let number = self.symbolic()?;
+        let value = self.value_of(&number)?;
+        if value >= 0.0 {
+            return Some(number);
         }
+        match &number {
+            Number::Parameter(name) => self.problem(
+                format!("{what} must not be negative, but the parameter `{name}` has the value {value}"),
+                format!("give parameters.{name} a value of 0 or more"),
+            ),
+            Number::Value(_) | Number::Expression(_) => self.problem(
+                format!("{what} must not be negative, found {}", self.found_number(value)),
+                format!("give a {what} of 0 or more"),
+            ),
+        }
+        None
     }
 
-    /// A number ≥ 0 or the name of a parameter whose value is.
-    pub fn non_negative(self, what: &str, parameters: &Parameters) -> Option<Number> {
-        let number = self.number_or_parameter(parameters)?;
-        match &number {
-            Number::Value(value) if *value < 0.0 => {
-                self.problem(
-                    format!("{what} must not be negative, found {}", self.found()),
-                    format!("give a {what} of 0 or more"),
-                );
-                None
-            }
-            Number::Parameter(name) => {
-                let value = parameters.get(name)?.as_ref()?.value;
-                if value < 0.0 {
-                    self.problem(
-                        format!("{what} must not be negative, but the parameter `{name}` has the value {value}"),
-                        format!("give parameters.{name} a value of 0 or more"),
-                    );
-                    return None;
-                }
-                Some(number)
-            }
-            Number::Value(_) => Some(number),
-        }
+    /// A number of any sign that stays symbolic, checked to be finite at the present values.
+    pub fn any_number(self) -> Option<Number> {
+        let number = self.symbolic()?;
+        self.value_of(&number).map(|_| number)
     }
 
     /// Two numbers: a point or a vector.

@@ -3,44 +3,66 @@
 //! A [`Cursor`] stands on one value. Its accessors return `None` after having reported what is wrong at that
 //! place; the caller leaves the part out and reads on.
 
-use std::collections::HashMap;
+use std::cell::{OnceCell, RefCell};
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Display;
 
 use jsonc_parser::ast::{ObjectProp, Value};
 use jsonc_parser::common::Ranged;
 
 pub use super::findings::{Findings, Place};
-pub use super::numbers::Parameters;
 use super::numbers::shortened;
+use super::parameters::Parameters;
 use super::words::{counted, did_you_mean, listed, quoted};
 use crate::model::locate::{self, Document};
+use crate::model::uses::Region;
 
-/// A position in the tree: one value.
+/// What one reading of a text collects, besides what it returns.
+#[derive(Default)]
+pub struct Reading {
+    pub findings: Findings,
+    /// Set once, before the numbers that may name them are read.
+    pub parameters: OnceCell<Parameters>,
+    /// A byte offset for every name of a parameter in every region.
+    pub uses: RefCell<BTreeMap<(String, Region), usize>>,
+}
+
+/// A position in the tree: one value, and the region whose numbers are read from it.
 #[derive(Clone, Copy)]
 pub struct Cursor<'d> {
     pub(super) value: &'d Value<'d>,
-    findings: &'d Findings,
+    pub(super) reading: &'d Reading,
+    pub(super) region: Region,
 }
 
 impl<'d> Cursor<'d> {
-    /// The outermost value.
-    pub fn root(document: &'d Document<'d>, findings: &'d Findings) -> Self {
-        Cursor { value: document.root(), findings }
+    /// The outermost value. Numbers count as geometry unless [`Cursor::of`] says otherwise.
+    pub fn root(document: &'d Document<'d>, reading: &'d Reading) -> Self {
+        Cursor { value: document.root(), reading, region: Region::Geometry }
+    }
+
+    /// The same place; the numbers from here on belong to another region.
+    pub fn of(self, region: Region) -> Self {
+        Cursor { region, ..self }
+    }
+
+    fn at(self, value: &'d Value<'d>) -> Self {
+        Cursor { value, ..self }
     }
 
     /// Reports a problem at this value.
     pub fn problem(self, message: impl Into<String>, help: impl Into<String>) {
-        self.findings.add(self.value.start(), message.into(), help.into());
+        self.reading.findings.add(self.value.start(), message.into(), help.into());
     }
 
     /// How many problems were reported so far, anywhere.
     pub fn problems_so_far(self) -> usize {
-        self.findings.count()
+        self.reading.findings.count()
     }
 
     /// The place of the value.
     pub fn place(self) -> Place<'d> {
-        Place { offset: self.value.start(), findings: self.findings }
+        Place { offset: self.value.start(), findings: &self.reading.findings }
     }
 
     /// What stands here, for messages: `the number 5`, `the string "x"`, `an object`.
@@ -82,6 +104,16 @@ impl<'d> Cursor<'d> {
         matches!(self.value, Value::Object(_))
     }
 
+    /// Whether an object with this key stands here.
+    pub fn has_key(self, key: &str) -> bool {
+        matches!(self.value, Value::Object(object) if object.properties.iter().any(|p| p.name.as_str() == key))
+    }
+
+    /// The parameters of the scenario.
+    pub fn parameters(self) -> &'d Parameters {
+        self.reading.parameters.get_or_init(Parameters::default)
+    }
+
     /// A string.
     pub fn string(self) -> Option<&'d str> {
         match self.value {
@@ -119,7 +151,7 @@ impl<'d> Cursor<'d> {
             self.wrong_type("a list", "write the entries in [ … ]");
             return None;
         };
-        Some(array.elements.iter().map(move |value| Cursor { value, findings: self.findings }))
+        Some(array.elements.iter().map(move |value| self.at(value)))
     }
 
     /// The entries of a list that must have `count` of them; `what` says why.
@@ -145,7 +177,7 @@ impl<'d> Cursor<'d> {
         let mut seen: HashMap<&str, ()> = HashMap::new();
         let mut entries = Vec::with_capacity(object.properties.len());
         for property in &object.properties {
-            let entry = Entry { property, findings: self.findings };
+            let entry = Entry { property, cursor: self };
             if seen.insert(entry.name(), ()).is_some() {
                 entry.key_problem(
                     format!("the key {} appears twice in this object", quoted(entry.name())),
@@ -181,7 +213,8 @@ impl<'d> Cursor<'d> {
 #[derive(Clone, Copy)]
 pub struct Entry<'d> {
     property: &'d ObjectProp<'d>,
-    findings: &'d Findings,
+    /// The object.
+    cursor: Cursor<'d>,
 }
 
 impl<'d> Entry<'d> {
@@ -192,12 +225,12 @@ impl<'d> Entry<'d> {
 
     /// The value.
     pub fn value(self) -> Cursor<'d> {
-        Cursor { value: &self.property.value, findings: self.findings }
+        self.cursor.at(&self.property.value)
     }
 
     /// The place of the key.
     pub fn key_place(self) -> Place<'d> {
-        Place { offset: self.key_offset(), findings: self.findings }
+        Place { offset: self.key_offset(), findings: &self.cursor.reading.findings }
     }
 
     /// Byte offset of the key.

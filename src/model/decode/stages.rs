@@ -1,15 +1,16 @@
 //! `stages`: a load history, each stage a multiplier of some load cases.
 
-use super::reader::{Cursor, Entry, Parameters};
+use super::reader::{Cursor, Entry};
 use super::words::{did_you_mean, listed, quoted};
 use crate::model::scenario::Stage;
+use crate::model::uses::Region;
 
 /// Reads the stages; `cases` are the names of the load cases.
-pub fn read(entry: Entry<'_>, cases: &[&str], parameters: &Parameters) -> Option<Vec<Stage>> {
+pub fn read(entry: Entry<'_>, cases: &[&str]) -> Option<Vec<Stage>> {
     let mut stages = Vec::new();
     let mut is_right = true;
     for cursor in entry.value().list()? {
-        match stage(cursor, cases, parameters) {
+        match stage(cursor, cases) {
             Some(stage) => stages.push(stage),
             None => is_right = false,
         }
@@ -24,7 +25,7 @@ pub fn read(entry: Entry<'_>, cases: &[&str], parameters: &Parameters) -> Option
     is_right.then_some(stages)
 }
 
-fn stage(cursor: Cursor<'_>, cases: &[&str], parameters: &Parameters) -> Option<Stage> {
+fn stage(cursor: Cursor<'_>, cases: &[&str]) -> Option<Stage> {
     let mut multipliers = Vec::new();
     let mut is_right = true;
     for entry in cursor.entries()? {
@@ -37,7 +38,7 @@ fn stage(cursor: Cursor<'_>, cases: &[&str], parameters: &Parameters) -> Option<
             is_right = false;
             continue;
         }
-        match entry.value().number_or_parameter(parameters) {
+        match entry.value().of(Region::Factor).any_number() {
             Some(multiplier) => multipliers.push((entry.name().to_string(), multiplier)),
             None => is_right = false,
         }

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::reader::{Cursor, Fields, Parameters, Place};
-use super::words::{ID_RULE, is_id, nearest, quoted};
+use super::reader::{Cursor, Fields, Place};
+use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
 use super::{contacts, elements, loads, supports};
 use crate::model::edge::Side;
 use crate::model::scenario::Places;
@@ -26,7 +26,6 @@ pub enum Spot {
 
 /// The structure as read so far, and the names by which later parts refer to it.
 pub struct Builder<'d> {
-    pub parameters: &'d Parameters,
     pub structure: Structure,
     pub places: Places,
     pub materials: HashMap<&'d str, usize>,
@@ -49,10 +48,9 @@ pub struct Builder<'d> {
 }
 
 /// Reads a structure. `None`, or an incomplete structure, only after a problem was reported.
-pub fn read<'d>(fields: &Fields<'d>, parameters: &'d Parameters) -> Option<(Structure, Places)> {
+pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
     let before = fields.cursor().problems_so_far();
     let mut builder = Builder {
-        parameters,
         structure: Structure::default(),
         places: Places::default(),
         materials: HashMap::new(),
@@ -210,7 +208,7 @@ impl<'d> Builder<'d> {
             cursor.problem(format!("the bar \"{id}\" has no node {}", quoted(name)), help);
             return;
         }
-        let hint = super::did_you_mean(name, self.nodes.keys().map(String::as_str));
+        let hint = did_you_mean(name, self.nodes.keys().map(String::as_str));
         let help = if hint.is_empty() {
             "expected the id of a node, a plate node like \"lower[0,8]\" or an edge like \"lower.top\""
         } else {

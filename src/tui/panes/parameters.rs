@@ -86,7 +86,11 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         let line = look.sign('─', '-');
         let muted = look.role(Role::Muted);
         if vary::range(parameter).is_none() {
-            let text = look.fit("no range: v types a value", usize::from(end - start) + 1);
+            let text = match &parameter.formula {
+                Some(formula) => format!("= {}", formula.text()),
+                None => "no range: v types a value".to_owned(),
+            };
+            let text = look.fit(&text, usize::from(end - start) + 1);
             buffer.set_string(start, y, text, muted);
             continue;
         }
@@ -129,6 +133,9 @@ pub fn about(state: &State) -> Option<String> {
     if let Some((low, high)) = vary::range(parameter) {
         text.push_str(&format!(" · {} … {}", short(low), short(high)));
     }
-    text.push_str(&format!(" · step {}", short(vary::step(value, parameter))));
+    match &parameter.formula {
+        Some(formula) => text.push_str(&format!(" · = {}", formula.text())),
+        None => text.push_str(&format!(" · step {}", short(vary::step(value, parameter)))),
+    }
     Some(text)
 }
