@@ -11,21 +11,32 @@ use crate::model::structure::{Bar, Element, ElementKind, Node};
 pub struct BarOutline<'d> {
     pub cursor: Cursor<'d>,
     id: &'d str,
-    ends: [Cursor<'d>; 2],
-    pub divisions: usize,
+    section: &'d str,
+    /// The nodes of the file along it: two, or those of its `polyline`.
+    nodes: Vec<Cursor<'d>>,
+    /// Of each segment between them.
+    divisions: usize,
     material: usize,
     kind: ElementKind,
 }
 
+impl BarOutline<'_> {
+    /// Elements it will have.
+    pub fn element_count(&self) -> f64 {
+        self.divisions as f64 * (self.nodes.len() - 1) as f64
+    }
+}
+
 /// Reads one bar; its nodes are resolved by [`divide`], once those of the plates are known.
 pub fn bar<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<BarOutline<'d>> {
-    let fields = cursor.fields(&["id", "nodes", "kind", "material", "section", "divisions", "hinges"])?;
+    let fields = cursor.fields(&["id", "nodes", "polyline", "kind", "material", "section", "divisions", "hinges"])?;
     let id = id_of(builder, &fields, "bar");
     let outline = bar_outline(builder, cursor, &fields, id);
     if outline.is_none() {
         builder.broken.extend(id);
         // The rest of the entry is wrong, but its nodes are looked up all the same.
-        let ends = fields.optional("nodes").filter(|nodes| nodes.is_list()).and_then(Cursor::list);
+        let ends = fields.optional("nodes").or(fields.optional("polyline"));
+        let ends = ends.filter(|nodes| nodes.is_list()).and_then(Cursor::list);
         builder.ends_of_broken_bars.extend(ends.into_iter().flatten().filter(|end| end.is_string()));
     }
     outline
@@ -37,10 +48,7 @@ fn bar_outline<'d>(
     fields: &Fields<'d>,
     id: Option<&'d str>,
 ) -> Option<BarOutline<'d>> {
-    let ends = fields.required("nodes").and_then(|nodes| {
-        let ends = nodes.list_of(2, "the nodes at start and end")?;
-        <[Cursor<'d>; 2]>::try_from(ends.collect::<Vec<_>>()).ok()
-    });
+    let nodes = line(fields);
     let is_frame = match fields.optional("kind") {
         Some(cursor) => cursor.choice(&[("frame", true), ("truss", false)]),
         None => Some(true),
@@ -65,6 +73,14 @@ fn bar_outline<'d>(
         Some((cursor, name, section?))
     });
     let is_frame = is_frame?;
+    if !is_frame && fields.entry("polyline").is_some() {
+        fields.refuse(
+            &["polyline"],
+            |_| "a truss bar cannot be a `polyline`: its inner nodes would move sideways freely".into(),
+            "make a bar of each segment, or make it a frame",
+        );
+        return None;
+    }
     if !is_frame
         && let (Some(count), Some(at)) = (divisions, fields.optional("divisions"))
         && count > 1
@@ -92,11 +108,32 @@ fn bar_outline<'d>(
             );
             return None;
         };
-        ElementKind::Frame { area: section.area, inertia, shear_area: None, hinges: hinges? }
+        ElementKind::Frame { area: section.area, inertia, shear_area: section.shear_area, hinges: hinges? }
     } else {
         ElementKind::Truss { area: section.area }
     };
-    Some(BarOutline { cursor, id: id?, ends: ends?, divisions: divisions?, material: material?, kind })
+    Some(BarOutline { cursor, id: id?, section: name, nodes: nodes?, divisions: divisions?, material: material?, kind })
+}
+
+/// The nodes along a bar: `nodes`, start and end, or `polyline`.
+fn line<'d>(fields: &Fields<'d>) -> Option<Vec<Cursor<'d>>> {
+    let Some(polyline) = fields.entry("polyline") else {
+        let ends = fields.required("nodes")?.list_of(2, "the nodes at start and end")?;
+        return Some(ends.collect());
+    };
+    if fields.entry("nodes").is_some() {
+        polyline.key_problem("`polyline` cannot stand beside `nodes`", "give one of the two");
+        return None;
+    }
+    let nodes: Vec<Cursor<'d>> = polyline.value().list()?.collect();
+    if nodes.len() < 2 {
+        polyline.value().problem(
+            format!("a polyline needs two or more nodes, found {}", nodes.len()),
+            "name the nodes from the start of the bar to its end",
+        );
+        return None;
+    }
+    Some(nodes)
 }
 
 fn hinges(cursor: Cursor<'_>) -> Option<[bool; 2]> {
@@ -108,46 +145,53 @@ fn hinges(cursor: Cursor<'_>) -> Option<[bool; 2]> {
     Some(hinges)
 }
 
-/// Resolves the ends of a bar and appends its inner nodes and elements.
+/// Resolves the nodes of a bar and appends its inner nodes and elements. The node before element k is `ID/k` unless the
+/// file names it.
 pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str>) {
-    let ends = [builder.node(bar.ends[0]), builder.node(bar.ends[1])];
-    let [Some(start), Some(end)] = ends else {
+    let nodes: Vec<Option<usize>> = bar.nodes.iter().map(|&node| builder.node(node)).collect();
+    let Some(nodes) = nodes.into_iter().collect::<Option<Vec<usize>>>() else {
         builder.broken.insert(bar.id);
         return;
     };
-    let (from, to) = (builder.structure.nodes[start].position, builder.structure.nodes[end].position);
-    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-    let size = [from[0], from[1], to[0], to[1]].iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-    // Written so that an unknown place (NaN, reported at the node) passes.
-    if start == end || length <= 1e-12 * size {
-        bar.cursor.problem(
-            format!("the bar \"{}\" has no length: both ends are at ({}, {})", bar.id, from[0], from[1]),
-            "join two nodes at different places",
-        );
-        builder.broken.insert(bar.id);
-        return;
+    let mut chain = vec![nodes[0]];
+    for ends in nodes.windows(2) {
+        let [from, to] = [0, 1].map(|end| builder.structure.nodes[ends[end]].position);
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let size = [from[0], from[1], to[0], to[1]].iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        // Written so that an unknown place (NaN, reported at the node) passes.
+        if ends[0] == ends[1] || length <= 1e-12 * size {
+            let what = if nodes.len() == 2 {
+                format!("the bar \"{}\" has no length: both ends are", bar.id)
+            } else {
+                format!("a segment of the bar \"{}\" has no length: both its ends are", bar.id)
+            };
+            bar.cursor.problem(format!("{what} at ({}, {})", from[0], from[1]), "join two nodes at different places");
+            builder.broken.insert(bar.id);
+            return;
+        }
+        for inner in 1..bar.divisions {
+            let t = inner as f64 / bar.divisions as f64;
+            let node = Node {
+                id: format!("{}/{}", bar.id, chain.len()),
+                position: [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])],
+            };
+            chain.push(builder.add_node(node, place.clone()));
+        }
+        chain.push(ends[1]);
     }
-    let mut chain = vec![start];
-    for inner in 1..bar.divisions {
-        let t = inner as f64 / bar.divisions as f64;
-        let node = Node {
-            id: format!("{}/{inner}", bar.id),
-            position: [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])],
-        };
-        chain.push(builder.add_node(node, place.clone()));
-    }
-    chain.push(end);
     let first = builder.structure.elements.len();
+    let last = chain.len() - 2;
     for (index, pair) in chain.windows(2).enumerate() {
         let mut kind = bar.kind.clone();
         if let ElementKind::Frame { hinges, .. } = &mut kind {
             // A hinge stays only at the end of the bar that has it.
             hinges[0] &= index == 0;
-            hinges[1] &= index + 1 == bar.divisions;
+            hinges[1] &= index == last;
         }
         builder.structure.elements.push(Element { nodes: pair.to_vec(), material: bar.material, kind });
         builder.places.elements.push(place.clone());
     }
     builder.bars.insert(bar.id, builder.structure.bars.len());
+    builder.bar_sections.push(bar.section);
     builder.structure.bars.push(Bar { id: bar.id.to_string(), elements: first..builder.structure.elements.len() });
 }

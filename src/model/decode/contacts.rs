@@ -8,7 +8,7 @@ use super::law::{self, LawKind, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::structure::{Builder, Spot};
 use super::words::nearest;
-use crate::model::edge::Side;
+use crate::model::edge::Edge;
 use crate::model::memory;
 use crate::model::pair::{JointDirection, Pair, joints};
 use crate::model::parameter::Number;
@@ -92,7 +92,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             id: if is_edge { format!("{id}[{index}]") } else { id.to_string() },
             node,
             against,
-            normal: sides.normal,
+            normal: sides.normals[index],
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
         },
     );
@@ -103,10 +103,10 @@ fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
     !builder.nodes.contains_key(word) && nearest(word, [GROUND]).is_some()
 }
 
-/// The two sides of a contact: (node, against) of each pair, skipped ones included, and the normal.
+/// The two sides of a contact: (node, against) of each pair, skipped ones included, and its normal.
 struct Sides {
     pairs: Vec<(usize, Option<usize>)>,
-    normal: [f64; 2],
+    normals: Vec<[f64; 2]>,
 }
 
 fn node_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
@@ -130,7 +130,7 @@ fn node_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
         );
         return None;
     }
-    Some(Sides { pairs: vec![(node, against.map(|(_, other)| other))], normal: normal? })
+    Some(Sides { pairs: vec![(node, against.map(|(_, other)| other))], normals: vec![normal?] })
 }
 
 fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
@@ -140,23 +140,22 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
         None => None,
     };
     let against = fields.required("against")?;
-    let (plate, side) = edge?;
-    let structure = &builder.structure;
-    let nodes = builder.edge_nodes(plate, side);
+    let edge = edge?;
+    let nodes = &builder.structure.nodes;
     if against.string()? == GROUND {
-        let outward = side.outward_normal(&structure.plates[plate], &structure.nodes);
-        return Some(Sides {
-            pairs: nodes.into_iter().map(|node| (node, None)).collect(),
-            // Adding 0 turns −0 into 0.
-            normal: normal.unwrap_or([0.0 - outward[0], 0.0 - outward[1]]),
-        });
+        let normals = match normal {
+            Some(normal) => vec![normal; edge.nodes.len()],
+            // Subtracting from 0 turns −0 into 0.
+            None => edge.outward_normals(nodes).into_iter().map(|outward| outward.map(|n| 0.0 - n)).collect(),
+        };
+        return Some(Sides { pairs: edge.nodes.iter().map(|&node| (node, None)).collect(), normals });
     }
     if is_misspelt_ground(builder, against.string()?) {
         against.unknown("edge", against.string()?, &[GROUND]);
         return None;
     }
-    let (other_plate, other_side) = match builder.spot(against)? {
-        Spot::Edge { plate, side } => (plate, side),
+    let other = match builder.spot(against)? {
+        Spot::Edge(edge) => edge,
         Spot::Node(_) => {
             against.problem(
                 format!("expected an edge or \"ground\", found the node {}", against.quoted()),
@@ -165,29 +164,35 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
             return None;
         }
     };
-    if (other_plate, other_side) == (plate, side) {
+    if other == edge {
         against.problem(
             format!("the edge {} is in contact with itself", against.quoted()),
             "name two different edges, or \"ground\"",
         );
         return None;
     }
-    let partners = partners(builder, at, against, &nodes, (other_plate, other_side))?;
-    Some(Sides {
-        normal: normal.unwrap_or_else(|| other_side.outward_normal(&structure.plates[other_plate], &structure.nodes)),
-        pairs: nodes.into_iter().zip(partners.into_iter().map(Some)).collect(),
-    })
+    let reversed = partners(builder, at, against, &edge.nodes, &other)?;
+    let mut partners = other.nodes.clone();
+    let mut normals = match normal {
+        Some(normal) => vec![normal; partners.len()],
+        None => other.outward_normals(nodes),
+    };
+    if reversed {
+        partners.reverse();
+        normals.reverse();
+    }
+    Some(Sides { pairs: edge.nodes.into_iter().zip(partners.into_iter().map(Some)).collect(), normals })
 }
 
-/// The nodes of the other edge in the order of `nodes`, each at the place of its partner.
+/// Whether the other edge runs the other way; each of its nodes must be at the place of its partner.
 fn partners<'d>(
     builder: &Builder<'d>,
     at: Cursor<'d>,
     against: Cursor<'d>,
     nodes: &[usize],
-    (plate, side): (usize, Side),
-) -> Option<Vec<usize>> {
-    let mut others = builder.edge_nodes(plate, side);
+    other: &Edge,
+) -> Option<bool> {
+    let mut others = other.nodes.clone();
     if others.len() != nodes.len() {
         against.problem(
             format!(
@@ -209,8 +214,10 @@ fn partners<'d>(
     // Edges have at least two nodes.
     let near = NEAR * distance(nodes[0], nodes[nodes.len() - 1]);
     // Of two plates turned towards each other one counts its edge the other way round.
+    let mut reversed = false;
     if distance(nodes[0], others[0]) > near && distance(nodes[0], others[others.len() - 1]) <= near {
         others.reverse();
+        reversed = true;
     }
     for (&node, &other) in nodes.iter().zip(&others) {
         // A repeated node is the shared corner of two edges of one plate.
@@ -231,7 +238,7 @@ fn partners<'d>(
             return None;
         }
     }
-    Some(others)
+    Some(reversed)
 }
 
 fn refuse_foreign_numbers(fields: &Fields<'_>, law: LawKind) {

@@ -3,13 +3,17 @@
 use std::sync::Arc;
 
 use super::bars::{BarOutline, bar, divide};
-use super::plates::{plate, quad};
+use super::plates::plate;
 use super::reader::{Cursor, Fields};
+use super::single_elements::{quad, triangle};
 use super::structure::{Builder, Section};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::memory;
 use crate::model::mesh::PlateGrid;
-use crate::model::structure::{Material, Plate, Structure};
+use crate::model::structure::{Element, Material, Plate, Structure};
+
+/// Reads a single element and its id.
+type ReadElement = for<'d> fn(&mut Builder<'d>, Cursor<'d>) -> Option<(&'d str, Element)>;
 
 /// Reads everything that makes elements. `None` if the mesh would be too large to go on.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
@@ -40,11 +44,13 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
         let place: Arc<str> = format!("plates[{index}]").into();
         builder.places.elements.resize(builder.structure.elements.len(), place);
     }
-    for (index, cursor) in entries(fields, "quads").into_iter().enumerate() {
-        if let Some(element) = quad(builder, cursor) {
-            builder.structure.elements.push(element);
-            let place = format!("quads[{index}]").into();
-            builder.places.elements.push(place);
+    for (list, read) in [("triangles", triangle as ReadElement), ("quads", quad)] {
+        for (index, cursor) in entries(fields, list).into_iter().enumerate() {
+            if let Some((id, element)) = read(builder, cursor) {
+                builder.single_elements.entry(id).or_insert(builder.structure.elements.len());
+                builder.structure.elements.push(element);
+                builder.places.elements.push(format!("{list}[{index}]").into());
+            }
         }
     }
     Some(())
@@ -98,19 +104,22 @@ fn sections<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
             let message = format!("{} cannot name a section", quoted(entry.name()));
             entry.key_problem(message, ID_RULE);
         }
-        let section = section(entry.value()).unwrap_or(Section { area: 1.0, inertia: Some(1.0) });
+        let section =
+            section(entry.value()).unwrap_or(Section { area: 1.0, inertia: Some(1.0), shear_area: None, depth: None });
         builder.sections.insert(entry.name(), section);
     }
 }
 
 fn section(cursor: Cursor<'_>) -> Option<Section> {
-    let fields = cursor.fields(&["area", "inertia"])?;
+    let fields = cursor.fields(&["area", "inertia", "depth", "shear_area"])?;
     let area = fields.required("area").and_then(|c| c.positive("area"));
-    let inertia = match fields.optional("inertia") {
-        Some(cursor) => Some(cursor.positive("inertia")?),
-        None => None,
+    // The outer `None`: a wrong value, reported.
+    let optional = |key: &'static str| match fields.optional(key) {
+        Some(cursor) => cursor.positive(key).map(Some),
+        None => Some(None),
     };
-    Some(Section { area: area?, inertia })
+    let (inertia, depth, shear_area) = (optional("inertia"), optional("depth"), optional("shear_area"));
+    Some(Section { area: area?, inertia: inertia?, depth: depth?, shear_area: shear_area? })
 }
 
 /// The index of the material that `material` names.
@@ -136,7 +145,7 @@ pub fn id_of<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>, kind: &'static 
 
 /// Reports a mesh that would not fit in memory, at its largest part, before it is made.
 fn refuse_too_large(builder: &Builder<'_>, bars: &[BarOutline<'_>], plates: &[(Cursor<'_>, PlateGrid)]) -> Option<()> {
-    let bars = bars.iter().map(|bar| (bar.cursor, bar.divisions as f64));
+    let bars = bars.iter().map(|bar| (bar.cursor, bar.element_count()));
     let plates = plates.iter().map(|(cursor, plate)| (*cursor, plate.node_count()));
     let parts: Vec<(Cursor<'_>, f64)> = bars.chain(plates).collect();
     let generated: f64 = parts.iter().map(|(_, nodes)| nodes).sum();

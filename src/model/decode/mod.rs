@@ -3,6 +3,7 @@
 mod bars;
 mod contact_system;
 mod contacts;
+mod edges;
 mod elements;
 mod findings;
 mod law;
@@ -13,6 +14,7 @@ mod numbers;
 mod parameters;
 mod plates;
 mod reader;
+mod single_elements;
 mod stages;
 mod structure;
 mod supports;
@@ -37,8 +39,21 @@ const FORMAT: &str = "stickslip/1";
 const COMMON: [&str; 8] = ["$schema", "format", "title", "description", "units", "parameters", "stages", "solver"];
 
 /// Keys of the source *structure*.
-const STRUCTURE: [&str; 11] =
-    ["materials", "sections", "nodes", "bars", "plates", "quads", "ties", "supports", "springs", "contacts", "loads"];
+const STRUCTURE: [&str; 13] = [
+    "materials",
+    "sections",
+    "nodes",
+    "bars",
+    "plates",
+    "triangles",
+    "quads",
+    "edges",
+    "ties",
+    "supports",
+    "springs",
+    "contacts",
+    "loads",
+];
 
 /// Keys of the other two sources.
 const OTHER_SOURCES: [&str; 2] = ["contact_system", "lcp"];

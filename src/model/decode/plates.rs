@@ -1,10 +1,10 @@
-//! Plates and quads.
+//! Plates: grids of quads.
 
 use super::elements::{id_of, material_of};
 use super::reader::{Cursor, Fields};
 use super::structure::Builder;
 use crate::model::mesh::{GridLines, PlateGrid};
-use crate::model::structure::{Element, ElementKind, Plane};
+use crate::model::structure::Plane;
 
 /// Reads one plate.
 pub fn plate<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<PlateGrid> {
@@ -49,8 +49,8 @@ fn plate_grid<'d>(builder: &Builder<'d>, fields: &Fields<'d>, id: Option<&'d str
     Some(PlateGrid { id: id?.to_string(), origin: origin?, rotation: rotation?, x, y, thickness, plane, material })
 }
 
-/// Thickness, material and plane of a plate or quad.
-fn membrane<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<(f64, usize, Plane)> {
+/// Thickness, material and plane of a plate, triangle or quad.
+pub fn membrane<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<(f64, usize, Plane)> {
     let thickness = fields.required("thickness").and_then(|cursor| cursor.positive("thickness"));
     let material = material_of(builder, fields);
     let at = fields.required("plane");
@@ -124,58 +124,4 @@ fn increasing(cursor: Cursor<'_>) -> Option<Vec<f64>> {
         }
     }
     Some(lines)
-}
-
-/// Reads one quad.
-pub fn quad<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Element> {
-    let fields = cursor.fields(&["id", "nodes", "thickness", "material", "plane"])?;
-    // Only an element's name in messages, but checked like every id.
-    let id = id_of(builder, &fields, "quad");
-    let common = membrane(builder, &fields);
-    let corners = fields.required("nodes").and_then(|at| {
-        let entries = at.list_of(4, "the corners counter-clockwise")?;
-        let nodes: Vec<Option<usize>> = entries.map(|entry| builder.node(entry)).collect();
-        let nodes: Vec<usize> = nodes.into_iter().collect::<Option<_>>()?;
-        check_corners(builder, at, &nodes).then_some(nodes)
-    });
-    id?;
-    let (thickness, material, plane) = common?;
-    Some(Element { nodes: corners?, material, kind: ElementKind::Membrane { thickness, plane } })
-}
-
-fn check_corners(builder: &Builder<'_>, cursor: Cursor<'_>, nodes: &[usize]) -> bool {
-    for (k, node) in nodes.iter().enumerate() {
-        if nodes[..k].contains(node) {
-            cursor.problem(
-                format!("the node \"{}\" is a corner twice", builder.node_id(*node)),
-                "a quad has four different corners",
-            );
-            return false;
-        }
-    }
-    let at = |k: usize| builder.structure.nodes[nodes[k % 4]].position;
-    // Turn at corner k relative to its sides: the sine of the inner angle if counter-clockwise.
-    let turns: Vec<f64> = (0..4)
-        .map(|k| {
-            let (a, b, c) = (at(k + 3), at(k), at(k + 1));
-            let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
-            (u[0] * v[1] - u[1] * v[0]) / (u[0].hypot(u[1]) * v[0].hypot(v[1]))
-        })
-        .collect();
-    const FLAT: f64 = 1e-9;
-    if turns.iter().all(|turn| *turn < -FLAT) {
-        cursor
-            .problem("the corners of the quad run clockwise", "list them counter-clockwise, i.e. in the reverse order");
-        return false;
-    }
-    // A corner at an unknown place gives NaN and was reported there.
-    let unknown = (0..4).any(|k| at(k)[0].is_nan());
-    if !unknown && !turns.iter().all(|turn| *turn > FLAT) {
-        cursor.problem(
-            "the quad is not convex: a corner is flat, re-entrant, or two sides cross",
-            "list the corners counter-clockwise and keep every inner angle below 180°",
-        );
-        return false;
-    }
-    true
 }

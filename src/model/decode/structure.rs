@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
-use super::{contacts, elements, loads, supports};
-use crate::model::edge::Side;
+use super::{contacts, edges, elements, loads, supports};
+use crate::model::edge::{Edge, PlateSide};
 use crate::model::scenario::Places;
 use crate::model::structure::{ElementKind, Node, Structure};
 
@@ -15,13 +15,30 @@ pub struct Section {
     pub area: f64,
     /// Only frames need one.
     pub inertia: Option<f64>,
+    /// Frames yield to shear only with one.
+    pub shear_area: Option<f64>,
+    /// Needed where the temperature varies across the bar.
+    pub depth: Option<f64>,
+}
+
+/// An element of a bar and where it lies along it.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    /// Index of the element.
+    pub element: usize,
+    /// Distance of its start from the start of the bar.
+    pub from: f64,
+    /// Its length.
+    pub length: f64,
+    /// (cos, sin) of its direction.
+    pub direction: [f64; 2],
 }
 
 /// What a `at` names.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub enum Spot {
     Node(usize),
-    Edge { plate: usize, side: Side },
+    Edge(Edge),
 }
 
 /// The structure as read so far, and the names by which later parts refer to it.
@@ -31,7 +48,13 @@ pub struct Builder<'d> {
     pub materials: HashMap<&'d str, usize>,
     pub sections: HashMap<&'d str, Section>,
     pub bars: HashMap<&'d str, usize>,
+    /// Section of each bar, in the order of the bars.
+    pub bar_sections: Vec<&'d str>,
     pub plates: HashMap<&'d str, usize>,
+    /// The edges that have a name of their own.
+    pub edges: HashMap<&'d str, Edge>,
+    /// Triangles and quads by their ids.
+    pub single_elements: HashMap<&'d str, usize>,
     /// Nodes of the author and of bar divisions; plate nodes are found by their indices.
     pub nodes: HashMap<String, usize>,
     /// Every id and what it names.
@@ -56,7 +79,10 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
         materials: HashMap::new(),
         sections: HashMap::new(),
         bars: HashMap::new(),
+        bar_sections: Vec::new(),
         plates: HashMap::new(),
+        edges: HashMap::new(),
+        single_elements: HashMap::new(),
         nodes: HashMap::new(),
         ids: HashMap::new(),
         broken: HashSet::new(),
@@ -69,6 +95,7 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
     elements::read(&mut builder, fields)?;
     builder.elements_complete = fields.cursor().problems_so_far() == before;
     builder.find_rotations();
+    edges::read(&mut builder, fields);
     supports::read(&mut builder, fields);
     contacts::read(&mut builder, fields)?;
     loads::read(&mut builder, fields);
@@ -121,27 +148,25 @@ impl<'d> Builder<'d> {
         &self.structure.nodes[node].id
     }
 
-    /// Nodes of an edge, by increasing i or j.
-    pub fn edge_nodes(&self, plate: usize, side: Side) -> Vec<usize> {
-        side.nodes(&self.structure.plates[plate])
-    }
-
     /// The node or edge that a string names.
     pub fn spot(&self, cursor: Cursor<'d>) -> Option<Spot> {
         let name = cursor.string()?;
         if let Some(&node) = self.nodes.get(name) {
             return Some(Spot::Node(node));
         }
+        if let Some(edge) = self.edges.get(name) {
+            return Some(Spot::Edge(edge.clone()));
+        }
         if let Some((id, side)) = name.split_once('.') {
             let plate = self.plate(cursor, id, name)?;
-            let Some((_, side)) = Side::WORDS.iter().find(|(word, _)| *word == side) else {
+            let Some((_, side)) = PlateSide::WORDS.iter().find(|(word, _)| *word == side) else {
                 cursor.problem(
                     format!("the plate \"{id}\" has no edge {}", quoted(side)),
                     format!("expected {id}.bottom, {id}.top, {id}.left or {id}.right"),
                 );
                 return None;
             };
-            return Some(Spot::Edge { plate, side: *side });
+            return Some(Spot::Edge(side.edge(&self.structure.plates[plate])));
         }
         if let Some((id, indices)) = name.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
             let plate = self.plate(cursor, id, name)?;
@@ -231,7 +256,7 @@ impl<'d> Builder<'d> {
     pub fn node(&self, cursor: Cursor<'d>) -> Option<usize> {
         match self.spot(cursor)? {
             Spot::Node(node) => Some(node),
-            Spot::Edge { .. } => {
+            Spot::Edge(_) => {
                 cursor.problem(
                     format!("expected a node, found the edge {}", cursor.quoted()),
                     "name one node, e.g. a plate node \"lower[0,8]\"",
@@ -242,13 +267,13 @@ impl<'d> Builder<'d> {
     }
 
     /// The edge that a string names; a node is reported.
-    pub fn edge(&self, cursor: Cursor<'d>) -> Option<(usize, Side)> {
+    pub fn edge(&self, cursor: Cursor<'d>) -> Option<Edge> {
         match self.spot(cursor)? {
-            Spot::Edge { plate, side } => Some((plate, side)),
+            Spot::Edge(edge) => Some(edge),
             Spot::Node(_) => {
                 cursor.problem(
                     format!("expected an edge, found the node {}", cursor.quoted()),
-                    "edges belong to plates: \"lower.top\"",
+                    "edges belong to plates, \"lower.top\", or are named under `edges`",
                 );
                 None
             }
@@ -259,8 +284,66 @@ impl<'d> Builder<'d> {
     pub fn spot_nodes(&self, spot: Spot) -> Vec<usize> {
         match spot {
             Spot::Node(node) => vec![node],
-            Spot::Edge { plate, side } => self.edge_nodes(plate, side),
+            Spot::Edge(edge) => edge.nodes,
         }
+    }
+
+    /// The elements of a bar, plate, triangle or quad that a string names.
+    pub fn elements_of(&self, cursor: Cursor<'d>) -> Option<Vec<usize>> {
+        let name = cursor.string()?;
+        if let Some(&bar) = self.bars.get(name) {
+            return Some(self.structure.bars[bar].elements.clone().collect());
+        }
+        if let Some(&plate) = self.plates.get(name) {
+            return Some(self.structure.plates[plate].elements.clone().collect());
+        }
+        if let Some(&element) = self.single_elements.get(name) {
+            return Some(vec![element]);
+        }
+        if !self.broken.contains(name) {
+            let mut known: Vec<&str> =
+                self.bars.keys().chain(self.plates.keys()).chain(self.single_elements.keys()).copied().collect();
+            known.sort_unstable();
+            cursor.unknown("element", name, &known);
+        }
+        None
+    }
+
+    /// The elements of a bar with their places along it.
+    pub fn stretches(&self, bar: usize) -> Vec<Stretch> {
+        let structure = &self.structure;
+        let mut from = 0.0;
+        let stretch = |element: usize| {
+            let nodes = &structure.elements[element].nodes;
+            let [a, b] = [0, 1].map(|end| structure.nodes[nodes[end]].position);
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let length = dx.hypot(dy);
+            let stretch = Stretch { element, from, length, direction: [dx / length, dy / length] };
+            from += length;
+            stretch
+        };
+        structure.bars[bar].elements.clone().map(stretch).collect()
+    }
+
+    /// The element of a bar at a distance from its start, and the distance from the start of that element.
+    pub fn place_on_bar(&self, at: Cursor<'d>, bar: usize, distance: f64) -> Option<(usize, f64)> {
+        let stretches = self.stretches(bar);
+        let last = stretches.last()?;
+        let total = last.from + last.length;
+        // A distance computed by an expression may miss the end of the bar by rounding.
+        let room = 4.0 * f64::EPSILON * total;
+        if !(distance >= -room && distance <= total + room) {
+            at.problem(
+                format!(
+                    "the distance {distance} is not on the bar \"{}\", which is {total} long",
+                    self.structure.bars[bar].id
+                ),
+                format!("give a distance from its start between 0 and {total}"),
+            );
+            return None;
+        }
+        let stretch = stretches.iter().rev().find(|stretch| stretch.from <= distance).unwrap_or(&stretches[0]);
+        Some((stretch.element, (distance - stretch.from).clamp(0.0, stretch.length)))
     }
 
     fn find_rotations(&mut self) {

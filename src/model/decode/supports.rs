@@ -67,7 +67,7 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
         }
         (None, Some(at)) => {
             let edge = builder.edge(at.value());
-            edge.map(|(plate, side)| builder.edge_nodes(plate, side))
+            edge.map(|edge| edge.nodes)
         }
         (nodes, None) => {
             let nodes = nodes.or_else(|| fields.required("nodes"));

@@ -1,0 +1,55 @@
+//! Edges with a name of their own: chains of the sides of triangles and quads.
+
+use super::reader::{Cursor, Entry, Fields};
+use super::structure::Builder;
+use crate::model::edge::{ChainError, Edge, Sides};
+
+/// Reads `edges`.
+pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
+    let entries = fields.optional("edges").and_then(Cursor::entries).unwrap_or_default();
+    if entries.is_empty() {
+        return;
+    }
+    let sides = Sides::of(&builder.structure.elements);
+    for entry in entries {
+        builder.register(entry.key_place(), entry.name(), "edge");
+        match edge(builder, entry, &sides) {
+            Some(edge) => {
+                builder.edges.entry(entry.name()).or_insert(edge);
+            }
+            None => {
+                builder.broken.insert(entry.name());
+            }
+        }
+    }
+}
+
+fn edge<'d>(builder: &Builder<'d>, entry: Entry<'d>, sides: &Sides) -> Option<Edge> {
+    let cursor = entry.value();
+    let nodes: Vec<Option<usize>> = cursor.list()?.map(|node| builder.node(node)).collect();
+    let nodes: Vec<usize> = nodes.into_iter().collect::<Option<_>>()?;
+    let id = |node: usize| builder.node_id(node);
+    let (message, help) = match sides.chain(&nodes) {
+        Ok(edge) => return Some(edge),
+        // Elements that could not be read are reported where they stand.
+        Err(_) if !builder.elements_complete => return None,
+        Err(ChainError::TooShort) => (
+            format!("an edge needs two or more nodes, found {}", nodes.len()),
+            "name the corners along the edge in order",
+        ),
+        Err(ChainError::NoSide([a, b])) => (
+            format!("no triangle, quad or plate has a side from \"{}\" to \"{}\"", id(a), id(b)),
+            "name every corner along the edge in order: neighbours are the two ends of one element side",
+        ),
+        Err(ChainError::Inside([a, b])) => (
+            format!("two elements share the side from \"{}\" to \"{}\": it lies inside a body", id(a), id(b)),
+            "an edge is on the outside; to cut a body give each part its own nodes",
+        ),
+        Err(ChainError::Turns(node)) => (
+            format!("the body changes from one side of the edge to the other at \"{}\"", id(node)),
+            "split the edge there",
+        ),
+    };
+    cursor.problem(message, help);
+    None
+}

@@ -1,0 +1,19 @@
+//! `gravity`: density × acceleration in every element, or in the named ones.
+
+use super::elements;
+use crate::model::decode::reader::Cursor;
+use crate::model::decode::structure::Builder;
+use crate::model::structure::Load;
+
+pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
+    let fields = cursor.fields(&["acceleration", "on"])?;
+    let acceleration = fields.required("acceleration").and_then(Cursor::vector);
+    let elements = elements(builder, fields.optional("on"));
+    let (acceleration, elements) = (acceleration?, elements?);
+    let structure = &builder.structure;
+    let weights = elements.into_iter().filter_map(|element| {
+        let density = structure.materials[structure.elements[element].material].density;
+        (density != 0.0).then(|| Load::Body { element, value: acceleration.map(|a| density * a) })
+    });
+    Some(weights.collect())
+}

@@ -1,0 +1,76 @@
+//! `point`: a force and a moment at a node, along an edge (the total), or at a place of a bar.
+
+use super::{bar, nodal};
+use crate::model::decode::reader::{Cursor, Fields};
+use crate::model::decode::structure::{Builder, Spot};
+use crate::model::structure::{ElementKind, Load};
+use crate::model::uses::Region;
+
+pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
+    let fields = cursor.fields(&["at", "bar", "distance", "force", "moment"])?;
+    if fields.entry("bar").is_some() || fields.entry("distance").is_some() {
+        return on_bar(builder, &fields);
+    }
+    let spot = fields.required("at").and_then(|at| builder.spot(at));
+    let force = fields.required("force").and_then(Cursor::vector);
+    let moment = match fields.optional("moment") {
+        Some(cursor) => Some((cursor, cursor.number()?)),
+        None => None,
+    };
+    match spot? {
+        Spot::Node(node) => {
+            let moment = match moment {
+                Some((cursor, moment)) => {
+                    builder.demand_rotation(cursor, node, "no `moment` can act there").then_some(moment)?
+                }
+                None => 0.0,
+            };
+            Some(vec![Load::Nodal { node, force: force?, moment }])
+        }
+        Spot::Edge(edge) => {
+            if let Some((cursor, _)) = moment {
+                cursor.problem(
+                    "a `moment` cannot act on an edge: its nodes have no rotation",
+                    "remove it, or give a couple of forces",
+                );
+                return None;
+            }
+            let nodes = &builder.structure.nodes;
+            let total = edge.length(nodes);
+            let per_length = force?.map(|force| force / total);
+            Some(nodal(edge.consistent_forces(nodes, None, &|_| per_length)))
+        }
+    }
+}
+
+fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
+    fields.refuse(
+        &["at"],
+        |_| "`at` cannot stand beside `bar` and `distance`".into(),
+        "give the node, or the bar and the distance from its start",
+    );
+    let bar = fields.required("bar").and_then(|at| bar(builder, at));
+    let distance = fields.required("distance").and_then(|at| Some((at, at.of(Region::Load).number()?)));
+    let force = match fields.optional("force") {
+        Some(cursor) => Some(cursor.vector()?),
+        None => None,
+    };
+    let moment = match fields.optional("moment") {
+        Some(cursor) => Some((cursor, cursor.number()?)),
+        None => None,
+    };
+    if force.is_none() && moment.is_none() {
+        fields.required("force");
+        return None;
+    }
+    let (at, distance) = distance?;
+    let (element, distance) = builder.place_on_bar(at, bar?, distance)?;
+    if let Some((cursor, _)) = moment
+        && matches!(builder.structure.elements[element].kind, ElementKind::Truss { .. })
+    {
+        cursor.problem("a truss bar carries no `moment`", "remove it, or make the bar a frame");
+        return None;
+    }
+    let (force, moment) = (force.unwrap_or_default(), moment.map_or(0.0, |(_, moment)| moment));
+    Some(vec![Load::BarPoint { element, distance, force, moment }])
+}
