@@ -129,7 +129,7 @@ impl<'d> Builder<'d> {
         } else if let Some(first) = self.ids.insert(id, kind) {
             place.problem(
                 format!("duplicate id {}: a {first} has it already", quoted(id)),
-                "nodes, bars, plates, quads and contacts share one set of ids: rename one of the two",
+                "nodes, elements, edges and contacts share one set of ids: rename one of the two",
             );
         }
     }

@@ -12,6 +12,12 @@ use schemars::transform::{RecursiveTransform, Transform};
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value};
 
+mod elements;
+mod loads;
+
+use elements::{Bar, Material, Plate, Quad, Section, Triangle};
+use loads::LoadCase;
+
 /// A scenario of stickslip: a structure, a contact system or an LCP
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields, title = "stickslip/1")]
@@ -21,6 +27,7 @@ use serde_json::{Map, Value};
     { "anyOf": [
         { "required": ["materials"] }, { "required": ["sections"] }, { "required": ["nodes"] },
         { "required": ["bars"] }, { "required": ["plates"] }, { "required": ["quads"] },
+        { "required": ["triangles"] }, { "required": ["edges"] },
         { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
         { "required": ["contacts"] }, { "required": ["loads"] },
     ] },
@@ -55,8 +62,12 @@ struct Scenario {
     bars: Option<Vec<Bar>>,
     /// Rectangular plates of bilinear elements
     plates: Option<Vec<Plate>>,
+    /// Single triangles
+    triangles: Option<Vec<Triangle>>,
     /// Single four-node elements
     quads: Option<Vec<Quad>>,
+    /// Edges with a name: chains of the sides of elements, corner by corner
+    edges: Option<BTreeMap<String, Vec<String>>>,
     /// Nodes that share displacements
     ties: Option<Vec<Tie>>,
     /// Supports
@@ -159,125 +170,6 @@ enum Engine {
     Exact,
 }
 
-/// A linear elastic material
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Material {
-    /// Young's modulus
-    #[schemars(rename = "E", extend("exclusiveMinimum" = 0))]
-    modulus: Number,
-    /// Poisson's ratio; 0.5 is excluded in plane strain
-    #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
-    nu: Number,
-    /// Mass per volume; 0 if left out
-    #[schemars(extend("minimum" = 0))]
-    density: Option<Number>,
-    /// Thermal expansion; 0 if left out
-    expansion: Option<Number>,
-}
-
-/// Cross-section of a bar
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Section {
-    /// Area
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    area: Number,
-    /// Second moment of area; not needed by trusses
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    inertia: Option<Number>,
-}
-
-/// A straight bar
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Bar {
-    /// Id
-    id: String,
-    /// Start and end
-    nodes: [String; 2],
-    /// `frame` if left out
-    kind: Option<BarKind>,
-    /// Id of the material
-    material: String,
-    /// Id of the section
-    section: String,
-    /// Number of equal elements; 1 if left out
-    #[schemars(range(min = 1))]
-    divisions: Option<u32>,
-    /// Ends with a hinge
-    hinges: Option<Vec<BarEnd>>,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase")]
-enum BarKind {
-    Frame,
-    Truss,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase")]
-enum BarEnd {
-    Start,
-    End,
-}
-
-/// A rectangle of four-node elements: `size` and `divisions`, or grid lines `x` and `y`
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-#[schemars(extend("oneOf" = [
-    { "required": ["size", "divisions"] },
-    { "required": ["x", "y"] },
-]))]
-struct Plate {
-    /// Id
-    id: String,
-    /// Place of node [0,0]
-    origin: [Number; 2],
-    /// Length and height
-    size: Option<[Number; 2]>,
-    /// Elements along the length and the height
-    divisions: Option<[u32; 2]>,
-    /// Grid lines along the length, from the origin
-    x: Option<Vec<Number>>,
-    /// Grid lines along the height, from the origin
-    y: Option<Vec<Number>>,
-    /// Degrees counter-clockwise about the origin; 0 if left out
-    rotation: Option<Number>,
-    /// Thickness
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    thickness: Number,
-    /// Id of the material
-    material: String,
-    /// Plane strain or plane stress
-    plane: Plane,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase")]
-enum Plane {
-    Strain,
-    Stress,
-}
-
-/// One four-node element of any convex shape
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Quad {
-    /// Id
-    id: String,
-    /// Corners counter-clockwise
-    nodes: [String; 4],
-    /// Thickness
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    thickness: Number,
-    /// Id of the material
-    material: String,
-    /// Plane strain or plane stress
-    plane: Plane,
-}
-
 #[derive(JsonSchema)]
 #[schemars(rename_all = "lowercase")]
 enum Component {
@@ -371,77 +263,6 @@ struct Contact {
     bound: Option<PerPair>,
     /// Indices of an edge without contact
     skip: Option<Vec<u32>>,
-}
-
-/// Loads that grow together
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct LoadCase {
-    /// 1 if left out
-    factor: Option<Number>,
-    /// The loads
-    items: Vec<Load>,
-}
-
-/// One load
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase")]
-enum Load {
-    /// At a node; on an edge the total
-    Point(PointLoad),
-    /// Along an edge
-    Traction(Traction),
-    /// Along a bar
-    Line(LineLoad),
-    /// On all elements with a density
-    Gravity(Gravity),
-    /// Change of temperature
-    Temperature(Temperature),
-}
-
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct PointLoad {
-    /// Node or edge
-    at: String,
-    /// Force [Fx, Fy]
-    force: [Number; 2],
-    /// Counter-clockwise
-    moment: Option<Number>,
-}
-
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Traction {
-    /// Edge
-    edge: String,
-    /// Force per unit length of edge
-    value: [Number; 2],
-}
-
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct LineLoad {
-    /// Bar
-    bar: String,
-    /// Force per unit length, global axes
-    value: [Number; 2],
-}
-
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Gravity {
-    /// Acceleration [gx, gy]
-    acceleration: [Number; 2],
-}
-
-#[derive(JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Temperature {
-    /// Degrees
-    change: Number,
-    /// Ids of the elements
-    on: Vec<String>,
 }
 
 /// Contact stiffness matrix and contact load vectors
@@ -556,5 +377,4 @@ pub fn schema() -> Value {
 }
 
 #[cfg(test)]
-#[path = "schema_tests.rs"]
 mod tests;

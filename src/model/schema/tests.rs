@@ -174,10 +174,10 @@ fn schema_and_decoder_know_the_same_keys() {
         system(unknown.clone()),
         json!({ "lcp": unknown }),
     ];
-    for list in ["bars", "plates", "quads", "ties", "supports", "springs", "contacts"] {
+    for list in ["bars", "plates", "triangles", "quads", "ties", "supports", "springs", "contacts"] {
         places.push(json!({ list: [unknown] }));
     }
-    for kind in ["point", "traction", "line"] {
+    for kind in ["point", "traction", "line", "gravity", "temperature", "strain", "pressure", "fluid"] {
         places.push(load(kind));
     }
     for place in places {
