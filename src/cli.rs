@@ -1,21 +1,28 @@
 //! The program as the shell sees it: arguments, streams, exit statuses.
 
-use std::io::{self, IsTerminal, Read, Write};
+mod look;
+mod order;
+
+use std::ffi::OsString;
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use serde_json::{Value, json};
 
-use crate::export::json;
+use crate::export::json as json_export;
 use crate::model::embedded;
-use crate::model::load::load_named_or_file;
+use crate::model::problem::Problems;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::model::schema;
-use crate::session::{Answer, exit_status, paths, script};
+use crate::session::{Answer, exit_status, load, paths, script};
 use crate::session::{CommandError, Format, Output, Session, diagnose};
-use crate::signals::{Signals, TerminalWatch, is_dumb};
+use crate::signals::{self, Signals, TerminalWatch, is_dumb};
+use crate::text::printable::{self, Printable};
 use crate::view;
 use crate::view::style::{Role, Style};
+use look::Look;
 
 /// Structures with frictional contact, solved by Lemke's algorithm and explained pivot by pivot
 #[derive(Debug, Parser)]
@@ -35,27 +42,6 @@ struct Cli {
     scenario: String,
     #[command(flatten)]
     look: Look,
-}
-
-/// How the output looks.
-#[derive(Args, Clone, Debug)]
-struct Look {
-    /// Colours: never on a pipe or with NO_COLOR, unless `always`
-    #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
-    color: Color,
-    /// Plain ASCII only
-    #[arg(long, global = true)]
-    ascii: bool,
-    /// Columns of the output; otherwise those of the terminal, or 80
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1000))]
-    width: Option<u16>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Color {
-    Auto,
-    Always,
-    Never,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -92,9 +78,12 @@ enum Command {
     ///
     /// Also names the parts that only contact holds, with their motions: where those are not wanted, a support is missing.
     Check {
-        /// Files, or embedded scenarios
+        /// Files, or embedded scenarios; `-` reads one from stdin
         #[arg(required = true, value_name = "SCENARIO")]
         scenarios: Vec<String>,
+        /// For people, or one JSON object with what was found
+        #[arg(long, value_enum, default_value_t = Form::Text)]
+        format: Form,
     },
     /// Show a scenario in the full screen: vary it and watch
     Tui {
@@ -147,7 +136,7 @@ impl Settings {
 
 #[derive(Args, Debug)]
 struct Solve {
-    /// A file, or an embedded scenario
+    /// A file, or an embedded scenario; `-` reads one from stdin
     #[arg(default_value = embedded::DEFAULT)]
     scenario: String,
     #[command(flatten)]
@@ -174,7 +163,7 @@ struct Replay {
 
 #[derive(Args, Debug)]
 struct SweepArguments {
-    /// A file, or an embedded scenario
+    /// A file, or an embedded scenario; `-` reads one from stdin
     #[arg(default_value = embedded::DEFAULT)]
     scenario: String,
     /// A parameter and its values: NAME=FROM:TO:STEP (TO included), NAME=FROM..TO/COUNT or NAME=VALUE; up to three
@@ -204,24 +193,23 @@ enum Rows {
 
 /// What ends the program early.
 enum Failure {
+    /// A command that failed.
+    Command(CommandError),
     /// A message for stderr and a status.
     Status(u8, String),
-    /// The results cannot be written.
-    Output(io::Error),
+    /// What is wrong was told already.
+    Told(u8),
 }
 
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
-        Failure::Output(error)
+        Failure::Command(CommandError::Output(error))
     }
 }
 
 impl From<CommandError> for Failure {
     fn from(error: CommandError) -> Self {
-        match error {
-            CommandError::Output(error) => Failure::Output(error),
-            error => Failure::Status(error.status(), error.to_string()),
-        }
+        Failure::Command(error)
     }
 }
 
@@ -249,28 +237,55 @@ pub struct Start {
 
 /// The exit status of a face; tells on stderr, in the style `errors`, why it could not go on.
 pub fn finish(ended: io::Result<u8>, errors: &Style) -> u8 {
-    status(ended.map_err(Failure::Output), errors)
+    status(ended.map_err(Failure::from), false, errors)
 }
 
 /// Runs what the arguments of the process ask for, up to the REPL.
 pub fn main() -> Next {
-    let cli = match Cli::try_parse() {
+    if let Err(error) = signals::survive_file_limit() {
+        return Next::Exit(finish(Err(error), &Style::default()));
+    }
+    let arguments = order::command_first(&Cli::command(), std::env::args_os().collect());
+    let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
-        Err(error) => return Next::Exit(usage(&error)),
+        Err(error) => return Next::Exit(usage(&error, &arguments)),
     };
     let errors = cli.look.style(&io::stderr());
-    let started = match &cli.command {
-        None => start(&cli, &cli.scenario, errors).map(|start| Next::Repl(Box::new(start))),
-        Some(Command::Tui { scenario }) => start_screen(&cli, scenario, errors).map(|start| Next::Tui(Box::new(start))),
-        Some(_) => return Next::Exit(status(run(cli), &errors)),
-    };
-    started.unwrap_or_else(|failure| Next::Exit(status(Err(failure), &errors)))
+    let failed = |failure| Next::Exit(status(Err(failure), false, &errors));
+    match &cli.command {
+        None => start(&cli, &cli.scenario, errors).map_or_else(failed, |start| Next::Repl(Box::new(start))),
+        Some(Command::Tui { scenario }) => {
+            start_screen(&cli, scenario, errors).map_or_else(failed, |start| Next::Tui(Box::new(start)))
+        }
+        Some(_) => {
+            let json = asks_for_json(&arguments);
+            Next::Exit(status(run(cli), json, &errors))
+        }
+    }
+}
+
+/// Whether the arguments ask for JSON; needed where they cannot be read as a whole.
+fn asks_for_json(arguments: &[OsString]) -> bool {
+    let pair = |pair: &[OsString]| pair[0] == "--format" && pair[1] == "json";
+    arguments.iter().any(|word| word == "--format=json") || arguments.windows(2).any(pair)
 }
 
 /// Help and version go to stdout and are no error.
-fn usage(error: &clap::Error) -> u8 {
+fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
     let status = u8::try_from(error.exit_code()).unwrap_or(2);
-    match error.print() {
+    // the message quotes the arguments: it is made again from what of them may be shown
+    let clean = arguments.iter().map(|word| printable::line(&word.to_string_lossy()));
+    let shown = Cli::try_parse_from(clean).err().filter(|shown| shown.kind() == error.kind());
+    if status != 0 && asks_for_json(arguments) {
+        let text = shown.as_ref().unwrap_or(error).render().to_string();
+        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        tell_json(&json_export::problems(&[Problems::of_file("", message, "")]));
+    }
+    let printed = match shown {
+        Some(shown) => shown.print(),
+        None => io::stderr().write_all(printable::text(&error.render().to_string(), false).as_bytes()),
+    };
+    match printed {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => 2,
         _ => status,
     }
@@ -292,25 +307,37 @@ fn start(cli: &Cli, scenario: &str, errors: Style) -> Result<Start, Failure> {
     let style = cli.look.style(&io::stdout());
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
-    let scenario = load(scenario)?;
+    let scenario = load::scenario(scenario, &watch)?;
     let session = Session::new(scenario, &watch);
     watch.clear();
     Ok(Start { session: session?, style, signals, errors })
 }
 
-fn status(result: Result<u8, Failure>, errors: &Style) -> u8 {
-    match result {
-        Ok(status) => status,
-        Err(Failure::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
-        Err(Failure::Output(error)) => {
-            tell(errors, &format!("cannot write the result: {error}"));
-            2
-        }
-        Err(Failure::Status(status, message)) => {
-            tell(errors, &message);
-            status
-        }
+/// The exit status of a result; a failure is told on stderr, and with `json` on stdout as well.
+fn status(result: Result<u8, Failure>, json: bool, errors: &Style) -> u8 {
+    let failure = match result {
+        Ok(status) | Err(Failure::Told(status)) => return status,
+        Err(Failure::Command(error)) if error.is_broken_pipe() => return 0,
+        Err(failure) => failure,
+    };
+    let (status, message) = match &failure {
+        Failure::Command(error) => (error.status(), error.to_string()),
+        Failure::Status(status, message) => (*status, message.clone()),
+        Failure::Told(status) => (*status, String::new()),
+    };
+    if json && status == 2 && !matches!(&failure, Failure::Command(error) if error.is_output()) {
+        tell_json(&match &failure {
+            Failure::Command(CommandError::Scenario(problems)) => json_export::problems(std::slice::from_ref(problems)),
+            _ => json_export::problems(&[Problems::of_file("", message.as_str(), "")]),
+        });
     }
+    tell(errors, &message);
+    status
+}
+
+/// What is wrong with the input, for a program that reads stdout; if nobody does, so be it.
+fn tell_json(error: &Value) {
+    let _ = json_export::pretty(error).and_then(|text| writeln!(io::stdout(), "{text}"));
 }
 
 /// An error on stderr; if nobody can read it, so be it.
@@ -321,14 +348,14 @@ fn tell(style: &Style, message: &str) {
 
 fn run(cli: Cli) -> Result<u8, Failure> {
     let style = cli.look.style(&io::stdout());
-    let mut out = io::stdout();
+    let mut out = Printable::new(io::stdout(), style.color);
     match cli.command {
         None | Some(Command::Tui { .. }) => Ok(0), // `main` starts those
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
         Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),
-        Some(Command::Merge { files, out: to }) => merge(&files, to.as_deref(), &mut out),
-        Some(Command::Check { scenarios }) => check(&scenarios, &style, &mut out),
+        Some(Command::Merge { files, out: to }) => merge(&files, to.as_deref(), &style, &mut out),
+        Some(Command::Check { scenarios, format }) => check(&scenarios, format, &style, &mut out),
         Some(Command::Scenarios) => {
             crate::session::write_scenarios(&mut out, &style)?;
             Ok(0)
@@ -347,33 +374,17 @@ fn run(cli: Cli) -> Result<u8, Failure> {
     }
 }
 
-impl Look {
-    /// The style for a stream.
-    fn style(&self, stream: &impl IsTerminal) -> Style {
-        let terminal = stream.is_terminal();
-        let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-        let color = match self.color {
-            Color::Always => true,
-            Color::Never => false,
-            Color::Auto => terminal && !set("NO_COLOR") && !is_dumb(),
-        };
-        let width = match self.width {
-            Some(width) => usize::from(width),
-            None if terminal => crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20)),
-            None => 80,
-        };
-        Style { width, color, ascii: self.ascii }
-    }
-}
-
-fn load(name: &str) -> Result<Scenario, Failure> {
-    load_named_or_file(name).map_err(|problems| Failure::Status(2, problems.to_string()))
+/// A scenario named on the command line.
+fn named(word: &str, watch: &TerminalWatch) -> Result<Scenario, CommandError> {
+    let scenario = if word == "-" { load::stdin(watch) } else { load::scenario(word, watch) };
+    watch.clear();
+    scenario
 }
 
 fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
-    let scenario = load(&arguments.scenario)?;
+    let scenario = named(&arguments.scenario, &watch)?;
     let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
@@ -382,9 +393,8 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     };
     match arguments.format {
         Form::Json => {
-            let result = json::result(answer, &session.scenario().name, session.values(), arguments.timings);
-            let text = serde_json::to_string_pretty(&result).map_err(io::Error::other)?;
-            writeln!(out, "{text}")?;
+            let result = json_export::result(answer, &session.scenario().name, session.values(), arguments.timings);
+            writeln!(out, "{}", json_export::pretty(&result)?)?;
         }
         Form::Text => write_answer(&session, answer, arguments.timings, style, out)?,
     }
@@ -395,7 +405,7 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
 fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
-    let scenario = load(&arguments.scenario)?;
+    let scenario = named(&arguments.scenario, &watch)?;
     let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
@@ -418,10 +428,11 @@ fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Resu
     Ok(if done.is_complete() { 0 } else { 130 })
 }
 
-fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<u8, Failure> {
-    let rows = paths::merge(files, to, out)?;
+fn merge(files: &[PathBuf], to: Option<&Path>, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let watch = TerminalWatch::new(&Signals::install()?);
+    let rows = paths::merge(files, to, out, &watch)?;
     if let Some(path) = to {
-        writeln!(out, "{rows} rows written to {}", path.display())?;
+        writeln!(out, "{}", style.text(&format!("{rows} rows written to {}", path.display())))?;
     }
     Ok(0)
 }
@@ -463,20 +474,10 @@ fn write_answer(
 fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, Failure> {
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
-    let (name, text) = if arguments.script == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin()
-            .lock()
-            .read_to_end(&mut bytes)
-            .map_err(|error| Failure::Status(2, format!("cannot read stdin: {error}")))?;
-        let text =
-            String::from_utf8(bytes).map_err(|_| Failure::Status(2, "stdin: the script is not UTF-8".to_owned()))?;
-        ("stdin".to_owned(), text)
-    } else {
-        let name = arguments.script.display().to_string();
-        (name, script::read(&arguments.script)?)
-    };
-    let mut session = Session::new(load(embedded::DEFAULT)?, &watch)?;
+    let stdin = arguments.script == Path::new("-");
+    let name = if stdin { "stdin".to_owned() } else { arguments.script.display().to_string() };
+    let text = load::script((!stdin).then_some(arguments.script.as_path()), &watch)?;
+    let mut session = Session::new(load::scenario(embedded::DEFAULT, &watch)?, &watch)?;
     let format = match arguments.format {
         Form::Text => Format::Text,
         Form::Json => Format::JsonLines,
@@ -491,33 +492,46 @@ fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, F
     Ok(ended?.status)
 }
 
-fn check(names: &[String], style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+fn check(names: &[String], format: Form, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
-    let mut status = 0;
-    let mut problems = |text: &str| -> io::Result<()> {
-        status = 2;
-        text.lines().try_for_each(|line| writeln!(io::stderr(), "{}", style.text(line)))
-    };
+    let mut checked = Vec::new();
+    let mut wrong = Vec::new();
     for name in names {
-        match load_named_or_file(name) {
-            Ok(scenario) => {
-                let title = scenario.title.clone();
-                let looked = diagnose(scenario, &watch);
-                watch.clear();
-                match looked {
-                    Ok(loose) => {
-                        let line = format!("{name}: no problems found ({title})");
-                        writeln!(out, "{}", style.text(&line))?;
-                        view::loose::write(out, &loose, style)?;
-                    }
-                    Err(error) if error.is_interrupted() => return Err(error.into()),
-                    Err(error) => problems(&error.to_string())?,
-                }
+        let looked = named(name, &watch).and_then(|scenario| {
+            let title = scenario.title.clone();
+            diagnose(scenario, &watch).map(|loose| (title, loose))
+        });
+        watch.clear();
+        match looked {
+            Ok((title, loose)) if format == Form::Json => {
+                checked.push(json!({"scenario": name, "title": title, "loose": loose}));
             }
-            Err(found) => problems(&found.to_string())?,
+            Ok((title, loose)) => {
+                writeln!(out, "{}", style.text(&format!("{name}: no problems found ({title})")))?;
+                view::loose::write(out, &loose, style)?;
+            }
+            Err(error) if error.is_interrupted() => return Err(error.into()),
+            Err(error) => {
+                for line in error.to_string().lines() {
+                    writeln!(io::stderr(), "{}", style.text(line))?;
+                }
+                wrong.push(match error {
+                    CommandError::Scenario(problems) => problems,
+                    error => Problems::of_file(name.as_str(), error.to_string(), ""),
+                });
+            }
         }
     }
+    if format == Form::Json {
+        let mut report = json!({ "checked": checked });
+        if let (false, Value::Object(report), Value::Object(error)) =
+            (wrong.is_empty(), &mut report, json_export::problems(&wrong))
+        {
+            report.extend(error);
+        }
+        writeln!(out, "{}", json_export::pretty(&report)?)?;
+    }
     out.flush()?;
-    Ok(status)
+    if wrong.is_empty() { Ok(0) } else { Err(Failure::Told(2)) }
 }

@@ -28,6 +28,8 @@
 //! [`solve`], [`path`] → [`view`], [`export`] → [`session`] → [`repl`], [`tui`], [`cli`]. A module imports only from
 //! those before it; only the last three read or write the terminal.
 
+#![forbid(unsafe_code)]
+
 pub mod answer;
 pub mod cli;
 pub mod contact;
@@ -41,6 +43,7 @@ pub mod repl;
 pub mod session;
 pub mod signals;
 pub mod solve;
+pub mod text;
 pub mod tui;
 pub mod view;
 pub mod watch;

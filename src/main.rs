@@ -1,5 +1,7 @@
 //! Parse, run, switch between the faces, exit status; nothing else.
 
+#![forbid(unsafe_code)]
+
 use std::io;
 use std::process::ExitCode;
 
@@ -32,7 +34,7 @@ fn converse(start: Start, mut screen: Option<tui::Start>) -> io::Result<u8> {
     let mut again = false;
     loop {
         if let Some(start) = screen.take() {
-            let (back, ended) = tui::run(session, style, start)?;
+            let (back, ended) = tui::run(session, style, start, &signals)?;
             session = back;
             if ended.leave == Leave::Quit {
                 // after a signal the journal stays: nobody said `quit`, the next start offers it

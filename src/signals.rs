@@ -1,11 +1,12 @@
-//! Ctrl-C, hang-up and termination as flags, and a watch that looks at them.
+//! Ctrl-C, hang-up, termination and job control as flags, and a watch that looks at them.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGXFSZ};
+use signal_hook::{flag, low_level};
 
 use crate::watch::Watch;
 
@@ -14,12 +15,25 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Between two lines of progress.
 const PACE: Duration = Duration::from_millis(200);
 
+/// A file that reaches the limit of its size is an error of the write, as a full disk is, not the end of the program.
+///
+/// # Errors
+/// The system refuses.
+pub fn survive_file_limit() -> io::Result<()> {
+    flag::register(SIGXFSZ, Arc::default()).map(|_| ())
+}
+
 /// What the user or the system asked for since it was looked at.
 #[derive(Clone, Debug, Default)]
 pub struct Signals {
     interrupt: Arc<AtomicBool>,
     hangup: Arc<AtomicBool>,
     terminate: Arc<AtomicBool>,
+    quit: Arc<AtomicBool>,
+    stop: Arc<AtomicBool>,
+    resumed: Arc<AtomicBool>,
+    /// Whether the terminal is as the shell left it, so that the program may be stopped where it stands.
+    cooked: Arc<AtomicBool>,
 }
 
 impl Signals {
@@ -28,10 +42,18 @@ impl Signals {
     /// # Errors
     /// The system refuses.
     pub fn install() -> io::Result<Self> {
-        let signals = Signals::default();
-        for (signal, flag) in [(SIGINT, &signals.interrupt), (SIGHUP, &signals.hangup), (SIGTERM, &signals.terminate)] {
-            signal_hook::flag::register(signal, Arc::clone(flag))?;
+        let signals = Signals { cooked: Arc::new(AtomicBool::new(true)), ..Signals::default() };
+        for (signal, seen) in [
+            (SIGINT, &signals.interrupt),
+            (SIGHUP, &signals.hangup),
+            (SIGTERM, &signals.terminate),
+            (SIGQUIT, &signals.quit),
+            (SIGCONT, &signals.resumed),
+        ] {
+            flag::register(signal, Arc::clone(seen))?;
         }
+        flag::register_conditional_default(SIGTSTP, Arc::clone(&signals.cooked))?;
+        flag::register(SIGTSTP, Arc::clone(&signals.stop))?;
         Ok(signals)
     }
 
@@ -47,27 +69,24 @@ impl Signals {
 
     /// Takes a terminal that cannot be read or written any more as a hang-up, unless another signal is known.
     pub fn note_hangup(&self) {
-        if !self.terminated() {
+        if !self.must_end() {
             self.hangup.store(true, Ordering::SeqCst);
         }
     }
 
-    /// Whether the program was asked to end.
-    pub fn terminated(&self) -> bool {
-        self.terminate.load(Ordering::SeqCst)
-    }
-
     /// Whether the program has to end now.
     pub fn must_end(&self) -> bool {
-        self.hung_up() || self.terminated()
+        [&self.hangup, &self.terminate, &self.quit].iter().any(|flag| flag.load(Ordering::SeqCst))
     }
 
     /// Exit status of an end by signal: 128 + its number.
     pub fn status(&self) -> u8 {
         if self.hung_up() {
             129
-        } else if self.terminated() {
+        } else if self.terminate.load(Ordering::SeqCst) {
             143
+        } else if self.quit.load(Ordering::SeqCst) {
+            131
         } else {
             130
         }
@@ -78,7 +97,26 @@ impl Signals {
         self.interrupt.load(Ordering::SeqCst) || self.must_end()
     }
 
-    /// Wakes a line editor that waits for a key when the program has to end.
+    /// While it is kept the terminal is not as the shell left it, and a stop waits for [`Signals::take_stop`].
+    pub fn raw(&self) -> RawTerminal {
+        // what came before was carried out by the system
+        self.stop.store(false, Ordering::SeqCst);
+        self.resumed.store(false, Ordering::SeqCst);
+        self.cooked.store(false, Ordering::SeqCst);
+        RawTerminal(self.clone())
+    }
+
+    /// Whether the program was asked to stop until `fg`, while the terminal was raw.
+    pub fn take_stop(&self) -> bool {
+        self.stop.swap(false, Ordering::SeqCst)
+    }
+
+    /// Whether the program was stopped and goes on.
+    pub fn take_resumed(&self) -> bool {
+        self.resumed.swap(false, Ordering::SeqCst)
+    }
+
+    /// Wakes a line editor that waits for a key when the program has to end or to stop.
     ///
     /// The editor listens to SIGINT only; it is raised again and again, as one may arrive just before it listens.
     pub fn wake_editor(&self) {
@@ -86,13 +124,33 @@ impl Signals {
         let watcher = move || {
             loop {
                 std::thread::sleep(Duration::from_millis(50));
-                if signals.must_end() && signal_hook::low_level::raise(SIGINT).is_err() {
+                let is_editing = !signals.cooked.load(Ordering::SeqCst);
+                let stops = is_editing && signals.stop.load(Ordering::SeqCst);
+                if (stops || signals.must_end()) && low_level::raise(SIGINT).is_err() {
                     return;
                 }
             }
         };
         // without that thread the end waits for the next key
         let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(watcher);
+    }
+}
+
+/// Stops the program until `fg`; the terminal has to be as the shell left it.
+///
+/// # Errors
+/// The system refuses.
+pub fn stop() -> io::Result<()> {
+    low_level::emulate_default_handler(SIGTSTP)
+}
+
+/// Says that the terminal is raw until it is dropped.
+#[must_use]
+pub struct RawTerminal(Signals);
+
+impl Drop for RawTerminal {
+    fn drop(&mut self) {
+        self.0.cooked.store(true, Ordering::SeqCst);
     }
 }
 

@@ -293,7 +293,8 @@ fn the_width_follows_the_window() {
     terminal.seen.lock().unwrap().0.screen_mut().set_size(cells(24), cells(40));
     terminal.master.as_ref().unwrap().resize(PtySize { rows: 24, cols: 40, pixel_width: 0, pixel_height: 0 }).unwrap();
     std::thread::sleep(Duration::from_millis(100));
-    terminal.ask("status", "…");
+    // at 80 columns the line goes on
+    terminal.ask("load gap", "stop at\ndistance g below");
     terminal.send("quit\r");
     assert_eq!(terminal.end(), 0);
 }

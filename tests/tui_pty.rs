@@ -252,7 +252,7 @@ fn a_moving_mode_stays_cheap_and_can_be_stopped() {
 
 #[test]
 fn signals_leave_the_terminal_as_it_was() {
-    for (signal, status) in [("TERM", 143), ("INT", 143), ("HUP", 129)] {
+    for (signal, status) in [("TERM", 143), ("INT", 130), ("QUIT", 131), ("HUP", 129)] {
         let mut screen = Screen::start(&["tui", "beam"], 80, 24);
         screen.wait("normal");
         screen.signal(signal);

@@ -249,7 +249,7 @@ pub struct MemberForces {
     pub end: EndForces,
 }
 
-/// Force of the supports of a node on the structure.
+/// Force of the supports and springs of a node on the structure, their sum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reaction {
     /// Node id.
@@ -332,7 +332,7 @@ pub struct Answer {
     pub displacements: Option<Vec<NodeDisplacement>>,
     /// Member end forces; likewise.
     pub members: Option<Vec<MemberForces>>,
-    /// Support reactions; likewise.
+    /// Reactions of supports and springs; likewise.
     pub reactions: Option<Vec<Reaction>>,
     /// z and w, bare LCP only.
     pub solution: Option<PlainSolution>,

@@ -102,7 +102,7 @@ pub fn members(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes the support reactions; only the head line where there are none.
+/// Writes the reactions; only the head line where there are none.
 pub fn reactions(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Number, Text};
     head(out, "node,fx,fy,m")?;

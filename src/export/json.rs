@@ -2,11 +2,41 @@
 //!
 //! Keys are stable. Numbers are in the scenario's units and in full precision.
 
+use std::io;
+
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use crate::answer::record::{Answer, OutcomeKind};
 use crate::model::parameter::ParameterValues;
+use crate::model::problem::Problems;
+use crate::text::printable;
+
+/// A value as text on lines of its own, without the characters that a terminal must not get.
+///
+/// # Errors
+/// A value that is no JSON.
+pub fn pretty(value: &impl Serialize) -> io::Result<String> {
+    Ok(printable::json(serde_json::to_string_pretty(value).map_err(io::Error::other)?))
+}
+
+/// What is wrong with an input: `{"error": [{file, line, column, path, message, help}]}`, line and column null where
+/// there is no place in the text; `more` counts the problems that are not listed.
+pub fn problems(problems: &[Problems]) -> Value {
+    let place = |number: usize| if number == 0 { Value::Null } else { number.into() };
+    let errors: Vec<Value> = problems
+        .iter()
+        .flat_map(|of_file| of_file.problems.iter().map(move |problem| (&of_file.file, problem)))
+        .map(|(file, problem)| {
+            json!({
+                "file": file, "line": place(problem.line), "column": place(problem.column), "path": problem.path,
+                "message": problem.message, "help": problem.help,
+            })
+        })
+        .collect();
+    let more: usize = problems.iter().map(|of_file| of_file.more).sum();
+    if more == 0 { json!({"error": errors}) } else { json!({"error": errors, "more": more}) }
+}
 
 /// The result of one solve.
 ///
@@ -78,7 +108,7 @@ pub fn members(answer: &Answer) -> Value {
     value(&answer.members.as_deref().unwrap_or_default())
 }
 
-/// The support reactions as an array; empty where there are none.
+/// The reactions as an array; empty where there are none.
 pub fn reactions(answer: &Answer) -> Value {
     value(&answer.reactions.as_deref().unwrap_or_default())
 }

@@ -62,7 +62,7 @@ pub struct NodeStress {
     pub stress: [f64; 4],
 }
 
-/// Force of the supports of a node on the structure.
+/// Force of the supports and springs of a node on the structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
     /// The node.
@@ -154,9 +154,10 @@ impl MainSystem {
         structure.springs.iter().map(force).collect()
     }
 
-    /// Forces of the supports on the structure, one entry per supported node in the order of the nodes, for the
-    /// displacements `u` and the joint forces `lambda` under Σ factor·F. Where a support holds several tied
-    /// nodes it carries what they all hand over; if several supports hold them, the first of those does.
+    /// Forces of the ground on the structure, contact aside: one entry per node that is held by a support or sprung, in
+    /// the order of the nodes, for the displacements `u` and the joint forces `lambda` under Σ factor·F. Where a
+    /// support holds several tied nodes it carries what they all hand over; if several supports hold them, the first
+    /// of those does.
     pub fn reactions(
         &self,
         structure: &Structure,
@@ -183,6 +184,14 @@ impl MainSystem {
                 // A held class has a support, hence a taker.
                 let at = if supported[dof] { dof } else { taker[self.elimination.class(dof)] };
                 reaction[at] += force;
+            }
+        }
+        for (spring, force) in std::iter::zip(&structure.springs, self.spring_forces(structure, u)) {
+            nodes.push(spring.node);
+            for (component, force) in std::iter::zip([Component::X, Component::Y], force) {
+                if let Some(dof) = self.dofs.of(spring.node, component) {
+                    reaction[dof] += force;
+                }
             }
         }
         nodes.sort_unstable();

@@ -1,6 +1,5 @@
 //! From a file, a text or an embedded name to a checked [`Scenario`].
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::decode;
@@ -10,25 +9,39 @@ use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
 use super::words::did_you_mean;
+use crate::text::file;
 
 /// Reads and checks a scenario file; the scenario's name is the path as given.
 pub fn load_file(path: &Path) -> Result<Scenario, Problems> {
     let name = path.display().to_string();
-    let bytes = fs::read(path).map_err(|error| {
-        Problems::of_file(
-            name.as_str(),
-            format!("cannot read the file: {error}"),
-            "give the path of a scenario file, or the name of an embedded scenario",
-        )
-    })?;
+    load_bytes(
+        &name,
+        file::read(path),
+        Some(path),
+        "give the path of a scenario file, or the name of an embedded scenario",
+    )
+}
+
+/// Reads and checks a scenario from stdin; its name is `-`. Files it names are relative to the working directory.
+pub fn load_stdin() -> Result<Scenario, Problems> {
+    load_bytes("-", file::read_all(std::io::stdin().lock()), Some(Path::new("-")), "write a scenario into the pipe")
+}
+
+fn load_bytes(
+    name: &str,
+    bytes: std::io::Result<Vec<u8>>,
+    path: Option<&Path>,
+    help: &str,
+) -> Result<Scenario, Problems> {
+    let bytes = bytes.map_err(|error| Problems::of_file(name, format!("cannot read the file: {error}"), help))?;
     match String::from_utf8(bytes) {
-        Ok(text) => load_text(&name, &text, Some(path)),
+        Ok(text) => load_text(name, &text, path),
         Err(error) => {
             let valid = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(&error.as_bytes()[..valid]);
             let (line, column) = position(&text, text.len());
             Err(Problems {
-                file: name,
+                file: name.to_owned(),
                 problems: vec![Problem {
                     line,
                     column,
@@ -65,7 +78,7 @@ pub fn load_named_or_file(word: &str) -> Result<Scenario, Problems> {
         if embedded::text(word).is_some() {
             return embedded::load(word);
         }
-        if !path.is_file() {
+        if !path.exists() {
             return Err(unknown(word));
         }
     }

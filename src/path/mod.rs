@@ -5,6 +5,7 @@ pub mod friction;
 pub mod grid;
 pub mod limit;
 pub mod load;
+pub mod merge;
 pub(crate) mod rate;
 pub mod record;
 pub mod sensitivity;

@@ -14,6 +14,8 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::solve::{PrepareError, Prepared, Solved};
+use crate::text::hash::Hash;
+use crate::text::printable;
 use crate::watch::Watch;
 
 /// Points that are solved before they are written.
@@ -50,7 +52,7 @@ pub struct Sweep<'a> {
 /// First line of a file: what it holds, and whether two files belong together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// `stickslip-sweep/1`.
+    /// `stickslip-sweep/2`.
     pub format: String,
     /// Version of the program.
     pub version: String,
@@ -86,23 +88,28 @@ impl Done {
     }
 }
 
+/// Names of the columns between the parameters and the checksum.
+const COLUMNS: [&str; 16] = [
+    "outcome",
+    "class",
+    "p",
+    "pivots",
+    "open",
+    "stick",
+    "slip+",
+    "slip-",
+    "closed",
+    "max_slip",
+    "max_slip_pair",
+    "max_gap",
+    "max_gap_pair",
+    "max_x_n",
+    "max_x_n_pair",
+    "failure",
+];
+
 /// Name of the format of sweep files.
-pub const FORMAT: &str = "stickslip-sweep/1";
-
-/// FNV-1a, 128 bits: the same on every machine.
-struct Hash(u128);
-
-impl Hash {
-    fn new() -> Hash {
-        Hash(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
-    }
-
-    fn add(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
-        }
-    }
-}
+pub const FORMAT: &str = "stickslip-sweep/2";
 
 /// Passes on the wish to stop, not the progress of a single point.
 struct StopOnly<'a>(&'a dyn Watch);
@@ -122,27 +129,26 @@ struct Row {
 impl Sweep<'_> {
     /// The header of the file.
     pub fn header(&self) -> Header {
-        let mut hash = Hash::new();
-        hash.add(self.scenario.text.as_bytes());
+        let mut hash = Hash::of(&self.scenario.text);
         if let Source::ContactSystem(given) = &self.scenario.source {
             // The matrix may stand in a file of its own.
             for entry in given.stiffness.iter().flatten() {
-                hash.add(&entry.to_bits().to_le_bytes());
+                hash = hash.and(&entry.to_bits().to_le_bytes());
             }
         }
         for (name, value) in self.values.free() {
             if self.grid.axes.iter().all(|axis| axis.name != *name) {
-                hash.add(name.as_bytes());
-                hash.add(&value.to_bits().to_le_bytes());
+                hash = hash.and(name.as_bytes());
+                hash = hash.and(&value.to_bits().to_le_bytes());
             }
         }
         let rules = self.rules;
-        hash.add(format!("{} {} {}", rules.covering, rules.tie_break, rules.engine).as_bytes());
+        hash = hash.and(format!("{} {} {}", rules.covering, rules.tie_break, rules.engine).as_bytes());
         Header {
             format: FORMAT.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.name.clone(),
-            hash: format!("{:032x}", hash.0),
+            hash: hash.long(),
             grid: self.grid.axes.iter().map(|axis| axis.range.clone()).collect(),
             points: self.grid.len(),
             shard: self.shard,
@@ -151,30 +157,14 @@ impl Sweep<'_> {
 
     /// The lines before the rows.
     pub fn preamble(&self) -> String {
-        preamble(&self.header(), self.format, &self.columns())
+        let header = self.header();
+        let columns = if self.format == Format::Csv { columns_line(&header.columns()) } else { String::new() };
+        header_line(&header, self.format) + &columns
     }
 
     /// Names of the columns.
     pub fn columns(&self) -> Vec<String> {
-        let own = [
-            "outcome",
-            "class",
-            "p",
-            "pivots",
-            "open",
-            "stick",
-            "slip+",
-            "slip-",
-            "closed",
-            "max_slip",
-            "max_slip_pair",
-            "max_gap",
-            "max_gap_pair",
-            "max_x_n",
-            "max_x_n_pair",
-            "failure",
-        ];
-        self.grid.axes.iter().map(|axis| axis.name.clone()).chain(own.map(str::to_owned)).collect()
+        self.header().columns()
     }
 
     /// Solves the points of the shard after the first `found` and writes their rows to `out`, flushed as they come.
@@ -185,13 +175,14 @@ impl Sweep<'_> {
     pub fn run(&self, found: usize, out: &mut dyn Write, watch: &dyn Watch) -> std::io::Result<Done> {
         let points = self.shard.points(self.grid.len());
         let mut done = Done { written: 0, found, total: points.len(), answers: 0 };
+        let hash = self.header().hash;
         let start = Instant::now();
         let mut next = points.start + found;
         while next < points.end && !watch.stop() {
             let end = (next + CHUNK).min(points.end);
             let rows: Vec<Option<Row>> = (next..end)
                 .into_par_iter()
-                .map(|index| if watch.stop() { None } else { self.row(index, watch) })
+                .map(|index| if watch.stop() { None } else { self.row(index, &hash, watch) })
                 .collect();
             for row in rows.iter().map_while(Option::as_ref) {
                 out.write_all(row.line.as_bytes())?;
@@ -244,7 +235,7 @@ impl Sweep<'_> {
     }
 
     /// `None` where `watch` asked to stop.
-    fn row(&self, index: usize, watch: &dyn Watch) -> Option<Row> {
+    fn row(&self, index: usize, hash: &str, watch: &dyn Watch) -> Option<Row> {
         let point = self.grid.point(index);
         let mut values = self.values.clone();
         for (axis, value) in self.grid.axes.iter().zip(&point) {
@@ -254,7 +245,7 @@ impl Sweep<'_> {
             Ok(solved) => (fields(&solved.answer), solved.answer.is_answer()),
             Err(None) => return None,
             Err(Some(refusal)) => {
-                let mut fields = vec![Value::Null; self.columns().len() - point.len()];
+                let mut fields = vec![Value::Null; COLUMNS.len()];
                 fields[0] = json!("refused");
                 if let Some(failure) = fields.last_mut() {
                     *failure = json!(refusal);
@@ -262,29 +253,71 @@ impl Sweep<'_> {
                 (fields, false)
             }
         };
-        let line = match self.format {
+        let body = match self.format {
             Format::Csv => {
                 let cells: Vec<String> = fields.iter().map(cell).collect();
-                format!("{}{}\n", self.key(index), cells.join(","))
+                format!("{}{}", self.key(index), cells.join(","))
             }
             Format::Json => {
-                let names = self.columns();
-                let object: Map<String, Value> = names[point.len()..].iter().cloned().zip(fields).collect();
-                let text = Value::Object(object).to_string();
-                format!("{}{}\n", self.key(index), text.trim_start_matches('{'))
+                let object: Map<String, Value> = COLUMNS.map(str::to_owned).into_iter().zip(fields).collect();
+                let text = printable::json(Value::Object(object).to_string());
+                let fields = text.strip_prefix('{').and_then(|text| text.strip_suffix('}')).unwrap_or_default();
+                format!("{}{fields}", self.key(index))
             }
         };
-        Some(Row { line, is_answer })
+        let sum = checksum(hash, index, &body);
+        Some(Row { line: format!("{body}{}{sum}{}", before_sum(self.format), after_sum(self.format)), is_answer })
     }
 }
 
-/// The lines before the rows under a header.
-pub(super) fn preamble(header: &Header, format: Format, columns: &[String]) -> String {
-    let header = json!(header);
+impl Header {
+    /// Names of the columns.
+    pub fn columns(&self) -> Vec<String> {
+        let axes = self.grid.iter().map(|range| range.split('=').next().unwrap_or_default().to_owned());
+        axes.chain(COLUMNS.map(str::to_owned)).chain(["checksum".to_owned()]).collect()
+    }
+
+    /// Whether `line` is the row of this point, character by character as it was written.
+    pub(super) fn is_row(&self, index: usize, format: Format, line: &str) -> bool {
+        line.strip_suffix(after_sum(format))
+            .and_then(|line| line.rsplit_once(before_sum(format)))
+            .is_some_and(|(body, sum)| sum == checksum(&self.hash, index, body))
+    }
+}
+
+/// What binds a row to its sweep, its place there and its characters.
+fn checksum(hash: &str, index: usize, body: &str) -> String {
+    Hash::of(hash).and(format!(" {index} ").as_bytes()).and(body.as_bytes()).short()
+}
+
+/// Between the other fields of a row and its checksum.
+fn before_sum(format: Format) -> &'static str {
     match format {
-        Format::Csv => format!("# {header}\n{}\n", columns.join(",")),
+        Format::Csv => ",",
+        Format::Json => ",\"checksum\":\"",
+    }
+}
+
+/// From the checksum of a row to its end.
+fn after_sum(format: Format) -> &'static str {
+    match format {
+        Format::Csv => "\n",
+        Format::Json => "\"}\n",
+    }
+}
+
+/// The first line of a file.
+pub(super) fn header_line(header: &Header, format: Format) -> String {
+    let header = printable::json(json!(header).to_string());
+    match format {
+        Format::Csv => format!("# {header}\n"),
         Format::Json => format!("{header}\n"),
     }
+}
+
+/// The line of column names of a CSV.
+pub(super) fn columns_line(columns: &[String]) -> String {
+    format!("{}\n", columns.join(","))
 }
 
 fn progress(ready: usize, total: usize, written: usize, seconds: f64) -> String {
@@ -306,10 +339,10 @@ fn number(value: f64) -> String {
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
-        Value::String(text) if text.contains([',', '"', '\n', '\r']) => {
-            format!("\"{}\"", text.replace('"', "\"\"").replace(['\n', '\r'], " "))
+        Value::String(text) => {
+            let text = printable::line(text);
+            if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
         }
-        Value::String(text) => text.clone(),
         other => other.to_string(),
     }
 }

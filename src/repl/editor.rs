@@ -20,7 +20,21 @@ pub struct Editing {
     /// The names as of the last command.
     pub vocabulary: Vocabulary,
     /// Whether and how to colour.
-    pub style: Style,
+    style: Style,
+    /// The line as it was hinted last.
+    line: Mutex<String>,
+}
+
+impl Editing {
+    /// For the names of a session.
+    pub fn new(vocabulary: Vocabulary, style: Style) -> Self {
+        Editing { vocabulary, style, line: Mutex::default() }
+    }
+
+    /// The line as it was when the editor was interrupted.
+    pub fn last_line(&self) -> String {
+        self.line.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
 }
 
 /// A candidate with its explanation.
@@ -85,6 +99,7 @@ impl Hinter for Editing {
     type Hint = ShownHint;
 
     fn hint(&self, line: &str, position: usize, _: &Context<'_>) -> Option<ShownHint> {
+        line.clone_into(&mut self.line.lock().unwrap_or_else(PoisonError::into_inner));
         if position < line.len() {
             return None;
         }

@@ -7,7 +7,7 @@ use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifier
 use crossterm::terminal;
 use unicode_width::UnicodeWidthChar;
 
-use crate::signals::Signals;
+use crate::signals::{self, Signals};
 
 /// How long the keys of a paste may be apart.
 const BURST: Duration = Duration::from_millis(10);
@@ -67,6 +67,7 @@ impl Drop for Raw {
 
 fn ask(out: &mut dyn Write, left: usize, signals: &Signals) -> io::Result<Answer> {
     out.flush()?;
+    let _stops_wait = signals.raw();
     terminal::enable_raw_mode()?;
     let raw = Raw;
     // what is there already was typed before the question
@@ -75,11 +76,19 @@ fn ask(out: &mut dyn Write, left: usize, signals: &Signals) -> io::Result<Answer
         return Ok(Answer::Typed(as_text(&ahead)));
     }
     let s = if left == 1 { "" } else { "s" };
-    write!(out, "-- {left} line{s} more: space page, Enter line, a all, q stop --")?;
+    let question = format!("-- {left} line{s} more: space page, Enter line, a all, q stop --");
+    write!(out, "{question}")?;
     out.flush()?;
     let answer = loop {
-        if signals.must_end() {
+        if signals.must_end() || signals.take_interrupt() {
             break Answer::Stop;
+        }
+        if signals.take_stop() {
+            terminal::disable_raw_mode()?;
+            signals::stop()?;
+            terminal::enable_raw_mode()?;
+            write!(out, "\r{question}")?;
+            out.flush()?;
         }
         if !event::poll(Duration::from_millis(100))? {
             continue;

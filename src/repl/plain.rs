@@ -4,15 +4,14 @@ use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use crate::session::script::expects_error;
-use crate::session::{CommandError, Next, Output, Session, words};
+use crate::session::script::{self, expects_error};
+use crate::session::{Next, Output, Session, words};
+use crate::text::printable::Printable;
 use crate::view::style::Style;
 
 use super::{Ended, show_error};
 use crate::signals::{Signals, TerminalWatch};
 
-/// A longer line is no command.
-const LONGEST: u64 = 1 << 20;
 /// Between two looks at the signals while nothing comes in.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -22,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// failure; on a terminal a failure is part of the conversation.
 pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool) -> io::Result<Ended> {
     let lines = reader()?;
-    let mut stdout = io::stdout();
+    let mut stdout = Printable::new(io::stdout(), style.color);
     let mut status = 0;
     let mut pending = 0;
     let mut line_number = 0;
@@ -45,19 +44,23 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
             waiting = false;
         }
         let bytes = match input {
-            Ok(Input::Line(bytes)) => bytes,
+            Ok(Input::Line(bytes)) => Some(bytes),
+            Ok(Input::TooLong) => None,
             Ok(Input::End) | Err(RecvTimeoutError::Disconnected) => break,
             Ok(Input::Failed(error)) => return Err(error),
             Err(RecvTimeoutError::Timeout) => continue,
         };
         waiting = false;
         line_number += 1;
-        let line = String::from_utf8_lossy(&bytes).into_owned();
+        let line = bytes.as_ref().map_or_else(String::new, |bytes| String::from_utf8_lossy(bytes).into_owned());
         let line = line.trim_end_matches(['\n', '\r']);
         let watch = TerminalWatch::new(signals);
         let mut io = Output::text(&mut stdout, style, &watch);
-        io.line = line_number;
-        let result = session.execute(line, &mut io);
+        (io.line, io.unattended) = (line_number, !prompt);
+        let result = match bytes {
+            Some(_) => session.execute(line, &mut io),
+            None => Err(session.refuse_long_line(line_number)),
+        };
         watch.clear();
         let asked_for = words::commands(line).first().is_some_and(|first| expects_error(first));
         match &result {
@@ -73,13 +76,8 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
         }
         match result {
             Ok(Next::Continue) => {}
-            Ok(Next::Quit) => break,
-            Ok(Next::FullScreen { .. }) => {
-                let error =
-                    CommandError::Refused("the full screen needs a terminal that understands cursor codes".into());
-                let _ = writeln!(io::stderr(), "{}", show_error(&error, &error_style(style)));
-                pending = error.status();
-            }
+            // the session refuses the full screen here
+            Ok(Next::Quit | Next::FullScreen { .. }) => break,
             Err(error) if error.is_broken_pipe() => return Ok(Ended::with(0)),
             Err(error) if error.is_output() => return Err(io::Error::other(error.to_string())),
             Err(error) => {
@@ -110,6 +108,8 @@ fn error_style(style: Style) -> Style {
 /// What the reader of stdin hands over.
 enum Input {
     Line(Vec<u8>),
+    /// A line of more bytes than any command has: read to its end and dropped.
+    TooLong,
     End,
     Failed(io::Error),
 }
@@ -121,13 +121,8 @@ fn reader() -> io::Result<Receiver<Input>> {
     let read = move || {
         let mut stdin = io::stdin().lock();
         loop {
-            let mut bytes = Vec::new();
-            let input = match stdin.by_ref().take(LONGEST).read_until(b'\n', &mut bytes) {
-                Ok(0) => Input::End,
-                Ok(_) => Input::Line(bytes),
-                Err(error) => Input::Failed(error),
-            };
-            let last = !matches!(input, Input::Line(_));
+            let input = next(&mut stdin).unwrap_or_else(Input::Failed);
+            let last = matches!(input, Input::End | Input::Failed(_));
             if sender.send(input).is_err() || last {
                 return;
             }
@@ -135,4 +130,42 @@ fn reader() -> io::Result<Receiver<Input>> {
     };
     std::thread::Builder::new().name("stdin".to_owned()).spawn(read)?;
     Ok(receiver)
+}
+
+fn next(stdin: &mut impl BufRead) -> io::Result<Input> {
+    let mut bytes = Vec::new();
+    let longest = script::LONGEST as u64;
+    // the end of the line does not count
+    if stdin.by_ref().take(longest + 1).read_until(b'\n', &mut bytes)? == 0 {
+        return Ok(Input::End);
+    }
+    if bytes.ends_with(b"\n") || bytes.len() as u64 <= longest {
+        return Ok(Input::Line(bytes));
+    }
+    stdin.skip_until(b'\n')?;
+    Ok(Input::TooLong)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_taken_whole_or_not_at_all() {
+        let longest = script::LONGEST;
+        for (length, whole) in [(longest - 1, true), (longest, true), (longest + 1, false), (3 * longest, false)] {
+            for end in ["\n", ""] {
+                let text = format!("{}{end}{}", "x".repeat(length), if end.is_empty() { "" } else { "set f 0.3\n" });
+                let mut stdin = text.as_bytes();
+                let first = next(&mut stdin).unwrap();
+                assert_eq!(matches!(&first, Input::Line(bytes) if bytes.starts_with(b"x")), whole, "{length}");
+                assert_eq!(matches!(first, Input::TooLong), !whole, "{length}");
+                match next(&mut stdin).unwrap() {
+                    Input::Line(bytes) => assert_eq!(bytes, b"set f 0.3\n"),
+                    Input::End => assert!(end.is_empty()),
+                    _ => panic!("{length}"),
+                }
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The REPL on a terminal.
 
 use std::collections::VecDeque;
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
@@ -11,11 +11,12 @@ use rustyline::history::FileHistory;
 use rustyline::{ColorMode, CompletionType, Config, Editor, Event, EventHandler};
 
 use crate::session::{CommandError, Next, Output, Session, journal};
+use crate::text::printable;
 use crate::view::style::{Role, Style};
 
 use super::editor::{Editing, Pace};
 use super::{Ended, pager, show_error};
-use crate::signals::{Signals, TerminalWatch};
+use crate::signals::{self, Signals, TerminalWatch};
 
 /// Lines of history kept.
 const HISTORY: usize = 10_000;
@@ -37,6 +38,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
     let mut style = style;
     // lines of a paste or typed ahead, and the beginning of one
     let mut waiting: VecDeque<String> = VecDeque::new();
+    let mut pasted = false;
     let mut begun = String::new();
     let prompt_text = if style.ascii { "> " } else { "› " };
     let prompt_colour = style.paint(Role::Accent, prompt_text);
@@ -47,13 +49,23 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
         let line = match waiting.pop_front() {
             Some(line) => line,
             None => {
+                pasted = false;
                 if let Some(helper) = editor.helper_mut() {
                     helper.vocabulary = session.vocabulary();
                 }
                 let prompt = (prompt_text, prompt_colour.as_str());
+                let raw = signals.raw();
                 let read = editor.readline_with_initial(&prompt, (&begun, ""));
+                drop(raw);
                 begun.clear();
                 signals.take_interrupt();
+                if signals.take_stop() {
+                    // what was typed so far stands in the line again after `fg`
+                    begun = editor.helper().map(Editing::last_line).unwrap_or_default();
+                    writeln!(io::stdout())?;
+                    signals::stop()?;
+                    continue;
+                }
                 match read {
                     Ok(text) => {
                         // a paste of several lines arrives as one text
@@ -87,9 +99,10 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
         if !fixed_width {
             style.width = terminal_width();
         }
-        // nobody reads a page while the next lines are there already
-        let paged = waiting.is_empty() && !pace.is_burst();
-        let (result, typed) = execute(session, &line, style, signals, paged);
+        // nobody reads while the next lines are there already
+        let by_hand = waiting.is_empty() && !pace.is_burst();
+        pasted |= !by_hand;
+        let (result, typed) = execute(session, &line, style, signals, by_hand, pasted);
         let mut typed: Vec<&str> = typed.split('\n').collect();
         begun = typed.pop().unwrap_or_default().to_owned();
         waiting.extend(typed.into_iter().map(ToOwned::to_owned));
@@ -122,17 +135,20 @@ fn execute(
     style: Style,
     signals: &Signals,
     paged: bool,
+    pasted: bool,
 ) -> (Result<Next, CommandError>, String) {
     let watch = TerminalWatch::new(signals);
     let mut shown = Vec::new();
     let mut io = Output::text(&mut shown, style, &watch);
+    (io.has_screen, io.unattended) = (true, pasted);
     let result = session.execute(line, &mut io);
     watch.clear();
+    let shown = printable::text(&String::from_utf8_lossy(&shown), style.color);
     let mut stdout = io::stdout().lock();
     let typed = if paged {
-        pager::show(&String::from_utf8_lossy(&shown), &mut stdout, signals)
+        pager::show(&shown, &mut stdout, signals)
     } else {
-        stdout.write_all(&shown).map(|()| String::new())
+        stdout.write_all(shown.as_bytes()).map(|()| String::new())
     };
     match typed {
         Ok(typed) => (result, typed),
@@ -154,7 +170,7 @@ fn editor(session: &Session, style: Style) -> rustyline::Result<Line> {
         .build();
     let mut editor = Line::with_config(config)?;
     editor.set_color_mode(if style.color { ColorMode::Forced } else { ColorMode::Disabled });
-    editor.set_helper(Some(Editing { vocabulary: session.vocabulary(), style }));
+    editor.set_helper(Some(Editing::new(session.vocabulary(), style)));
     Ok(editor)
 }
 
@@ -189,8 +205,7 @@ impl History {
         if line.starts_with(' ') {
             return;
         }
-        let file = OpenOptions::new().create(true).append(true).open(path);
-        if let Ok(mut file) = file {
+        if let Ok(mut file) = journal::append_privately(path, false) {
             let _ = file.write_all(format!("{line}\n").as_bytes());
         }
     }

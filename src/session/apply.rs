@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::answer::record::Start;
 use crate::model::embedded;
-use crate::model::load::{at_values, load_named_or_file};
+use crate::model::load::at_values;
 use crate::model::uses::Redone;
 use crate::solve::Prepared;
 use crate::solve::resume::same_answer;
@@ -18,8 +18,9 @@ use crate::view::style::Role;
 
 use super::command::{Command, Export};
 use super::expect::{self, Facts};
+use super::journal::Record;
 use super::values::{self, Setting};
-use super::{Change, CommandError, Format, Next, Output, Session, Setup, help, journal, save, script};
+use super::{Change, CommandError, Format, Next, Output, Session, Setup, help, load, save, script};
 
 impl Session {
     /// One command. The arms that only show something are in `reports`.
@@ -34,8 +35,8 @@ impl Session {
             Command::Params => self.report_parameters(io)?,
             Command::Set { words } => self.set(&words, text, io)?,
             Command::Reset { name } => self.reset(name.as_deref(), text, io)?,
-            Command::Undo => self.undo(text, io)?,
-            Command::Redo => self.redo(text, io)?,
+            Command::Undo => self.undo(io)?,
+            Command::Redo => self.redo(io)?,
             Command::Diff => self.report_difference(io)?,
             Command::Solve => self.solve_again(io)?,
             Command::Status => self.report_status(io)?,
@@ -70,11 +71,22 @@ impl Session {
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
             Command::Help { command } => show_help(command.as_deref(), io)?,
             Command::History => self.report_history(io)?,
-            Command::Tui => return Ok(Next::FullScreen { tour: false }),
-            Command::Tour => return Ok(Next::FullScreen { tour: true }),
+            Command::Tui => return self.full_screen("tui", io),
+            Command::Tour => return self.full_screen("tour", io),
             Command::Quit => return Ok(Next::Quit),
         }
         Ok(Next::Continue)
+    }
+
+    /// `tui` and `tour`: typed by hand only. In a script they would end it with what it was going to test untested.
+    fn full_screen(&self, word: &str, io: &Output<'_>) -> Result<Next, CommandError> {
+        if self.depth > 0 || !io.has_screen {
+            return Err(CommandError::Refused(format!(
+                "`{word}` opens the full screen, which needs a terminal that understands cursor codes: type it at the \
+                 prompt there; in a script and on a pipe it is refused"
+            )));
+        }
+        Ok(Next::FullScreen { tour: word == "tour" })
     }
 
     /// Takes `next` over if it can be solved (or need not be yet), and says what changed.
@@ -91,8 +103,9 @@ impl Session {
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let mut before = self.now.clone();
+        let mut notes = notes.to_vec();
         let news = !before.same_choice(&next);
-        if !self.auto && !self.deferred && before.scenario.uses.between(&before.values, &next.values) > Redone::Lcp {
+        if !self.auto && before.scenario.uses.between(&before.values, &next.values) > Redone::Lcp {
             // Nothing is solved now, but values that make the model invalid are refused all the same.
             at_values(&next.scenario, &next.values).map_err(CommandError::Scenario)?;
         }
@@ -103,16 +116,16 @@ impl Session {
             before.prepared = before.prepared.filter(|prepared| same(prepared, &self.now.prepared));
         }
         if news {
+            notes.extend(self.note_in_journal(&before, |now| Record::Change(text.to_owned(), now)));
             self.undo.push(Change { command: text.to_owned(), setup: before });
             self.redo.clear();
-            self.note_in_journal(text)?;
         }
-        self.say_what_changed(notes, io)
+        self.say_what_changed(&notes, io)
     }
 
     /// Makes `next` the present setup, with its answer; `warm`: found from the present one where that pays.
     fn enter(&mut self, mut next: Setup, warm: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let solved = if self.auto && !self.deferred {
+        let solved = if self.auto {
             let same_geometry = match (&self.now.prepared, &next.prepared) {
                 (Some(now), Some(next)) => Arc::ptr_eq(now, next),
                 _ => false,
@@ -155,17 +168,6 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn note_in_journal(&mut self, text: &str) -> Result<(), CommandError> {
-        match &mut self.journal {
-            None => Ok(()),
-            Some(journal) => journal.append(text).map_err(|source| CommandError::File {
-                doing: "write the journal in",
-                path: journal::state_directory().unwrap_or_default(),
-                source,
-            }),
-        }
-    }
-
     /// The one line after a change.
     pub(super) fn say_what_changed(&self, notes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let previous = self.previous_answer();
@@ -182,7 +184,9 @@ impl Session {
             },
             |out, style| {
                 for note in notes {
-                    writeln!(out, "{}", style.text(note))?;
+                    for line in style.wrap(note, style.width.max(1)) {
+                        writeln!(out, "{line}")?;
+                    }
                 }
                 match self.answer() {
                     Some(answer) => {
@@ -200,9 +204,10 @@ impl Session {
     }
 
     fn load(&mut self, name: &str, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let scenario = load_named_or_file(name).map_err(CommandError::Scenario)?;
-        let title = format!("{}: {}", scenario.name, scenario.title);
-        self.change_noting(Setup::of(scenario), text, &[title], io)
+        let scenario = load::scenario(name, io.watch)?;
+        let mut notes = vec![format!("{}: {}", scenario.name, scenario.title)];
+        notes.extend(scenario.description.clone());
+        self.change_noting(Setup::of(scenario), text, &notes, io)
     }
 
     fn set(&mut self, words: &[String], text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -225,33 +230,32 @@ impl Session {
                     }
                 }
                 next.values.insert(name, value);
-                if let Some(refusal) = scenario.law_refusal(&next.values).filter(|_| !self.deferred) {
+                if let Some(refusal) = scenario.law_refusal(&next.values) {
                     return Err(values::SetError::Value(refusal).into());
                 }
             }
             Setting::Covering(covering) => next.rules.covering = covering,
             Setting::TieBreak(tie_break) => next.rules.tie_break = tie_break,
             Setting::Engine(engine) => next.rules.engine = engine,
-            Setting::Auto(auto) => return self.set_auto(auto, text, io),
+            Setting::Auto(auto) => return self.set_auto(auto, io),
         }
         self.change_noting(next, text, &notes, io)
     }
 
-    fn set_auto(&mut self, auto: bool, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
-        if auto && self.solved.is_none() && !self.deferred {
+    fn set_auto(&mut self, auto: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
+        if auto && self.solved.is_none() {
             let solved = self.now.solve(io.watch)?;
             self.take_answer(Some(solved));
         }
         let news = self.auto != auto;
         self.auto = auto;
-        if news {
-            self.note_in_journal(text)?;
-        }
+        let now = self.now.clone();
+        let note = if news { self.note_in_journal(&now, |_| Record::Auto(auto)) } else { None };
         if auto {
-            self.say_what_changed(&[], io)
-        } else {
-            Ok(io.say("changes are collected until `solve` or `set auto on`")?)
+            return self.say_what_changed(note.as_slice(), io);
         }
+        let said = "changes are collected until `solve` or `set auto on`".to_owned();
+        Ok(io.say(&[Some(said), note].into_iter().flatten().collect::<Vec<_>>().join("; "))?)
     }
 
     fn reset(&mut self, name: Option<&str>, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -277,30 +281,30 @@ impl Session {
         self.change(next, text, io)
     }
 
-    fn undo(&mut self, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn undo(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let Some(change) = self.undo.last().cloned() else {
             return Err(CommandError::Refused("nothing to undo".into()));
         };
         let before = self.now.clone();
         self.enter(change.setup, false, io)?;
         self.undo.pop();
-        let note = format!("undone: {}", change.command);
+        let mut notes = vec![format!("undone: {}", change.command)];
+        notes.extend(self.note_in_journal(&before, |_| Record::Undo));
         self.redo.push(Change { command: change.command, setup: before });
-        self.note_in_journal(text)?;
-        self.say_what_changed(&[note], io)
+        self.say_what_changed(&notes, io)
     }
 
-    fn redo(&mut self, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn redo(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let Some(change) = self.redo.last().cloned() else {
             return Err(CommandError::Refused("nothing to redo".into()));
         };
         let before = self.now.clone();
         self.enter(change.setup, false, io)?;
         self.redo.pop();
-        let note = format!("done again: {}", change.command);
+        let mut notes = vec![format!("done again: {}", change.command)];
+        notes.extend(self.note_in_journal(&before, |_| Record::Redo));
         self.undo.push(Change { command: change.command, setup: before });
-        self.note_in_journal(text)?;
-        self.say_what_changed(&[note], io)
+        self.say_what_changed(&notes, io)
     }
 
     fn solve_again(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -321,8 +325,23 @@ impl Session {
                 ))
             })?,
         };
-        save::save(&self.now.scenario, &self.now.values, self.now.rules, &path)?;
-        Ok(io.say(&format!("saved {}", path.display()))?)
+        let saved = save::save(&self.now.scenario, &self.now.values, self.now.rules, &path)?;
+        let mut said = format!("saved {}", path.display());
+        // what went into a pipe or a device cannot be loaded again
+        if path.is_file() {
+            let before = self.now.clone();
+            self.now.scenario = Arc::new(saved);
+            // where changes are taken back the file stays this one
+            for change in self.undo.iter_mut().chain(&mut self.redo) {
+                if Arc::ptr_eq(&change.setup.scenario, &before.scenario) {
+                    change.setup.scenario = Arc::clone(&self.now.scenario);
+                }
+            }
+            if let Some(note) = self.note_in_journal(&before, Record::Saved) {
+                said = format!("{said}; {note}");
+            }
+        }
+        Ok(io.say(&said)?)
     }
 
     /// `step [N|back N|to K|first|last]`.

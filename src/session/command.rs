@@ -29,7 +29,8 @@ pub enum Command {
     /// Write the scenario with the present values and rules to a file
     ///
     /// The text of the file that was loaded is kept, with its order, layout and units; only values that changed are
-    /// written anew. Without FILE it goes back to the file it came from. The file is replaced whole or not at all.
+    /// written anew. Without FILE it goes back to the file it came from. The file is replaced whole or not at all, and
+    /// is the one that `diff` and `reset` compare with from here on.
     #[command(after_help = "Example:\n  set F2 150; save beam-150.json")]
     Save {
         /// File to write
@@ -99,7 +100,10 @@ pub enum Command {
         #[arg(value_name = "BAR")]
         bar: Option<String>,
     },
-    /// Show the forces of the supports on the structure
+    /// Show the forces of supports and springs on the structure
+    ///
+    /// One row for each node that is held or sprung, the sum of both where it is both; then the totals. Forces of contact
+    /// stand under the pairs.
     #[command(after_help = "Example:\n  reactions")]
     Reactions,
     /// Show the numbers of the fresh check of the answer; `check exact` proves or refutes it
@@ -251,6 +255,8 @@ pub enum Command {
     },
 
     /// Go to the full screen, with this session; `q` there comes back
+    ///
+    /// Only at the prompt of a terminal: in a script and on a pipe it is refused, as a command that fails.
     #[command(after_help = "Example:\n  tui")]
     Tui,
 
@@ -316,6 +322,9 @@ pub enum Command {
         words: Vec<String>,
     },
     /// Bring back the changes of a session in this directory that ended without `quit`
+    ///
+    /// Values and rules are as they were after its last change, `undo` goes back through them; nothing is run again and
+    /// no file is written.
     #[command(after_help = "Example:\n  restore\n  restore discard")]
     Restore {
         /// Forget those changes instead
@@ -412,7 +421,7 @@ pub enum Export {
     Displacements,
     /// Member end forces
     Members,
-    /// Support reactions
+    /// Reactions of supports and springs
     Reactions,
     /// The whole result as `solve --format json` prints it
     Result,

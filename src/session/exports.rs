@@ -36,7 +36,7 @@ impl Session {
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let as_json = |value: Value| {
             atomic::write(path, |out| {
-                let text = serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
+                let text = json_export::pretty(&value)?;
                 writeln!(out, "{text}")
             })
         };
@@ -88,7 +88,7 @@ impl Session {
             Some("json") => {
                 let value = lcp_export::scenario(&lcp, &names, &title);
                 atomic::write(path, |out| {
-                    let text = serde_json::to_string_pretty(&value).map_err(std::io::Error::other)?;
+                    let text = json_export::pretty(&value)?;
                     writeln!(out, "{text}")
                 })
                 .map(|()| vec![path.to_owned()])

@@ -11,6 +11,7 @@ pub mod expect;
 mod exports;
 pub mod help;
 pub mod journal;
+pub mod load;
 mod output;
 pub mod paths;
 mod plots;
@@ -42,6 +43,7 @@ use crate::model::uses::Redone;
 use crate::path::record::PathRecord;
 use crate::solve;
 pub use crate::solve::{Prepared, Solved};
+use crate::text::printable;
 use crate::watch::Watch;
 
 pub use apply::write_scenarios;
@@ -86,6 +88,16 @@ struct Change {
     setup: Setup,
 }
 
+/// What the commands that follow were meant for and is not there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Missing {
+    Nothing,
+    /// The last command was a `load` that failed.
+    JustNow,
+    /// A `load` before that failed.
+    Still,
+}
+
 /// Looks at a scenario without solving it: what only contact holds, in sentences.
 ///
 /// # Errors
@@ -103,8 +115,6 @@ pub struct Session {
     /// The pivot shown; `None` for the end.
     position: Option<usize>,
     auto: bool,
-    /// Changes are collected and solved once at the end (restoring a journal).
-    deferred: bool,
     undo: Vec<Change>,
     redo: Vec<Change>,
     history: Vec<String>,
@@ -113,6 +123,8 @@ pub struct Session {
     recorder: Option<Recorder>,
     /// Message of the command before, if it failed.
     last_error: Option<String>,
+    /// A `load` that failed while lines came by themselves.
+    missing: Missing,
     /// A run that ended without an answer and that no `expect outcome` has asked for.
     trouble: Option<OutcomeKind>,
     /// Depth of nested scripts.
@@ -160,7 +172,6 @@ impl Session {
             previous: None,
             position: None,
             auto: true,
-            deferred: false,
             undo: Vec::new(),
             redo: Vec::new(),
             history: Vec::new(),
@@ -168,6 +179,7 @@ impl Session {
             left_over: None,
             recorder: None,
             last_error: None,
+            missing: Missing::Nothing,
             trouble: None,
             depth: 0,
             path: None,
@@ -305,9 +317,8 @@ impl Session {
     }
 
     /// Writes every change to `journal` from now on, and remembers what an earlier session left there.
-    pub fn keep_journal(&mut self, mut journal: Journal) {
+    pub fn keep_journal(&mut self, journal: Journal) {
         self.left_over = journal.left_over();
-        journal.set_opening(self.as_commands());
         self.journal = Some(journal);
     }
 
@@ -369,7 +380,7 @@ impl Session {
                     "error": error.to_string(), "status": error.status(),
                 }),
             };
-            writeln!(io.out, "{line}")?;
+            writeln!(io.out, "{}", printable::json(line.to_string()))?;
         }
         io.out.flush()?;
         result
@@ -380,10 +391,24 @@ impl Session {
         // `expect error` and `echo` look at or pass by the message of the command before them
         let keeps_error =
             matches!(parsed, Ok(None | Some(command::Command::Expect { .. } | command::Command::Echo { .. })));
+        let is_load = matches!(parsed, Ok(Some(command::Command::Load { .. })));
         let result = match parsed {
-            Ok(None) => Ok(Next::Continue),
-            Ok(Some(command)) => self.apply(command, text, io),
+            Ok(None) => return Ok(Next::Continue),
+            Ok(Some(command)) => self.needs_scenario(&command, io).and_then(|()| self.apply(command, text, io)),
             Err(error) => Err(error.into()),
+        };
+        self.missing = match (is_load, &result) {
+            (true, Err(_)) if io.unattended => Missing::JustNow,
+            (true, _) => Missing::Nothing,
+            (false, _) if !io.unattended => Missing::Nothing,
+            (false, _) if self.missing == Missing::JustNow => {
+                if script::expects_error(text) {
+                    Missing::Nothing
+                } else {
+                    Missing::Still
+                }
+            }
+            (false, _) => self.missing,
         };
         match &result {
             Ok(_) if !keeps_error => self.last_error = None,
@@ -395,10 +420,32 @@ impl Session {
         result
     }
 
+    /// Whether a command may run after a `load` that failed: one that comes by itself was meant for the scenario that is
+    /// not there, and would change another.
+    fn needs_scenario(&self, command: &command::Command, io: &Output<'_>) -> Result<(), CommandError> {
+        use command::Command::{Echo, Expect, Help, Load, Quit, Scenarios};
+        let allowed = match command {
+            Load { .. } | Help { .. } | Quit | Echo { .. } | Scenarios => true,
+            Expect { words } => words.first().is_some_and(|word| word == "error"),
+            _ => false,
+        };
+        if self.missing == Missing::Nothing || !io.unattended || allowed {
+            return Ok(());
+        }
+        Err(CommandError::Refused(
+            "not done: the `load` before it failed, and this was meant for what it did not load; `load` something that \
+             is there first"
+                .into(),
+        ))
+    }
+
     /// Commands that bring a fresh session to the present scenario, values and rules.
     pub fn as_commands(&self) -> Vec<String> {
         let scenario = &self.now.scenario;
-        let mut commands = vec![format!("load {}", words::quote(&scenario.name))];
+        // a file may bear the name of an embedded scenario
+        let embedded = scenario.path.is_some() && crate::model::embedded::text(&scenario.name).is_some();
+        let place = if embedded { "./" } else { "" };
+        let mut commands = vec![format!("load {}", words::quote(&format!("{place}{}", scenario.name)))];
         let mut sets: Vec<String> = self
             .now
             .values

@@ -29,6 +29,10 @@ pub struct Output<'a> {
     pub watch: &'a dyn Watch,
     /// Line of the script, for JSON lines; 0 outside a script.
     pub line: usize,
+    /// Whether the face can show the full screen.
+    pub has_screen: bool,
+    /// Whether the lines come by themselves: from a script, a pipe, a paste. Nobody looks at what the one before said.
+    pub unattended: bool,
     /// The report of the command that runs, in JSON.
     pub(super) report: Option<Value>,
 }
@@ -41,7 +45,7 @@ impl<'a> Output<'a> {
 
     /// Output in the given format.
     pub fn new(out: &'a mut dyn Write, style: Style, format: Format, watch: &'a dyn Watch) -> Self {
-        Output { out, style, format, watch, line: 0, report: None }
+        Output { out, style, format, watch, line: 0, has_screen: false, unattended: false, report: None }
     }
 
     /// Reports a result: only the form that is asked for is made.
@@ -61,6 +65,6 @@ impl<'a> Output<'a> {
 
     /// Reports a sentence.
     pub(super) fn say(&mut self, sentence: &str) -> io::Result<()> {
-        self.report(|| Value::String(sentence.to_owned()), |out, _| writeln!(out, "{sentence}"))
+        self.report(|| Value::String(sentence.to_owned()), |out, style| writeln!(out, "{}", style.text(sentence)))
     }
 }

@@ -11,13 +11,14 @@ use crate::path::friction::{self, is_friction};
 use crate::path::grid::{Axis, Grid, GridError, POINTS};
 use crate::path::limit;
 use crate::path::load::{self, LoadReach};
+use crate::path::merge::Shards;
 use crate::path::rate::fixed_place;
 use crate::path::record::PathRecord;
 use crate::path::sensitivity::sensitivity;
 use crate::path::stages;
 use crate::path::start::PathError;
 use crate::path::sweep::Sweep;
-use crate::path::sweep_file::{self, SweepFileError, run_to_file};
+use crate::path::sweep_file::{SweepFileError, run_to_file};
 use crate::solve::{Prepared, Solved};
 use crate::view;
 use crate::view::plot::zone::Quantity;
@@ -53,6 +54,7 @@ impl From<SweepFileError> for CommandError {
     fn from(error: SweepFileError) -> Self {
         match error {
             SweepFileError::Output(error) => CommandError::Output(error),
+            SweepFileError::Interrupted => CommandError::Interrupted,
             error => CommandError::Refused(error.to_string()),
         }
     }
@@ -357,7 +359,7 @@ impl Session {
         let written = match format_of(file)? {
             Format::Csv => atomic::write(file, |out| path_export::csv(out, path)),
             Format::Json => atomic::write(file, |out| {
-                let text = serde_json::to_string_pretty(path).map_err(std::io::Error::other)?;
+                let text = crate::export::json::pretty(path)?;
                 writeln!(out, "{text}")
             }),
         };
@@ -435,22 +437,30 @@ impl Session {
 ///
 /// # Errors
 /// Shards that do not make a whole; a place that cannot be written.
-pub fn merge(files: &[PathBuf], to: Option<&Path>, out: &mut dyn Write) -> Result<usize, CommandError> {
+pub fn merge(
+    files: &[PathBuf],
+    to: Option<&Path>,
+    out: &mut dyn Write,
+    watch: &dyn Watch,
+) -> Result<usize, CommandError> {
+    let listed = files.to_vec();
+    let shards = worker::run(watch, move |watch| Shards::open(&listed, watch))??;
     let Some(path) = to else {
         let mut buffer = std::io::BufWriter::new(out);
-        return Ok(sweep_file::merge(files, &mut buffer)?);
+        shards.write(&mut buffer, watch)?;
+        return Ok(shards.rows());
     };
-    let mut rows = Ok(0);
+    let mut result = Ok(());
     let written = atomic::write(path, |file| {
-        rows = sweep_file::merge(files, file);
-        match &rows {
-            Ok(_) => Ok(()),
+        result = shards.write(file, watch);
+        match &result {
+            Ok(()) => Ok(()),
             Err(error) => Err(std::io::Error::other(error.to_string())),
         }
     });
-    let rows = rows?;
+    result?;
     written.map_err(|error| CommandError::Refused(error.to_string()))?;
-    Ok(rows)
+    Ok(shards.rows())
 }
 
 /// The pairs that slip most on a path, at most four: what a plot shows if none is named.

@@ -123,7 +123,7 @@ impl Session {
         let parsed = command::parse(text).ok().flatten();
         let mut tee = Tee { out: &mut *io.out, copy: Vec::new() };
         let mut inner = Output::new(&mut tee, io.style, io.format, io.watch);
-        inner.line = io.line;
+        (inner.line, inner.has_screen, inner.unattended) = (io.line, io.has_screen, io.unattended);
         let result = self.run_plain(text, &mut inner);
         let report = inner.report.take();
         let shown = std::mem::take(&mut tee.copy);

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use crate::answer::record::{Answer, PlainSolution};
+use crate::answer::record::{Answer, PlainSolution, Reaction};
 use crate::model::scenario::Source;
 use crate::view;
 use crate::view::number::{short, with_unit};
@@ -269,12 +269,27 @@ impl Session {
         Ok(())
     }
 
+    /// Σ (m + x f_y − y f_x).
+    fn moment_about_origin(&self, reactions: &[Reaction]) -> f64 {
+        let Source::Structure(structure) = &self.now.scenario.source else { return 0.0 };
+        let positions: HashMap<&str, [f64; 2]> =
+            structure.nodes.iter().map(|node| (node.id.as_str(), node.position)).collect();
+        let moment = |reaction: &Reaction| {
+            let [x, y] = positions.get(reaction.node.as_str()).copied().unwrap_or_default();
+            reaction.m + x * reaction.fy - y * reaction.fx
+        };
+        reactions.iter().map(moment).sum()
+    }
+
     pub(super) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let reactions = answer.reactions.as_ref().ok_or_else(|| self.none("reactions", answer))?;
         io.report(
             || json!(reactions),
-            |out, style| view::reactions::write(out, reactions, &self.now.scenario.units, style),
+            |out, style| {
+                let moment = self.moment_about_origin(reactions);
+                view::reactions::write(out, reactions, moment, &self.now.scenario.units, style)
+            },
         )?;
         Ok(())
     }

@@ -30,13 +30,13 @@ pub enum SaveError {
     Write(#[from] atomic::WriteError),
 }
 
-/// Writes the scenario with `values` and `rules` to `path`: whole or not at all.
+/// Writes the scenario with `values` and `rules` to `path`: whole or not at all. Gives back what stands there now.
 ///
 /// Everything that did not change keeps its place and its characters.
 ///
 /// # Errors
 /// [`SaveError`].
-pub fn save(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &Path) -> Result<(), SaveError> {
+pub fn save(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &Path) -> Result<Scenario, SaveError> {
     let text = edited(scenario, values, rules, path)?;
     let again = load_text(&path.display().to_string(), &text, Some(path)).map_err(SaveError::Reload)?;
     if again.rules != rules {
@@ -49,7 +49,7 @@ pub fn save(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &
         }
     }
     atomic::write(path, |out| out.write_all(text.as_bytes()))?;
-    Ok(())
+    Ok(again)
 }
 
 /// The new text.

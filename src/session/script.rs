@@ -3,10 +3,23 @@
 use std::path::Path;
 
 use super::command::{self, Command};
-use super::{CommandError, Next, Output, Session, words};
+use super::{CommandError, Next, Output, Session, load, words};
 
 /// Scripts within scripts, at most: a script that sources itself ends here.
 const DEEPEST: usize = 16;
+
+/// A longer line, in bytes, is no command.
+pub const LONGEST: usize = 1 << 20;
+
+impl Session {
+    /// The refusal of such a line: of no part of it anything is done.
+    pub fn refuse_long_line(&mut self, line: usize) -> CommandError {
+        let refusal =
+            format!("line {line} has more than {LONGEST} bytes: no command is so long; nothing of it was done");
+        self.last_error = Some(refusal.clone());
+        CommandError::Refused(refusal)
+    }
+}
 
 /// Whether a command is `expect error …`: then the one before it may fail.
 pub fn expects_error(text: &str) -> bool {
@@ -45,9 +58,12 @@ pub fn run(
         .collect();
     let mut status = 0;
     let mut next = Next::Continue;
+    let unattended = std::mem::replace(&mut io.unattended, true);
     for (index, (line, command)) in commands.iter().enumerate() {
         io.line = *line;
-        match session.run(command, io) {
+        let result =
+            if command.len() > LONGEST { Err(session.refuse_long_line(*line)) } else { session.run(command, io) };
+        match result {
             Ok(Next::Continue) => {}
             Ok(end) => {
                 next = end;
@@ -70,6 +86,7 @@ pub fn run(
             }
         }
     }
+    io.unattended = unattended;
     if status == 0 {
         status = session.trouble_status();
     }
@@ -82,7 +99,7 @@ pub(super) fn source(session: &mut Session, path: &Path, io: &mut Output<'_>) ->
     if session.depth >= DEEPEST {
         return Err(CommandError::Refused(format!("{DEEPEST} scripts within scripts: does one source itself?")));
     }
-    let text = read(path)?;
+    let text = load::script(Some(path), io.watch)?;
     let line = io.line;
     let mut first = None;
     session.depth += 1;
@@ -94,16 +111,4 @@ pub(super) fn source(session: &mut Session, path: &Path, io: &mut Output<'_>) ->
         Some(error) => Err(error),
         None => Ok(ended?.next),
     }
-}
-
-/// The text of a script.
-///
-/// # Errors
-/// It cannot be read or is no UTF-8.
-pub fn read(path: &Path) -> Result<String, CommandError> {
-    std::fs::read_to_string(path).map_err(|source| CommandError::File {
-        doing: "read the script",
-        path: path.to_owned(),
-        source,
-    })
 }

@@ -46,9 +46,12 @@ pub fn lines(state: &State) -> Vec<Line<'static>> {
 /// The keys, by place.
 fn help(state: &State) -> Vec<Line<'static>> {
     let look = state.look;
+    let report = look.report(text_width(state));
+    let all = || Context::ALL.into_iter().map(|context| state.keys.rows(context, look.ascii));
+    let widest = all().flatten().map(|(keys, _)| keys.width()).max().unwrap_or(0);
+    let column = (widest + 4).min(report.width / 2);
     let mut lines = Vec::new();
-    for context in Context::ALL {
-        let rows = state.keys.rows(context, look.ascii);
+    for (context, rows) in Context::ALL.into_iter().zip(all()) {
         if rows.is_empty() {
             continue;
         }
@@ -61,12 +64,18 @@ fn help(state: &State) -> Vec<Line<'static>> {
         }
         lines.push(Line::from(heading));
         for (keys, binding) in rows {
-            let report = look.report(text_width(state));
-            for (i, text) in report.hanging(&format!("  {:<15}", keys), binding.help).into_iter().enumerate() {
-                let cut = text.char_indices().nth(17).filter(|_| i == 0).map_or(0, |(at, _)| at);
+            // keys that do not fit into their column stand on a line of their own
+            let mut label = pad_right(&format!("  {keys}"), column);
+            if !label.ends_with("  ") {
+                lines.push(Line::styled(report.fit(label.trim_end(), report.width), look.role(Role::Accent)));
+                label = " ".repeat(column);
+            }
+            for (i, text) in report.hanging(&label, binding.help).into_iter().enumerate() {
+                let cut = if i == 0 { label.len().min(text.len()) } else { 0 };
+                let (keys, help) = text.split_at_checked(cut).unwrap_or(("", &text));
                 lines.push(Line::from(vec![
-                    Span::styled(text[..cut].to_owned(), look.role(Role::Accent)),
-                    Span::raw(text[cut..].to_owned()),
+                    Span::styled(keys.to_owned(), look.role(Role::Accent)),
+                    Span::raw(help.to_owned()),
                 ]));
             }
         }

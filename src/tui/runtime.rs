@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use crossterm::event::{self, Event, MouseButton, MouseEventKind};
 
 use crate::session::Session;
+use crate::signals::Signals;
 use crate::view::style::{Role, Style};
 
 use super::action::{Action, Effect, Leave, Mouse};
@@ -18,7 +19,7 @@ use super::config;
 use super::keymap;
 use super::overlay;
 use super::shown::Shown;
-use super::terminal::{Asked, Screen, Signals};
+use super::terminal::{Asked, Screen, asked};
 use super::theme::Look;
 use super::update::{begin_tour, update};
 use super::worker::Worker;
@@ -58,12 +59,12 @@ enum Incoming {
 ///
 /// # Errors
 /// There is no terminal, or it fails; the session is lost then.
-pub fn run(session: Session, style: Style, start: Start) -> io::Result<(Session, Ended)> {
+pub fn run(session: Session, style: Style, start: Start, signals: &Signals) -> io::Result<(Session, Ended)> {
     let config = config::load();
     let look = Look { color: style.color, ascii: style.ascii };
-    let (signals, _handlers) = Signals::install()?;
     let (sender, incoming) = mpsc::channel();
     let shown = Arc::new(Shown::of(&session));
+    let _raw = signals.raw();
     let screen = Screen::take(config.mouse)?;
     // crossterm looks at NO_COLOR itself; whether there is colour was decided before
     crossterm::style::force_color_output(true);
@@ -79,7 +80,7 @@ pub fn run(session: Session, style: Style, start: Start) -> io::Result<(Session,
         let _ = results.lock().unwrap_or_else(PoisonError::into_inner).send(Incoming::Action(action));
     })?;
     let reader = Reader::start(sender.clone(), signals.clone())?;
-    reader.watch_signals(sender, signals)?;
+    reader.watch_signals(sender, signals.clone())?;
     let mut loop_ = Loop { state, screen, worker, reader, incoming };
     let ended = loop_.run(start.tour);
     let Loop { screen, worker, reader, .. } = loop_;
@@ -130,7 +131,7 @@ impl Reader {
                     Some(Err(error)) => {
                         // a terminal that is gone fails first; its signal comes a moment later
                         thread::sleep(LOOK);
-                        let incoming = match signals.asked() {
+                        let incoming = match asked(&signals) {
                             Some(asked) => Incoming::Signal(asked),
                             None => Incoming::Failed(error),
                         };
@@ -153,7 +154,7 @@ impl Reader {
         let theirs = Arc::clone(&self.rests);
         let look = move || {
             while !theirs.end.load(Ordering::SeqCst) {
-                if let Some(asked) = signals.asked()
+                if let Some(asked) = asked(&signals)
                     && sender.send(Incoming::Signal(asked)).is_err()
                 {
                     return;

@@ -14,8 +14,8 @@ use crossterm::terminal::{
 use crossterm::{cursor, execute, queue};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
-use signal_hook::low_level;
+
+use crate::signals::{self, Signals};
 
 use super::app::State;
 use super::draw;
@@ -134,7 +134,7 @@ impl Screen {
     /// The terminal does not come back.
     pub fn suspend(&mut self) -> io::Result<()> {
         restore();
-        low_level::emulate_default_handler(SIGTSTP)?;
+        signals::stop()?;
         take(self.mouse)?;
         self.clear()
     }
@@ -155,15 +155,6 @@ impl Drop for Screen {
     }
 }
 
-/// Signals as flags, looked at by the thread that reads the keys.
-#[derive(Clone, Debug, Default)]
-pub struct Signals {
-    terminate: Arc<AtomicBool>,
-    hangup: Arc<AtomicBool>,
-    stop: Arc<AtomicBool>,
-    resumed: Arc<AtomicBool>,
-}
-
 /// What a signal asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
@@ -175,49 +166,15 @@ pub enum Asked {
     Redraw,
 }
 
-/// The handlers of a screen, taken away with it.
-pub struct Handlers(Vec<signal_hook::SigId>);
-
-impl Drop for Handlers {
-    fn drop(&mut self) {
-        for id in self.0.drain(..) {
-            low_level::unregister(id);
-        }
-    }
-}
-
-impl Signals {
-    /// Installs the handlers.
-    ///
-    /// # Errors
-    /// The system refuses.
-    pub fn install() -> io::Result<(Signals, Handlers)> {
-        let signals = Signals::default();
-        let mut handlers = Handlers(Vec::new());
-        for (signal, flag) in [
-            (SIGTERM, &signals.terminate),
-            (SIGINT, &signals.terminate),
-            (SIGHUP, &signals.hangup),
-            (SIGTSTP, &signals.stop),
-            (SIGCONT, &signals.resumed),
-        ] {
-            handlers.0.push(signal_hook::flag::register(signal, Arc::clone(flag))?);
-        }
-        Ok((signals, handlers))
-    }
-
-    /// What was asked for since the last look.
-    pub fn asked(&self) -> Option<Asked> {
-        if self.hangup.load(Ordering::SeqCst) {
-            Some(Asked::End(129))
-        } else if self.terminate.load(Ordering::SeqCst) {
-            Some(Asked::End(143))
-        } else if self.stop.swap(false, Ordering::SeqCst) {
-            Some(Asked::Suspend)
-        } else if self.resumed.swap(false, Ordering::SeqCst) {
-            Some(Asked::Redraw)
-        } else {
-            None
-        }
+/// What was asked for since the last look. The key Ctrl-C is no signal here: SIGINT comes from outside.
+pub fn asked(signals: &Signals) -> Option<Asked> {
+    if signals.must_end() || signals.take_interrupt() {
+        Some(Asked::End(signals.status()))
+    } else if signals.take_stop() {
+        Some(Asked::Suspend)
+    } else if signals.take_resumed() {
+        Some(Asked::Redraw)
+    } else {
+        None
     }
 }

@@ -59,7 +59,9 @@ fn run(
     style: Style,
     watch: &dyn Watch,
 ) -> Result<Next, CommandError> {
-    session.execute(line, &mut Output::text(output, style, watch))
+    let mut io = Output::text(output, style, watch);
+    io.has_screen = true;
+    session.execute(line, &mut io)
 }
 
 /// Job number, job, look of its output.

@@ -140,7 +140,7 @@ proptest! {
         let supports: Vec<Reaction> = answer.pairs.iter().map(|p| Reaction {
             node: p.id.clone(), fx: p.z_n, fy: p.z_t, m: p.x_n,
         }).collect();
-        narrow(s, |out| reactions::write(out, &supports, &units, s));
+        narrow(s, |out| reactions::write(out, &supports, 1.5, &units, s));
         let forces: Vec<MemberForces> = answer.pairs.iter().map(|p| MemberForces {
             bar: p.id.clone(), element: 0,
             start: EndForces { n: p.x_n, q: p.x_t, m: p.z_n }, end: EndForces::default(),

@@ -1,19 +1,25 @@
-//! The table of support reactions.
+//! The table of reactions.
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest};
+use super::number::{in_column, largest, short, with_unit};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, moment_unit};
 use crate::answer::record::Reaction;
 use crate::model::scenario::Units;
 
-/// Writes the forces of the supports on the structure, and their sum. Forces of contact with the ground are not
-/// among them: they stand under the pairs.
-pub fn write(out: &mut dyn Write, reactions: &[Reaction], units: &Units, style: &Style) -> io::Result<()> {
+/// Writes the forces of supports and springs on the structure, and their totals: the sums, and the moment of all of
+/// them about the origin. Forces of contact with the ground are not among them: they stand under the pairs.
+pub fn write(
+    out: &mut dyn Write,
+    reactions: &[Reaction],
+    about_origin: f64,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
     if reactions.is_empty() {
-        return writeln!(out, "{}", style.fit("no supports", style.width));
+        return writeln!(out, "{}", style.fit("no supports and no springs", style.width));
     }
     let force = force_unit(units);
     let moments = reactions.iter().any(|reaction| reaction.m != 0.0);
@@ -40,5 +46,7 @@ pub fn write(out: &mut dyn Write, reactions: &[Reaction], units: &Units, style: 
         // Moments at different places do not add up to anything.
         push("sum", fx, fy, None);
     }
-    table.write(out, style)
+    table.write(out, style)?;
+    let moment = with_unit(&short(about_origin), moment_unit(units).as_deref());
+    writeln!(out, "{}", style.fit(&style.text(&format!("moment of all of them about (0, 0): {moment}")), style.width))
 }

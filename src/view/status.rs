@@ -242,7 +242,7 @@ fn p_unit(answer: &Answer, units: &Units) -> Option<String> {
     }
 }
 
-/// The longer `status`: what is solved, outcome, size, rules, check figures, attempts, notes, parameters.
+/// The longer `status`: what is solved, outcome, size, rules, check figures, attempts, notes, parameters, description.
 pub fn write(
     out: &mut dyn Write,
     answer: &Answer,
@@ -328,6 +328,9 @@ pub fn write(
             })
             .collect();
         rows.push(("parameters", values.join(", ")));
+    }
+    if let Some(description) = &scenario.description {
+        rows.push(("description", description.clone()));
     }
     for (label, text) in rows {
         let label = format!("{label:<12}");

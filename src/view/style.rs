@@ -3,6 +3,7 @@
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::answer::record::{OutcomeKind, State};
+use crate::text::printable;
 
 /// What the place that shows a report can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,20 +89,21 @@ impl Style {
         }
     }
 
-    /// `text` in the characters allowed here. Control characters (a scenario's title may hold any) become `?`,
-    /// line ends and tabs a space.
+    /// `text` in one line of the characters allowed here (see [`printable::line`]).
     pub fn text(&self, text: &str) -> String {
-        let mut plain = String::with_capacity(text.len());
-        for c in text.chars() {
-            match c {
-                '\n' | '\t' => plain.push(' '),
-                '\r' => {}
-                c if c.is_control() => plain.push('?'),
-                c if self.ascii && !c.is_ascii() => plain.push_str(ascii(c)),
-                c => plain.push(c),
+        let plain = printable::line(text);
+        if !self.ascii || plain.is_ascii() {
+            return plain;
+        }
+        let mut translated = String::with_capacity(plain.len());
+        for c in plain.chars() {
+            if c.is_ascii() {
+                translated.push(c);
+            } else {
+                translated.push_str(ascii(c));
             }
         }
-        plain
+        translated
     }
 
     /// The dot between parts of a line.

@@ -1,5 +1,5 @@
-//! Balance of every part of a structure by hand: loads + contact forces + reactions + springs = 0, in x, in y and
-//! about a point, each part (what elements and ties join) by itself. Uses nothing of the finite elements but the
+//! Balance of every part of a structure by hand: loads + contact forces + reactions (of supports and springs) = 0, in
+//! x, in y and about a point, each part (what elements and ties join) by itself. Uses nothing of the finite elements but the
 //! answer they gave.
 
 use stickslip::answer::record::Answer;
@@ -88,13 +88,6 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
         let node = find(&reaction.node).expect("a node");
         add(node, at(node), [reaction.fx, reaction.fy], reaction.m);
     }
-    let u = answer.displacements.as_ref().expect("displacements");
-    for spring in &structure.springs {
-        let d = spring.direction;
-        let u = &u[spring.node];
-        let force = -spring.stiffness * (d[0] * u.ux + d[1] * u.uy);
-        add(spring.node, at(spring.node), [force * d[0], force * d[1]], 0.0);
-    }
     // A tie that joins nodes at different places hands over force without its moment: no balance of moments there.
     let mut moments = vec![true; n];
     for tie in &structure.ties {
@@ -121,7 +114,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
 }
 
 /// Worst imbalance of a node that carries bars only, from the end forces of the members alone: what they hand to the
-/// node + loads + contact + reaction + spring = 0, in x, in y and in moment. Structures without ties.
+/// node + loads + contact + reaction (of supports and springs) = 0, in x, in y and in moment. Structures without ties.
 pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer) -> f64 {
     let Source::Structure(structure) = &scenario.source else {
         return 0.0;
@@ -176,13 +169,6 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
     for reaction in answer.reactions.as_ref().expect("reactions") {
         let node = structure.nodes.iter().position(|node| node.id == reaction.node);
         add(node.unwrap(), [reaction.fx, reaction.fy, reaction.m]);
-    }
-    let u = answer.displacements.as_ref().expect("displacements");
-    for spring in &structure.springs {
-        let d = spring.direction;
-        let u = &u[spring.node];
-        let force = -spring.stiffness * (d[0] * u.ux + d[1] * u.uy);
-        add(spring.node, [force * d[0], force * d[1], 0.0]);
     }
     let moment = largest[1].max(largest[0]);
     let mut worst = 0f64;

@@ -8,8 +8,9 @@ use stickslip::model::embedded;
 use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::Scenario;
 use stickslip::path::grid::{Axis, Grid, Shard};
+use stickslip::path::merge::Shards;
 use stickslip::path::sweep::{Format, Sweep};
-use stickslip::path::sweep_file::{SweepFileError, merge, run_to_file};
+use stickslip::path::sweep_file::{SweepFileError, run_to_file};
 use stickslip::solve::{Prepared, prepare};
 use stickslip::watch::{Quiet, Watch};
 
@@ -51,6 +52,14 @@ impl Case {
         assert!(done.is_complete());
         out
     }
+}
+
+/// What the files make together.
+fn merged(files: &[PathBuf]) -> Result<(usize, Vec<u8>), SweepFileError> {
+    let shards = Shards::open(files, &Quiet)?;
+    let mut out = Vec::new();
+    shards.write(&mut out, &Quiet)?;
+    Ok((shards.rows(), out))
 }
 
 /// Stops after so many questions, as Ctrl-C at some moment does.
@@ -124,18 +133,68 @@ fn threads_and_shards_change_no_byte() {
             run_to_file(&sweep, &path, true, &Quiet).expect("written");
             files.push(path);
         }
-        let mut merged = Vec::new();
-        assert_eq!(merge(&files, &mut merged).expect("complete"), case.grid.len());
-        assert_eq!(merged, whole);
-        let mut nothing = Vec::new();
-        let missing = merge(&files[..2], &mut nothing).expect_err("shard 2 is missing");
+        assert_eq!(merged(&files).expect("complete"), (case.grid.len(), whole));
+        let missing = merged(&files[..2]).expect_err("shard 2 is missing");
         assert_eq!(missing.to_string(), "shard 2 of 3 is missing");
         let twice = [files.clone(), vec![files[0].clone()]].concat();
-        assert!(merge(&twice, &mut nothing).expect_err("twice").to_string().contains("twice"));
+        assert!(merged(&twice).expect_err("twice").to_string().contains("twice"));
         let text = fs::read(&files[1]).expect("there");
         fs::write(&files[1], &text[..text.len() - 5]).expect("written");
-        let short = merge(&files, &mut nothing).expect_err("cut").to_string();
+        let short = merged(&files).expect_err("cut").to_string();
         assert!(short.contains("is not complete"), "{short}");
+    }
+}
+
+#[test]
+fn altered_rows_are_refused() {
+    let case = Case::new("beam", &["F2=0:400:50"]);
+    for format in [Format::Csv, Format::Json] {
+        let folder = tempfile::tempdir().expect("a place");
+        let path = folder.path().join("rows");
+        let sweep = case.sweep("1/1", format);
+        run_to_file(&sweep, &path, false, &Quiet).expect("written");
+        let whole = fs::read_to_string(&path).expect("there");
+        let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+        let first = lines.len() - case.grid.len();
+        let joined = |lines: &[&str]| lines.concat();
+        let mut exchanged = lines.clone();
+        exchanged.swap(first + 2, first + 3);
+        let mut repeated = lines.clone();
+        repeated[first + 4] = lines[first + 3];
+        let mut without = lines.clone();
+        without.remove(first + 1);
+        // every character of a row counts: one digit, one word, the checksum itself
+        let row = lines[first + 3];
+        let mut altered: Vec<String> = [joined(&exchanged), joined(&repeated), joined(&without)].into();
+        for (at, c) in row.char_indices().filter(|(_, c)| c.is_ascii_alphanumeric()) {
+            let other = if c == '7' { '3' } else { '7' };
+            let row = format!("{}{other}{}", &row[..at], &row[at + 1..]);
+            altered.push(whole.replacen(lines[first + 3], &row, 1));
+        }
+        for text in altered {
+            fs::write(&path, &text).expect("written");
+            let resumed = run_to_file(&sweep, &path, true, &Quiet).expect_err("altered");
+            assert!(matches!(resumed, SweepFileError::Row { .. }), "{resumed}");
+            assert_eq!(fs::read_to_string(&path).expect("there"), text, "nothing was written");
+            let mut out = Vec::new();
+            let refused =
+                Shards::open(std::slice::from_ref(&path), &Quiet).map(|shards| shards.write(&mut out, &Quiet));
+            assert!(matches!(refused, Err(SweepFileError::Row { .. })));
+        }
+        // rows of another sweep with the same points
+        let other = Case::new("beam-limit", &["F2=0:400:50"]);
+        let foreign = String::from_utf8(other.bytes("1/1", format)).expect("text");
+        let body: Vec<&str> = foreign.split_inclusive('\n').skip(first).collect();
+        fs::write(&path, format!("{}{}", lines[..first].concat(), body.concat())).expect("written");
+        assert!(matches!(run_to_file(&sweep, &path, true, &Quiet), Err(SweepFileError::Row { row: 1, .. })));
+        // an earlier version
+        fs::write(&path, whole.replacen("stickslip-sweep/2", "stickslip-sweep/1", 1)).expect("written");
+        for error in [
+            run_to_file(&sweep, &path, true, &Quiet).expect_err("version 1").to_string(),
+            merged(std::slice::from_ref(&path)).expect_err("version 1").to_string(),
+        ] {
+            assert!(error.contains("earlier version") && error.contains("run the sweep again"), "{error}");
+        }
     }
 }
 
@@ -147,7 +206,7 @@ fn rows_say_what_was_found() {
     assert_eq!(
         rows[0],
         "F2,outcome,class,p,pivots,open,stick,slip+,slip-,closed,max_slip,max_slip_pair,max_gap,max_gap_pair,\
-         max_x_n,max_x_n_pair,failure"
+         max_x_n,max_x_n_pair,failure,checksum"
     );
     assert!(rows[1].starts_with("100.0,normal,,0.0,"), "{}", rows[1]);
     assert!(rows[3].starts_with("400.0,ray,mechanism,11.11"), "{}", rows[3]);

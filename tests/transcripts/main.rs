@@ -2,6 +2,7 @@
 //! and ten thousand lines of noise.
 
 mod program;
+mod work;
 
 use std::fs;
 use std::path::Path;
@@ -567,6 +568,8 @@ const WORDS: &[&str] = &[
     "out.csv",
     "out.json",
     "discard",
+    "tui",
+    "tour",
     "set f",
     "pairs c1 sort",
     "expect p",

@@ -151,7 +151,7 @@ fn from_file(cursor: Cursor<'_>, size: usize, path: Option<&Path>) -> Option<Vec
         return None;
     };
     let file = scenario.parent().unwrap_or(Path::new("")).join(name);
-    let text = match std::fs::read_to_string(&file) {
+    let text = match crate::text::file::read_text(&file) {
         Ok(text) => text,
         Err(error) => {
             cursor.problem(

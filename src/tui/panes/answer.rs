@@ -7,7 +7,6 @@ use ratatui::text::Line;
 use crate::tui::app::{Pane, State};
 use crate::tui::layout;
 use crate::view::status;
-use crate::view::style::Role;
 
 fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
     let shown = &state.shown;
@@ -19,12 +18,6 @@ fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
             // the title of the scenario stands at the top of the screen
             if !lines.is_empty() {
                 lines.remove(0);
-            }
-            if let Some(description) = &shown.scenario.description {
-                lines.push(Line::default());
-                for line in state.look.report(width).wrap(description, width) {
-                    lines.push(Line::styled(line, state.look.role(Role::Muted)));
-                }
             }
             lines
         }
