@@ -12,6 +12,7 @@ mod foundation;
 mod frame;
 mod greco;
 mod klarbring;
+mod loads;
 mod plates;
 mod random_structures;
 mod slope;
