@@ -28,7 +28,7 @@ use stickslip::export::lcp::matrix_market;
 use stickslip::fem::MainSystem;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
-use stickslip::lcp::vertex::{Basis, vertex};
+use stickslip::lcp::vertex::vertex;
 use stickslip::model::pair::joints;
 use stickslip::model::rules::TieBreak;
 use stickslip::model::scenario::Source;
@@ -94,7 +94,7 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
             let result = run(&mut engine, 1_000_000, &mut |_| ControlFlow::Continue(()));
             (engine, result)
         });
-        let (last, fresh) = timed(|| vertex(&contact.lcp, &Basis::after(&result.pivots)));
+        let (last, fresh) = timed(|| vertex(&contact.lcp, &result.pivots.basis()));
         if let Some(point) = fresh {
             result.point = point;
         }
@@ -110,7 +110,7 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
                 "pivoting": pivoting,
                 "vertex": last,
                 "outcome": outcome,
-                "pivots": result.pivots.len(),
+                "pivots": result.pivots.count(),
                 "refreshes": refreshes,
                 "z": contact.in_units(&result.point).z,
             })

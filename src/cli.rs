@@ -450,7 +450,7 @@ fn write_answer(
     view::status::write(out, answer, scenario, session.values(), style)?;
     if !answer.pivots.is_empty() {
         writeln!(out)?;
-        view::pivots::write(out, &answer.pivots, None, None, units, style)?;
+        view::pivots::write(out, answer, None, None, units, style)?;
     }
     writeln!(out)?;
     if answer.solution.is_some() || !answer.pairs.is_empty() {

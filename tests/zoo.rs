@@ -24,7 +24,7 @@ fn cottle_pang_stone_4_4_7_in_five_pivots() {
     let m = vec![vec![0.0, -1.0, 2.0], vec![2.0, 0.0, -2.0], vec![-1.0, 1.0, 0.0]];
     let run = solve(m, vec![-3.0, 6.0, -1.0], None);
     assert_eq!(run.outcome, Outcome::Normal { marginal: false });
-    assert_eq!(run.pivots.len(), 5);
+    assert_eq!(run.pivots.count(), 5);
     for (z, expected) in run.point.z.iter().zip([0.0, 1.0, 3.0]) {
         assert!((z - expected).abs() < 1e-14);
     }
@@ -47,7 +47,7 @@ fn bimatrix_4_4_23_ends_in_a_ray_at_the_first_pivot() {
     ];
     let run = solve(m, vec![-1.0; 4], None);
     assert!(matches!(run.outcome, Outcome::Ray(_)), "{:?}", run.outcome);
-    assert_eq!(run.pivots.len(), 1);
+    assert_eq!(run.pivots.count(), 1);
 }
 
 fn murty(n: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
@@ -79,7 +79,7 @@ fn murty_takes_two_to_the_n_pivots() {
         }
         let run = solve(m, q, None);
         assert_eq!(run.outcome, Outcome::Normal { marginal: false });
-        assert_eq!(run.pivots.len(), 1 << n, "n = {n}");
+        assert_eq!(run.pivots.count(), 1 << n, "n = {n}");
     }
 }
 
@@ -87,10 +87,10 @@ fn murty_takes_two_to_the_n_pivots() {
 fn cycling_under_first_row_ends_in_four_pivots_under_lexicographic() {
     let m = vec![vec![1.0, 2.0, 0.0], vec![0.0, 1.0, 2.0], vec![2.0, 0.0, 1.0]];
     let run = solve(m.clone(), vec![-1.0; 3], Some(TieRule::FirstRow));
-    assert_eq!(run.outcome, Outcome::Cycle);
+    assert!(matches!(run.outcome, Outcome::Cycle(_)), "{:?}", run.outcome);
     let run = solve(m, vec![-1.0; 3], None);
     assert_eq!(run.outcome, Outcome::Normal { marginal: false });
-    assert_eq!(run.pivots.len(), 4);
+    assert_eq!(run.pivots.count(), 4);
     for z in run.point.z {
         assert!((z - 1.0 / 3.0).abs() < 1e-15);
     }

@@ -60,6 +60,43 @@ pub struct PairDirection {
     pub z_t: f64,
 }
 
+/// Rate of a variable of a bare LCP along a ray.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VariableRate {
+    /// `z[1]`, `w[rod]`, `p`.
+    pub variable: String,
+    /// > 0.
+    pub rate: f64,
+}
+
+/// Direction of a ray, scaled to largest 1.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Direction {
+    /// Of a contact problem: every pair.
+    Pairs(Vec<PairDirection>),
+    /// Of a bare LCP: the variables that grow, the entering one first.
+    Variables(Vec<VariableRate>),
+}
+
+impl Direction {
+    /// Pair by pair; empty for a bare LCP.
+    pub fn pairs(&self) -> &[PairDirection] {
+        match self {
+            Direction::Pairs(pairs) => pairs,
+            Direction::Variables(_) => &[],
+        }
+    }
+
+    /// Variable by variable; empty for a contact problem.
+    pub fn variables(&self) -> &[VariableRate] {
+        match self {
+            Direction::Pairs(_) => &[],
+            Direction::Variables(variables) => variables,
+        }
+    }
+}
+
 /// A run that ended in a ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ray {
@@ -69,8 +106,10 @@ pub struct Ray {
     pub verdict: Option<Verdict>,
     /// p at the last vertex.
     pub p: f64,
-    /// Direction, scaled to largest 1.
-    pub direction: Vec<PairDirection>,
+    /// The variable that grows without bound: the one that was to enter.
+    pub driver: String,
+    /// What moves along it.
+    pub direction: Direction,
     /// The motion in words.
     pub mode: String,
     /// What it means and what would help, in words.
@@ -88,6 +127,9 @@ pub struct Attempt {
     pub engine: String,
     /// How it ended.
     pub outcome: OutcomeKind,
+    /// Which limit it reached, where that is no ray and no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
 }
 
 /// Joint of a pair that a pivot turned.
@@ -322,8 +364,10 @@ pub struct Answer {
     pub engine: String,
     /// All tries, in order.
     pub attempts: Vec<Attempt>,
-    /// The pivots of the last attempt.
+    /// The pivots of the last attempt: the first ones only where the run was very long.
     pub pivots: Vec<PivotRecord>,
+    /// Number of all its pivots.
+    pub pivot_count: usize,
     /// The pairs at the end (at the last vertex of a ray).
     pub pairs: Vec<PairState>,
     /// The fresh check.
@@ -354,6 +398,16 @@ impl Answer {
     /// Whether this is an answer (trivial or normal, and checked).
     pub fn is_answer(&self) -> bool {
         matches!(self.outcome, OutcomeKind::Trivial | OutcomeKind::Normal)
+    }
+
+    /// The last pivot of which there is a record.
+    pub fn last_recorded(&self) -> Option<usize> {
+        self.pivots.len().checked_sub(1)
+    }
+
+    /// Number of pivots without a record.
+    pub fn unrecorded(&self) -> usize {
+        self.pivot_count.saturating_sub(self.pivots.len())
     }
 }
 

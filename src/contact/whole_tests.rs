@@ -328,7 +328,7 @@ fn exact_engine_with_sixty_pairs() {
             format!(
                 "contrast {contrast:e}, f {f}: {:?}, {} pivots, {}\n",
                 start.elapsed(),
-                got.pivots.len(),
+                got.pivots.count(),
                 &outcome[..outcome.len().min(40)]
             )
             .as_bytes(),

@@ -5,6 +5,7 @@ pub mod kernel;
 pub mod loose;
 pub mod margin;
 pub mod mode;
+pub mod plain_ray;
 pub mod ray;
 pub mod remedy;
 pub mod sentence;

@@ -10,7 +10,7 @@ use super::kernel::releasable_kernel;
 use super::mode::{Mode, mode, pair_words};
 use super::remedy::{Remedy, Try, digits, remedies, sentence};
 use super::words::{list, short};
-use crate::answer::record::{PairDirection, Ray, RayClass, Verdict};
+use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::complementarity::ContactLcp;
 use crate::contact::enumerate::{Enumeration, MOST_PAIRS, enumerate};
 use crate::contact::numbers::ContactNumbers;
@@ -50,6 +50,8 @@ pub struct RayReport {
     pub verdict: Option<Verdict>,
     /// p at the last vertex, user's units.
     pub p: f64,
+    /// Name of the entering variable.
+    pub driver: String,
     /// z̄ over the joints, largest entry 1.
     pub direction: DVector<f64>,
     /// Pair whose z⁺ and z⁻ grow together, of an artefact.
@@ -150,6 +152,7 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
         class,
         verdict: None,
         p,
+        driver: contact.name(ray.entering, system),
         direction,
         artefact,
         mode,
@@ -353,37 +356,21 @@ impl RayReport {
             class: self.class,
             verdict: self.verdict,
             p: self.p,
-            direction: system
-                .pairs
-                .iter()
-                .enumerate()
-                .map(|(i, pair)| PairDirection {
-                    pair: pair.id.clone(),
-                    z_n: self.direction[i],
-                    z_t: pair.tangential.map_or(0.0, |joint| self.direction[joint]),
-                })
-                .collect(),
+            driver: self.driver.clone(),
+            direction: Direction::Pairs(
+                system
+                    .pairs
+                    .iter()
+                    .enumerate()
+                    .map(|(i, pair)| PairDirection {
+                        pair: pair.id.clone(),
+                        z_n: self.direction[i],
+                        z_t: pair.tangential.map_or(0.0, |joint| self.direction[joint]),
+                    })
+                    .collect(),
+            ),
             mode: self.mode_words(system),
             explanation: self.explanation(system, covering),
         }
-    }
-}
-
-/// The ray of a bare LCP; `verdict` where its answers were enumerated.
-pub fn plain_report(p: f64, verdict: Verdict) -> Ray {
-    let proof = match verdict {
-        Verdict::Proved => "Proved: every complementary basis was tried in exact arithmetic, none is an answer.",
-        _ => "For a general M this proves nothing about whether one exists.",
-    };
-    Ray {
-        class: RayClass::NoEquilibrium,
-        verdict: Some(verdict),
-        p,
-        direction: Vec::new(),
-        mode: "the entering variable grows without bound".to_owned(),
-        explanation: format!(
-            "No row blocks the entering variable at p = {}: Lemke's algorithm found no answer. {proof}",
-            short(p)
-        ),
     }
 }

@@ -136,14 +136,7 @@ impl Sentence<'_> {
         if self.ended {
             return format!("{change}; p falls from {} to 0: the answer is reached", short(self.before));
         }
-        let unchanged = (self.after - self.before).abs() <= 1e-12 * self.before.abs();
-        let course = if unchanged {
-            format!("p stays at {}", short(self.after))
-        } else if self.after < self.before {
-            format!("p falls from {} to {}", short(self.before), short(self.after))
-        } else {
-            format!("p rises from {} to {}", short(self.before), short(self.after))
-        };
+        let course = course(pivot.degenerate, self.before, self.after);
         format!("{change}; {course}, where {}", self.limit(pivot.leaving, schemes))
     }
 
@@ -168,6 +161,20 @@ impl Sentence<'_> {
     }
 }
 
+/// What happens to p at a pivot.
+fn course(degenerate: bool, before: f64, after: f64) -> String {
+    let [from, to] = [before, after].map(short);
+    if degenerate {
+        format!("nothing moves: a degenerate pivot at p = {to}")
+    } else if (after - before).abs() <= 1e-12 * before.abs() {
+        format!("p stays at {to}")
+    } else if after < before {
+        format!("p falls from {from} to {to}")
+    } else {
+        format!("p rises from {from} to {to}")
+    }
+}
+
 /// The records of a bare LCP; `names` are the names of its rows.
 pub fn plain_records(pivots: &[Pivot], names: &[String]) -> Vec<PivotRecord> {
     let name = |variable: Variable| plain_name(variable, names);
@@ -180,11 +187,9 @@ pub fn plain_records(pivots: &[Pivot], names: &[String]) -> Vec<PivotRecord> {
             } else if pivot.leaving == Variable::P {
                 format!("{entering} enters; p falls from {} to 0", short(pivot.p_before))
             } else {
-                format!(
-                    "{entering} enters; p goes from {} to {}, where {leaving} reaches zero",
-                    short(pivot.p_before),
-                    short(pivot.p_after)
-                )
+                let zero = if pivot.degenerate { "is zero already" } else { "reaches zero" };
+                let course = course(pivot.degenerate, pivot.p_before, pivot.p_after);
+                format!("{entering} enters; {course}, where {leaving} {zero}")
             };
             PivotRecord {
                 step: pivot.step,

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::vertex::{Naming, basics, value};
 use crate::lcp::outcome::Point;
-use crate::lcp::trace::Pivot;
+use crate::lcp::trace::PivotLog;
 use crate::lcp::variable::Variable;
 use crate::lcp::vertex::{Basis, direction, vertex};
 
@@ -45,14 +45,15 @@ pub enum NoDictionary {
 ///
 /// # Errors
 /// See [`NoDictionary`].
-pub fn dictionary(naming: &Naming, pivots: &[Pivot], step: Option<usize>) -> Result<Dictionary, NoDictionary> {
+pub fn dictionary(naming: &Naming, log: &PivotLog, step: Option<usize>) -> Result<Dictionary, NoDictionary> {
+    let pivots = log.recorded();
     let lcp = naming.lcp();
     let n = lcp.whole_size;
     if n > MOST_ROWS {
         return Err(NoDictionary::TooLarge(n));
     }
-    let done = step.map_or(0, |step| (step + 1).min(pivots.len()));
-    let basis = Basis::after(&pivots[..done]);
+    let done = step.map_or(0, |step| (step + 1).min(log.count()));
+    let basis = pivots.get(..done).map_or_else(|| log.basis(), Basis::after);
     let point = vertex(lcp, &basis).ok_or(NoDictionary::Singular)?;
     let basic = basics(lcp, &basis);
     let nonbasic: Vec<Variable> = (0..n)

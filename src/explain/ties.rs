@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::vertex::{Naming, zero_basics};
 use crate::lcp::outcome::Point;
-use crate::lcp::trace::Pivot;
+use crate::lcp::trace::{Pivot, PivotLog};
 use crate::lcp::variable::Variable;
 use crate::lcp::vertex::{Basis, vertex};
 use crate::model::rules::TieBreak;
@@ -74,7 +74,8 @@ fn reason(pivot: &Pivot, tie_break: TieBreak) -> &'static str {
 }
 
 /// Looks through a run; `last` is its last vertex.
-pub fn ties(naming: &Naming, pivots: &[Pivot], last: &Point, tie_break: TieBreak) -> TieReport {
+pub fn ties(naming: &Naming, log: &PivotLog, last: &Point, tie_break: TieBreak) -> TieReport {
+    let pivots = log.recorded();
     let names = |variables: &[Variable]| variables.iter().map(|v| naming.name(*v)).collect();
     let tied = pivots
         .iter()
@@ -91,7 +92,7 @@ pub fn ties(naming: &Naming, pivots: &[Pivot], last: &Point, tie_break: TieBreak
     let degenerate = (first..pivots.len())
         .filter_map(|step| {
             let basis = Basis::after(&pivots[..=step]);
-            let zeros = if step + 1 == pivots.len() {
+            let zeros = if step + 1 == log.count() {
                 zero_basics(lcp, &basis, last)
             } else {
                 zero_basics(lcp, &basis, &vertex(lcp, &basis)?)
@@ -101,9 +102,9 @@ pub fn ties(naming: &Naming, pivots: &[Pivot], last: &Point, tie_break: TieBreak
         .collect();
     TieReport {
         rule: rule_words(tie_break, matches!(naming, Naming::Contact(..))),
-        pivots: pivots.len(),
+        pivots: log.count(),
         ties: tied,
         degenerate,
-        complete: first == 0,
+        complete: first == 0 && log.is_complete(),
     }
 }

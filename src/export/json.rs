@@ -63,11 +63,15 @@ pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues
     put("engine", answer.engine.as_str().into());
     put("attempts", value(&answer.attempts));
     put("pivots", pivots(answer));
+    put("pivot_count", answer.pivot_count.into());
     if !failed {
         put("pairs", pairs(answer));
         if let Some(solution) = &answer.solution {
             put("solution", value(solution));
         }
+    }
+    if let Some(failure) = answer.failure.as_ref().filter(|_| failed) {
+        put("failure", failure.as_str().into());
     }
     put("check", value(&answer.check));
     if answer.is_answer() {

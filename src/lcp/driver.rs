@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::outcome::{Outcome, Point, Run};
-use super::trace::Pivot;
+use super::trace::{Pivot, PivotLog};
 
 /// What one step of an engine did.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub trait Engine {
     /// Makes the next pivot, or says how the run ended; after an end it keeps saying so.
     fn step(&mut self) -> Step<Self::Number>;
     /// The pivots made so far.
-    fn pivots(&self) -> &[Pivot];
+    fn pivots(&self) -> &PivotLog;
     /// The present vertex.
     fn point(&self) -> Point<Self::Number>;
 }
@@ -33,7 +33,7 @@ pub fn run<E: Engine>(
     observer: &mut dyn FnMut(&Pivot) -> ControlFlow<()>,
 ) -> Run<E::Number> {
     let outcome = loop {
-        if engine.pivots().len() > limit {
+        if engine.pivots().count() > limit {
             break Outcome::PivotLimit;
         }
         match engine.step() {
@@ -47,5 +47,5 @@ pub fn run<E: Engine>(
             }
         }
     };
-    Run { outcome, pivots: engine.pivots().to_vec(), point: engine.point() }
+    Run { outcome, pivots: engine.pivots().closed(), point: engine.point() }
 }

@@ -18,7 +18,7 @@ use super::ratio_test::TieRule;
 use super::rational_solve::{Quotients, RationalSolution, clear_denominators, solve};
 use super::scalar::{BigInt, Scalar};
 use super::tableau::Tableau;
-use super::trace::Pivot;
+use super::trace::PivotLog;
 use super::variable::Variable;
 
 /// More bits than this are not tried.
@@ -70,7 +70,7 @@ impl Exact {
 
     /// Repeats the run so far with twice the bits; false when there are no more.
     fn refine(&mut self) -> bool {
-        let done = self.tableau.pivots().len();
+        let done = self.tableau.pivots().count();
         while self.precision < MOST_BITS {
             self.precision *= 2;
             self.tableau = start(&self.lcp, &self.rule, self.precision);
@@ -196,7 +196,7 @@ impl Exact {
                 Outcome::Ray(RayDirection { entering: direction.entering, z, w, p })
             }
             Outcome::PivotLimit => Outcome::PivotLimit,
-            Outcome::Cycle => Outcome::Cycle,
+            Outcome::Cycle(cycle) => Outcome::Cycle(cycle),
             Outcome::Breakdown(why) => Outcome::Breakdown(why),
             Outcome::Interrupted => Outcome::Interrupted,
         }
@@ -256,7 +256,7 @@ impl Engine for Exact {
         Step::Ended(outcome)
     }
 
-    fn pivots(&self) -> &[Pivot] {
+    fn pivots(&self) -> &PivotLog {
         self.tableau.pivots()
     }
 

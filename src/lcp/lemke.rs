@@ -4,8 +4,7 @@
 //! what left enters, until p leaves (normal end) or nothing blocks (ray). One dictionary of N rows carries the
 //! run ([`super::dictionary`]); zero tests are scaled (theory §4, "Numerics that matter").
 
-use std::collections::{HashMap, HashSet};
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use rand::SeedableRng;
@@ -19,7 +18,7 @@ use super::parametric::Parametric;
 use super::problem::MARGINAL;
 use super::ratio_test::{TieRule, choose};
 use super::stand::{Candidate, NOISE, Sizes, Stand};
-use super::trace::Pivot;
+use super::trace::{Pivot, PivotLog};
 use super::variable::Variable;
 
 /// The engine; see the module.
@@ -28,14 +27,12 @@ pub struct SchemeEngine {
     stand: Stand,
     rule: TieRule,
     random: ChaCha8Rng,
-    pivots: Vec<Pivot>,
+    pivots: PivotLog,
     /// What enters next; `None` before the entry of p.
     entering: Option<Local>,
     ended: Option<Outcome>,
     /// Row of every basic variable in the whole tableau (see [`TieRule::FirstRow`]).
     table_row: HashMap<Variable, usize>,
-    /// Bases met, where the rule may cycle.
-    bases: HashSet<u64>,
     /// Set where the run stopped because z⁺ and z⁻ of a couple would both be basic: the vertex after that.
     artefact_point: Option<Point>,
 }
@@ -55,11 +52,10 @@ impl SchemeEngine {
         SchemeEngine {
             rule,
             random: ChaCha8Rng::seed_from_u64(seed),
-            pivots: Vec::new(),
+            pivots: PivotLog::default(),
             entering: None,
             ended: None,
             table_row: (0..lcp.whole_size).map(|row| (Variable::W(row), row)).collect(),
-            bases: HashSet::new(),
             artefact_point: None,
             stand: Stand::new(Arc::clone(&lcp), Dictionary::new(&lcp), sizes),
         }
@@ -88,6 +84,11 @@ impl SchemeEngine {
     fn end(&mut self, outcome: Outcome) -> Step<f64> {
         self.ended = Some(outcome.clone());
         Step::Ended(outcome)
+    }
+
+    /// The end where nothing goes on but p is as good as zero: an answer.
+    fn at_limit_of_p(&self) -> Option<Outcome> {
+        (self.stand.p() <= MARGINAL * self.stand.lcp.q.amax()).then_some(Outcome::Normal { marginal: true })
     }
 
     fn broken(&mut self, why: &str) -> Step<f64> {
@@ -162,12 +163,13 @@ impl SchemeEngine {
         };
         let p_after = self.artefact_point.as_ref().map_or_else(|| self.stand.p(), |point| point.p);
         self.pivots.push(Pivot {
-            step: self.pivots.len(),
+            step: self.pivots.count(),
             entering,
             leaving: name,
             p_before,
             p_after,
             ratio: step,
+            degenerate: leaving.value <= leaving.noise,
             ties,
         });
         if let Some(row) = self.table_row.remove(&name) {
@@ -201,20 +203,6 @@ impl SchemeEngine {
         self.artefact_point = Some(point);
         self.ended = Some(Outcome::Ray(RayDirection { entering: other, z, w: vec![0.0; n], p: 0.0 }));
     }
-
-    /// Whether this basis was met before (asked only where the rule may cycle).
-    fn comes_back(&mut self) -> bool {
-        if self.rule != TieRule::FirstRow {
-            return false;
-        }
-        let name = |local: &Local| self.stand.variable(*local, false);
-        let mut basis: Vec<Variable> = self.stand.dictionary.row.iter().map(name).collect();
-        basis.sort_unstable();
-        let mut hasher = DefaultHasher::new();
-        basis.hash(&mut hasher);
-        self.entering.as_ref().map(name).hash(&mut hasher);
-        !self.bases.insert(hasher.finish())
-    }
 }
 
 impl Engine for SchemeEngine {
@@ -227,8 +215,8 @@ impl Engine for SchemeEngine {
         let Some(entering) = self.entering else {
             return self.start();
         };
-        if self.comes_back() {
-            return self.end(Outcome::Cycle);
+        if let Some(cycle) = self.pivots.cycle(self.rule.returns_allowed()) {
+            return self.end(self.at_limit_of_p().unwrap_or(Outcome::Cycle(cycle)));
         }
         if !self.stand.keep_true() {
             return self.broken("the equations of the working scheme are singular");
@@ -242,18 +230,15 @@ impl Engine for SchemeEngine {
             (tied, step) = self.stand.blocking(c, true);
         }
         if tied.is_empty() {
-            if self.stand.p() <= MARGINAL * self.stand.lcp.q.amax() {
-                return self.end(Outcome::Normal { marginal: true });
-            }
-            let ray = self.stand.ray(c);
-            return self.end(Outcome::Ray(ray));
+            let end = self.at_limit_of_p().unwrap_or_else(|| Outcome::Ray(self.stand.ray(c)));
+            return self.end(end);
         }
         let chosen = self.choose(&tied, false);
         self.exchange(tied[chosen], c, step, &tied);
         Step::Pivoted
     }
 
-    fn pivots(&self) -> &[Pivot] {
+    fn pivots(&self) -> &PivotLog {
         &self.pivots
     }
 

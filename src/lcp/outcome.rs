@@ -1,6 +1,6 @@
 //! How a run of Lemke's algorithm ends.
 
-use super::trace::Pivot;
+use super::trace::{Cycle, PivotLog};
 use super::variable::Variable;
 
 /// Values of all variables of the LCP at one vertex.
@@ -41,8 +41,8 @@ pub enum Outcome<T = f64> {
     Ray(RayDirection<T>),
     /// The pivot limit was reached.
     PivotLimit,
-    /// Cycle found: a basis came back (possible under first-row and random only).
-    Cycle,
+    /// A basis came back: the run would go on for ever. In exact arithmetic only under first-row and random.
+    Cycle(Cycle),
     /// The numbers no longer belong together; says which check failed.
     Breakdown(String),
     /// Stopped from outside.
@@ -54,8 +54,8 @@ pub enum Outcome<T = f64> {
 pub struct Run<T = f64> {
     /// How it ended.
     pub outcome: Outcome<T>,
-    /// The records of all pivots (p in f64 whatever the engine).
-    pub pivots: Vec<Pivot>,
+    /// Its pivots (p in f64 whatever the engine).
+    pub pivots: PivotLog,
     /// The last vertex.
     pub point: Point<T>,
 }

@@ -17,6 +17,17 @@ pub enum TieRule {
     Random(u64),
 }
 
+impl TieRule {
+    /// How often a basis may come back before the run is called a cycle. Where the choice follows from the basis the
+    /// first return is one; a draw may break out of the circle.
+    pub(crate) fn returns_allowed(&self) -> usize {
+        match self {
+            TieRule::Lexicographic(_) | TieRule::FirstRow => 0,
+            TieRule::Random(_) => 100,
+        }
+    }
+}
+
 /// Entries of two rows of B⁻¹ that differ by less than this multiple of their natural size are equal.
 const SAME: f64 = 1e-10;
 

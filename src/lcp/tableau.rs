@@ -17,7 +17,6 @@
 //! that leaves. `Random` draws once for every tie of two or more.
 
 use std::cmp::Ordering;
-use std::collections::HashSet;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -27,7 +26,7 @@ use super::outcome::{Outcome, Point, RayDirection};
 use super::problem::{Lcp, MARGINAL};
 use super::ratio_test::TieRule;
 use super::scalar::Scalar;
-use super::trace::Pivot;
+use super::trace::{Pivot, PivotLog};
 use super::variable::Variable;
 
 /// A basic variable below −(this × its noise) means that the f64 numbers no longer belong together.
@@ -57,8 +56,7 @@ pub struct Tableau<T> {
     basic: Vec<Variable>,
     nonbasic: Vec<Variable>,
     entering: Variable,
-    pivots: Vec<Pivot>,
-    seen: HashSet<Vec<u8>>,
+    pivots: PivotLog,
     ended: Option<Outcome<T>>,
     /// Typical d_i / row_i: what a unit of p weighs against scaled displacements.
     weight_of_p: f64,
@@ -91,8 +89,7 @@ impl<T: Scalar> Tableau<T> {
             basic: (0..n).map(Variable::W).collect(),
             nonbasic: (0..n).map(Variable::Z).chain(std::iter::once(Variable::P)).collect(),
             entering: Variable::P,
-            pivots: Vec::new(),
-            seen: HashSet::new(),
+            pivots: PivotLog::default(),
             ended: None,
             weight_of_p: if high > 0.0 { (low * high).sqrt() } else { 1.0 },
             largest_q: lcp.q.iter().map(|q| q.to_f64().abs()).fold(0.0, f64::max),
@@ -157,6 +154,11 @@ impl<T: Scalar> Tableau<T> {
         let leaving = self.basic[row];
         let entering = self.nonbasic[column];
 
+        let degenerate = !self.pivots.is_empty() && {
+            let here = if T::is_exact() { choice::Size::default() } else { self.vertex_size(column, 0.0) };
+            !matches!(self.sign(&self.values[row], leaving, here), Ok(Ordering::Greater))
+        };
+
         let inverse = T::one().div(&self.rows[row][column]);
         let mut solved: Vec<T> =
             self.rows[row].iter().map(|a| if a.is_zero() { T::zero() } else { a.mul(&inverse).neg() }).collect();
@@ -195,7 +197,7 @@ impl<T: Scalar> Tableau<T> {
         self.basic[row] = entering;
         self.nonbasic[column] = leaving;
         let p_after = self.p_value().to_f64();
-        let step = self.pivots.len();
+        let step = self.pivots.count();
         self.pivots.push(Pivot {
             step,
             entering,
@@ -203,6 +205,7 @@ impl<T: Scalar> Tableau<T> {
             p_before: if step == 0 { p_after } else { p_before },
             p_after,
             ratio,
+            degenerate,
             ties: tied,
         });
         match leaving.complement() {
@@ -211,26 +214,15 @@ impl<T: Scalar> Tableau<T> {
         }
     }
 
-    /// Whether this basis with this entering variable was here before; remembers it.
-    fn came_back(&mut self) -> bool {
-        let mut key = vec![0u8; self.lcp.size() + 1];
-        for variable in &self.basic {
-            match variable {
-                Variable::W(i) => key[*i] |= 1,
-                Variable::Z(i) => key[*i] |= 2,
-                Variable::P => key[self.lcp.size()] |= 1,
-            }
-        }
-        if let Variable::W(i) = self.entering {
-            key[i] |= 4;
-        }
-        !self.seen.insert(key)
+    /// The end where nothing goes on but p is as good as zero: an answer.
+    fn at_limit_of_p(&self) -> Option<Outcome<T>> {
+        let p = self.p_value();
+        (p.to_f64() <= MARGINAL * self.largest_q).then(|| Outcome::Normal { marginal: !p.is_zero() })
     }
 
     fn ray(&self, column: usize) -> Outcome<T> {
-        let p = self.p_value();
-        if p.to_f64() <= MARGINAL * self.largest_q {
-            return Outcome::Normal { marginal: !p.is_zero() };
+        if let Some(end) = self.at_limit_of_p() {
+            return end;
         }
         let n = self.lcp.size();
         let size = self.direction_size(column);
@@ -265,12 +257,8 @@ impl<T: Scalar> Tableau<T> {
             self.pivot(row, column, &ties);
             return Ok(Step::Pivoted);
         }
-        if self.rule == TieRule::FirstRow && self.came_back() {
-            return Ok(Step::Ended(if self.p_value().is_zero() {
-                Outcome::Normal { marginal: false }
-            } else {
-                Outcome::Cycle
-            }));
+        if let Some(cycle) = self.pivots.cycle(self.rule.returns_allowed()) {
+            return Ok(Step::Ended(self.at_limit_of_p().unwrap_or(Outcome::Cycle(cycle))));
         }
         let Place::Column(column) = self.place(self.entering) else {
             return Ok(Step::Ended(Outcome::Breakdown(format!(
@@ -309,7 +297,7 @@ impl<T: Scalar> Engine for Tableau<T> {
         step
     }
 
-    fn pivots(&self) -> &[Pivot] {
+    fn pivots(&self) -> &PivotLog {
         &self.pivots
     }
 

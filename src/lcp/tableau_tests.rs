@@ -42,7 +42,7 @@ fn zoo<T: Scalar>() {
     let m = [vec![0., -1., 2.], vec![2., 0., -2.], vec![-1., 1., 0.]];
     let got = solve::<T>(&m, &[-3., 6., -1.], natural(3));
     assert!(matches!(got.outcome, Outcome::Normal { .. }));
-    assert_eq!(got.pivots.len(), 5);
+    assert_eq!(got.pivots.count(), 5);
     assert_eq!(z(&got), [0., 1., 3.]);
 
     // 4.1.14: a continuum z1 + z2 = 1
@@ -54,7 +54,7 @@ fn zoo<T: Scalar>() {
     let m = [vec![0., 0., 10., 20.], vec![0., 0., 30., 15.], vec![10., 20., 0., 0.], vec![30., 15., 0., 0.]];
     let got = solve::<T>(&m, &[-1.; 4], natural(4));
     assert!(matches!(got.outcome, Outcome::Ray(_)), "{:?}", got.outcome);
-    assert_eq!(got.pivots.len(), 1);
+    assert_eq!(got.pivots.count(), 1);
     assert_eq!(got.point.p.to_f64(), 1.0);
 
     // Murty: 2^n pivots
@@ -73,7 +73,7 @@ fn zoo<T: Scalar>() {
         let q: Vec<f64> = (1..=n).map(|i| -(n + 1 - i..=n).map(|j| 2f64.powi(j as i32)).sum::<f64>()).collect();
         let got = solve::<T>(&m, &q, natural(n));
         assert!(matches!(got.outcome, Outcome::Normal { marginal: false }));
-        assert_eq!(got.pivots.len(), 1 << n);
+        assert_eq!(got.pivots.count(), 1 << n);
     }
 
     // Painlevé's rod
@@ -98,10 +98,10 @@ fn zoo_in_rationals() {
 fn cycling<T: Scalar>() {
     let m = [vec![1., 2., 0.], vec![0., 1., 2.], vec![2., 0., 1.]];
     let got = solve::<T>(&m, &[-1.; 3], TieRule::FirstRow);
-    assert!(matches!(got.outcome, Outcome::Cycle), "{:?}", got.outcome);
+    assert!(matches!(got.outcome, Outcome::Cycle(_)), "{:?}", got.outcome);
     let got = solve::<T>(&m, &[-1.; 3], natural(3));
     assert!(matches!(got.outcome, Outcome::Normal { marginal: false }));
-    assert_eq!(got.pivots.len(), 4);
+    assert_eq!(got.pivots.count(), 4);
     for x in z(&got) {
         assert!((x - 1.0 / 3.0).abs() < 1e-15);
     }
@@ -161,10 +161,11 @@ fn f64_and_rationals_make_the_same_pivots() {
         let b = solve::<BigRational>(&m, &q, rule.clone());
         let word = |o: &str| o.split(['(', ' ']).next().unwrap_or("").to_owned();
         assert_eq!(word(&format!("{:?}", a.outcome)), word(&format!("{:?}", b.outcome)), "case {case}: {m:?} {q:?}");
-        let path =
-            |pivots: &[Pivot]| pivots.iter().map(|p| (p.entering, p.leaving, p.ties.clone())).collect::<Vec<_>>();
+        let path = |pivots: &PivotLog| {
+            pivots.recorded().iter().map(|p| (p.entering, p.leaving, p.ties.clone())).collect::<Vec<_>>()
+        };
         assert_eq!(path(&a.pivots), path(&b.pivots), "case {case}: {m:?} {q:?}");
-        if matches!(b.outcome, Outcome::Cycle | Outcome::PivotLimit) {
+        if matches!(b.outcome, Outcome::Cycle(_) | Outcome::PivotLimit) {
             assert!(!matches!(rule, TieRule::Lexicographic(_)));
         }
     }

@@ -95,7 +95,7 @@ impl Cold {
         match self.outcome {
             Outcome::Trivial | Outcome::Normal { .. } => "with an answer",
             Outcome::Ray(_) => "in a ray",
-            Outcome::PivotLimit | Outcome::Cycle => "at the limit of pivots",
+            Outcome::PivotLimit | Outcome::Cycle(_) => "at the limit of pivots",
             Outcome::Breakdown(_) | Outcome::Interrupted => "in a breakdown",
         }
     }
@@ -109,7 +109,7 @@ pub(crate) fn cold(system: &ContactSystem, numbers: &ContactNumbers, watch: &dyn
     let run = run_scheme(&contact.lcp, contact.tie_rule(TieBreak::Lexicographic), watch);
     let basis = match run.outcome {
         Outcome::Interrupted => return Err(PathError::Interrupted),
-        Outcome::Trivial | Outcome::Normal { marginal: false } => Some(Basis::after(&run.pivots)),
+        Outcome::Trivial | Outcome::Normal { marginal: false } => Some(run.pivots.basis()),
         _ => None,
     };
     Ok(Cold { contact, basis, point: run.point, outcome: run.outcome })
@@ -128,7 +128,7 @@ pub fn final_basis(solved: &Solved) -> Option<Basis> {
     }
     let released: Vec<usize> = (0..last.z.len()).filter(|&row| last.z[row] > 0.0).collect();
     let from_vertex = Basis { active: released.clone(), z: released, p: false };
-    [Basis::after(pivots), from_vertex].into_iter().find(|basis| {
+    [pivots.basis(), from_vertex].into_iter().find(|basis| {
         !basis.p && basis.z == basis.active && is_answer(&contact.lcp, basis) && is_at(contact, basis, last)
     })
 }

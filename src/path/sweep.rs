@@ -368,7 +368,7 @@ fn fields(answer: &Answer) -> Vec<Value> {
         json!(answer.outcome),
         answer.ray.as_ref().map_or(Value::Null, |ray| json!(ray.class)),
         if is_state { json!(answer.p) } else { Value::Null },
-        json!(answer.pivots.len()),
+        json!(answer.pivot_count),
         count(State::Open),
         count(State::Stick),
         count(State::SlipPlus),

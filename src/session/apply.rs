@@ -347,7 +347,7 @@ impl Session {
     /// `step [N|back N|to K|first|last]`.
     fn step(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        let Some(last) = answer.pivots.last().map(|pivot| pivot.step) else {
+        let (Some(last), Some(recorded)) = (answer.pivot_count.checked_sub(1), answer.last_recorded()) else {
             return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
         };
         let here = self.shown_step().unwrap_or(last);
@@ -372,6 +372,11 @@ impl Session {
                 if k > last {
                     return Err(CommandError::Refused(format!("no pivot {k}: the pivots are 0 … {last}")));
                 }
+                if k > recorded && k < last {
+                    return Err(CommandError::Refused(format!(
+                        "pivot {k} was counted but not recorded: there are 0 … {recorded} and the last, {last}"
+                    )));
+                }
                 k
             }
             [n] => here.saturating_add(count(n)?),
@@ -380,6 +385,8 @@ impl Session {
             }
         }
         .min(last);
+        // Between the last record and the end nothing can be shown: forward leads to the end, back to the record.
+        let to = if to > recorded && to < last { if to > here { last } else { recorded } } else { to };
         self.position = (to < last).then_some(to);
         self.report_step(to, last, to == here, io)
     }

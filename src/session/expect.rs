@@ -372,7 +372,7 @@ impl Expectation {
             }
             Expectation::P(bound) => compare("p".into(), bound, facts.p),
             Expectation::Pivots(bound) => {
-                compare("pivots".into(), bound, facts.answer.map(|answer| answer.pivots.len() as f64))
+                compare("pivots".into(), bound, facts.answer.map(|answer| answer.pivot_count as f64))
             }
             Expectation::Size { what, bound } => {
                 let size = facts.answer.map(|answer| &answer.size);

@@ -254,7 +254,7 @@ impl Session {
 
     /// The step of the pivot shown; `None` where there are no pivots.
     pub fn shown_step(&self) -> Option<usize> {
-        let last = self.answer()?.pivots.last()?.step;
+        let last = self.answer()?.pivot_count.checked_sub(1)?;
         Some(self.position.unwrap_or(last))
     }
 

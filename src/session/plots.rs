@@ -77,10 +77,10 @@ impl Session {
         }
         let mut states: Vec<(String, Vec<PairState>)> = Vec::new();
         if at.is_empty() {
-            let label = self.position.map_or(String::new(), |step| format!("pivot {step}"));
+            let label = self.position.map_or(String::new(), crate::view::pivots::title);
             states.push((label, self.pairs()));
         } else {
-            let last = answer.pivots.last().map(|pivot| pivot.step);
+            let last = answer.pivot_count.checked_sub(1);
             for word in at {
                 states.push(self.pairs_named(word, last)?);
             }
@@ -117,7 +117,7 @@ impl Session {
                 .pairs_at(prepared, step)
                 .ok_or_else(|| CommandError::Refused(format!("plot: pivot {step} cannot be shown")))?
         };
-        Ok((format!("pivot {step}"), pairs))
+        Ok((crate::view::pivots::title(step), pairs))
     }
 
     fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -147,7 +147,7 @@ impl Session {
         let displacements = self.displacements();
         let pairs = self.pairs();
         let title = match self.position {
-            Some(step) => format!("{} at pivot {step}", self.now.scenario.name),
+            Some(step) => format!("{} at {}", self.now.scenario.name, crate::view::pivots::title(step)),
             None => self.now.scenario.name.clone(),
         };
         let drawn = |out: &mut dyn std::io::Write, style: &Style| {

@@ -34,7 +34,7 @@ impl Session {
                     "marginal": answer.marginal,
                     "ray": answer.ray.as_ref().map(|ray| json!(ray.class)),
                     "p": answer.p,
-                    "pivots": answer.pivots.len(),
+                    "pivots": answer.pivot_count,
                     "parameters": values,
                     "covering": answer.covering,
                     "tie_break": answer.tie_break,
@@ -58,9 +58,9 @@ impl Session {
                 if !self.auto {
                     writeln!(out, "auto is off: changes wait for `solve`")?;
                 }
-                match self.position.zip(answer.pivots.last()) {
-                    Some((step, last)) => {
-                        writeln!(out, "shown at pivot {step} of {}: `step last` for the end", last.step)
+                match self.position {
+                    Some(step) => {
+                        writeln!(out, "shown at {}: `step last` for the end", view::pivots::title(step))
                     }
                     None => Ok(()),
                 }
@@ -168,7 +168,7 @@ impl Session {
             |out, style| {
                 if let Some(step) = self.position {
                     let p = self.p().map_or(String::new(), |p| format!(", p = {}", short(p)));
-                    writeln!(out, "{}", style.paint(Role::Muted, &format!("at pivot {step}{p}")))?;
+                    writeln!(out, "{}", style.paint(Role::Muted, &format!("at {}{p}", view::pivots::title(step))))?;
                 }
                 view::pairs::write(out, &chosen, &self.now.scenario.units, style)
             },
@@ -339,7 +339,7 @@ impl Session {
                     .collect()
             },
             |out, style| {
-                view::pivots::write(out, &answer.pivots, range.clone(), self.position, &self.now.scenario.units, style)
+                view::pivots::write(out, answer, range.clone(), self.position, &self.now.scenario.units, style)
             },
         )?;
         Ok(())
@@ -364,7 +364,7 @@ impl Session {
                     (true, _, true) => " (the first pivot)",
                     _ => "",
                 };
-                let label = format!("pivot {to} of {last}{end}: ");
+                let label = format!("{} of {last}{end}: ", view::pivots::title(to));
                 for line in style.hanging(&label, &style.text(sentence)) {
                     writeln!(out, "{line}")?;
                 }

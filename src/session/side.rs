@@ -51,7 +51,7 @@ impl Session {
             return None;
         };
         let mut z = DVector::zeros(system.joint_count());
-        for (i, (pair, direction)) in system.pairs.iter().zip(&ray.direction).enumerate() {
+        for (i, (pair, direction)) in system.pairs.iter().zip(ray.direction.pairs()).enumerate() {
             z[i] = direction.z_n;
             if let Some(joint) = pair.tangential {
                 z[joint] = direction.z_t;

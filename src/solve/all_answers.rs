@@ -19,7 +19,7 @@ use crate::contact::scheme_word::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
-use crate::lcp::vertex::Basis;
+use crate::lcp::trace::PivotLog;
 use crate::model::jet::Dependence;
 use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
@@ -270,7 +270,7 @@ impl Prepared {
                     Some(solution) if solved.answer.engine == ENUMERATION => {
                         solution.z.iter().enumerate().filter(|(_, z)| **z > 0.0).map(|(i, _)| i).collect()
                     }
-                    _ => Basis::after(pivots).z,
+                    _ => pivots.basis().z,
                 };
                 check_plain_exactly(lcp, &basis).map(Exactly::Plain).ok_or_else(|| {
                     QuestionError::Refused(format!(
@@ -325,7 +325,7 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
         return schemes;
     }
     schemes.fill(PairScheme::STICK);
-    for row in Basis::after(pivots).z {
+    for row in pivots.basis().z {
         let meaning = contact.rows[row];
         let scheme = &mut schemes[meaning.pair];
         match meaning.couple {
@@ -350,9 +350,9 @@ fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers,
         )));
     }
     let found = all_plain_answers(lcp, watch).ok_or(QuestionError::Interrupted)?;
-    let run = Run { outcome: Outcome::Trivial, pivots: Vec::new(), point: Point::default() };
+    let run = Run { outcome: Outcome::Trivial, pivots: PivotLog::default(), point: Point::default() };
     let words = ["ones", "lexicographic", ENUMERATION].map(str::to_owned);
-    let like = empty_answer(&run, words, crate::answer::record::Size { lcp: lcp.size(), ..Default::default() });
+    let like = empty_answer(&run, 1.0, words, crate::answer::record::Size { lcp: lcp.size(), ..Default::default() });
     let count = found.answers.len();
     Ok(AllAnswers {
         answers: found.answers.iter().map(|z| plain_answer(lcp, z, &like)).collect(),
@@ -370,9 +370,9 @@ pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], like: &Answer) -> 
     let w = lcp.times(z) + &lcp.q;
     let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
     let check = check_plain(lcp, &point);
-    let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: Vec::new(), point };
+    let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
     let words = [like.covering.clone(), like.tie_break.clone(), ENUMERATION.to_owned()];
-    let mut answer = empty_answer(&run, words, like.size);
+    let mut answer = empty_answer(&run, 1.0, words, like.size);
     answer.check = check;
     answer.solution = Some(PlainSolution { z: run.point.z, w: run.point.w });
     if !answer.check.passed {
@@ -380,8 +380,9 @@ pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], like: &Answer) -> 
     }
     Solved {
         answer,
-        trace: Trace::Plain { lcp: Arc::clone(lcp), pivots: Vec::new() },
+        trace: Trace::Plain { lcp: Arc::clone(lcp), pivots: PivotLog::default() },
         ray: None,
+        plain_ray: None,
         cycled: false,
         kept: None,
         told: String::new(),

@@ -11,7 +11,7 @@ use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::parametric::Parametric;
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::trace::Pivot;
-use crate::lcp::vertex::{Basis, direction, vertex};
+use crate::lcp::vertex::{direction, vertex};
 use crate::watch::Watch;
 
 /// No run makes more pivots than this; reaching it is an outcome of its own.
@@ -52,7 +52,7 @@ pub(super) fn watched<E: Engine>(engine: &mut E, name: &str, watch: &dyn Watch) 
 
 /// Computes the last vertex and the ray afresh from the data, where the equations of the last basis allow it.
 pub(super) fn polish(lcp: &MirroredLcp, run: &mut Run) {
-    let basis = Basis::after(&run.pivots);
+    let basis = run.pivots.basis();
     match &mut run.outcome {
         Outcome::Normal { .. } => {
             if let Some(point) = vertex(lcp, &basis) {
@@ -96,7 +96,7 @@ pub fn kind(outcome: &Outcome) -> OutcomeKind {
         Outcome::Trivial => OutcomeKind::Trivial,
         Outcome::Normal { .. } => OutcomeKind::Normal,
         Outcome::Ray(_) => OutcomeKind::Ray,
-        Outcome::PivotLimit | Outcome::Cycle => OutcomeKind::PivotLimit,
+        Outcome::PivotLimit | Outcome::Cycle(_) => OutcomeKind::PivotLimit,
         Outcome::Breakdown(_) | Outcome::Interrupted => OutcomeKind::Breakdown,
     }
 }

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::numbers::{contact_numbers, factors};
+use super::plain::{PlainProblem, PlainRules, attempt_plain};
 use super::prepared::{Geometry, Prepared};
-use super::solved::{SolveError, Solved, attempt_plain};
+use super::solved::{SolveError, Solved};
 use crate::answer::record::{Answer, OutcomeKind, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
@@ -105,7 +106,8 @@ impl Prepared {
                 for (entry, number) in lcp.q.iter_mut().zip(q) {
                     *entry = number.value(values);
                 }
-                attempt_plain(&lcp.into(), names, *covering_given, rules, watch)
+                let problem = PlainProblem { lcp: lcp.into(), names, covering_given: *covering_given };
+                attempt_plain(&problem, PlainRules::own(rules), watch)
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
                 let numbers = contact_numbers(system, factors, values);
@@ -137,7 +139,7 @@ fn row(rules: Rules, solved: Result<Solved, SolveError>, found: &mut Vec<Answer>
     row.outcome = Some(answer.outcome);
     row.class = answer.ray.as_ref().map(|ray| ray.class);
     row.cycled = solved.cycled;
-    row.pivots = answer.pivots.len();
+    row.pivots = answer.pivot_count;
     row.p = answer.p;
     if answer.is_answer() {
         let known = found.iter().position(|other| same(other, &answer));

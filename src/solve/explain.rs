@@ -8,7 +8,8 @@ use crate::explain::margin::{FinalScheme, Margin, friction_margin, load_margin};
 use crate::explain::tableau::{Dictionary, NoDictionary, dictionary};
 use crate::explain::ties::{TieReport, ties};
 use crate::explain::vertex::Naming;
-use crate::lcp::vertex::{Basis, vertex};
+use crate::lcp::trace::PivotLog;
+use crate::lcp::vertex::vertex;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::TieBreak;
 use crate::model::scenario::Scenario;
@@ -22,7 +23,7 @@ impl Solved {
         }
     }
 
-    fn trace_pivots(&self) -> &[crate::lcp::trace::Pivot] {
+    fn trace_pivots(&self) -> &PivotLog {
         match &self.trace {
             Trace::Contact { pivots, .. } | Trace::Plain { pivots, .. } => pivots,
         }
@@ -34,7 +35,7 @@ impl Solved {
         let pivots = self.trace_pivots();
         let last = match &self.trace {
             Trace::Contact { last, .. } => last.clone(),
-            Trace::Plain { lcp, .. } => vertex(lcp, &Basis::after(pivots))?,
+            Trace::Plain { lcp, .. } => vertex(lcp, &pivots.basis())?,
         };
         let rule: TieBreak = self.answer.tie_break.parse().ok()?;
         Some(ties(&naming, pivots, &last, rule))
@@ -63,7 +64,7 @@ impl Solved {
         else {
             return Vec::new();
         };
-        let basis = Basis::after(pivots);
+        let basis = pivots.basis();
         if !self.answer.is_answer() || basis.p || self.answer.marginal {
             return Vec::new();
         }

@@ -185,14 +185,14 @@ fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
 fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
     let all = |values: &[BigRational], unit: f64| -> Vec<f64> { values.iter().map(|v| nearest(v) / unit).collect() };
     let mut pivots = run.pivots;
-    for pivot in &mut pivots {
+    pivots.rescale(|pivot| {
         pivot.p_before /= force;
         pivot.p_after /= force;
         pivot.ratio /= match pivot.entering {
             Variable::Z(_) => length,
             _ => force,
         };
-    }
+    });
     Run {
         outcome: match run.outcome {
             Outcome::Ray(ray) => Outcome::Ray(RayDirection {
@@ -204,7 +204,7 @@ fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
             Outcome::Trivial => Outcome::Trivial,
             Outcome::Normal { marginal } => Outcome::Normal { marginal },
             Outcome::PivotLimit => Outcome::PivotLimit,
-            Outcome::Cycle => Outcome::Cycle,
+            Outcome::Cycle(cycle) => Outcome::Cycle(cycle),
             Outcome::Breakdown(why) => Outcome::Breakdown(why),
             Outcome::Interrupted => Outcome::Interrupted,
         },

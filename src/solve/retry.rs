@@ -5,20 +5,16 @@
 //! an answer like any other: it passes the same fresh check. Rules that the user chose are run as chosen; the default
 //! rules are then run silently, to name them if they succeed.
 
-use std::sync::Arc;
-
-use super::all_answers::plain_answer;
-use super::judge::{EXACT_PAIRS, EXACT_ROWS};
+use super::judge::EXACT_PAIRS;
+use super::ladder::{Ladder, within_budget};
 use super::numbers::{contact_numbers, factors};
-use super::plain_answers::all_plain_answers;
 use super::prepared::{Geometry, Prepared};
-use super::solved::{SolveError, Solved, attempt_plain};
-use crate::answer::record::{Attempt, OutcomeKind, RayClass, Verdict};
+use super::solved::{SolveError, Solved};
+use crate::answer::record::{RayClass, Verdict};
 use crate::contact::enumerate::Enumeration;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::explain::ray::{self, Subject, add_remedies, all_answers, certify_ray};
-use crate::lcp::mirrored::MirroredLcp;
+use crate::explain::ray::{Subject, add_remedies, all_answers, certify_ray};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 use crate::watch::Watch;
@@ -43,10 +39,6 @@ pub fn retries(exact: bool) -> Vec<Rules> {
         scheme(Covering::Ones, TieBreak::Random(1)),
     ]);
     rules
-}
-
-fn rules_words(attempt: &Attempt) -> String {
-    format!("covering {}, tie-break {}, engine {}", attempt.covering, attempt.tie_break, attempt.engine)
 }
 
 impl Prepared {
@@ -130,96 +122,77 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn attempt(&self, rules: Rules) -> Result<Solved, SolveError> {
-        self.prepared.attempt_contact(self.system, self.numbers, self.factors, rules, self.watch)
+        self.attempt_watched(rules, self.watch)
+    }
+
+    fn attempt_watched(&self, rules: Rules, watch: &dyn Watch) -> Result<Solved, SolveError> {
+        self.prepared.attempt_contact(self.system, self.numbers, self.factors, rules, watch)
     }
 
     fn covering_of(&self, word: &str) -> Covering {
         word.parse().unwrap_or(self.rules.covering)
     }
 
-    /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run under the default rules is
-    /// what is shown, with what was proved.
-    fn retry(&self, first: Solved, subject: &Subject) -> Result<Solved, SolveError> {
+    /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run
+    /// under the default rules is what is shown, with what was proved.
+    fn retry(&self, mut first: Solved, subject: &Subject) -> Result<Solved, SolveError> {
         let m = self.system.pairs.len();
         let class = first.ray.as_ref().map(|report| report.class);
-        let limit = first.answer.outcome == OutcomeKind::PivotLimit;
-        let mut shown = first;
         // A proof that there is none saves all further attempts.
         let found = all_answers(subject, self.watch);
-        if found.as_ref().is_some_and(Enumeration::no_answer)
-            && let Some(report) = &mut shown.ray
-            && report.verdict.is_some()
-        {
-            report.verdict = Some(Verdict::Proved);
-            return Ok(shown);
+        let none = found.as_ref().is_some_and(Enumeration::no_answer);
+        if none && mark_proved(&mut first) {
+            return Ok(first);
         }
-        let first = shown;
-        let try_rules = !limit && (class != Some(RayClass::Mechanism) || m <= FEW_PAIRS);
-        let mut attempts = first.answer.attempts.clone();
-        if try_rules {
-            let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact;
-            for rules in retries(exact) {
-                let mut again = match self.attempt(rules) {
-                    Ok(again) => again,
-                    // A covering that does not fit the numbers (weight without friction) is no try.
-                    Err(SolveError::Covering(_)) => continue,
-                    Err(other) => return Err(other),
-                };
-                attempts.append(&mut again.answer.attempts);
-                if again.answer.is_answer() {
-                    again.answer.notes.push(told(&first, &attempts));
-                    again.answer.attempts = attempts;
-                    return Ok(again);
-                }
-                if first.ray.is_some() {
+        let try_rules = class != Some(RayClass::Mechanism) || m <= FEW_PAIRS;
+        let mut ladder = Ladder::new(first);
+        let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact;
+        for rules in if try_rules { retries(exact) } else { Vec::new() } {
+            if rules.tie_break != self.rules.tie_break && ladder.would_repeat(&rules.covering.to_string(), rules.engine)
+            {
+                continue;
+            }
+            let again = match within_budget(rules.engine, self.watch, |watch| self.attempt_watched(rules, watch)) {
+                Ok(Some(again)) => again,
+                Ok(None) => {
+                    ladder.gave_up(&rules.covering.to_string(), &rules.tie_break.to_string());
                     continue;
                 }
-                // The first run broke down or failed its check: a ray that can be proved is better than that.
-                if let Some(report) = &mut again.ray {
-                    let mut proved = certify_ray(report, subject);
-                    if !proved && report.verdict.is_some() && found.as_ref().is_some_and(Enumeration::no_answer) {
-                        report.verdict = Some(Verdict::Proved);
-                        proved = true;
-                    }
-                    if proved {
-                        again.answer.attempts = attempts;
-                        return Ok(again);
-                    }
+                // A covering that does not fit the numbers (weight without friction) is no try.
+                Err(SolveError::Covering(_)) => continue,
+                Err(other) => return Err(other),
+            };
+            let mut again = match ladder.add(again) {
+                Ok(answer) => return Ok(answer),
+                Err(again) => again,
+            };
+            // The first run broke down or failed its check: a ray that can be proved is better than that.
+            if ladder.first().ray.is_none() {
+                let certified = again.ray.as_mut().is_some_and(|report| certify_ray(report, subject));
+                if certified || (none && mark_proved(&mut again)) {
+                    return Ok(ladder.with_history(*again));
                 }
             }
         }
         if try_rules
-            && let Some(mut again) = self.prepared.along_load(self.system, self.numbers, self.factors, self.watch)?
+            && let Some(again) = self.prepared.along_load(self.system, self.numbers, self.factors, self.watch)?
+            && let Ok(answer) = ladder.add(again)
         {
-            attempts.append(&mut again.answer.attempts);
-            if again.answer.is_answer() {
-                again.answer.notes.push(told(&first, &attempts));
-                again.answer.attempts = attempts;
-                return Ok(again);
+            return Ok(answer);
+        }
+        if let Some(found) = found {
+            for candidate in &found.answers {
+                let again = self.prepared.enumerated_answer(self.system, self.numbers, self.factors, candidate)?;
+                if let Ok(mut answer) = ladder.add(again) {
+                    if found.answers.len() > 1 {
+                        let said = format!("there are {} answers; this is one of them", found.answers.len());
+                        answer.answer.notes.push(said);
+                    }
+                    return Ok(answer);
+                }
             }
         }
-        let mut shown = first;
-        if let Some(found) = found
-            && let Some(mut again) = self.enumerated(&found)?
-        {
-            attempts.append(&mut again.answer.attempts);
-            again.answer.notes.push(told(&shown, &attempts));
-            again.answer.attempts = attempts;
-            return Ok(again);
-        }
-        if attempts.len() > 1 {
-            shown.told = format!(
-                " Tried besides, without an answer: {}.",
-                attempts[1..].iter().map(rules_words).collect::<Vec<_>>().join("; ")
-            );
-            if let Some(failure) = &mut shown.answer.failure {
-                failure.push_str(&shown.told);
-            }
-            // What is shown is the run under the default rules once more.
-            attempts.push(attempts[0].clone());
-        }
-        shown.answer.attempts = attempts;
-        Ok(shown)
+        Ok(ladder.without_answer())
     }
 
     /// Rules that the user chose have failed: says whether the default ones do better.
@@ -232,11 +205,7 @@ impl Job<'_> {
         } else {
             match all_answers(subject, self.watch) {
                 Some(found) if found.no_answer() => {
-                    if let Some(report) = &mut solved.ray
-                        && report.verdict.is_some()
-                    {
-                        report.verdict = Some(Verdict::Proved);
-                    }
+                    mark_proved(solved);
                     String::new()
                 }
                 Some(found) if !found.answers.is_empty() => {
@@ -245,126 +214,16 @@ impl Job<'_> {
                 _ => format!(" The default rules ({words}) find no answer either."),
             }
         };
-        match &mut solved.answer.failure {
-            Some(failure) => failure.push_str(&said),
-            None => solved.told = said,
-        }
+        solved.say(&said);
         Ok(())
     }
-
-    /// The first enumerated answer that passes the fresh check.
-    fn enumerated(&self, found: &Enumeration) -> Result<Option<Solved>, SolveError> {
-        for candidate in &found.answers {
-            let mut solved = self.prepared.enumerated_answer(self.system, self.numbers, self.factors, candidate)?;
-            if solved.answer.is_answer() {
-                if found.answers.len() > 1 {
-                    solved.answer.notes.push(format!("there are {} answers; this is one of them", found.answers.len()));
-                }
-                return Ok(Some(solved));
-            }
-        }
-        Ok(None)
-    }
 }
 
-/// The note that tells of the retries behind an answer.
-fn told(first: &Solved, attempts: &[Attempt]) -> String {
-    let how = match (&first.ray, first.answer.outcome) {
-        (Some(report), _) => match report.class {
-            RayClass::Artefact => "ended in an artefact ray",
-            RayClass::Fault => "ended in a ray though an answer must exist",
-            RayClass::Mechanism => "ended in a ray that looked like a mechanism",
-            RayClass::NoEquilibrium => "ended in a ray",
-        },
-        (None, OutcomeKind::CheckFailed) => "found a state that failed its check",
-        (None, _) => "broke down",
-    };
-    // The last attempt is the one that found it.
-    let found = attempts.last().map_or(String::new(), rules_words);
-    format!("the run under the default rules {how}; the answer was found at attempt {} ({found})", attempts.len())
-}
-
-/// Solves a bare LCP, with retries under the default tie-break.
-pub(super) fn solve_plain_judged(
-    lcp: &Arc<MirroredLcp>,
-    names: &[String],
-    covering_given: bool,
-    rules: Rules,
-    watch: &dyn Watch,
-) -> Result<Solved, SolveError> {
-    let attempt = |rules| attempt_plain(lcp, names, covering_given, rules, watch);
-    let mut first = attempt(rules)?;
-    if first.answer.is_answer() {
-        return Ok(first);
-    }
-    if !rules.are_default() {
-        let other = attempt(Rules::default())?;
-        if other.answer.is_answer() {
-            let said = format!(
-                " The default tie-break ({}) finds an answer in {} pivots.",
-                TieBreak::default(),
-                other.pivot_count()
-            );
-            match (&mut first.answer.failure, &mut first.answer.ray) {
-                (Some(text), _) => text.push_str(&said),
-                (None, Some(ray)) => ray.explanation.push_str(&said),
-                (None, None) => {}
-            }
-        }
-        return Ok(first);
-    }
-    if first.answer.outcome == OutcomeKind::PivotLimit {
-        return Ok(first);
-    }
-    let found = all_plain_answers(lcp, watch);
-    let none = found.as_ref().is_some_and(|found| found.complete && found.answers.is_empty());
-    if none && first.answer.ray.is_some() {
-        first.answer.ray = Some(ray::plain_report(first.answer.p, Verdict::Proved));
-        return Ok(first);
-    }
-    let mut attempts = first.answer.attempts.clone();
-    let mut others = Vec::new();
-    if lcp.size() <= EXACT_ROWS && rules.engine != Engine::Exact {
-        others.push(Rules { engine: Engine::Exact, ..rules });
-    }
-    others.push(Rules { tie_break: TieBreak::Random(1), engine: Engine::Scheme, ..rules });
-    for rules in others {
-        let mut again = attempt(rules)?;
-        attempts.append(&mut again.answer.attempts);
-        if again.answer.is_answer() {
-            again.answer.notes.push(told(&first, &attempts));
-            again.answer.attempts = attempts;
-            return Ok(again);
-        }
-    }
-    if let Some(found) = found {
-        for z in &found.answers {
-            let mut solved = plain_answer(lcp, z, &first.answer);
-            if !solved.answer.is_answer() {
-                continue;
-            }
-            attempts.append(&mut solved.answer.attempts);
-            solved.answer.notes.push(told(&first, &attempts));
-            if found.answers.len() > 1 {
-                solved.answer.notes.push(format!("there are {} answers; this is one of them", found.answers.len()));
-            }
-            solved.answer.attempts = attempts;
-            return Ok(solved);
-        }
-    }
-    let tried: Vec<String> = attempts[1..]
-        .iter()
-        .map(|attempt| format!("tie-break {}, engine {}", attempt.tie_break, attempt.engine))
-        .collect();
-    if !tried.is_empty() {
-        let said = format!(" Tried besides, without an answer: {}.", tried.join("; "));
-        match (&mut first.answer.failure, &mut first.answer.ray) {
-            (Some(text), _) => text.push_str(&said),
-            (None, Some(ray)) => ray.explanation.push_str(&said),
-            (None, None) => {}
-        }
-        attempts.push(attempts[0].clone());
-    }
-    first.answer.attempts = attempts;
-    Ok(first)
+/// Marks a ray whose verdict is open as proved by enumeration; `false` where there is none.
+fn mark_proved(solved: &mut Solved) -> bool {
+    let open = solved.ray.as_mut().map(|report| &mut report.verdict).filter(|verdict| verdict.is_some());
+    open.is_some_and(|verdict| {
+        *verdict = Some(Verdict::Proved);
+        true
+    })
 }

@@ -5,33 +5,34 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use super::attempt::{keep_scheme, kind, run_scheme};
-use super::judge::{EXACT_PAIRS, EXACT_ROWS, run_exact_contact, run_exact_plain, run_tableau};
+use super::attempt::{keep_scheme, kind};
+use super::judge::{EXACT_PAIRS, run_exact_contact, run_tableau};
+use super::plain::{PlainProblem, solve_plain_judged};
 use super::prepared::{Geometry, Prepared};
 use super::resume::Seat;
-use super::retry::solve_plain_judged;
 use super::warm::Kept;
-use crate::answer::check::{check_contact, check_plain};
+use crate::answer::check::check_contact;
 use crate::answer::pairs::{JointState, joint_state, pair_states};
 use crate::answer::record::{
     Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, PlainSolution, Reaction,
-    Size, Start, Timings, Verdict,
+    Size, Start, Timings,
 };
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::sharpen::sharpen;
 use crate::contact::system::ContactSystem;
+use crate::explain::plain_ray::PlainRay;
 use crate::explain::ray::{self, RayReport};
 use crate::explain::sentence;
+use crate::explain::words::short;
 use crate::fem::Displacements;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
-use crate::lcp::ratio_test::TieRule;
-use crate::lcp::trace::Pivot;
+use crate::lcp::trace::{Cycle, PivotLog};
 use crate::lcp::vertex::{Basis, vertex};
 use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
-use crate::model::rules::{Covering, Engine, Rules, TieBreak};
+use crate::model::rules::{Covering, Engine, Rules};
 use crate::model::scenario::Scenario;
 use crate::model::uses::Redone;
 use crate::watch::Watch;
@@ -88,7 +89,7 @@ pub enum Trace {
         /// Factor of each load case.
         factors: Vec<f64>,
         /// The pivots.
-        pivots: Vec<Pivot>,
+        pivots: PivotLog,
         /// The last vertex, dimensionless.
         last: Point,
     },
@@ -97,7 +98,7 @@ pub enum Trace {
         /// The LCP.
         lcp: Arc<MirroredLcp>,
         /// The pivots.
-        pivots: Vec<Pivot>,
+        pivots: PivotLog,
     },
 }
 
@@ -110,6 +111,8 @@ pub struct Solved {
     pub trace: Trace,
     /// What is known of the ray it ended in; contact problems only.
     pub ray: Option<Box<RayReport>>,
+    /// The same for a bare LCP.
+    pub plain_ray: Option<Box<PlainRay>>,
     /// What retries or a comparison with the default rules add to the explanation.
     pub(super) told: String,
     /// Whether the run came back to a basis it had met.
@@ -168,7 +171,11 @@ impl Prepared {
                 for (entry, number) in lcp.q.iter_mut().zip(q) {
                     *entry = number.value(values);
                 }
-                solve_plain_judged(&Arc::new(lcp), names, *covering_given, rules, watch)?
+                solve_plain_judged(
+                    &PlainProblem { lcp: Arc::new(lcp), names, covering_given: *covering_given },
+                    rules,
+                    watch,
+                )?
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
                 self.solve_contact_judged(system, values, rules, brief, watch)?
@@ -223,16 +230,15 @@ impl Prepared {
             return Err(SolveError::Interrupted);
         }
         if matches!(run.outcome, Outcome::Ray(_)) && rules.engine != Engine::Exact {
-            let basis = Basis::after(&run.pivots);
+            let basis = run.pivots.basis();
             let point = std::mem::take(&mut run.point);
             run.point = sharpen(system, numbers, &contact, &basis, point);
         }
         let seconds = start.elapsed().as_secs_f64();
         let words = rules.words();
-        let mut answer = empty_answer(&run, words, self.size(system, &contact));
+        let mut answer = empty_answer(&run, contact.force_unit, words, self.size(system, &contact));
         answer.timings.lemke = seconds;
-        answer.p = run.point.p * contact.force_unit;
-        answer.pivots = sentence::pivot_records(&run.pivots, &contact, system);
+        answer.pivots = sentence::pivot_records(run.pivots.recorded(), &contact, system);
 
         let state = joint_state(system, numbers, &contact, &run.point);
         answer.pairs = pair_states(system, numbers, &contact, &state);
@@ -253,7 +259,7 @@ impl Prepared {
             .map(|engine| Kept::new(engine, contact.clone(), numbers.clone()))
             .map(|kept| Arc::new(Mutex::new(Some(kept))));
         let refused = answer.outcome == OutcomeKind::CheckFailed;
-        let cycled = run.outcome == Outcome::Cycle;
+        let cycled = matches!(run.outcome, Outcome::Cycle(_));
         let trace = Trace::Contact {
             contact,
             numbers: numbers.clone(),
@@ -261,7 +267,7 @@ impl Prepared {
             pivots: run.pivots,
             last: run.point,
         };
-        let mut solved = Solved { answer, trace, ray, cycled, kept, told: String::new() };
+        let mut solved = Solved { answer, trace, ray, plain_ray: None, cycled, kept, told: String::new() };
         if refused {
             self.prove_after_all(&mut solved, watch);
         }
@@ -280,8 +286,8 @@ impl Prepared {
         words: [String; 3],
     ) -> Solved {
         let state = joint_state(system, numbers, &contact, &point);
-        let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: Vec::new(), point };
-        let mut answer = empty_answer(&run, words, self.size(system, &contact));
+        let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
+        let mut answer = empty_answer(&run, contact.force_unit, words, self.size(system, &contact));
         answer.pairs = pair_states(system, numbers, &contact, &state);
         self.add_released_slips(&mut answer.pairs, numbers, factors, &state.z);
         self.complete(&mut answer, system, numbers, factors, &state);
@@ -295,6 +301,7 @@ impl Prepared {
                 last: run.point,
             },
             ray: None,
+            plain_ray: None,
             cycled: false,
             kept: None,
             told: String::new(),
@@ -421,7 +428,7 @@ fn named(structure: &crate::model::structure::Structure, u: &Displacements) -> V
         .collect()
 }
 
-fn fail_check(answer: &mut Answer) {
+pub(super) fn fail_check(answer: &mut Answer) {
     answer.outcome = OutcomeKind::CheckFailed;
     answer.failure = Some(format!(
         "the state found does not pass its check from R, RF and f (min w {:.1e}, min z {:.1e}, complementarity {:.1e}{})",
@@ -435,15 +442,15 @@ fn fail_check(answer: &mut Answer) {
     }
 }
 
-/// The parts of an answer that follow from the run alone.
-pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer {
+/// The parts of an answer that follow from the run alone; user's force = dimensionless × `force_unit`.
+pub(super) fn empty_answer(run: &Run, force_unit: f64, words: [String; 3], size: Size) -> Answer {
     let outcome = kind(&run.outcome);
     let [covering, tie_break, engine] = words;
     let failure = match &run.outcome {
         Outcome::PivotLimit => Some(format!("the limit of {} pivots was reached.", super::attempt::PIVOT_LIMIT)),
-        Outcome::Cycle => Some(format!(
-            "the tie-break {tie_break} cycles: after {} pivots a working scheme came back.",
-            run.pivots.len()
+        Outcome::Cycle(Cycle { first, again }) => Some(format!(
+            "the tie-break {tie_break} cycles: the basis after pivot {first} came back after pivot {again}, at p = {}.",
+            short(run.point.p * force_unit)
         )),
         Outcome::Breakdown(why) => Some(why.clone()),
         _ => None,
@@ -452,17 +459,19 @@ pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer 
         outcome,
         marginal: run.outcome == Outcome::Normal { marginal: true },
         ray: None,
-        p: run.point.p,
+        p: run.point.p * force_unit,
         attempts: vec![Attempt {
             covering: covering.clone(),
             tie_break: tie_break.clone(),
             engine: engine.clone(),
             outcome,
+            why: failure.clone().filter(|_| outcome == OutcomeKind::PivotLimit),
         }],
         covering,
         tie_break,
         engine,
         pivots: Vec::new(),
+        pivot_count: run.pivots.count(),
         pairs: Vec::new(),
         check: Check::default(),
         displacements: None,
@@ -478,64 +487,11 @@ pub(super) fn empty_answer(run: &Run, words: [String; 3], size: Size) -> Answer 
     }
 }
 
-/// One run of a bare LCP under exactly these rules.
-pub(super) fn attempt_plain(
-    lcp: &Arc<MirroredLcp>,
-    names: &[String],
-    covering_given: bool,
-    rules: Rules,
-    watch: &dyn Watch,
-) -> Result<Solved, SolveError> {
-    let rule = match rules.tie_break {
-        TieBreak::Lexicographic | TieBreak::Natural => TieRule::Lexicographic((0..lcp.size()).collect()),
-        TieBreak::FirstRow => TieRule::FirstRow,
-        TieBreak::Random(seed) => TieRule::Random(seed),
-    };
-    let start = Instant::now();
-    let run = match rules.engine {
-        Engine::Scheme => run_scheme(lcp, rule, watch),
-        Engine::Tableau => run_tableau(lcp, rule, watch),
-        Engine::Exact if lcp.size() > EXACT_ROWS => {
-            return Err(SolveError::TooLargeForExact { what: "rows", found: lcp.size(), most: EXACT_ROWS });
-        }
-        Engine::Exact => run_exact_plain(lcp, rule, watch),
-    };
-    if run.outcome == Outcome::Interrupted {
-        return Err(SolveError::Interrupted);
-    }
-    let seconds = start.elapsed().as_secs_f64();
-    let covering = if covering_given { "given" } else { "ones" };
-    let words = [covering.to_owned(), rules.tie_break.to_string(), rules.engine.to_string()];
-    let size = Size { unknowns: None, free: None, pairs: 0, lcp: lcp.size() };
-    let mut answer = empty_answer(&run, words, size);
-    answer.timings.lemke = seconds;
-    answer.pivots = sentence::plain_records(&run.pivots, names);
-    if matches!(run.outcome, Outcome::Ray(_)) {
-        answer.ray = Some(ray::plain_report(run.point.p, Verdict::Undecided));
-    }
-    answer.solution = Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
-    if answer.is_answer() {
-        answer.check = check_plain(lcp, &run.point);
-        if !answer.check.passed {
-            fail_check(&mut answer);
-        }
-    }
-    let cycled = run.outcome == Outcome::Cycle;
-    Ok(Solved {
-        answer,
-        trace: Trace::Plain { lcp: Arc::clone(lcp), pivots: run.pivots },
-        ray: None,
-        cycled,
-        told: String::new(),
-        kept: None,
-    })
-}
-
 impl Solved {
     /// Number of pivots.
     pub fn pivot_count(&self) -> usize {
         match &self.trace {
-            Trace::Contact { pivots, .. } | Trace::Plain { pivots, .. } => pivots.len(),
+            Trace::Contact { pivots, .. } | Trace::Plain { pivots, .. } => pivots.count(),
         }
     }
 
@@ -550,10 +506,10 @@ impl Solved {
             return None;
         };
         let system = prepared.system()?;
-        let point = if step + 1 == pivots.len() {
+        let point = if step + 1 == pivots.count() {
             last.clone()
         } else {
-            vertex(&contact.lcp, &Basis::after(pivots.get(..=step)?))?
+            vertex(&contact.lcp, &Basis::after(pivots.recorded().get(..=step)?))?
         };
         Some(joint_state(system, numbers, contact, &point))
     }
@@ -585,7 +541,7 @@ impl Solved {
         let Trace::Plain { lcp, pivots } = &self.trace else {
             return None;
         };
-        let point = vertex(lcp, &Basis::after(pivots.get(..=step)?))?;
+        let point = vertex(lcp, &Basis::after(pivots.recorded().get(..=step)?))?;
         Some(PlainSolution { z: point.z, w: point.w })
     }
 }

@@ -90,7 +90,7 @@ impl Shown {
 
     /// Step of the last pivot.
     pub fn last_step(&self) -> Option<usize> {
-        Some(self.answer()?.pivots.last()?.step)
+        self.answer()?.pivot_count.checked_sub(1)
     }
 
     /// Step of the pivot shown.

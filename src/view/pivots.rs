@@ -9,7 +9,7 @@ use super::force_unit;
 use super::number::{in_column, largest};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::PivotRecord;
+use crate::answer::record::{Answer, PivotRecord};
 use crate::model::scenario::Units;
 
 /// Whether the pivots are those of a contact problem, where p is a force; in a bare LCP it has no unit. Told by
@@ -26,12 +26,13 @@ pub fn of_contact(pivots: &[PivotRecord]) -> bool {
 /// sentence stands on the row where the width allows it, else beneath.
 pub fn write(
     out: &mut dyn Write,
-    pivots: &[PivotRecord],
+    answer: &Answer,
     range: Option<RangeInclusive<usize>>,
     current: Option<usize>,
     units: &Units,
     style: &Style,
 ) -> io::Result<()> {
+    let pivots = answer.pivots.as_slice();
     let chosen: Vec<&PivotRecord> =
         pivots.iter().filter(|pivot| range.as_ref().is_none_or(|range| range.contains(&pivot.step))).collect();
     if chosen.is_empty() {
@@ -81,5 +82,19 @@ pub fn write(
         row.marked = current == Some(pivot.step);
         table.rows.push(row);
     }
-    table.write(out, style)
+    table.write(out, style)?;
+    if answer.unrecorded() > 0 && range.is_none() {
+        let text = format!(
+            "and {} more pivots, which were counted but not recorded: {} in all",
+            answer.unrecorded(),
+            answer.pivot_count
+        );
+        writeln!(out, "{}", style.paint(Role::Muted, &style.fit(&text, style.width)))?;
+    }
+    Ok(())
+}
+
+/// A pivot in a title: its number counts from 0, so that the last of 5 pivots is number 4.
+pub fn title(step: usize) -> String {
+    format!("pivot {step} (p enters at 0)")
 }

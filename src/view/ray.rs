@@ -7,7 +7,7 @@ use super::number::{denoised, in_column, short, with_unit};
 use super::status::{class_word, verdict_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::{Ray, RayClass, Verdict};
+use crate::answer::record::{Ray, RayClass, VariableRate, Verdict};
 use crate::contact::system::ContactSystem;
 use crate::explain::ray::RayReport;
 use crate::model::scenario::Units;
@@ -47,10 +47,12 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         None => String::new(),
     };
     let p = with_unit(&short(ray.p), force_unit(units).as_deref());
+    let driver = format!("{} enters and nothing blocks it", ray.driver);
     let rows = [
         ("class", class_meaning(ray.class)),
         ("verdict", verdict.as_str()),
         ("p", p.as_str()),
+        ("driver", driver.as_str()),
         ("mode", ray.mode.as_str()),
         ("meaning", ray.explanation.as_str()),
     ];
@@ -62,8 +64,11 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
             writeln!(out, "{line}")?;
         }
     }
+    if !ray.direction.variables().is_empty() {
+        return write_variables(out, ray.direction.variables(), style);
+    }
     let moves = |value: f64| denoised(value, 1.0) != 0.0;
-    let moving: Vec<_> = ray.direction.iter().filter(|d| moves(d.z_n) || moves(d.z_t)).collect();
+    let moving: Vec<_> = ray.direction.pairs().iter().filter(|d| moves(d.z_n) || moves(d.z_t)).collect();
     if moving.is_empty() {
         return Ok(());
     }
@@ -89,13 +94,23 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         ]));
     }
     table.write(out, style)?;
-    let still = ray.direction.len() - moving.len();
+    let still = ray.direction.pairs().len() - moving.len();
     if still > 0 {
         let pairs = if still == 1 { "pair does" } else { "pairs do" };
         let text = style.fit(&format!("{still} {pairs} not move"), style.width);
         writeln!(out, "{}", style.paint(Role::Muted, &text))?;
     }
     Ok(())
+}
+
+/// Writes the direction variable by variable; those that stand still are left out.
+fn write_variables(out: &mut dyn Write, rates: &[VariableRate], style: &Style) -> io::Result<()> {
+    writeln!(out)?;
+    let mut table = Table::new(vec![Column::words("variable"), Column::numbers("rate", None)]);
+    for rate in rates {
+        table.rows.push(Row::new(vec![Cell::from(rate.variable.as_str()), Cell::from(in_column(rate.rate, 1.0))]));
+    }
+    table.write(out, style)
 }
 
 /// Writes the work of each load case on the mode and the motion that certifies it.

@@ -98,7 +98,9 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             tie_break: "lexicographic".into(),
             engine: "scheme".into(),
             outcome: OutcomeKind::Normal,
+            why: None,
         }],
+        pivot_count: pivots.len(),
         pivots,
         check: Check { min_w: 0.0, min_z: 0.0, complementarity: 3.1e-17, equilibrium: Some(2.2e-16), passed: true },
         displacements: Some(
@@ -138,7 +140,10 @@ pub fn beam_ray() -> Answer {
         class: RayClass::Mechanism,
         verdict: Some(Verdict::Certified),
         p: 10.0 / 3.0,
-        direction: (1..=SUPPORTS).map(|i| PairDirection { pair: format!("c{i}"), z_n: 0.0, z_t: 1.0 }).collect(),
+        driver: "z+[c1]".into(),
+        direction: Direction::Pairs(
+            (1..=SUPPORTS).map(|i| PairDirection { pair: format!("c{i}"), z_n: 0.0, z_t: 1.0 }).collect(),
+        ),
         mode: "the whole structure slides towards +t on all six pairs".into(),
         explanation: "the loads pull with 20 kN more than friction can hold; more weight, more friction \
                       or a smaller F2 would stop it"

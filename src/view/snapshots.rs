@@ -29,7 +29,7 @@ fn everything(style: &Style) -> String {
         report("pairs", &mut out)?;
         pairs::write(&mut out, &now.pairs, &units, style)?;
         report("pivots", &mut out)?;
-        pivots::write(&mut out, &now.pivots, None, Some(2), &units, style)?;
+        pivots::write(&mut out, &now, None, Some(2), &units, style)?;
         report("displacements", &mut out)?;
         let nodes = now.displacements.as_deref().unwrap_or_default();
         displacements::write(&mut out, nodes, &units, style)?;

@@ -51,7 +51,7 @@ pub fn pivot_count(answer: &Answer) -> String {
             changes => format!("warm start, {changes} changes"),
         };
     }
-    match answer.pivots.len() {
+    match answer.pivot_count {
         0 => "no pivot".into(),
         1 => "1 pivot".into(),
         n => format!("{n} pivots"),
@@ -307,11 +307,12 @@ pub fn write(
             rows.push((
                 if i == 0 { "attempts" } else { "" },
                 format!(
-                    "{} · {} · {}: {}",
+                    "{} · {} · {}: {}{}",
                     attempt.covering,
                     attempt.tie_break,
                     attempt.engine,
-                    outcome_word(attempt.outcome)
+                    outcome_word(attempt.outcome),
+                    attempt.why.as_ref().map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')))
                 ),
             ));
         }

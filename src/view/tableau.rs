@@ -11,7 +11,7 @@ use crate::explain::tableau::Dictionary;
 pub fn write(out: &mut dyn Write, dictionary: &Dictionary, style: &Style) -> io::Result<()> {
     let at = match dictionary.step {
         None => "before the entry of p".to_owned(),
-        Some(step) => format!("after pivot {step}"),
+        Some(step) => format!("after {}", super::pivots::title(step)),
     };
     writeln!(out, "{}", style.text(&format!("dictionary {at}: basic = value + rates · nonbasic")))?;
     let mut columns = vec![Column::words("basic"), Column::numbers("value", None)];

@@ -45,7 +45,7 @@ fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64
     let run = run(&mut engine, 20_000, &mut |_| ControlFlow::Continue(()));
     assert!(matches!(run.outcome, Outcome::Trivial | Outcome::Normal { .. }));
     let z = contact.joint_displacements(system, &run.point.z) * contact.length_unit;
-    let basis = Basis::after(&run.pivots);
+    let basis = run.pivots.basis();
     let engine = engine.into_parametric().expect("stands on an answer");
     (basis, z, Kept::new(engine, contact, numbers.clone()))
 }

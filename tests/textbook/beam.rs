@@ -204,7 +204,7 @@ fn beyond_the_limit_p_is_what_is_missing() {
                         let expected = (pull - limit) / (n as f64 * d);
                         let what = format!("p, n = {n}, L = {length}, f = {f}, ×{beyond}, {rule}");
                         close(&what, ray.p, expected, tolerance);
-                        for pair in &ray.direction {
+                        for pair in ray.direction.pairs() {
                             near("mode", pair.z_t, 1.0, 1e-9, 1.0);
                             assert_eq!(pair.z_n, 0.0);
                         }

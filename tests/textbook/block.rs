@@ -34,8 +34,8 @@ fn overturns_at_a_quarter() {
         let ray = mechanism(&answer);
         if h < 0.4 {
             close("p", ray.p, 0.8 * (h - 0.25), tolerance);
-            let z_n: Vec<f64> = ray.direction.iter().map(|d| d.z_n).collect();
-            let z_t: Vec<f64> = ray.direction.iter().map(|d| d.z_t).collect();
+            let z_n: Vec<f64> = ray.direction.pairs().iter().map(|d| d.z_n).collect();
+            let z_t: Vec<f64> = ray.direction.pairs().iter().map(|d| d.z_t).collect();
             near_all("z̄_n", &z_n, &[1.0, 0.75, 0.5, 0.25, 0.0], 1e-9);
             assert_eq!(z_t, [0.0; 5]);
         }
@@ -56,7 +56,7 @@ fn slides_at_f() {
         let answer = case.solve(&[("f", 0.2), ("H", h)]);
         let ray = mechanism(&answer);
         close("p", ray.p, (h - 0.2) / 6.0, tolerance);
-        for pair in &ray.direction {
+        for pair in ray.direction.pairs() {
             near("z̄_τ", pair.z_t, 1.0, 1e-9, 1.0);
             assert_eq!(pair.z_n, 0.0);
         }

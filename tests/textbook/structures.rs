@@ -143,7 +143,7 @@ fn chain_of_slabs() {
                 let answer = case.solve(&set(h));
                 let ray = mechanism(&answer);
                 close("p", ray.p, (h - limit) / (5.0 * (1.0 + f[which])), tolerance);
-                for (i, pair) in ray.direction.iter().enumerate() {
+                for (i, pair) in ray.direction.pairs().iter().enumerate() {
                     let expected = f64::from(u8::from(i / 5 == which));
                     near("z̄_τ", pair.z_t, expected, 1e-9, 1.0);
                     near("z̄_n", pair.z_n, 0.0, 1e-9, 1.0);
@@ -286,7 +286,7 @@ fn ladder() {
             let ray = mechanism(&answer);
             let d = if rule == Covering::Ones { 1.0 } else { 1.0 + f };
             close(&format!("p, ×{below}"), ray.p, load * (limit - f) / d, tolerance);
-            near("z̄_τ of the foot", ray.direction[0].z_t, 1.0, 1e-9, 1.0);
+            near("z̄_τ of the foot", ray.direction.pairs()[0].z_t, 1.0, 1e-9, 1.0);
         }
     }
 }

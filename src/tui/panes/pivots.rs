@@ -151,11 +151,17 @@ pub fn sentence(state: &State) -> String {
     }
     let step = state.shown.step();
     let Some(pivot) = answer.pivots.iter().find(|pivot| Some(pivot.step) == step) else {
+        if let Some(step) = step {
+            return format!(
+                "Pivot {step} of {step}: counted but not recorded, as all after {}.",
+                answer.pivots.len() - 1
+            );
+        }
         return "With every joint on no condition is violated: the main system itself is the answer, \
                 without a pivot."
             .to_owned();
     };
-    let last = answer.pivots.last().map_or(0, |pivot| pivot.step);
+    let last = answer.pivot_count.saturating_sub(1);
     let mut sentence = format!("Pivot {} of {last}: {}", pivot.step, pivot.sentence);
     if pivot.ties.len() > 1 && !pivot.sentence.contains("tied") {
         sentence.push_str(&format!(" (tied: {})", pivot.ties.join(", ")));

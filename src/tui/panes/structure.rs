@@ -64,7 +64,7 @@ pub fn note(state: &State) -> String {
         note.push_str(&format!(" · zoom {}", short(state.view.zoom)));
     }
     if let Some(step) = state.shown.position {
-        note = format!("pivot {step} · {note}");
+        note = format!("{} · {note}", crate::view::pivots::title(step));
     }
     note
 }
@@ -312,7 +312,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         .answer()
         .filter(|_| shown.at_ray() && shown.mode.is_some())
         .and_then(|answer| answer.ray.as_ref())
-        .map(|ray| ray.direction.as_slice());
+        .map(|ray| ray.direction.pairs());
     let mut marks: Vec<(usize, usize, bool)> = Vec::new();
     for (index, pair) in structure.pairs.iter().enumerate() {
         let Some(now) = shown.pairs.get(index) else {

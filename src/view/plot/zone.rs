@@ -147,7 +147,7 @@ pub fn mode(
 ) -> io::Result<()> {
     let along = |label: &str, value: fn(&crate::answer::record::PairDirection) -> f64| {
         over_zone(label, pairs, |pair| {
-            let direction = ray.direction.iter().find(|d| d.pair == pair.id);
+            let direction = ray.direction.pairs().iter().find(|d| d.pair == pair.id);
             direction.map_or(0.0, |d| denoised(value(d), 1.0))
         })
     };

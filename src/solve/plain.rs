@@ -1,0 +1,254 @@
+//! A bare LCP: one run under given rules, and the retries after one that ended badly.
+
+use std::fmt;
+use std::sync::Arc;
+use std::time::Instant;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::all_answers::plain_answer;
+use super::attempt::run_scheme;
+use super::judge::{EXACT_ROWS, run_exact_plain, run_tableau};
+use super::ladder::{Ladder, within_budget};
+use super::plain_answers::all_plain_answers;
+use super::solved::{SolveError, Solved, Trace, empty_answer, fail_check};
+use crate::answer::check::check_plain;
+use crate::answer::record::{OutcomeKind, PlainSolution, Size, Verdict};
+use crate::explain::plain_ray::PlainRay;
+use crate::explain::sentence;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::Outcome;
+use crate::lcp::ratio_test::TieRule;
+use crate::model::rules::{Engine, Rules, TieBreak};
+use crate::watch::Watch;
+
+/// What is said of the answers where nothing was proved.
+const UNKNOWN: &str = "For a general M this proves nothing about whether one exists.";
+/// What is said where all bases were tried.
+const ALL_BASES: &str = "Proved: every complementary basis was tried in exact arithmetic, none is an answer.";
+/// Random covering vectors that are tried.
+const RANDOM_COVERINGS: u64 = 3;
+
+/// A bare LCP with q filled in.
+#[derive(Clone)]
+pub(super) struct PlainProblem<'a> {
+    /// M, q, d of the file (ones without one).
+    pub(super) lcp: Arc<MirroredLcp>,
+    /// Names of its rows.
+    pub(super) names: &'a [String],
+    /// Whether d is the file's.
+    pub(super) covering_given: bool,
+}
+
+/// A covering vector for a bare LCP.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PlainCovering {
+    /// That of the file, else ones.
+    Own,
+    /// d_i = 1.
+    Ones,
+    /// d_i = the largest |M_ik| of its row.
+    Rows,
+    /// d_i drawn between 1/8 and 8 times the largest |M_ik| of its row.
+    Random(u64),
+}
+
+impl PlainCovering {
+    /// The word for it in the list of attempts.
+    fn word(self, problem: &PlainProblem) -> String {
+        match self {
+            PlainCovering::Own if problem.covering_given => "given".to_owned(),
+            PlainCovering::Own => PlainCovering::Ones.to_string(),
+            other => other.to_string(),
+        }
+    }
+
+    /// The LCP with this covering vector.
+    fn applied(self, lcp: &Arc<MirroredLcp>) -> Arc<MirroredLcp> {
+        let n = lcp.size();
+        let row_size = |i: usize| {
+            let largest = lcp.base.row(i).amax();
+            if largest > 0.0 { largest } else { 1.0 }
+        };
+        let covering: Vec<f64> = match self {
+            PlainCovering::Own => return Arc::clone(lcp),
+            PlainCovering::Ones => vec![1.0; n],
+            PlainCovering::Rows => (0..n).map(row_size).collect(),
+            PlainCovering::Random(seed) => {
+                let mut random = ChaCha8Rng::seed_from_u64(seed);
+                (0..n).map(|i| row_size(i) * f64::powf(2.0, random.random_range(-3.0..3.0))).collect()
+            }
+        };
+        Arc::new(MirroredLcp { covering: covering.into(), ..MirroredLcp::clone(lcp) })
+    }
+}
+
+impl fmt::Display for PlainCovering {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PlainCovering::Own => f.write_str("given"),
+            PlainCovering::Ones => f.write_str("ones"),
+            PlainCovering::Rows => f.write_str("rows"),
+            PlainCovering::Random(seed) => write!(f, "random:{seed}"),
+        }
+    }
+}
+
+/// How a bare LCP is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct PlainRules {
+    pub(super) covering: PlainCovering,
+    pub(super) tie_break: TieBreak,
+    pub(super) engine: Engine,
+}
+
+impl PlainRules {
+    /// The user's rules under the problem's own covering.
+    pub(super) fn own(rules: Rules) -> PlainRules {
+        PlainRules { covering: PlainCovering::Own, tie_break: rules.tie_break, engine: rules.engine }
+    }
+}
+
+/// One run under exactly these rules.
+pub(super) fn attempt_plain(
+    problem: &PlainProblem,
+    rules: PlainRules,
+    watch: &dyn Watch,
+) -> Result<Solved, SolveError> {
+    let lcp = rules.covering.applied(&problem.lcp);
+    let rule = match rules.tie_break {
+        TieBreak::Lexicographic | TieBreak::Natural => TieRule::Lexicographic((0..lcp.size()).collect()),
+        TieBreak::FirstRow => TieRule::FirstRow,
+        TieBreak::Random(seed) => TieRule::Random(seed),
+    };
+    let start = Instant::now();
+    let run = match rules.engine {
+        Engine::Scheme => run_scheme(&lcp, rule, watch),
+        Engine::Tableau => run_tableau(&lcp, rule, watch),
+        Engine::Exact if lcp.size() > EXACT_ROWS => {
+            return Err(SolveError::TooLargeForExact { what: "rows", found: lcp.size(), most: EXACT_ROWS });
+        }
+        Engine::Exact => run_exact_plain(&lcp, rule, watch),
+    };
+    if run.outcome == Outcome::Interrupted {
+        return Err(SolveError::Interrupted);
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    let words = [rules.covering.word(problem), rules.tie_break.to_string(), rules.engine.to_string()];
+    let size = Size { unknowns: None, free: None, pairs: 0, lcp: lcp.size() };
+    let mut answer = empty_answer(&run, 1.0, words, size);
+    answer.timings.lemke = seconds;
+    answer.pivots = sentence::plain_records(run.pivots.recorded(), problem.names);
+    let mut plain_ray = None;
+    if let Outcome::Ray(direction) = &run.outcome {
+        let ray = PlainRay::new(&lcp, problem.names, &run.pivots, direction, run.point.p);
+        answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
+        plain_ray = Some(Box::new(ray));
+    }
+    answer.solution = Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
+    if answer.is_answer() {
+        answer.check = check_plain(&lcp, &run.point);
+        if !answer.check.passed {
+            fail_check(&mut answer);
+        }
+    }
+    let cycled = matches!(run.outcome, Outcome::Cycle(_));
+    Ok(Solved {
+        answer,
+        trace: Trace::Plain { lcp, pivots: run.pivots },
+        ray: None,
+        plain_ray,
+        cycled,
+        told: String::new(),
+        kept: None,
+    })
+}
+
+/// Solves a bare LCP, with retries under the default tie-break.
+pub(super) fn solve_plain_judged(
+    problem: &PlainProblem,
+    rules: Rules,
+    watch: &dyn Watch,
+) -> Result<Solved, SolveError> {
+    let own = PlainRules::own(rules);
+    let mut first = attempt_plain(problem, own, watch)?;
+    if first.answer.is_answer() {
+        return Ok(first);
+    }
+    if !rules.are_default() {
+        let other = attempt_plain(problem, PlainRules::own(Rules::default()), watch)?;
+        if other.answer.is_answer() {
+            let (tie_break, count) = (TieBreak::default(), other.pivot_count());
+            first.say(&format!(" The default tie-break ({tie_break}) finds an answer in {count} pivots."));
+        }
+        return Ok(first);
+    }
+    let found = all_plain_answers(&problem.lcp, watch);
+    if found.as_ref().is_some_and(|found| found.complete && found.answers.is_empty())
+        && let Some(ray) = &first.plain_ray
+    {
+        first.answer.ray = Some(ray.record(Verdict::Proved, ALL_BASES));
+        return Ok(first);
+    }
+    let rungs = rungs(problem, &first, own);
+    let mut ladder = Ladder::new(first);
+    for rules in rungs {
+        if rules.tie_break != own.tie_break && ladder.would_repeat(&rules.covering.word(problem), rules.engine) {
+            continue;
+        }
+        match within_budget(rules.engine, watch, |watch| attempt_plain(problem, rules, watch))? {
+            Some(again) => {
+                if let Ok(answer) = ladder.add(again) {
+                    return Ok(answer);
+                }
+            }
+            None => ladder.gave_up(&rules.covering.word(problem), &rules.tie_break.to_string()),
+        }
+    }
+    if let Some(found) = found {
+        for z in &found.answers {
+            if let Ok(mut answer) = ladder.add(plain_answer(&problem.lcp, z, &ladder.first().answer)) {
+                if found.answers.len() > 1 {
+                    let said = format!("there are {} answers; this is one of them", found.answers.len());
+                    answer.answer.notes.push(said);
+                }
+                return Ok(answer);
+            }
+        }
+    }
+    Ok(ladder.without_answer())
+}
+
+/// What is tried after a first run without an answer, in order. Where rounding may be to blame exact arithmetic comes
+/// first; after a ray other coverings, which are cheap, and exact arithmetic to make sure of the ray.
+fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRules> {
+    if first.plain_ray.as_ref().is_some_and(|ray| ray.whatever_the_covering) {
+        return Vec::new();
+    }
+    let mut coverings = Vec::new();
+    let ones = problem.lcp.covering.iter().all(|d| *d == problem.lcp.covering[0]);
+    if !ones {
+        coverings.push(PlainCovering::Ones);
+    }
+    coverings.push(PlainCovering::Rows);
+    coverings.extend((1..=RANDOM_COVERINGS).map(PlainCovering::Random));
+    let mut rungs: Vec<PlainRules> = coverings.into_iter().map(|covering| PlainRules { covering, ..own }).collect();
+    // The rows may happen to be as large as d.
+    rungs.retain(|rules| !is_multiple(&rules.covering.applied(&problem.lcp), &problem.lcp));
+    rungs.push(PlainRules { tie_break: TieBreak::Random(1), ..own });
+    if problem.lcp.size() <= EXACT_ROWS {
+        let exact = PlainRules { engine: Engine::Exact, ..own };
+        match first.answer.outcome {
+            OutcomeKind::Ray => rungs.push(exact),
+            _ => rungs.insert(0, exact),
+        }
+    }
+    rungs
+}
+
+/// Whether the covering vectors are the same but for their length: the same pivots.
+fn is_multiple(a: &MirroredLcp, b: &MirroredLcp) -> bool {
+    let (x, y) = (&a.covering, &b.covering);
+    (0..x.len()).all(|i| x[i] * y[0] == y[i] * x[0])
+}
