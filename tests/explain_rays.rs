@@ -44,7 +44,7 @@ fn block_on_a_rough_plane() {
     let ray = mechanism(&over);
     close(ray.p, 0.8 * 0.01, 1e-9);
     assert_eq!(ray.mode, "rotation of `block` about (1.0, 0.0), clockwise: pairs base[0] to base[3] open");
-    for (direction, expected) in ray.direction.iter().zip([1.0, 0.75, 0.5, 0.25, 0.0]) {
+    for (direction, expected) in ray.direction.pairs().iter().zip([1.0, 0.75, 0.5, 0.25, 0.0]) {
         assert!((direction.z_n - expected).abs() < 1e-9 && direction.z_t.abs() < 1e-9);
     }
     let report = over.ray.as_ref().expect("a report");
