@@ -5,8 +5,6 @@ use super::record::Check;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::sums::{Sum, displacement_share, pair_sums};
 use crate::contact::system::ContactSystem;
-use crate::lcp::mirrored::MirroredLcp;
-use crate::lcp::outcome::Point;
 
 /// Largest relative violation that an answer may have where sizes are those of a whole problem.
 pub const TOLERANCE: f64 = 1e-9;
@@ -43,27 +41,6 @@ pub fn check_contact(
         }
     }
     check.passed = accepted(&check, ROUNDING);
-    check
-}
-
-/// Checks an answer of a bare LCP from M and q; w is computed afresh.
-pub fn check_plain(lcp: &MirroredLcp, point: &Point) -> Check {
-    let z = &point.z;
-    let matrix = lcp.matrix();
-    let response = lcp.times(z);
-    let length = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
-    let mut check = Check::default();
-    for i in 0..lcp.size() {
-        let w = response[i] + lcp.q[i];
-        // Each row is judged against the terms it sums.
-        let size = lcp.q[i].abs().max((0..lcp.size()).map(|j| (matrix[(i, j)] * z[j]).abs()).fold(0.0, f64::max));
-        let w = if size > 0.0 { w / size } else { w };
-        let z = if length > 0.0 { z[i] / length } else { 0.0 };
-        check.min_w = check.min_w.min(w);
-        check.min_z = check.min_z.min(z);
-        check.complementarity = check.complementarity.max((w * z).abs());
-    }
-    check.passed = accepted(&check, TOLERANCE);
     check
 }
 

@@ -6,6 +6,7 @@ pub mod loose;
 pub mod margin;
 pub mod mode;
 pub mod plain_ray;
+pub mod plain_why;
 pub mod ray;
 pub mod remedy;
 pub mod sentence;

@@ -14,7 +14,9 @@ const NAMED: usize = 4;
 /// What is known of the ray a bare LCP ended in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlainRay {
-    /// Name of the entering variable.
+    /// The entering variable.
+    pub entering: Variable,
+    /// Its name.
     pub driver: String,
     /// p at the last vertex.
     pub p: f64,
@@ -24,6 +26,8 @@ pub struct PlainRay {
     pub reason: String,
     /// No covering vector d > 0 gets further than the first pivot.
     pub whatever_the_covering: bool,
+    /// Whether it is a ray in exact arithmetic too; `None` where that was not examined.
+    pub exact: Option<bool>,
 }
 
 impl PlainRay {
@@ -61,7 +65,7 @@ impl PlainRay {
             ),
             _ => (String::new(), false),
         };
-        PlainRay { driver, p, direction, reason, whatever_the_covering }
+        PlainRay { entering: ray.entering, driver, p, direction, reason, whatever_the_covering, exact: None }
     }
 
     /// The motion in words.
@@ -82,6 +86,11 @@ impl PlainRay {
     /// As it stands in the result; `proof` says what is known of the answers.
     pub fn record(&self, verdict: Verdict, proof: &str) -> Ray {
         let reason = if self.reason.is_empty() { String::new() } else { format!("{} ", self.reason) };
+        let exact = match self.exact {
+            Some(true) => " (in exact arithmetic too)",
+            Some(false) => " (by rounding: in exact arithmetic this is no ray)",
+            None => "",
+        };
         Ray {
             class: RayClass::NoEquilibrium,
             verdict: Some(verdict),
@@ -90,7 +99,7 @@ impl PlainRay {
             direction: Direction::Variables(self.direction.clone()),
             mode: self.mode(),
             explanation: format!(
-                "No row blocks {} at p = {}: Lemke's algorithm found no answer. {reason}{proof}",
+                "No row blocks {} at p = {}{exact}: Lemke's algorithm found no answer. {reason}{proof}",
                 self.driver,
                 short(self.p)
             ),

@@ -40,7 +40,8 @@ pub fn problems(problems: &[Problems]) -> Value {
 
 /// The result of one solve.
 ///
-/// After a pivot limit, a breakdown or a failed check, `pairs`, `displacements`, `members`, `reactions` and
+/// A very long run keeps the records of its first pivots only; `pivot_count` then says how many there were.
+/// After a pivot limit, a breakdown or a failed check, `failure` says why, `pairs`, `displacements`, `members`, `reactions` and
 /// `solution` are absent and `ray` is null; at a ray the displacements, members and reactions are absent; for a
 /// contact system or a bare LCP they always are. `timings` only on request: two runs of one scenario are then
 /// the same to the byte.
@@ -63,7 +64,9 @@ pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues
     put("engine", answer.engine.as_str().into());
     put("attempts", value(&answer.attempts));
     put("pivots", pivots(answer));
-    put("pivot_count", answer.pivot_count.into());
+    if answer.unrecorded() > 0 {
+        put("pivot_count", answer.pivot_count.into());
+    }
     if !failed {
         put("pairs", pairs(answer));
         if let Some(solution) = &answer.solution {

@@ -83,6 +83,15 @@ fn an_answer_has_the_documented_keys() {
 }
 
 #[test]
+fn a_bounded_record_tells_how_many_pivots_there_were() {
+    let mut answer = beam(0.3, 100.0);
+    answer.pivot_count = 200_001;
+    let result = json::result(&answer, "beam", &parameters(), false);
+    assert_eq!(result["pivot_count"], 200_001);
+    assert_eq!(result["pivots"].as_array().map(Vec::len), Some(answer.pivots.len()));
+}
+
+#[test]
 fn timings_only_on_request() {
     let result = json::result(&beam(0.3, 100.0), "beam", &parameters(), true);
     assert_eq!(keys(&result).last(), Some(&"timings"));
@@ -98,7 +107,7 @@ fn a_ray_has_the_last_vertex_but_no_displacements() {
     let expected: Vec<&str> =
         ANSWER.into_iter().filter(|key| !["displacements", "members", "reactions"].contains(key)).collect();
     assert_eq!(keys(&result), expected);
-    assert_eq!(keys(&result["ray"]), ["class", "verdict", "p", "direction", "mode", "explanation"]);
+    assert_eq!(keys(&result["ray"]), ["class", "verdict", "p", "driver", "direction", "mode", "explanation"]);
     assert_eq!(result["ray"]["class"], "mechanism");
     assert_eq!(result["ray"]["verdict"], "certified");
     assert_eq!(keys(&result["ray"]["direction"][0]), ["pair", "z_n", "z_t"]);

@@ -91,6 +91,12 @@ impl SchemeEngine {
         (self.stand.p() <= MARGINAL * self.stand.lcp.q.amax()).then_some(Outcome::Normal { marginal: true })
     }
 
+    /// The end where no row blocks the entering variable of column c.
+    fn nothing_blocks(&mut self, c: usize) -> Step<f64> {
+        let end = self.at_limit_of_p().unwrap_or_else(|| Outcome::Ray(self.stand.ray(c)));
+        self.end(end)
+    }
+
     fn broken(&mut self, why: &str) -> Step<f64> {
         self.end(Outcome::Breakdown(why.to_owned()))
     }
@@ -124,16 +130,16 @@ impl SchemeEngine {
             .collect();
         let c = lcp.size();
         self.stand.fetch(c);
-        let chosen = self.choose(&tied, true);
+        let chosen = self.choose(c, &tied, true);
         self.exchange(tied[chosen], c, needed, &tied);
         Step::Pivoted
     }
 
-    /// Index of the tied candidate that leaves.
-    fn choose(&mut self, tied: &[Candidate], at_start: bool) -> usize {
+    /// Index of the candidate that leaves of those tied along column c.
+    fn choose(&mut self, c: usize, tied: &[Candidate], at_start: bool) -> usize {
         let names: Vec<Variable> = tied.iter().map(|candidate| self.stand.name(candidate)).collect();
         let table_row = |name: Variable| self.table_row.get(&name).copied().unwrap_or(usize::MAX);
-        let rows = self.stand.inverse_rows(tied, &table_row);
+        let rows = self.stand.inverse_rows(c, tied, &table_row);
         let mut random = self.random.clone();
         let chosen = choose(&self.rule, &mut random, &names, &rows, at_start);
         self.random = random;
@@ -230,10 +236,17 @@ impl Engine for SchemeEngine {
             (tied, step) = self.stand.blocking(c, true);
         }
         if tied.is_empty() {
-            let end = self.at_limit_of_p().unwrap_or_else(|| Outcome::Ray(self.stand.ray(c)));
-            return self.end(end);
+            return self.nothing_blocks(c);
         }
-        let chosen = self.choose(&tied, false);
+        let mut chosen = self.choose(c, &tied, false);
+        // A pivot on a small rate needs a row of the dictionary that is right beside it.
+        if self.stand.is_suspicious(c, &tied[chosen..=chosen]) && self.stand.confirm(c, &tied[chosen..=chosen]) {
+            (tied, step) = self.stand.blocking(c, true);
+            if tied.is_empty() {
+                return self.nothing_blocks(c);
+            }
+            chosen = self.choose(c, &tied, false);
+        }
         self.exchange(tied[chosen], c, step, &tied);
         Step::Pivoted
     }

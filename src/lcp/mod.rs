@@ -2,6 +2,7 @@
 
 mod dense;
 mod dictionary;
+pub mod doubled;
 pub mod driver;
 pub mod exact;
 pub mod filtered;

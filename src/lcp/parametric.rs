@@ -195,11 +195,11 @@ impl Parametric {
         Some(point)
     }
 
-    /// Index of the tied candidate that leaves.
-    fn choose(&self, tied: &[Candidate]) -> usize {
+    /// Index of the candidate that leaves of those tied along column c.
+    fn choose(&self, c: usize, tied: &[Candidate]) -> usize {
         let names: Vec<Variable> = tied.iter().map(|row| self.stand.name(row)).collect();
         // The lexicographic rule asks for no rows of the tableau and draws nothing.
-        let rows = self.stand.inverse_rows(tied, &|_| 0);
+        let rows = self.stand.inverse_rows(c, tied, &|_| 0);
         let mut random = ChaCha8Rng::seed_from_u64(0);
         choose(&self.rule, &mut random, &names, &rows, false)
     }
@@ -375,7 +375,7 @@ impl Parametric {
         if tied.is_empty() {
             return ControlFlow::Break(if t_rate > 0.0 { End::Unbounded } else { End::Limit(self.ray(c)) });
         }
-        let leaving = tied[self.choose(&tied)];
+        let leaving = tied[self.choose(c, &tied)];
         let name = self.exchange(leaving, c, step, &tied);
         let row = match name {
             Variable::W(k) | Variable::Z(k) => k,

@@ -2,6 +2,8 @@
 
 /// A value or rate counts as zero below this multiple of its natural size (theory: 64 … 256 ε), see [`Scale`].
 pub const NOISE: f64 = 256.0 * f64::EPSILON;
+/// Rounds of equilibration: the logarithms of the factors come twice as near in each.
+const EQUILIBRATIONS: usize = 8;
 /// p at a ray at most this multiple of the largest |q| is a normal end, flagged marginal.
 pub const MARGINAL: f64 = 1e-12;
 
@@ -9,7 +11,7 @@ pub const MARGINAL: f64 = 1e-12;
 /// 256 ε · `row`_i · Σ_k `column`_k |Δz_k|.
 ///
 /// For contact `row`_i = √R_ii (friction-weighted for the reserves) and `column`_k = √R_kk, i.e. R scaled to
-/// unit diagonal (theory §4); for a plain LCP `column` = 1 and `row`_i = max_k |M_ik|.
+/// unit diagonal (theory §4); for a plain LCP see [`Scale::plain`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     /// One entry per row of the LCP.
@@ -19,15 +21,27 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The scale of a plain LCP.
+    /// The scale of a plain LCP: `row`_i `column`_k ≥ |M_ik|, as tight as one factor per row and column can be, so that
+    /// other units of single rows and columns change no decision (Ruiz's equilibration in the largest norm, 2001).
     pub fn plain(matrix: &[Vec<f64>]) -> Scale {
-        Scale {
-            row: matrix
-                .iter()
-                .map(|row| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs())))
-                .collect(),
-            column: vec![1.0; matrix.len()],
+        let n = matrix.len();
+        let mut scale = Scale { row: vec![1.0; n], column: vec![1.0; n] };
+        let largest = |entries: &mut dyn Iterator<Item = f64>| entries.fold(0.0, |a: f64, b| a.max(b.abs()));
+        for _ in 0..EQUILIBRATIONS {
+            let rows: Vec<f64> =
+                (0..n).map(|i| largest(&mut (0..n).map(|k| matrix[i][k] / scale.column[k])) / scale.row[i]).collect();
+            let columns: Vec<f64> =
+                (0..n).map(|k| largest(&mut (0..n).map(|i| matrix[i][k] / scale.row[i])) / scale.column[k]).collect();
+            let widen = |sizes: &mut [f64], by: &[f64]| {
+                sizes.iter_mut().zip(by).filter(|(_, by)| **by > 0.0).for_each(|(size, by)| *size *= by.sqrt());
+            };
+            widen(&mut scale.row, &rows);
+            widen(&mut scale.column, &columns);
         }
+        for (row, entries) in scale.row.iter_mut().zip(matrix) {
+            *row = largest(&mut entries.iter().zip(&scale.column).map(|(entry, column)| entry / column));
+        }
+        scale
     }
 }
 

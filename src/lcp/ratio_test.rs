@@ -37,6 +37,8 @@ pub(crate) trait TiedRow {
     fn entry(&self, row: usize) -> (f64, f64);
     /// Its row in the whole tableau, where an entering variable takes the row of the leaving one.
     fn table_row(&self) -> usize;
+    /// Rate at which it falls relative to the natural size of that rate: how surely it falls at all.
+    fn certainty(&self) -> f64;
 }
 
 /// The tied row that leaves: index into `names`.
@@ -70,16 +72,18 @@ pub(crate) fn choose(
             }
             let mut left: Vec<usize> = (0..names.len()).collect();
             for &row in order {
+                // Every entry with its own uncertainty: that of a row whose rate is nearly noise is wide, and must not
+                // hide the differences of the others. A row stays while it could be the smallest.
                 let entries: Vec<(f64, f64)> = left.iter().map(|&k| rows[k].entry(row)).collect();
-                let smallest = entries.iter().map(|entry| entry.0).fold(f64::INFINITY, f64::min);
-                let size = entries.iter().map(|entry| entry.1).fold(0.0, f64::max);
+                let most = entries.iter().map(|(entry, size)| entry + SAME * size).fold(f64::INFINITY, f64::min);
                 let mut kept = entries.iter();
-                left.retain(|_| kept.next().is_some_and(|entry| entry.0 <= smallest + SAME * size));
+                left.retain(|_| kept.next().is_some_and(|(entry, size)| entry - SAME * size <= most));
                 if left.len() == 1 {
-                    break;
+                    return left[0];
                 }
             }
-            left[0]
+            // Exact rows of B⁻¹ differ somewhere; these do not as far as rounding lets one see.
+            left.into_iter().max_by(|&a, &b| rows[a].certainty().total_cmp(&rows[b].certainty())).unwrap_or(0)
         }
     }
 }

@@ -130,10 +130,10 @@ pub enum Command {
         #[arg(value_name = "STEP")]
         words: Vec<String>,
     },
-    /// Say why a pair is in its state, and which pivots brought it there
-    #[command(after_help = "Example:\n  why c6")]
+    /// Say why a pair is in its state, and which pivots brought it there; of a bare LCP, why a variable has its value
+    #[command(after_help = "Example:\n  why c6; load murty6; why z[1]; why w[2]")]
     Why {
-        /// The pair
+        /// The pair; of a bare LCP z[NAME] or w[NAME]
         #[arg(value_name = "PAIR")]
         pair: String,
     },

@@ -1,18 +1,24 @@
-//! `why PAIR`: its state from its numbers, and the pivots that turned it.
+//! `why PAIR`: its state from its numbers, and the pivots that turned it; `why z[NAME]` of a bare LCP.
 
 use serde_json::json;
 
 use crate::answer::record::State;
+use crate::explain::plain_why::Vertex;
+use crate::solve::prepared::Geometry;
+use crate::solve::solved::Trace;
 use crate::view;
 use crate::view::number::{short, with_unit};
 
-use super::selection::no_pair;
+use super::selection::{no_pair, no_such};
 use super::{CommandError, Output, Session};
 
 impl Session {
     /// `why PAIR`: its state from its numbers, and the pivots that turned it.
     pub(super) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
+        if answer.solution.is_some() {
+            return self.report_plain_why(id, io);
+        }
         let pairs = self.pairs();
         let pair = pairs.iter().find(|pair| pair.id == id).ok_or_else(|| no_pair(id, &pairs))?;
         let units = &self.now.scenario.units;
@@ -81,6 +87,49 @@ impl Session {
                     writeln!(out, "How far the working scheme holds:")?;
                 }
                 view::why::write(out, id, &margins, style)
+            },
+        )?;
+        Ok(())
+    }
+
+    /// `why z[NAME]`, `why w[NAME]`: the row of the couple, and the pivots at which it changed places.
+    fn report_plain_why(&self, variable: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (Some(solved), Some(prepared), Some(solution)) = (&self.solved, &self.now.prepared, self.solution()) else {
+            return Err(CommandError::Refused("not solved yet: `solve`".into()));
+        };
+        let (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) = (&solved.trace, &prepared.geometry) else {
+            return Err(CommandError::Refused(format!("no pair `{variable}`")));
+        };
+        let done = self.position.map_or(solved.answer.pivots.len(), |step| step + 1);
+        let pivots = &solved.answer.pivots[..done.min(solved.answer.pivots.len())];
+        let p = self.p().unwrap_or(0.0);
+        let vertex = Vertex { lcp, names, solution: &solution, p, pivots };
+        let Some((letter, row)) = vertex.find(variable) else {
+            let known: Vec<String> =
+                ['z', 'w'].iter().flat_map(|l| names.iter().map(move |name| format!("{l}[{name}]"))).collect();
+            let said = no_such("variable", variable, known.iter().map(String::as_str));
+            return Err(CommandError::Refused(said));
+        };
+        let why = vertex.why(letter, row);
+        io.report(
+            || json!(why),
+            |out, style| {
+                for line in style.wrap(&style.text(&why.cause), style.width) {
+                    writeln!(out, "{line}")?;
+                }
+                for line in style.hanging("  ", &style.text(&why.row)) {
+                    writeln!(out, "{line}")?;
+                }
+                if why.pivots.is_empty() {
+                    writeln!(out, "no pivot moved it or its complement")?;
+                }
+                for pivot in &why.pivots {
+                    let label = format!("  pivot {}: ", pivot.step);
+                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
+                        writeln!(out, "{line}")?;
+                    }
+                }
+                Ok(())
             },
         )?;
         Ok(())

@@ -8,7 +8,8 @@ use super::numbers::{contact_numbers, factors};
 use super::plain_answers::{MOST_ROWS, PlainCheck, all_plain_answers, check_plain_exactly};
 use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved, Trace, empty_answer};
-use crate::answer::check::{TOLERANCE, check_plain};
+use crate::answer::check::TOLERANCE;
+use crate::answer::check_plain::{ROUNDING, check_plain};
 use crate::answer::record::{Answer, OutcomeKind, PlainSolution, State};
 use crate::contact::complementarity::{Couple, contact_lcp};
 use crate::contact::critical::{CriticalFriction, critical_friction};
@@ -369,7 +370,7 @@ fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers,
 pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], like: &Answer) -> Solved {
     let w = lcp.times(z) + &lcp.q;
     let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
-    let check = check_plain(lcp, &point);
+    let check = check_plain(lcp, &point.z, ROUNDING);
     let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
     let words = [like.covering.clone(), like.tie_break.clone(), ENUMERATION.to_owned()];
     let mut answer = empty_answer(&run, 1.0, words, like.size);

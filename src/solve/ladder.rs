@@ -9,7 +9,7 @@ use crate::model::rules::Engine;
 use crate::watch::Watch;
 
 /// An exact attempt that nobody asked for is given up after this time.
-pub const EXACT_BUDGET: Duration = Duration::from_secs(10);
+pub(super) const EXACT_BUDGET: Duration = Duration::from_secs(30);
 
 /// A first run without an answer, and the tries since.
 pub(super) struct Ladder {
@@ -145,20 +145,56 @@ impl Watch for Deadline<'_> {
     }
 }
 
-/// Runs `attempt` within the time for exact arithmetic where `engine` is that; `None`: the time ran out.
+/// Runs `attempt` within `budget`; `None`: the time ran out.
 ///
 /// # Errors
 /// Those of the attempt; stopped from outside.
+pub(super) fn within<T>(
+    budget: Duration,
+    watch: &dyn Watch,
+    attempt: impl FnOnce(&dyn Watch) -> Result<T, SolveError>,
+) -> Result<Option<T>, SolveError> {
+    match attempt(&Deadline { watch, until: Instant::now() + budget }) {
+        Err(SolveError::Interrupted) if !watch.stop() => Ok(None),
+        other => other.map(Some),
+    }
+}
+
+/// Runs `attempt`, within [`EXACT_BUDGET`] where `engine` is exact arithmetic.
+///
+/// # Errors
+/// As [`within`].
 pub(super) fn within_budget(
     engine: Engine,
     watch: &dyn Watch,
     attempt: impl FnOnce(&dyn Watch) -> Result<Solved, SolveError>,
 ) -> Result<Option<Solved>, SolveError> {
-    if engine != Engine::Exact {
-        return attempt(watch).map(Some);
-    }
-    match attempt(&Deadline { watch, until: Instant::now() + EXACT_BUDGET }) {
-        Err(SolveError::Interrupted) if !watch.stop() => Ok(None),
-        other => other.map(Some),
+    if engine == Engine::Exact { within(EXACT_BUDGET, watch, attempt) } else { attempt(watch).map(Some) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::watch::Quiet;
+
+    #[test]
+    fn work_ends_with_its_time_and_not_before() {
+        let endless = |watch: &dyn Watch| -> Result<(), SolveError> {
+            while !watch.stop() {
+                std::thread::yield_now();
+            }
+            Err(SolveError::Interrupted)
+        };
+        assert_eq!(within(Duration::from_millis(5), &Quiet, endless), Ok(None));
+        assert_eq!(within(Duration::from_secs(600), &Quiet, |_| Ok(7)), Ok(Some(7)));
+
+        struct Stopped;
+        impl Watch for Stopped {
+            fn stop(&self) -> bool {
+                true
+            }
+        }
+        // Ctrl-C is no end of the time.
+        assert_eq!(within(Duration::from_secs(600), &Stopped, endless), Err(SolveError::Interrupted));
     }
 }

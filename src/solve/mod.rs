@@ -13,6 +13,7 @@ pub mod plain_answers;
 pub mod prepared;
 pub mod resume;
 pub mod retry;
+mod settle;
 pub mod solved;
 pub mod warm;
 mod written;

@@ -12,9 +12,11 @@ use super::attempt::run_scheme;
 use super::judge::{EXACT_ROWS, run_exact_plain, run_tableau};
 use super::ladder::{Ladder, within_budget};
 use super::plain_answers::all_plain_answers;
+use super::settle::{ray_holds, settled};
 use super::solved::{SolveError, Solved, Trace, empty_answer, fail_check};
-use crate::answer::check::check_plain;
-use crate::answer::record::{OutcomeKind, PlainSolution, Size, Verdict};
+use crate::answer::check::TOLERANCE;
+use crate::answer::check_plain::{ROUNDING, check_plain};
+use crate::answer::record::{PlainSolution, Size, Verdict};
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::sentence;
 use crate::lcp::mirrored::MirroredLcp;
@@ -123,7 +125,7 @@ pub(super) fn attempt_plain(
         TieBreak::Random(seed) => TieRule::Random(seed),
     };
     let start = Instant::now();
-    let run = match rules.engine {
+    let mut run = match rules.engine {
         Engine::Scheme => run_scheme(&lcp, rule, watch),
         Engine::Tableau => run_tableau(&lcp, rule, watch),
         Engine::Exact if lcp.size() > EXACT_ROWS => {
@@ -133,6 +135,11 @@ pub(super) fn attempt_plain(
     };
     if run.outcome == Outcome::Interrupted {
         return Err(SolveError::Interrupted);
+    }
+    let marginal = run.outcome == Outcome::Normal { marginal: true };
+    let basis = run.pivots.basis();
+    if matches!(run.outcome, Outcome::Normal { .. }) && !basis.p && rules.engine != Engine::Exact {
+        run.point = settled(&lcp, &basis, &run.point, watch);
     }
     let seconds = start.elapsed().as_secs_f64();
     let words = [rules.covering.word(problem), rules.tie_break.to_string(), rules.engine.to_string()];
@@ -148,7 +155,9 @@ pub(super) fn attempt_plain(
     }
     answer.solution = Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
     if answer.is_answer() {
-        answer.check = check_plain(&lcp, &run.point);
+        // A marginal answer is one up to the p that was left.
+        let tolerance = if marginal { TOLERANCE } else { ROUNDING };
+        answer.check = check_plain(&lcp, &run.point.z, tolerance);
         if !answer.check.passed {
             fail_check(&mut answer);
         }
@@ -183,6 +192,10 @@ pub(super) fn solve_plain_judged(
             first.say(&format!(" The default tie-break ({tie_break}) finds an answer in {count} pivots."));
         }
         return Ok(first);
+    }
+    if let (Some(ray), Trace::Plain { lcp, pivots }) = (&mut first.plain_ray, &first.trace) {
+        ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, watch);
+        first.answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
     }
     let found = all_plain_answers(&problem.lcp, watch);
     if found.as_ref().is_some_and(|found| found.complete && found.answers.is_empty())
@@ -220,8 +233,8 @@ pub(super) fn solve_plain_judged(
     Ok(ladder.without_answer())
 }
 
-/// What is tried after a first run without an answer, in order. Where rounding may be to blame exact arithmetic comes
-/// first; after a ray other coverings, which are cheap, and exact arithmetic to make sure of the ray.
+/// What is tried after a first run without an answer, in order. Where rounding is to blame exact arithmetic comes first;
+/// after a ray that is one in truth, other coverings.
 fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRules> {
     if first.plain_ray.as_ref().is_some_and(|ray| ray.whatever_the_covering) {
         return Vec::new();
@@ -239,9 +252,12 @@ fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRu
     rungs.push(PlainRules { tie_break: TieBreak::Random(1), ..own });
     if problem.lcp.size() <= EXACT_ROWS {
         let exact = PlainRules { engine: Engine::Exact, ..own };
-        match first.answer.outcome {
-            OutcomeKind::Ray => rungs.push(exact),
-            _ => rungs.insert(0, exact),
+        match first.plain_ray.as_ref().map(|ray| ray.exact) {
+            // Exact arithmetic has nothing to add.
+            Some(Some(true)) => {}
+            Some(None) => rungs.push(exact),
+            // A ray, or another end, by rounding.
+            Some(Some(false)) | None => rungs.insert(0, exact),
         }
     }
     rungs

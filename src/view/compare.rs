@@ -27,7 +27,59 @@ fn outcome(row: &Compared) -> (String, Role) {
     }
 }
 
-/// Writes the table and a line that sums it up.
+/// Rows of the comparison with the same end, and the rules that lead to it.
+struct Group<'a> {
+    coverings: Vec<&'a str>,
+    tie_breaks: Vec<&'a str>,
+    engines: Vec<&'a str>,
+    /// One of the rows.
+    row: &'a Compared,
+}
+
+/// What a row of the table shows of an end.
+fn end(row: &Compared) -> (String, usize, String, Option<usize>) {
+    (outcome(row).0, row.pivots, p_of(row), row.answer)
+}
+
+fn p_of(row: &Compared) -> String {
+    engineering(denoised(row.p, 1.0))
+}
+
+/// Joins groups with the same end that differ in one rule alone: in engines first, then tie-breaks, then coverings.
+fn groups(rows: &[Compared]) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group> = Vec::new();
+    for row in rows {
+        let Compared { covering, tie_break, engine, .. } = row;
+        groups.push(Group { coverings: vec![covering], tie_breaks: vec![tie_break], engines: vec![engine], row });
+    }
+    for rule in 0..3 {
+        let mut joined: Vec<Group> = Vec::new();
+        for mut group in groups {
+            let same = joined.iter_mut().find(|other| {
+                end(other.row) == end(group.row)
+                    && (rule == 0 || other.engines == group.engines)
+                    && (rule == 1 || other.tie_breaks == group.tie_breaks)
+                    && (rule == 2 || other.coverings == group.coverings)
+            });
+            match (same, rule) {
+                (Some(other), 0) => other.engines.append(&mut group.engines),
+                (Some(other), 1) => other.tie_breaks.append(&mut group.tie_breaks),
+                (Some(other), _) => other.coverings.append(&mut group.coverings),
+                (None, _) => joined.push(group),
+            }
+        }
+        groups = joined;
+    }
+    groups
+}
+
+/// The names of a group, or `all` where there are no others.
+fn names(chosen: &[&str], rows: &[Compared], of: impl Fn(&Compared) -> &str) -> String {
+    let every = rows.iter().all(|row| chosen.contains(&of(row)));
+    if every && chosen.len() > 1 { "all".to_owned() } else { chosen.join(", ") }
+}
+
+/// Writes the table, equal ends in one row, and a line that sums it up.
 pub fn write(out: &mut dyn Write, comparison: &Comparison, style: &Style) -> io::Result<()> {
     let mut table = Table::new(vec![
         Column::words("covering"),
@@ -38,16 +90,17 @@ pub fn write(out: &mut dyn Write, comparison: &Comparison, style: &Style) -> io:
         Column::numbers("p", None).droppable(1),
         Column::words("answer"),
     ]);
-    for row in &comparison.rows {
+    for group in groups(&comparison.rows) {
+        let row = group.row;
         let (text, role) = outcome(row);
         let ran = row.outcome.is_some();
         table.rows.push(Row::new(vec![
-            Cell::from(row.covering.as_str()),
-            Cell::from(row.tie_break.as_str()),
-            Cell::from(row.engine.as_str()),
+            Cell::from(names(&group.coverings, &comparison.rows, |row| &row.covering)),
+            Cell::from(names(&group.tie_breaks, &comparison.rows, |row| &row.tie_break)),
+            Cell::from(names(&group.engines, &comparison.rows, |row| &row.engine)),
             Cell::new(text, role),
             Cell::from(if ran { row.pivots.to_string() } else { String::new() }),
-            Cell::from(if ran { engineering(denoised(row.p, 1.0)) } else { String::new() }),
+            Cell::from(if ran { p_of(row) } else { String::new() }),
             Cell::from(row.answer.map_or(String::new(), letter)),
         ]));
     }

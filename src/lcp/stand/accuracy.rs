@@ -14,18 +14,16 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const REFINED: f64 = 1e-5;
 
 impl Stand {
-    /// The largest rate of decrease of the tied rows along column c, relative to its natural size; 0 where none is tied.
-    fn relative_fall(&self, c: usize, tied: &[Candidate]) -> f64 {
+    /// Rate of decrease of a tied row along column c, relative to its natural size.
+    pub(super) fn relative_fall(&self, c: usize, tied: &Candidate) -> f64 {
         let p_rate = self.dictionary.rate(Local::P, c, &self.column);
-        tied.iter()
-            .max_by(|a, b| a.fall.total_cmp(&b.fall))
-            .map_or(0.0, |blocking| blocking.fall / self.rate_size(blocking.variable, self.rate_total(c), p_rate))
+        tied.fall / self.rate_size(tied.variable, self.rate_total(c), p_rate).max(f64::MIN_POSITIVE)
     }
 
     /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it: a small residual
-    /// of the column does not show that a small rate in it is right.
+    /// of the column does not show that a small rate in it is right. One such row is enough: it may be no row at all.
     pub(crate) fn is_suspicious(&self, c: usize, tied: &[Candidate]) -> bool {
-        !self.fresh && self.relative_fall(c, tied) <= SUSPICIOUS
+        !self.fresh && (tied.is_empty() || tied.iter().any(|tied| self.relative_fall(c, tied) <= SUSPICIOUS))
     }
 
     /// The values at the vertex beside those that the data give.
@@ -55,7 +53,8 @@ impl Stand {
     /// can be made: by refinement, or where the dictionary is too far off, its row as well, by building it afresh.
     /// `false` (and nothing changed): the equations of the scheme are singular.
     pub(crate) fn confirm(&mut self, c: usize, tied: &[Candidate]) -> bool {
-        let bearable = REFINED * self.relative_fall(c, tied);
+        let surest = tied.iter().map(|tied| self.relative_fall(c, tied)).fold(0.0, f64::max);
+        let bearable = REFINED * surest;
         let rates = self.rates(c);
         if rates.error(self.rate_total(c)) <= bearable {
             let refined = rates.corrected();

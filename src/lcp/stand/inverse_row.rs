@@ -6,13 +6,21 @@ use super::super::variable::Variable;
 use super::{Candidate, Stand};
 
 impl Stand {
-    /// The rows of B⁻¹ of tied candidates, for the lexicographic rule.
+    /// The rows of B⁻¹ of the candidates tied along column c, for the lexicographic rule.
     pub(crate) fn inverse_rows<'a>(
         &'a self,
+        c: usize,
         tied: &'a [Candidate],
         table_row: &'a dyn Fn(Variable) -> usize,
     ) -> Vec<InverseRow<'a>> {
-        tied.iter().map(|candidate| InverseRow { stand: self, candidate, table_row }).collect()
+        tied.iter()
+            .map(|candidate| InverseRow {
+                stand: self,
+                candidate,
+                table_row,
+                certainty: self.relative_fall(c, candidate),
+            })
+            .collect()
     }
 
     /// Column of the nonbasic w that stands in row `whole` of the whole LCP.
@@ -41,11 +49,16 @@ pub(crate) struct InverseRow<'a> {
     stand: &'a Stand,
     candidate: &'a Candidate,
     table_row: &'a dyn Fn(Variable) -> usize,
+    certainty: f64,
 }
 
 impl TiedRow for InverseRow<'_> {
     fn table_row(&self) -> usize {
         (self.table_row)(self.stand.name(self.candidate))
+    }
+
+    fn certainty(&self) -> f64 {
+        self.certainty
     }
 
     fn entry(&self, row: usize) -> (f64, f64) {
