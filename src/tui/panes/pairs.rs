@@ -18,7 +18,7 @@ pub fn note(state: &State) -> String {
         return if state.shown.at_ray() {
             "last vertex before the ray".to_owned()
         } else {
-            state.shown.position.map_or(String::new(), crate::view::pivots::title)
+            state.shown.position.map_or(String::new(), |step| format!("pivot {step}"))
         };
     }
     let arrow = if state.descending { "↓" } else { "↑" };

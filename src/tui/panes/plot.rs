@@ -47,7 +47,7 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         Plot::Ray => return ray(state, area),
     };
     let now_label = match shown.position {
-        Some(step) => crate::view::pivots::title(step),
+        Some(step) => format!("pivot {step}"),
         None if shown.at_ray() => {
             let p = shown.p.map(crate::view::number::short).unwrap_or_default();
             format!("last vertex, p = {p}")

@@ -64,7 +64,7 @@ pub fn note(state: &State) -> String {
         note.push_str(&format!(" · zoom {}", short(state.view.zoom)));
     }
     if let Some(step) = state.shown.position {
-        note = format!("{} · {note}", crate::view::pivots::title(step));
+        note = format!("pivot {step} · {note}");
     }
     note
 }
