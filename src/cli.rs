@@ -16,7 +16,7 @@ use crate::model::problem::Problems;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::model::schema;
-use crate::session::{Answer, exit_status, load, paths, script};
+use crate::session::{Answer, exit_status, import, load, paths, script};
 use crate::session::{CommandError, Format, Output, Session, diagnose};
 use crate::signals::{self, Signals, TerminalWatch, is_dumb};
 use crate::text::printable::{self, Printable};
@@ -84,6 +84,15 @@ enum Command {
         /// For people, or one JSON object with what was found
         #[arg(long, value_enum, default_value_t = Form::Text)]
         format: Form,
+    },
+    /// Turn an LCP of Siconos (FILE.dat) into a scenario
+    ///
+    /// Reads dense, sparse and block matrices and writes FILE.json beside the file; one that is there already stays as it is.
+    #[command(after_help = "Example:\n  stickslip import lcp_mmc.dat")]
+    Import {
+        /// The file
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
     },
     /// Show a scenario in the full screen: vary it and watch
     Tui {
@@ -356,6 +365,11 @@ fn run(cli: Cli) -> Result<u8, Failure> {
         Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),
         Some(Command::Merge { files, out: to }) => merge(&files, to.as_deref(), &style, &mut out),
         Some(Command::Check { scenarios, format }) => check(&scenarios, format, &style, &mut out),
+        Some(Command::Import { file }) => {
+            let (written, rows) = import::import(&file)?;
+            writeln!(out, "wrote {}: an LCP of {rows} rows", written.display())?;
+            Ok(0)
+        }
         Some(Command::Scenarios) => {
             crate::session::write_scenarios(&mut out, &style)?;
             Ok(0)

@@ -1,64 +1,79 @@
-//! All answers of a small contact problem, by a search over working schemes.
+//! All answers of a contact problem, by a search over working schemes.
 //!
-//! Depth first, one pair after the other. Every quantity is kept as an affine function of the displacements of the
-//! pairs not yet decided; deciding a pair eliminates its one or two displacements. A partial scheme is cut when
-//! some sign of it fails for every admissible displacement of the others: normals z_n ≥ 0, and, where R is positive
-//! definite, the box around the ellipsoid zᵀR z ≤ −zᵀq that every answer lies in (zᵀλ ≤ 0 for every answer; q is RF −
-//! R·(g, 0)). Complete schemes that pass loosely are solved again with full pivoting, judged by the laws, and looked at
-//! in exact arithmetic. Singular partial schemes are searched without elimination.
+//! Depth first, one pair after the other; a partial scheme is cut only where its signs are proved to fail. Two ways to
+//! prove it: In balls (f64 with error bounds) every quantity is kept as an affine function of the displacements of the
+//! pairs not yet decided; deciding a pair eliminates its one or two displacements, and a sign that fails for all
+//! displacements of the others in their box ends the branch. The box: normals z_n ≥ 0 and, where R is positive
+//! definite, that around the ellipsoid zᵀR z ≤ −zᵀq that every answer lies in (zᵀλ ≤ 0 for every answer; q is RF −
+//! R·(g, 0)). Where balls cannot tell (singular partial schemes, no box, a scheme that is complete), the signs are a
+//! linear program in exact arithmetic ([`crate::lcp::polyhedron`]). Of a complete scheme it gives all answers, one or a
+//! continuum with its corners and directions. Nothing is accepted or cut by a tolerance.
 
 use std::ops::ControlFlow;
 
+use nalgebra::DVector;
+use num_rational::BigRational;
+
+use crate::lcp::all_solutions::Solutions;
+use crate::lcp::corners::corners;
+use crate::lcp::dyadic::{nearest, rational};
+use crate::lcp::polyhedron::{Polyhedron, State};
 use crate::model::pair::Law;
 
 use super::answer_box::ellipsoid;
-use super::exact_check::{Finding, exact_check};
+use super::ball::Ball;
+use super::exact_system::{ExactSystem, PairVariables};
 use super::numbers::ContactNumbers;
-use super::scheme_solve::{JointState, SchemeSolution, Sizes, law_violation, solve_scheme};
 use super::scheme_word::{PairScheme, Tangential};
 use super::system::ContactSystem;
-use super::whole::{fixed_bound, friction, joint_constants, tangential_joint};
+use super::whole::{fixed_bound, friction, tangential_joint};
 
-/// Most pairs that [`enumerate`] takes.
-pub const MOST_PAIRS: usize = 10;
-/// Relative violation up to which an eliminated scheme is looked at again.
-const LOOSE: f64 = 1e-6;
-/// Relative violation up to which a freshly solved scheme is an answer.
-const ACCEPTED: f64 = 1e-9;
-/// The same for a point of a continuum, found by linear programming.
-const ACCEPTED_CONTINUUM: f64 = 1e-7;
-/// Pivots of the elimination below this times R_jj count as singular.
-const SINGULAR: f64 = 1e-6;
-/// Relative distance below which two answers are one.
-const SAME: f64 = 1e-7;
+/// Without a box, pairs left from which on the exact linear program pays.
+const WORTH: usize = 3;
 
-/// One answer.
+/// Displacements and forces of all joints, in the order of R.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointState {
+    /// z; of a normal joint the distance still open.
+    pub z: DVector<f64>,
+    /// λ = R (z − (g, 0)) + RF.
+    pub force: DVector<f64>,
+}
+
+/// One answer, rounded to f64 from its exact value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnumeratedAnswer {
     /// The working schemes that lead to it: several where pairs are exactly on their limits.
     pub schemes: Vec<Vec<PairScheme>>,
     /// z and λ.
     pub state: JointState,
-    /// One of the schemes holds in exact arithmetic for the f64 data; otherwise it holds up to rounding.
-    pub exact: bool,
-    /// A scheme of singular equations: other answers may lie next to this one.
+    /// Other answers lie next to this one: it is a corner of a continuum.
     pub continuum: bool,
-    /// Largest relative violation of the laws.
-    pub violation: f64,
+}
+
+/// A set of answers with more than one element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Continuum {
+    /// Its corners, as indices of the answers.
+    pub corners: Vec<usize>,
+    /// Displacements of all joints along which it goes on without end, largest entry 1.
+    pub directions: Vec<DVector<f64>>,
 }
 
 /// What the search found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Enumeration {
-    /// All answers, in the order of the search.
+    /// All answers, in the order of the search; of a continuum its corners.
     pub answers: Vec<EnumeratedAnswer>,
+    /// Sets of answers between and beyond these.
+    pub continua: Vec<Continuum>,
     /// Complete schemes that were solved.
     pub visited: u64,
     /// Partial schemes that were cut off.
     pub cut: u64,
-    /// All schemes there are.
+    /// All schemes there are (at most 2⁶⁴ − 1 is told).
     pub total: u64,
-    /// Complete schemes that f64 could not decide.
+    /// Schemes with too many corners to list them all.
     pub undecided: u64,
     /// Whether the search came to its end.
     pub complete: bool,
@@ -71,11 +86,14 @@ impl Enumeration {
     }
 }
 
-/// More pairs than can be searched.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{found} contact pairs are too many to enumerate: at most {MOST_PAIRS}")]
-pub struct TooManyPairs {
-    /// Number of pairs.
+/// How far the search is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Partial and complete schemes looked at.
+    pub nodes: u64,
+    /// Share of the tree that is done, 0 … 1.
+    pub share: f64,
+    /// Answers found.
     pub found: usize,
 }
 
@@ -92,25 +110,18 @@ fn choices(system: &ContactSystem, numbers: &ContactNumbers, pair: usize) -> Vec
     }
 }
 
-/// Finds every answer. `observer` hears the number of complete schemes solved so far and may stop the search.
-///
-/// # Errors
-/// More than [`MOST_PAIRS`] pairs.
+/// Finds every answer. `observer` hears of the progress before every step and may stop the search; what was found until
+/// then is returned as incomplete.
 pub fn enumerate(
     system: &ContactSystem,
     numbers: &ContactNumbers,
-    observer: &mut dyn FnMut(u64) -> ControlFlow<()>,
-) -> Result<Enumeration, TooManyPairs> {
-    let m = system.pair_count();
-    if m > MOST_PAIRS {
-        return Err(TooManyPairs { found: m });
-    }
-    let mut search = Search::new(system, numbers);
-    let mut scheme = Vec::with_capacity(m);
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Enumeration {
+    let mut search = Search::new(system, numbers, observer);
+    let mut scheme = Vec::with_capacity(system.pair_count());
     let root = search.root.clone();
-    let ended = search.descend(Some(&root), &mut scheme, observer);
-    search.found.complete = ended.is_continue();
-    Ok(search.found)
+    let ended = search.descend(Some(&root), None, &mut scheme, 1.0);
+    search.result(ended.is_continue())
 }
 
 /// Rows: one per joint, pair by pair (n, then τ), holding λ_j or z_j, whichever is not fixed. Columns: the undecided
@@ -118,31 +129,37 @@ pub fn enumerate(
 #[derive(Clone)]
 struct Level {
     first: usize,
-    rows: Vec<f64>,
+    rows: Vec<Ball>,
 }
 
 /// An affine function of the undecided displacements, the constant last.
-type Row = Vec<f64>;
+type Row = Vec<Ball>;
 
 struct Search<'a> {
-    system: &'a ContactSystem,
-    numbers: &'a ContactNumbers,
-    sizes: Sizes,
+    exact: ExactSystem<'a>,
+    variables: Vec<PairVariables>,
+    observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
+    progress: Progress,
     /// First joint of every pair in the pair by pair order, and their number at the end.
     offsets: Vec<usize>,
     /// Joint of R of every joint in the pair by pair order.
     joints: Vec<usize>,
-    /// Box of every displacement.
+    /// Box of every displacement, and whether it is finite.
     bounds: Vec<(f64, f64)>,
-    /// Scaled size of displacements in the box; `None` where there is none.
-    extent: Option<f64>,
+    boxed: bool,
     choices: Vec<Vec<PairScheme>>,
     root: Level,
-    found: Enumeration,
+    solutions: Solutions,
+    /// The schemes of every basic solution.
+    schemes: Vec<Vec<Vec<PairScheme>>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(system: &'a ContactSystem, numbers: &'a ContactNumbers) -> Self {
+    fn new(
+        system: &'a ContactSystem,
+        numbers: &'a ContactNumbers,
+        observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Self {
         let m = system.pair_count();
         let mut joints = Vec::new();
         let mut offsets = vec![0];
@@ -153,148 +170,184 @@ impl<'a> Search<'a> {
             }
             offsets.push(joints.len());
         }
-        let k = joints.len();
-        let constants = joint_constants::<f64>(system, numbers);
-        let mut rows = Vec::with_capacity(k * (k + 1));
-        for i in &joints {
-            rows.extend(joints.iter().map(|j| system.stiffness[(*i, *j)]));
-            rows.push(constants[*i]);
+        let exact = ExactSystem::new(system, numbers);
+        let ball = |value: &BigRational| {
+            let near = nearest(value);
+            if rational(near) == *value { Ball::exactly(near) } else { Ball::rounded(near) }
+        };
+        let mut rows = Vec::with_capacity(joints.len() * (joints.len() + 1));
+        for &i in &joints {
+            rows.extend(joints.iter().map(|&j| ball(&exact.stiffness[i][j])));
+            rows.push(ball(&exact.constants[i]));
         }
         let mut bounds: Vec<(f64, f64)> = joints
             .iter()
             .map(|joint| if *joint < m { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, f64::INFINITY) })
             .collect();
-        let sizes = Sizes::new(system, numbers);
-        let extent = ellipsoid(system, &sizes, &joints, &constants).map(|boxes| {
-            for (bound, (low, high)) in bounds.iter_mut().zip(boxes.sides) {
-                *bound = (bound.0.max(low), bound.1.min(high));
-            }
-            boxes.extent
-        });
-        let choices: Vec<Vec<PairScheme>> = (0..m).map(|pair| choices(system, numbers, pair)).collect();
-        let total = choices.iter().map(|c| c.len() as u64).product();
+        let constants: Vec<f64> = exact.constants.iter().map(nearest).collect();
+        let sides = ellipsoid(system, &joints, &constants);
+        let boxed = sides.is_some();
+        for (bound, (low, high)) in bounds.iter_mut().zip(sides.into_iter().flatten()) {
+            *bound = (bound.0.max(low), bound.1.min(high));
+        }
         Self {
-            system,
-            numbers,
-            sizes,
+            variables: exact.variables(),
+            exact,
+            observer,
+            progress: Progress { nodes: 0, share: 0.0, found: 0 },
             offsets,
             joints,
             bounds,
-            extent,
-            choices,
+            boxed,
+            choices: (0..m).map(|pair| choices(system, numbers, pair)).collect(),
             root: Level { first: 0, rows },
-            found: Enumeration { answers: Vec::new(), visited: 0, cut: 0, total, undecided: 0, complete: false },
+            solutions: Solutions::default(),
+            schemes: Vec::new(),
         }
     }
 
-    /// `level` is `None` below a singular partial scheme.
+    /// `level` is `None` below a partial scheme that balls cannot eliminate; `above` is the exact program of a partial
+    /// scheme further up, with the number of pairs decided in it. `share` of the whole tree hangs here.
     fn descend(
         &mut self,
         level: Option<&Level>,
+        above: Option<(&Polyhedron, usize)>,
         scheme: &mut Vec<PairScheme>,
-        observer: &mut dyn FnMut(u64) -> ControlFlow<()>,
+        share: f64,
     ) -> ControlFlow<()> {
         let pair = scheme.len();
         if pair == self.choices.len() {
-            self.found.visited += 1;
-            self.judge(scheme);
-            return ControlFlow::Continue(());
+            // Only without any pair.
+            let polyhedron = self.program(above, scheme)?;
+            return polyhedron.map_or(ControlFlow::Continue(()), |polyhedron| self.leaf(&polyhedron, scheme));
         }
+        let left = self.choices.len() - pair - 1;
+        let share = share / self.choices[pair].len() as f64;
         for choice in self.choices[pair].clone() {
+            self.progress.nodes += 1;
+            (self.observer)(self.progress)?;
             scheme.push(choice);
             let next = level.and_then(|level| self.decide(level, pair, choice));
-            let last = pair + 1 == self.choices.len();
-            let result = if next.as_ref().is_some_and(|next| self.hopeless(next, scheme)) {
-                if last {
-                    self.found.visited += 1;
-                } else {
-                    self.found.cut += 1;
+            let hopeless = next.as_ref().is_some_and(|next| self.hopeless(next, scheme));
+            let result = if hopeless {
+                self.end(left, share)
+            } else if left == 0 || next.is_none() || (!self.boxed && left >= WORTH) {
+                match self.program(above, scheme) {
+                    ControlFlow::Break(()) => ControlFlow::Break(()),
+                    ControlFlow::Continue(None) => self.end(left, share),
+                    ControlFlow::Continue(Some(polyhedron)) if left == 0 => {
+                        self.progress.share += share;
+                        self.solutions.leaves += 1;
+                        self.leaf(&polyhedron, scheme)
+                    }
+                    ControlFlow::Continue(Some(polyhedron)) => {
+                        self.descend(next.as_ref(), Some((&polyhedron, pair + 1)), scheme, share)
+                    }
                 }
-                ControlFlow::Continue(())
             } else {
-                self.descend(next.as_ref(), scheme, observer)
+                self.descend(next.as_ref(), above, scheme, share)
             };
             scheme.pop();
             result?;
-            if (self.found.visited + self.found.cut).is_multiple_of(1024) {
-                observer(self.found.visited)?;
-            }
         }
         ControlFlow::Continue(())
     }
 
-    /// The dictionary with this pair decided; `None` when that is (nearly) singular.
+    /// A branch with nothing in it.
+    fn end(&mut self, left: usize, share: f64) -> ControlFlow<()> {
+        self.progress.share += share;
+        if left == 0 {
+            self.solutions.leaves += 1;
+        } else {
+            self.solutions.cut += 1;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The exact program of a partial scheme; `None` where it is empty.
+    fn program(
+        &mut self,
+        above: Option<(&Polyhedron, usize)>,
+        scheme: &[PairScheme],
+    ) -> ControlFlow<(), Option<Polyhedron>> {
+        let mut go_on = || (self.observer)(self.progress).is_continue();
+        let (mut polyhedron, mut state, decided) = match above {
+            Some((polyhedron, decided)) => (polyhedron.clone(), State::Feasible, decided),
+            None => {
+                let (polyhedron, state) = self.exact.polyhedron(&mut go_on);
+                (polyhedron, state, 0)
+            }
+        };
+        for pair in decided..scheme.len() {
+            if state == State::Feasible {
+                let holds = fixed_bound(self.exact.system, self.exact.numbers, pair) > 0.0;
+                state = self.variables[pair].impose(&mut polyhedron, scheme[pair], holds, &mut go_on);
+            }
+        }
+        match state {
+            State::Feasible => ControlFlow::Continue(Some(polyhedron)),
+            State::Empty => ControlFlow::Continue(None),
+            State::Stopped => ControlFlow::Break(()),
+        }
+    }
+
+    /// The dictionary with this pair decided; `None` when a pivot may be zero.
     fn decide(&self, level: &Level, pair: usize, choice: PairScheme) -> Option<Level> {
+        let (system, numbers) = (self.exact.system, self.exact.numbers);
         let k = self.joints.len();
         let width = k + 1 - level.first;
         let n = self.offsets[pair];
         let next = self.offsets[pair + 1];
-        let tangential = next - n == 2;
         let row = |i: usize| &level.rows[i * width..(i + 1) * width];
-        let f = friction(self.system, self.numbers, pair);
-        let root = |i: usize| self.sizes.root[self.joints[i]];
+        let f = Ball::exactly(friction(system, numbers, pair));
 
-        // Equations to be solved for the displacement of a joint, with the size their pivot is judged by.
-        let mut equations: Vec<(usize, Row, f64)> = Vec::new();
+        // Equations to be solved for the displacement of a joint.
+        let mut equations: Vec<(usize, Row)> = Vec::new();
         if choice.open {
-            equations.push((n, row(n).to_vec(), root(n) * root(n)));
+            equations.push((n, row(n).to_vec()));
         }
         let slip = choice.tangential.sign();
-        if tangential && slip != 0.0 {
+        if next - n == 2 && slip != 0.0 {
             // x^± = 0: λ_τ ± (f λ_n + c) = 0; λ_n = 0 where open.
-            let f = if choice.open { 0.0 } else { f };
-            let mut equation: Row = row(n + 1).iter().zip(row(n)).map(|(t, n)| t + slip * f * n).collect();
-            equation[width - 1] += slip * fixed_bound(self.system, self.numbers, pair);
-            let size = root(n + 1) * (root(n + 1) + f * root(n));
-            equations.push((n + 1, equation, size));
+            let f = if choice.open { Ball::ZERO } else { f };
+            let sign = |ball: Ball| if slip > 0.0 { ball } else { ball.negative() };
+            let mut equation: Row = row(n + 1).iter().zip(row(n)).map(|(t, n)| t.plus(sign(f.times(*n)))).collect();
+            let bound = Ball::exactly(fixed_bound(system, numbers, pair));
+            equation[width - 1] = equation[width - 1].plus(sign(bound));
+            equations.push((n + 1, equation));
         }
         // Displacements of this pair in terms of the undecided ones; 0 where the joint is on.
         let mut displacement: [Option<Row>; 2] = [None, None];
         let column = |joint: usize| joint - level.first;
-        if let [(_, first, first_size), (_, second, second_size)] = &mut equations[..] {
-            // Two by two with the larger pivot first.
-            let (a, b) = (first[column(n)], second[column(n + 1)]);
-            let normal_first = a.abs() / *first_size >= b.abs() / *second_size;
-            let (lead, lead_at, follow, follow_at) = if normal_first {
-                (&*first, column(n), &mut *second, column(n + 1))
-            } else {
-                (&*second, column(n + 1), &mut *first, column(n))
-            };
-            let pivot = lead[lead_at];
-            let (lead_size, follow_size) =
-                if normal_first { (*first_size, *second_size) } else { (*second_size, *first_size) };
-            if pivot.abs() <= SINGULAR * lead_size {
-                return None;
+        match &mut equations[..] {
+            [(_, first), (_, second)] => {
+                // Two by two with the larger pivot first.
+                let relative = |own: &Row, at: usize| own[column(at)].middle.abs() / size(own);
+                let normal_first = relative(first, n) >= relative(second, n + 1);
+                let (lead, at, follow, follow_at) = if normal_first {
+                    (&*first, column(n), &mut *second, column(n + 1))
+                } else {
+                    (&*second, column(n + 1), &mut *first, column(n))
+                };
+                let factor = follow[at].over(lead[at])?;
+                for (x, y) in follow.iter_mut().zip(lead) {
+                    *x = x.minus(factor.times(*y));
+                }
+                follow[at] = Ball::ZERO;
+                let z_follow = solved(follow, follow_at)?;
+                let coupling = lead[follow_at];
+                let mut inserted: Row = lead.iter().zip(&z_follow).map(|(x, z)| x.plus(coupling.times(*z))).collect();
+                inserted[follow_at] = Ball::ZERO;
+                let z_lead = solved(&inserted, at)?;
+                displacement =
+                    if normal_first { [Some(z_lead), Some(z_follow)] } else { [Some(z_follow), Some(z_lead)] };
             }
-            let factor = follow[lead_at] / pivot;
-            for (x, y) in follow.iter_mut().zip(lead) {
-                *x -= factor * y;
-            }
-            follow[lead_at] = 0.0;
-            let pivot_of_follow = follow[follow_at];
-            if pivot_of_follow.abs() <= SINGULAR * follow_size {
-                return None;
-            }
-            let mut z_follow: Row = follow.iter().map(|x| -x / pivot_of_follow).collect();
-            z_follow[follow_at] = 0.0;
-            let coupling = lead[follow_at];
-            let mut z_lead: Row = lead.iter().zip(&z_follow).map(|(x, z)| -(x + coupling * z) / pivot).collect();
-            z_lead[lead_at] = 0.0;
-            z_lead[follow_at] = 0.0;
-            displacement = if normal_first { [Some(z_lead), Some(z_follow)] } else { [Some(z_follow), Some(z_lead)] };
-        } else if let [(joint, equation, size)] = &equations[..] {
-            let pivot = equation[column(*joint)];
-            if pivot.abs() <= SINGULAR * size {
-                return None;
-            }
-            let mut z: Row = equation.iter().map(|x| -x / pivot).collect();
-            z[column(*joint)] = 0.0;
-            displacement[joint - n] = Some(z);
+            [(joint, equation)] => displacement[*joint - n] = Some(solved(equation, column(*joint))?),
+            _ => {}
         }
 
         let skip = next - level.first;
-        let new_width = width - skip;
-        let mut rows = Vec::with_capacity(k * new_width);
+        let mut rows = Vec::with_capacity(k * (width - skip));
         for i in 0..k {
             if (n..next).contains(&i)
                 && let Some(z) = &displacement[i - n]
@@ -308,9 +361,9 @@ impl<'a> Search<'a> {
             for joint in n..next {
                 if let Some(z) = &displacement[joint - n] {
                     let factor = old[column(joint)];
-                    if factor != 0.0 {
+                    if !factor.is_nothing() {
                         for (x, z) in rows[start..].iter_mut().zip(&z[skip..]) {
-                            *x += factor * z;
+                            *x = x.plus(factor.times(*z));
                         }
                     }
                 }
@@ -321,139 +374,129 @@ impl<'a> Search<'a> {
 
     /// Whether some sign of the decided pairs fails for all displacements of the others.
     fn hopeless(&self, level: &Level, scheme: &[PairScheme]) -> bool {
+        let (system, numbers) = (self.exact.system, self.exact.numbers);
         let width = self.joints.len() + 1 - level.first;
         let row = |i: usize| &level.rows[i * width..(i + 1) * width];
         let bounds = &self.bounds[level.first..];
-        // Size of displacements: the box, or at a complete scheme the displacements themselves.
-        let extent = self.extent.or_else(|| {
-            (width == 1).then(|| {
-                scheme
-                    .iter()
-                    .enumerate()
-                    .flat_map(|(pair, s)| self.released(pair, *s))
-                    .map(|i| row(i)[0].abs() * self.sizes.root[self.joints[i]])
-                    .fold(0.0, f64::max)
-            })
-        });
-        // Largest value of Σ (factor · row) + fixed is below −(LOOSE · size)?
-        let fails = |terms: &[(usize, f64)], fixed: f64, size: f64| {
-            let mut largest = fixed;
-            let entry = |column: usize| -> f64 { terms.iter().map(|(i, f)| f * row(*i)[column]).sum() };
+        // Σ factor · row + fixed is negative throughout.
+        let fails = |terms: &[(usize, f64)], fixed: f64| {
+            let entry = |column: usize| {
+                let scaled = |&(i, factor): &(usize, f64)| Ball::exactly(factor).times(row(i)[column]);
+                terms.iter().map(scaled).fold(Ball::ZERO, Ball::plus)
+            };
+            let constant = entry(width - 1).plus(Ball::exactly(fixed));
+            let mut largest = Ball::exactly(constant.largest_times(1.0, 1.0));
             for (column, (low, high)) in bounds.iter().enumerate() {
-                let a = entry(column);
-                // Not 0 · ∞.
-                if a != 0.0 {
-                    largest += a * if a > 0.0 { high } else { low };
-                }
-                if largest == f64::INFINITY {
+                let most = entry(column).largest_times(*low, *high);
+                if most == f64::INFINITY {
                     return false;
                 }
+                largest = largest.plus(Ball::exactly(most));
             }
-            largest += entry(width - 1);
-            largest < -LOOSE * size
+            largest.middle + largest.radius < 0.0
         };
-        let force = self.sizes.force;
         scheme.iter().enumerate().any(|(pair, state)| {
             let n = self.offsets[pair];
-            let tangential = self.offsets[pair + 1] - n == 2;
-            let bilateral = matches!(self.system.pairs[pair].law, Law::Bound { .. });
-            let f = friction(self.system, self.numbers, pair);
-            let fixed = fixed_bound(self.system, self.numbers, pair);
-            let moves = |i: usize, sign: f64| {
-                extent.is_some_and(|extent| fails(&[(i, sign)], 0.0, extent / self.sizes.root[self.joints[i]]))
-            };
-            if state.open {
-                if moves(n, 1.0) {
-                    return true;
-                }
-            } else if !bilateral && fails(&[(n, 1.0)], 0.0, force) {
+            let bilateral = matches!(system.pairs[pair].law, Law::Bound { .. });
+            let fixed = fixed_bound(system, numbers, pair);
+            // z_n where open, x_n where closed.
+            if !bilateral && fails(&[(n, 1.0)], 0.0) {
                 return true;
             }
-            if !tangential {
+            if self.offsets[pair + 1] - n != 2 {
                 return false;
             }
             match state.tangential {
                 // An open pair without cohesion slips freely.
                 _ if state.open && fixed == 0.0 => false,
                 Tangential::Stick => [1.0, -1.0].into_iter().any(|side| {
-                    let f = if state.open { 0.0 } else { f };
-                    fails(&[(n, f), (n + 1, side)], fixed, force)
+                    let f = if state.open { 0.0 } else { friction(system, numbers, pair) };
+                    fails(&[(n, f), (n + 1, side)], fixed)
                 }),
-                Tangential::SlipPlus => moves(n + 1, 1.0),
-                Tangential::SlipMinus => moves(n + 1, -1.0),
+                Tangential::SlipPlus => fails(&[(n + 1, 1.0)], 0.0),
+                Tangential::SlipMinus => fails(&[(n + 1, -1.0)], 0.0),
             }
         })
     }
 
-    /// Rows of a decided pair that hold displacements.
-    fn released(&self, pair: usize, scheme: PairScheme) -> impl Iterator<Item = usize> {
-        let n = self.offsets[pair];
-        let tangential = self.offsets[pair + 1] - n == 2 && scheme.tangential != Tangential::Stick;
-        scheme.open.then_some(n).into_iter().chain(tangential.then_some(n + 1))
+    /// All answers of a complete scheme.
+    fn leaf(&mut self, polyhedron: &Polyhedron, scheme: &[PairScheme]) -> ControlFlow<()> {
+        let joints: Vec<usize> = (0..self.exact.system.joint_count()).collect();
+        let mut stopped = false;
+        let mut go_on = || {
+            stopped |= (self.observer)(self.progress).is_break();
+            !stopped
+        };
+        let found = corners(polyhedron, &joints, &mut go_on);
+        for at in self.solutions.add(found) {
+            if at == self.schemes.len() {
+                self.schemes.push(Vec::new());
+            }
+            self.schemes[at].push(scheme.to_vec());
+        }
+        self.progress.found = self.solutions.basic.len();
+        if stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Solves a complete scheme afresh and keeps it if it is an answer.
-    fn judge(&mut self, scheme: &[PairScheme]) {
-        let (state, continuum) = match solve_scheme(self.system, self.numbers, scheme) {
-            SchemeSolution::Unique(state) => (state, false),
-            SchemeSolution::Continuum(state) => (state, true),
-            SchemeSolution::Nothing => return,
-            SchemeSolution::Undecided => {
-                self.found.undecided += 1;
-                return;
-            }
-        };
-        let violation = law_violation(self.system, self.numbers, &state);
-        if violation > LOOSE {
-            return;
+    fn result(self, complete: bool) -> Enumeration {
+        let rounded = |values: &[BigRational]| DVector::from_iterator(values.len(), values.iter().map(nearest));
+        let Solutions { basic, continua, unlisted, leaves, cut, .. } = &self.solutions;
+        let answers = basic
+            .iter()
+            .zip(&self.schemes)
+            .enumerate()
+            .map(|(at, (z, schemes))| {
+                let state = JointState { z: rounded(z), force: rounded(&self.exact.force(z)) };
+                EnumeratedAnswer {
+                    schemes: schemes.iter().map(|scheme| self.with_slips(scheme, &state)).collect(),
+                    state,
+                    continuum: continua.iter().any(|piece| piece.corners.contains(&at)),
+                }
+            })
+            .collect();
+        Enumeration {
+            answers,
+            continua: continua
+                .iter()
+                .map(|piece| Continuum {
+                    corners: piece.corners.clone(),
+                    directions: piece.directions.iter().map(|direction| rounded(direction)).collect(),
+                })
+                .collect(),
+            visited: *leaves,
+            cut: *cut,
+            total: self.choices.iter().fold(1, |total: u64, choices| total.saturating_mul(choices.len() as u64)),
+            undecided: *unlisted,
+            complete,
         }
-        let exact = match exact_check(self.system, self.numbers, scheme, &mut |_| ControlFlow::Continue(())).finding {
-            Finding::Proved { .. } => Some(true),
-            Finding::Refuted { .. } | Finding::Singular { consistent: false, .. } => Some(false),
-            _ => None,
-        };
-        let accepted = if continuum { ACCEPTED_CONTINUUM } else { ACCEPTED };
-        if violation > accepted && exact != Some(true) {
-            if exact.is_none() {
-                self.found.undecided += 1;
-            }
-            return;
-        }
+    }
+
+    /// The direction in which open pairs slip that nothing holds.
+    fn with_slips(&self, scheme: &[PairScheme], state: &JointState) -> Vec<PairScheme> {
         let mut scheme = scheme.to_vec();
-        for (pair, state_of) in scheme.iter_mut().enumerate() {
-            let free = state_of.open && fixed_bound(self.system, self.numbers, pair) == 0.0;
-            if free
-                && let Some(tangential) = self.system.pairs[pair].tangential
-                && state_of.tangential != Tangential::Stick
-                && state.z[tangential] < 0.0
+        for (pair, chosen) in scheme.iter_mut().enumerate() {
+            if *chosen == PairScheme::OPEN
+                && fixed_bound(self.exact.system, self.exact.numbers, pair) == 0.0
+                && self.exact.system.pairs[pair].tangential.is_some_and(|joint| state.z[joint] < 0.0)
             {
-                state_of.tangential = Tangential::SlipMinus;
+                chosen.tangential = Tangential::SlipMinus;
             }
         }
-        let exact = exact == Some(true);
-        let same = |known: &EnumeratedAnswer| self.same(&known.state, &state);
-        if let Some(place) = self.found.answers.iter().position(same) {
-            let known = &mut self.found.answers[place];
-            known.schemes.push(scheme);
-            known.continuum |= continuum;
-            if (exact, -violation) > (known.exact, -known.violation) {
-                known.state = state;
-                known.violation = violation;
-            }
-            known.exact |= exact;
-        } else {
-            self.found.answers.push(EnumeratedAnswer { schemes: vec![scheme], state, exact, continuum, violation });
-        }
+        scheme
     }
+}
 
-    fn same(&self, a: &JointState, b: &JointState) -> bool {
-        let size = self.sizes.displacement(&a.z).max(self.sizes.displacement(&b.z));
-        let still = a.z.amax() == 0.0 && b.z.amax() == 0.0;
-        let moved =
-            (0..self.system.joint_count()).map(|j| ((a.z[j] - b.z[j]) * self.sizes.root[j]).abs()).fold(0.0, f64::max);
-        let force = (&a.force - &b.force).amax();
-        (still || moved <= SAME * size) && force <= SAME * self.sizes.force
-    }
+/// Largest entry of a row.
+fn size(row: &Row) -> f64 {
+    row.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.middle.abs()))
+}
+
+/// The displacement of `column` from an equation; `None` where its coefficient may be zero.
+fn solved(equation: &Row, column: usize) -> Option<Row> {
+    let pivot = equation[column].negative();
+    let mut row: Row = equation.iter().map(|entry| entry.over(pivot)).collect::<Option<_>>()?;
+    row[column] = Ball::ZERO;
+    Some(row)
 }
 
 #[cfg(test)]

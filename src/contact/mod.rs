@@ -1,14 +1,15 @@
 //! Unilateral joints: from the condensed structure to the complementarity problem and back.
 
 pub(crate) mod answer_box;
+mod ball;
 pub mod complementarity;
 pub mod critical;
 pub mod enumerate;
 pub mod exact_check;
+mod exact_system;
 pub mod given;
 pub mod load_path;
 pub mod numbers;
-pub mod scheme_solve;
 pub mod scheme_word;
 pub mod sharpen;
 pub mod sums;

@@ -12,13 +12,12 @@ use super::remedy::{Remedy, Try, digits, remedies, sentence};
 use super::words::{list, short};
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::complementarity::ContactLcp;
-use crate::contact::enumerate::{Enumeration, MOST_PAIRS, enumerate};
+use crate::contact::enumerate::{Enumeration, enumerate};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::fem::MainSystem;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::problem::NOISE;
-use crate::model::pair::Law;
 use crate::model::rules::Covering;
 use crate::model::structure::Structure;
 use crate::watch::Watch;
@@ -27,8 +26,10 @@ use crate::watch::Watch;
 const NO_ENERGY: f64 = 1e-7;
 /// A power below this multiple of the terms it sums is rounding.
 const NO_POWER: f64 = NOISE;
-/// Most working schemes that are gone through to prove that there is no answer.
-const MOST_SCHEMES: u64 = 50_000;
+/// Most pairs whose working schemes are gone through beside a solution.
+const MOST_PAIRS: usize = 10;
+/// Steps times the cube of the joints after which that is given up.
+const MOST_STEPS: u64 = 100_000_000;
 
 /// Work of a load case on the mode, per unit of its largest entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -198,30 +199,19 @@ pub fn report(
     report.record(system, Covering::default())
 }
 
-/// Goes through all working schemes where they are few; `None` where they are many or the search was stopped.
+/// Goes through all working schemes; `None` where that takes too many steps or the search was stopped.
 pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> {
     let Subject { system, numbers, .. } = *subject;
-    if system.pairs.len() > MOST_PAIRS {
+    let pairs = system.pairs.len();
+    if pairs > MOST_PAIRS {
         return None;
     }
-    let schemes: u64 = system
-        .pairs
-        .iter()
-        .enumerate()
-        .map(|(i, pair)| match pair.law {
-            Law::Frictionless { .. } => 2,
-            Law::Bound { .. } => 3,
-            Law::Coulomb { .. } if numbers.cohesion[i] > 0.0 => 6,
-            Law::Coulomb { .. } => 4,
-        })
-        .product();
-    if schemes > MOST_SCHEMES {
-        return None;
-    }
+    let most = MOST_STEPS / (2 * pairs as u64).pow(3).max(1);
+    let mut steps = 0;
     let found = enumerate(system, numbers, &mut |_| {
-        if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })
-    .ok()?;
+        steps += 1;
+        if steps > most || watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
     found.complete.then_some(found)
 }
 

@@ -25,6 +25,24 @@ pub fn scenario(lcp: &Lcp<f64>, names: &[String], title: &str) -> Value {
     })
 }
 
+/// A bare LCP as the text of a scenario, a row of M a line.
+///
+/// # Errors
+/// Those of `out`.
+pub fn scenario_text(out: &mut dyn Write, title: &str, matrix: &[Vec<f64>], q: &[f64]) -> io::Result<()> {
+    let text = |value: Value| value.to_string();
+    writeln!(
+        out,
+        "{{\n  \"format\": \"stickslip/1\",\n  \"title\": {},\n  \"lcp\": {{\n    \"M\": [",
+        text(json!(title))
+    )?;
+    for (i, row) in matrix.iter().enumerate() {
+        let comma = if i + 1 < matrix.len() { "," } else { "" };
+        writeln!(out, "      {}{comma}", text(json!(row)))?;
+    }
+    writeln!(out, "    ],\n    \"q\": {}\n  }}\n}}", text(json!(q)))
+}
+
 /// A dense matrix in Matrix Market array format, column by column; a vector is a matrix of one column.
 ///
 /// # Errors
@@ -62,6 +80,30 @@ mod tests {
         assert_eq!(given.matrix, lcp.matrix);
         assert_eq!(given.covering, Some(lcp.covering));
         assert_eq!(given.names, ["x_n_c1", "x_minus_joint_0"]);
+    }
+
+    #[test]
+    fn the_text_of_a_bare_lcp_loads_to_it() {
+        let matrix = vec![vec![2.0, 1.0 / 3.0], vec![-1e-17, 1.5]];
+        let mut out = Vec::new();
+        scenario_text(&mut out, "say \"two\"", &matrix, &[-1.0, 0.1]).expect("a vector takes it");
+        let loaded = load_text("two", &String::from_utf8(out).expect("text"), None).expect("a scenario");
+        assert_eq!(loaded.title, "say \"two\"");
+        let Source::Lcp(given) = loaded.source else { panic!("an lcp") };
+        assert_eq!(given.matrix, matrix);
+    }
+
+    #[test]
+    fn a_matrix_goes_to_a_file_and_back() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let rows = [vec![0.1, -1e-300], vec![2.0 / 3.0, 5e-324]];
+        let mut out = Vec::new();
+        matrix_market(&mut out, &rows, "M of w = M z + q").expect("a vector takes it");
+        std::fs::write(folder.path().join("m.mtx"), out).expect("a file");
+        let text = r#"{ "format": "stickslip/1", "title": "t", "lcp": { "M": { "file": "m.mtx" }, "q": [1, 2] } }"#;
+        let loaded = load_text("t", text, Some(&folder.path().join("t.json"))).expect("a scenario");
+        let Source::Lcp(given) = loaded.source else { panic!("an lcp") };
+        assert_eq!(given.matrix, rows);
     }
 
     #[test]

@@ -18,6 +18,7 @@ pub mod problem;
 pub mod rules;
 pub mod scenario;
 pub mod schema;
+pub mod siconos;
 pub mod structure;
 pub mod uses;
 mod words;

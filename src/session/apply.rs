@@ -20,7 +20,7 @@ use super::command::{Command, Export};
 use super::expect::{self, Facts};
 use super::journal::Record;
 use super::values::{self, Setting};
-use super::{Change, CommandError, Format, Next, Output, Session, Setup, help, load, save, script};
+use super::{Change, CommandError, Format, Next, Output, Session, Setup, help, import, load, save, script};
 
 impl Session {
     /// One command. The arms that only show something are in `reports`.
@@ -67,6 +67,10 @@ impl Session {
             Command::Export { what: Export::Path, file } => self.export_path(&file, io)?,
             Command::Export { what: Export::Lcp, file } => self.export_lcp(&file, io)?,
             Command::Export { what, file } => self.export(what, &file, io)?,
+            Command::Import { file } => {
+                let (written, rows) = import::import(&file)?;
+                io.say(&format!("wrote {}: an LCP of {rows} rows", written.display()))?;
+            }
             Command::Echo { words } => io.say(&words.join(" "))?,
             Command::Restore { discard } => self.restore(discard.is_some(), io)?,
             Command::Help { command } => show_help(command.as_deref(), io)?,

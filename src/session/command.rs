@@ -148,10 +148,12 @@ pub enum Command {
     /// Run every covering, tie-break and engine on the present values, and say which find the same answer
     #[command(after_help = "Example:\n  load greco; set f 2; compare")]
     Compare,
-    /// List every answer of a small problem; with a number, show that one
+    /// List every answer; with a number, show that one
     ///
-    /// Goes through all working schemes (at most 10 pairs; 9 rows of a bare LCP). `enumerate 2` makes the second answer
-    /// the one that `pairs`, `plot` and the others show; `solve` goes back to Lemke's.
+    /// Goes through all working schemes in exact arithmetic, cutting what cannot be completed. Where answers lie side by
+    /// side it tells the corners of the continuum and the directions in which it has no end. Ctrl-C shows what was found
+    /// so far. `enumerate 2` makes the second answer the one that `pairs`, `plot` and the others show; `solve` goes back
+    /// to Lemke's.
     #[command(after_help = "Example:\n  load klarbring; enumerate; enumerate 2; pairs")]
     Enumerate {
         /// Number of the answer to show
@@ -302,7 +304,8 @@ pub enum Command {
     /// Write results, or the LCP, to a file
     ///
     /// Results go to .csv or .json. `export lcp` writes M, q and the covering d, in the units of the scenario: to .json
-    /// as a scenario of this program, or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format.
+    /// as a scenario of this program, or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a
+    /// scenario reads M back with `"M": { "file": "FILE.mtx" }`.
     #[command(
         after_help = "Example:\n  export pairs pairs.csv\n  export result answer.json\n  export lcp beam-lcp.json"
     )]
@@ -311,6 +314,15 @@ pub enum Command {
         #[arg(value_name = "WHAT")]
         what: Export,
         /// Its ending says the format: .csv, .json or .mtx
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
+    /// Turn an LCP of Siconos (FILE.dat: dense, sparse or in blocks) into a scenario
+    ///
+    /// Writes FILE.json beside it, which `load` opens; a file that is there already stays as it is.
+    #[command(after_help = "Example:\n  import lcp_mmc.dat; load lcp_mmc.json")]
+    Import {
+        /// The file
         #[arg(value_name = "FILE")]
         file: PathBuf,
     },

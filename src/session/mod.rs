@@ -10,6 +10,7 @@ mod error;
 pub mod expect;
 mod exports;
 pub mod help;
+pub mod import;
 pub mod journal;
 pub mod load;
 mod output;

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::sync::Arc;
+use std::time::Duration;
 
 use serde_json::{Value, json};
 
@@ -9,13 +10,16 @@ use crate::contact::critical::Coverage;
 use crate::explain::margin::Margin;
 use crate::model::scenario::Source;
 use crate::model::uses::Region;
-use crate::solve::all_answers::{AllAnswers, QuestionError};
+use crate::solve::all_answers::{AllAnswers, Continuum, Moving, QuestionError};
 use crate::solve::{Prepared, Solved};
 use crate::view;
 use crate::view::style::Style;
 use crate::watch::Watch;
 
 use super::{CommandError, Output, Session, worker};
+
+/// How long the answers of a stopped search are waited for.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 impl From<QuestionError> for CommandError {
     fn from(error: QuestionError) -> Self {
@@ -24,6 +28,24 @@ impl From<QuestionError> for CommandError {
             QuestionError::Refused(text) => CommandError::Refused(text),
         }
     }
+}
+
+/// A set of answers: its corners, numbered from 1 as the answers are, and the directions in which it has no end.
+fn continuum(all: &AllAnswers, piece: &Continuum) -> Value {
+    let z = |corner: &usize| all.answers[*corner].answer.solution.as_ref().map(|solution| &solution.z);
+    let directions: Vec<Value> = piece
+        .directions
+        .iter()
+        .map(|direction| match direction {
+            Moving::Pairs(pairs) => json!(pairs),
+            Moving::Plain(z) => json!(z),
+        })
+        .collect();
+    json!({
+        "answers": piece.corners.iter().map(|corner| corner + 1).collect::<Vec<_>>(),
+        "corners": piece.corners.iter().map(z).collect::<Option<Vec<_>>>(),
+        "directions": directions,
+    })
 }
 
 impl Session {
@@ -97,7 +119,10 @@ impl Session {
 
     pub(super) fn enumerate(&mut self, answer: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
-        let mut all: AllAnswers = self.ask(io, move |prepared, _, watch| prepared.all_answers(&values, watch))?;
+        // Stopped, it shows what was found so far.
+        let (prepared, _) = self.both()?;
+        let mut all: AllAnswers =
+            worker::run_patiently(io.watch, PATIENCE, move |watch| prepared.all_answers(&values, watch))??;
         if let Some(number) = answer {
             let count = all.answers.len();
             if number == 0 || number > count {
@@ -126,8 +151,11 @@ impl Session {
                         })
                     })
                     .collect();
+                let continua: Vec<Value> = all.continua.iter().map(|piece| continuum(&all, piece)).collect();
                 json!({
                     "answers": answers,
+                    "continua": continua,
+                    "complete": all.complete,
                     "visited": all.visited,
                     "cut": all.cut,
                     "total": all.total,

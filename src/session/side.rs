@@ -81,11 +81,10 @@ impl Session {
                     "answers are enumerated for contact problems, this is a bare LCP".into(),
                 ));
             };
-            let mut look = |_: u64| {
+            let found = enumerate(system, numbers, &mut |progress| {
+                watch.progress("all answers", progress.share);
                 if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            };
-            let found =
-                enumerate(system, numbers, &mut look).map_err(|error| CommandError::Refused(error.to_string()))?;
+            });
             let answers = found
                 .answers
                 .iter()
@@ -96,7 +95,7 @@ impl Session {
                     OneAnswer {
                         shown: solved.answer.is_answer() && same(&pairs, &solved.answer.pairs),
                         pairs,
-                        exact: answer.exact,
+                        exact: true,
                         continuum: answer.continuum,
                     }
                 })

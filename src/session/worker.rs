@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::watch::Watch;
 
@@ -52,6 +52,18 @@ pub fn run<T: Send + 'static>(
     watch: &dyn Watch,
     job: impl FnOnce(&dyn Watch) -> T + Send + 'static,
 ) -> Result<T, WorkerError> {
+    run_patiently(watch, Duration::ZERO, job)
+}
+
+/// As [`run`], for a job that has something to show when it is stopped: its result is waited for so long.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_patiently<T: Send + 'static>(
+    watch: &dyn Watch,
+    patience: Duration,
+    job: impl FnOnce(&dyn Watch) -> T + Send + 'static,
+) -> Result<T, WorkerError> {
     if watch.stop() {
         return Err(WorkerError::Interrupted);
     }
@@ -70,6 +82,7 @@ pub fn run<T: Send + 'static>(
     if let Err(error) = spawned {
         return Err(WorkerError::Panicked(format!("no thread could be started: {error}")));
     }
+    let mut stopped: Option<Instant> = None;
     loop {
         match receiver.recv_timeout(LOOK) {
             Ok(Ok(result)) => return Ok(result),
@@ -80,7 +93,10 @@ pub fn run<T: Send + 'static>(
             Err(RecvTimeoutError::Timeout) => {
                 if watch.stop() {
                     desk.stop.store(true, Ordering::Relaxed);
-                    return Err(WorkerError::Interrupted);
+                    if stopped.get_or_insert_with(Instant::now).elapsed() >= patience {
+                        return Err(WorkerError::Interrupted);
+                    }
+                    continue;
                 }
                 let news = desk.progress.lock().unwrap_or_else(PoisonError::into_inner).clone();
                 // At every look, new or not: whoever shows it now and then shows the latest.
@@ -103,7 +119,6 @@ fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Instant;
 
     struct Impatient(Instant);
     impl Watch for Impatient {
@@ -119,6 +134,18 @@ mod tests {
         let result = run(&Impatient(start), |_| std::thread::sleep(Duration::from_secs(2)));
         assert_eq!(result, Err(WorkerError::Interrupted));
         assert!(start.elapsed() < Duration::from_millis(200));
+    }
+
+    #[test]
+    fn what_a_stopped_job_has_is_waited_for() {
+        let start = Instant::now();
+        let result = run_patiently(&Impatient(start), Duration::from_secs(5), |watch| {
+            while !watch.stop() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            "half"
+        });
+        assert_eq!(result, Ok("half"));
     }
 
     #[test]

@@ -5,19 +5,22 @@ use std::sync::Arc;
 
 use super::judge::EXACT_PAIRS;
 use super::numbers::{contact_numbers, factors};
-use super::plain_answers::{MOST_ROWS, PlainCheck, all_plain_answers, check_plain_exactly};
+use super::plain_answers::{Effort, PlainCheck, check_plain_exactly, search_plain_answers};
 use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved, Trace, empty_answer};
 use crate::answer::check::TOLERANCE;
 use crate::answer::check_plain::{ROUNDING, check_plain};
-use crate::answer::record::{Answer, OutcomeKind, PlainSolution, State};
+use crate::answer::record::{Answer, OutcomeKind, PairDirection, PlainSolution, State};
+use crate::contact;
 use crate::contact::complementarity::{Couple, contact_lcp};
 use crate::contact::critical::{CriticalFriction, critical_friction};
 use crate::contact::enumerate::{EnumeratedAnswer, enumerate};
 use crate::contact::exact_check::{ExactCheck, Finding, exact_check};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::scheme_word::{PairScheme, Tangential};
-use crate::contact::system::ContactSystem;
+use crate::contact::system::{ContactPair, ContactSystem};
+use nalgebra::DVector;
+
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::trace::PivotLog;
@@ -31,6 +34,10 @@ use crate::watch::Watch;
 pub const ENUMERATION: &str = "enumeration";
 /// Blocks drawn by `critical` where all of them are too many.
 const SAMPLES: u64 = 20_000;
+/// Most contact pairs that `enumerate` takes.
+const MOST_PAIRS: usize = 60;
+/// Most rows of a bare LCP that `enumerate` takes.
+const MOST_ROWS: usize = 300;
 /// Figures of a failed check up to which an exact proof is tried.
 const EXCUSABLE: f64 = 1e-4;
 /// Seed of the drawing.
@@ -43,8 +50,12 @@ pub struct AllAnswers {
     pub answers: Vec<Solved>,
     /// For each: whether it was proved in exact arithmetic.
     pub exact: Vec<bool>,
-    /// For each: whether others may lie next to it.
+    /// For each: whether others lie next to it.
     pub continuum: Vec<bool>,
+    /// Sets of answers between and beyond them.
+    pub continua: Vec<Continuum>,
+    /// Whether the search came to its end.
+    pub complete: bool,
     /// Schemes (of a bare LCP: bases) that were solved.
     pub visited: u64,
     /// Partial schemes that were cut off.
@@ -53,6 +64,31 @@ pub struct AllAnswers {
     pub total: u64,
     /// Schemes that could not be decided.
     pub undecided: u64,
+}
+
+/// A set of answers with more than one element: the hull of its corners, and from there on along its directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Continuum {
+    /// Its corners, as indices of the answers.
+    pub corners: Vec<usize>,
+    /// Directions in which it goes on without end, largest entry 1.
+    pub directions: Vec<Moving>,
+}
+
+/// A direction in the set of answers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Moving {
+    /// Of a contact problem.
+    Pairs(Vec<PairDirection>),
+    /// z of a bare LCP.
+    Plain(Vec<f64>),
+}
+
+impl AllAnswers {
+    /// There is none: proved.
+    pub fn none(&self) -> bool {
+        self.complete && self.undecided == 0 && self.answers.is_empty()
+    }
 }
 
 /// Why a question has no answer.
@@ -89,7 +125,7 @@ impl Prepared {
     /// Every answer for these values.
     ///
     /// # Errors
-    /// Too many pairs or rows; stopped.
+    /// Too many pairs or rows; a covering that does not fit the numbers. Stopped, what was found until then is returned as incomplete.
     pub fn all_answers(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
         let system = match &self.geometry {
             Geometry::Plain { lcp, q, .. } => {
@@ -101,27 +137,58 @@ impl Prepared {
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => system,
         };
+        too_many("contact pairs", system.pair_count(), MOST_PAIRS)?;
         let factors = factors(self, values);
         let numbers = contact_numbers(system, &factors, values);
-        let found = enumerate(system, &numbers, &mut |visited| {
-            if visited.is_multiple_of(256) {
-                watch.progress(&format!("working scheme {visited}"), 0.0);
+        let mut steps = 0u64;
+        let found = enumerate(system, &numbers, &mut |progress| {
+            steps += 1;
+            if steps.is_multiple_of(64) {
+                watch.progress(&format!("{} schemes, {} answers", progress.nodes, progress.found), progress.share);
             }
             go_on(watch)
-        })
-        .map_err(|error| QuestionError::Refused(error.to_string()))?;
-        if !found.complete {
-            return Err(QuestionError::Interrupted);
+        });
+        if found.no_answer() {
+            // At a limit on paper the numbers as stored may be just beyond it.
+            let near = self.attempt_contact(system, &numbers, &factors, Rules::default(), watch)?;
+            if near.answer.is_answer() {
+                return Ok(AllAnswers {
+                    answers: vec![near],
+                    exact: vec![false],
+                    continuum: vec![false],
+                    continua: Vec::new(),
+                    complete: true,
+                    visited: found.visited,
+                    cut: found.cut,
+                    total: found.total,
+                    undecided: 0,
+                });
+            }
         }
         let answers = found
             .answers
             .iter()
             .map(|candidate| self.enumerated_answer(system, &numbers, &factors, candidate))
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<Vec<_>, _>>()?;
+        let count = answers.len();
+        let pairs = |direction: &DVector<f64>| {
+            let pair = |(i, pair): (usize, &ContactPair)| PairDirection {
+                pair: pair.id.clone(),
+                z_n: direction[i],
+                z_t: pair.tangential.map_or(0.0, |joint| direction[joint]),
+            };
+            Moving::Pairs(system.pairs.iter().enumerate().map(pair).collect())
+        };
+        let continuum = |piece: &contact::enumerate::Continuum| Continuum {
+            corners: piece.corners.clone(),
+            directions: piece.directions.iter().map(pairs).collect(),
+        };
         Ok(AllAnswers {
             answers,
-            exact: found.answers.iter().map(|answer| answer.exact).collect(),
+            exact: vec![true; count],
             continuum: found.answers.iter().map(|answer| answer.continuum).collect(),
+            continua: found.continua.iter().map(continuum).collect(),
+            complete: found.complete,
             visited: found.visited,
             cut: found.cut,
             total: found.total,
@@ -343,26 +410,39 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
     schemes
 }
 
-fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
-    if lcp.size() > MOST_ROWS {
-        return Err(QuestionError::Refused(format!(
-            "{} rows are too many to enumerate: at most {MOST_ROWS}",
-            lcp.size()
-        )));
+/// Refuses what no search comes to an end of, and what its exact numbers would fill the memory with.
+fn too_many(what: &str, found: usize, most: usize) -> Result<(), QuestionError> {
+    if found <= most {
+        return Ok(());
     }
-    let found = all_plain_answers(lcp, watch).ok_or(QuestionError::Interrupted)?;
+    Err(QuestionError::Refused(format!("{found} {what} are too many to enumerate: at most {most}")))
+}
+
+fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
+    too_many("rows", lcp.size(), MOST_ROWS)?;
+    let found = search_plain_answers(lcp, Effort::Full, watch).ok_or(QuestionError::Interrupted)?;
     let run = Run { outcome: Outcome::Trivial, pivots: PivotLog::default(), point: Point::default() };
     let words = ["ones", "lexicographic", ENUMERATION].map(str::to_owned);
     let like = empty_answer(&run, 1.0, words, crate::answer::record::Size { lcp: lcp.size(), ..Default::default() });
     let count = found.answers.len();
+    let next_to = |answer: usize| found.continua.iter().any(|piece| piece.corners.contains(&answer));
     Ok(AllAnswers {
         answers: found.answers.iter().map(|z| plain_answer(lcp, z, &like)).collect(),
         exact: vec![true; count],
-        continuum: vec![false; count],
+        continuum: (0..count).map(next_to).collect(),
+        continua: found
+            .continua
+            .iter()
+            .map(|piece| Continuum {
+                corners: piece.corners.clone(),
+                directions: piece.directions.iter().cloned().map(Moving::Plain).collect(),
+            })
+            .collect(),
+        complete: found.complete,
         visited: found.visited,
-        cut: 0,
-        total: found.visited,
-        undecided: found.singular,
+        cut: found.cut,
+        total: 1u64.checked_shl(lcp.size() as u32).unwrap_or(u64::MAX),
+        undecided: found.undecided,
     })
 }
 

@@ -11,7 +11,7 @@ use super::all_answers::plain_answer;
 use super::attempt::run_scheme;
 use super::judge::{EXACT_ROWS, run_exact_plain, run_tableau};
 use super::ladder::{Ladder, within_budget};
-use super::plain_answers::all_plain_answers;
+use super::plain_answers::{PlainAnswers, RayProof, all_plain_answers, prove_plain_ray};
 use super::settle::{ray_holds, settled};
 use super::solved::{SolveError, Solved, Trace, empty_answer, fail_check};
 use crate::answer::check::TOLERANCE;
@@ -29,6 +29,8 @@ use crate::watch::Watch;
 const UNKNOWN: &str = "For a general M this proves nothing about whether one exists.";
 /// What is said where all bases were tried.
 const ALL_BASES: &str = "Proved: every complementary basis was tried in exact arithmetic, none is an answer.";
+/// Rows up to which all bases are gone through before anything else.
+const FEW_ROWS: usize = 9;
 /// Random covering vectors that are tried.
 const RANDOM_COVERINGS: u64 = 3;
 
@@ -197,12 +199,28 @@ pub(super) fn solve_plain_judged(
         ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, watch);
         first.answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
     }
+    // Beyond a few rows a combination of them proves sooner than all bases that there is no answer.
+    let few = problem.lcp.size() <= FEW_ROWS;
+    let mut proof = None;
+    if !few && first.plain_ray.is_some() {
+        proof = prove_plain_ray(&problem.lcp, watch);
+    }
+    if let (Some(proof @ RayProof::Infeasible(_)), Some(ray)) = (&proof, &first.plain_ray) {
+        first.answer.ray = Some(proof.record(ray, problem.names));
+        return Ok(first);
+    }
     let found = all_plain_answers(&problem.lcp, watch);
-    if found.as_ref().is_some_and(|found| found.complete && found.answers.is_empty())
+    if found.as_ref().is_some_and(PlainAnswers::none)
         && let Some(ray) = &first.plain_ray
     {
         first.answer.ray = Some(ray.record(Verdict::Proved, ALL_BASES));
         return Ok(first);
+    }
+    if few && first.plain_ray.is_some() {
+        proof = prove_plain_ray(&problem.lcp, watch);
+    }
+    if let (Some(proof), Some(ray)) = (&proof, &first.plain_ray) {
+        first.answer.ray = Some(proof.record(ray, problem.names));
     }
     let rungs = rungs(problem, &first, own);
     let mut ladder = Ladder::new(first);
@@ -222,10 +240,7 @@ pub(super) fn solve_plain_judged(
     if let Some(found) = found {
         for z in &found.answers {
             if let Ok(mut answer) = ladder.add(plain_answer(&problem.lcp, z, &ladder.first().answer)) {
-                if found.answers.len() > 1 {
-                    let said = format!("there are {} answers; this is one of them", found.answers.len());
-                    answer.answer.notes.push(said);
-                }
+                answer.answer.notes.extend(found.others());
                 return Ok(answer);
             }
         }

@@ -1,25 +1,77 @@
-//! All answers of a small bare LCP: every complementary basis in exact rationals.
+//! Bare LCPs: all answers, the exact check of a basis, and what can be proved of a ray.
 
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
+use crate::answer::record::{Ray, RayClass, Verdict};
+use crate::explain::plain_ray::PlainRay;
+use crate::explain::words::short;
+use crate::lcp::all_solutions::{Continuum, Progress, all_solutions};
+use crate::lcp::classes::{SolvableClass, solvable_class};
+use crate::lcp::dyadic::{WholeRows, nearest};
+use crate::lcp::farkas::{Farkas, farkas};
 use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::rational_solve::{RationalSolution, solve};
+use crate::lcp::scalar::{BigInt, ratio_to_f64};
 use crate::watch::Watch;
 
-/// Most rows: 2ⁿ bases are solved.
-pub const MOST_ROWS: usize = 9;
+/// Most rows of the exact check of a basis.
+const MOST_CHECKED: usize = 1000;
+/// Steps times n³ after which a search beside a solution is given up; nine rows need 1023 nodes.
+const BRIEF: u64 = 40_000_000;
+/// Between two words of progress.
+const STEPS: u64 = 64;
 
-/// What the bases gave.
+/// How long a search may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// As long as it takes, or until it is stopped; what was found until then is kept.
+    Full,
+    /// A number of steps that a few seconds suffice for.
+    Brief,
+}
+
+/// A set of answers with more than one element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlainContinuum {
+    /// Its corners, as indices of the answers.
+    pub corners: Vec<usize>,
+    /// Directions in which it goes on without end, largest entry 1.
+    pub directions: Vec<Vec<f64>>,
+}
+
+/// What the search gave.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlainAnswers {
-    /// z of every answer, each once.
+    /// z of every basic answer, each once.
     pub answers: Vec<Vec<f64>>,
-    /// No basis was singular with solutions: nothing can have been missed.
+    /// Sets of answers between and beyond them.
+    pub continua: Vec<PlainContinuum>,
+    /// Whether the search came to its end.
     pub complete: bool,
-    /// Number of bases.
+    /// Number of bases that were described.
     pub visited: u64,
-    /// Bases that are singular and have solutions: they were not searched.
-    pub singular: u64,
+    /// Branches cut because nothing feasible is left in them.
+    pub cut: u64,
+    /// Sets of answers with too many corners to list them all.
+    pub undecided: u64,
+}
+
+impl PlainAnswers {
+    /// There is none: proved.
+    pub fn none(&self) -> bool {
+        self.complete && self.undecided == 0 && self.answers.is_empty()
+    }
+
+    /// "there are 3 answers; this is one of them", where there are others.
+    pub fn others(&self) -> Option<String> {
+        if !self.continua.is_empty() {
+            return Some("there are infinitely many answers; this is one of them (`enumerate`)".to_owned());
+        }
+        let known = if self.complete { "" } else { "at least " };
+        let count = self.answers.len();
+        (count > 1).then(|| format!("there are {known}{count} answers; this is one of them"))
+    }
 }
 
 /// The final basis of a bare LCP in exact arithmetic.
@@ -33,134 +85,155 @@ pub struct PlainCheck {
     pub zeros: Vec<(char, usize)>,
 }
 
-/// Solves a basis exactly and tells every sign; `None` for more than 100 rows.
+/// Solves a basis exactly and tells every sign; `None` for more than a thousand rows.
 pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCheck> {
     let n = lcp.size();
-    if n > 100 || lcp.whole_size != n {
+    if n > MOST_CHECKED || lcp.whole_size != n {
         return None;
     }
-    let m = exact_matrix(lcp);
-    let q: Vec<BigRational> = lcp.q.iter().map(|v| exact(*v)).collect();
+    let WholeRows { rows, scale } = WholeRows::of_lcp(&lcp.matrix(), &lcp.q);
     let mut check = PlainCheck { unique: false, violations: Vec::new(), zeros: Vec::new() };
-    let Basis::One(z) = solve(&m, &q, basis) else {
+    let matrix: Vec<Vec<BigInt>> = basis.iter().map(|&i| basis.iter().map(|&j| rows[i][j].clone()).collect()).collect();
+    let right: Vec<BigInt> = basis.iter().map(|&i| -&rows[i][n]).collect();
+    let RationalSolution::Unique(z) = solve(&matrix, &right, &mut |_| std::ops::ControlFlow::Continue(())) else {
         return Some(check);
     };
     check.unique = true;
-    let mut tell = |letter: char, row: usize, value: &BigRational| {
-        if value.is_negative() {
-            check.violations.push((letter, row, nearest(value)));
-        } else if value.is_zero() {
+    let mut tell = |letter: char, row: usize, over: &BigInt, under: &BigInt| {
+        if over.is_negative() {
+            check.violations.push((letter, row, ratio_to_f64(over, under)));
+        } else if over.is_zero() {
             check.zeros.push((letter, row));
         }
     };
-    for (&i, value) in basis.iter().zip(&z) {
-        tell('z', i, value);
+    for (&i, value) in basis.iter().zip(&z.numerators) {
+        tell('z', i, value, &z.denominator);
     }
     for i in (0..n).filter(|i| !basis.contains(i)) {
-        let sum: BigRational = basis.iter().zip(&z).map(|(&j, z)| &m[i][j] * z).sum();
-        tell('w', i, &(sum + &q[i]));
+        let sum: BigInt = basis.iter().zip(&z.numerators).map(|(&j, z)| &rows[i][j] * z).sum();
+        tell('w', i, &(sum + &rows[i][n] * &z.denominator), &(&scale[i] * &z.denominator));
     }
     Some(check)
 }
 
-/// M, row by row.
-fn exact_matrix(lcp: &MirroredLcp) -> Vec<Vec<BigRational>> {
-    let matrix = lcp.matrix();
-    matrix.row_iter().map(|row| row.iter().map(|entry| exact(*entry)).collect()).collect()
-}
-
-fn exact(value: f64) -> BigRational {
-    <BigRational as crate::lcp::scalar::Scalar>::from_f64(value)
-}
-
-/// Goes through all bases; `None` for more than [`MOST_ROWS`] rows or when stopped.
+/// Every answer of a bare LCP, given up after some seconds: what a solution looks at beside its run.
 pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAnswers> {
-    let n = lcp.size();
-    if n > MOST_ROWS || lcp.whole_size != n {
+    search_plain_answers(lcp, Effort::Brief, watch)
+}
+
+/// Every answer of a bare LCP, in exact arithmetic; `None` where nothing was searched (contact's mirrored rows).
+pub fn search_plain_answers(lcp: &MirroredLcp, effort: Effort, watch: &dyn Watch) -> Option<PlainAnswers> {
+    let n = lcp.size() as u64;
+    if lcp.whole_size != lcp.size() {
         return None;
     }
-    let m = exact_matrix(lcp);
-    let q: Vec<BigRational> = lcp.q.iter().map(|v| exact(*v)).collect();
-    let mut found = PlainAnswers { answers: Vec::new(), complete: true, visited: 1 << n, singular: 0 };
-    let mut exact_answers: Vec<Vec<BigRational>> = Vec::new();
-    for basis in 0..1usize << n {
-        if watch.stop() {
-            return None;
+    let most = match effort {
+        Effort::Full => u64::MAX,
+        Effort::Brief => BRIEF / n.saturating_pow(3).max(1),
+    };
+    let mut steps = 0;
+    let mut observer = |progress: Progress| {
+        steps += 1;
+        if steps % STEPS == 0 {
+            let what = format!("{} branches, {} answers", progress.nodes, progress.found);
+            watch.progress(&what, progress.share);
         }
-        let on: Vec<usize> = (0..n).filter(|i| basis >> i & 1 == 1).collect();
-        let z_on = match solve(&m, &q, &on) {
-            Basis::One(z) => z,
-            Basis::None => continue,
-            Basis::Many => {
-                found.complete = false;
-                found.singular += 1;
-                continue;
-            }
-        };
-        if z_on.iter().any(Signed::is_negative) {
-            continue;
-        }
-        let mut z = vec![BigRational::zero(); n];
-        for (&i, value) in on.iter().zip(z_on) {
-            z[i] = value;
-        }
-        let holds = (0..n).all(|i| {
-            let w: BigRational = on.iter().map(|&j| &m[i][j] * &z[j]).sum::<BigRational>() + &q[i];
-            !w.is_negative()
-        });
-        if holds && !exact_answers.contains(&z) {
-            found.answers.push(z.iter().map(nearest).collect());
-            exact_answers.push(z);
+        steps < most && !watch.stop()
+    };
+    let found = all_solutions(WholeRows::of_lcp(&lcp.matrix(), &lcp.q), &mut observer);
+    let rounded = |z: &Vec<BigRational>| z.iter().map(nearest).collect::<Vec<f64>>();
+    let continuum = |piece: &Continuum| PlainContinuum {
+        corners: piece.corners.clone(),
+        directions: piece.directions.iter().map(rounded).collect(),
+    };
+    Some(PlainAnswers {
+        answers: found.basic.iter().map(rounded).collect(),
+        continua: found.continua.iter().map(continuum).collect(),
+        complete: found.complete,
+        visited: found.leaves,
+        cut: found.cut,
+        undecided: found.unlisted,
+    })
+}
+
+/// What is proved of a bare LCP whose run ended in a ray.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RayProof {
+    /// No z ≥ 0 is even feasible.
+    Infeasible(Farkas),
+    /// An answer exists for every q: the ray is rounding, or the covering's.
+    Solvable(SolvableClass),
+}
+
+/// Looks for a proof that there is no answer, or that there must be one.
+pub fn prove_plain_ray(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<RayProof> {
+    if lcp.whole_size != lcp.size() {
+        return None;
+    }
+    let matrix = lcp.matrix();
+    if let Some(class) = solvable_class(&matrix) {
+        return Some(RayProof::Solvable(class));
+    }
+    watch.progress("looking for a proof that there is no answer", 0.0);
+    farkas(&matrix, &lcp.q, &mut || !watch.stop()).map(RayProof::Infeasible)
+}
+
+impl RayProof {
+    /// What it proves.
+    pub fn verdict(&self) -> Option<Verdict> {
+        match self {
+            RayProof::Infeasible(_) => Some(Verdict::Certified),
+            RayProof::Solvable(_) => None,
         }
     }
-    Some(found)
+
+    /// The class of the ray: a fault where an answer must exist.
+    pub fn class(&self) -> RayClass {
+        match self {
+            RayProof::Infeasible(_) => RayClass::NoEquilibrium,
+            RayProof::Solvable(_) => RayClass::Fault,
+        }
+    }
+
+    /// The proof in words; `names` are those of the rows.
+    pub fn sentence(&self, names: &[String]) -> String {
+        match self {
+            RayProof::Infeasible(proof) => format!(
+                "Proved: there is no answer, because {} is at most {} for every z ≥ 0, and an answer has w ≥ 0.",
+                combination(&proof.multipliers, names),
+                short(-proof.gap)
+            ),
+            RayProof::Solvable(class) => format!(
+                "An answer exists for every q, because {}: this ray is rounding, not a property of the problem.",
+                class.words()
+            ),
+        }
+    }
+
+    /// The ray with this proof on record.
+    pub fn record(&self, ray: &PlainRay, names: &[String]) -> Ray {
+        let mut record = ray.record(Verdict::Undecided, &self.sentence(names));
+        (record.class, record.verdict) = (self.class(), self.verdict());
+        record
+    }
 }
 
-enum Basis {
-    One(Vec<BigRational>),
-    None,
-    Many,
-}
-
-/// Solves M_SS z_S = −q_S.
-fn solve(m: &[Vec<BigRational>], q: &[BigRational], on: &[usize]) -> Basis {
-    let k = on.len();
-    let mut a: Vec<Vec<BigRational>> = on
+/// "w[1] + 0.5 w[3]".
+fn combination(multipliers: &[f64], names: &[String]) -> String {
+    const SHOWN: usize = 6;
+    let terms: Vec<String> = multipliers
         .iter()
-        .map(|&i| {
-            let mut row: Vec<BigRational> = on.iter().map(|&j| m[i][j].clone()).collect();
-            row.push(-q[i].clone());
-            row
-        })
+        .zip(names)
+        .filter(|(y, _)| **y > 0.0)
+        .map(|(y, name)| if *y == 1.0 { format!("w[{name}]") } else { format!("{} w[{name}]", short(*y)) })
         .collect();
-    let mut rank = 0;
-    for c in 0..k {
-        let Some(pivot) = (rank..k).find(|&r| !a[r][c].is_zero()) else {
-            continue;
-        };
-        a.swap(rank, pivot);
-        let factor = a[rank][c].recip();
-        a[rank].iter_mut().for_each(|v| *v *= &factor);
-        let row = a[rank].clone();
-        for (r, other) in a.iter_mut().enumerate() {
-            if r != rank && !other[c].is_zero() {
-                let factor = other[c].clone();
-                for (v, p) in other.iter_mut().zip(&row) {
-                    *v -= &factor * p;
-                }
-            }
-        }
-        rank += 1;
+    if terms.len() <= SHOWN {
+        return terms.join(" + ");
     }
-    if a[rank..].iter().any(|row| !row[k].is_zero()) {
-        return Basis::None;
+    let equal = multipliers.iter().filter(|y| **y > 0.0).all(|y| *y == 1.0);
+    if equal && terms.len() == names.len() {
+        return "the sum of all w".to_owned();
     }
-    if rank < k {
-        return Basis::Many;
-    }
-    Basis::One(a.into_iter().map(|mut row| row.swap_remove(k)).collect())
-}
-
-fn nearest(value: &BigRational) -> f64 {
-    crate::lcp::scalar::Scalar::to_f64(value)
+    let count = terms.len() - SHOWN;
+    format!("{} + {count} more", terms[..SHOWN].join(" + "))
 }

@@ -5,17 +5,79 @@ use std::io::{self, Write};
 use super::number::short;
 use super::pairs::state_words;
 use super::style::{Role, Style};
-use crate::answer::record::Answer;
-use crate::solve::all_answers::AllAnswers;
+use crate::answer::record::{Answer, PairDirection};
+use crate::solve::all_answers::{AllAnswers, Continuum, Moving};
+
+fn vector(z: &[f64]) -> String {
+    let z: Vec<String> = z.iter().map(|z| short(*z)).collect();
+    format!("({})", z.join(", "))
+}
 
 /// "c1 open, c2 slip+", or z of a bare LCP.
 fn states(answer: &Answer) -> String {
     if let Some(solution) = &answer.solution {
-        let z: Vec<String> = solution.z.iter().map(|z| short(*z)).collect();
-        return format!("z = ({})", z.join(", "));
+        return format!("z = {}", vector(&solution.z));
     }
     let words: Vec<String> = answer.pairs.iter().map(|pair| format!("{} {}", pair.id, state_words(pair))).collect();
     words.join(", ")
+}
+
+/// "z_n c1 1, z_t c2 −0.5" of a direction.
+fn motion(pairs: &[PairDirection]) -> String {
+    let mut words = Vec::new();
+    for pair in pairs {
+        for (name, value) in [("z_n", pair.z_n), ("z_t", pair.z_t)] {
+            if value != 0.0 {
+                words.push(format!("{name} {} by {}", pair.pair, short(value)));
+            }
+        }
+    }
+    words.join(", ")
+}
+
+/// "every answer between 1 and 2" or "z = (0, 1) + t (1, 1), t ≥ 0".
+fn continuum(all: &AllAnswers, piece: &Continuum) -> String {
+    let numbers: Vec<String> = piece.corners.iter().map(|corner| (corner + 1).to_string()).collect();
+    let start = piece.corners.first().and_then(|first| all.answers[*first].answer.solution.as_ref());
+    let single = piece.corners.len() == 1;
+    let hull = if single { format!("from {} on", numbers[0]) } else { format!("between {}", numbers.join(", ")) };
+    let ways: Vec<String> = piece
+        .directions
+        .iter()
+        .map(|direction| match (direction, start) {
+            (Moving::Plain(z), Some(start)) if single && piece.directions.len() == 1 => {
+                format!("z = {} + t {}, t ≥ 0", vector(&start.z), vector(z))
+            }
+            (Moving::Plain(z), _) => vector(z),
+            (Moving::Pairs(pairs), _) => motion(pairs),
+        })
+        .collect();
+    match ways.len() {
+        0 => format!("continuum: every state {hull} is an answer"),
+        _ => format!("continuum: every state {hull} is an answer, without end along {}", ways.join("; ")),
+    }
+}
+
+/// "2 answers", "infinitely many answers: 3 corners of 1 continuum", "no answer".
+fn count(all: &AllAnswers) -> String {
+    let many = |count: usize, word: &str| if count == 1 { format!("one {word}") } else { format!("{count} {word}s") };
+    let answers = all.answers.len();
+    if !all.continua.is_empty() {
+        let inside = all.continuum.iter().filter(|near| **near).count();
+        let alone = answers - inside;
+        let pieces =
+            if all.continua.len() == 1 { "one continuum".into() } else { format!("{} continua", all.continua.len()) };
+        let apart = if alone > 0 { format!(", and {} apart", many(alone, "answer")) } else { String::new() };
+        return format!("infinitely many answers: {pieces} with {}{apart}", many(inside, "corner"));
+    }
+    match answers {
+        0 if all.none() => "no answer: proved by going through all of them".to_owned(),
+        0 => "no answer found".to_owned(),
+        1 if all.exact == [false] => {
+            "one answer up to rounding; the numbers as stored, taken exactly, have none".to_owned()
+        }
+        _ => many(answers, "answer"),
+    }
 }
 
 /// Writes the answers, one a line, and how the search went.
@@ -24,29 +86,30 @@ pub fn write(out: &mut dyn Write, all: &AllAnswers, style: &Style) -> io::Result
         let answer = &solved.answer;
         let largest = answer.pairs.iter().flat_map(|pair| [pair.z_n, pair.z_t]).fold(0.0, |a: f64, z| a.max(z.abs()));
         let exact = all.exact.get(k).copied().unwrap_or_default();
-        let near = all.continuum.get(k).copied().unwrap_or_default();
-        let proof = match (exact, near) {
-            (true, false) => "proved in exact arithmetic",
-            (true, true) => "proved in exact arithmetic; others lie next to it",
-            (false, false) => "holds up to rounding",
-            (false, true) => "holds up to rounding; others lie next to it",
-        };
+        let proof = if exact { "proved in exact arithmetic" } else { "holds up to rounding" };
+        let near = if all.continuum.get(k).copied().unwrap_or_default() { "; others lie next to it" } else { "" };
         let size =
             if answer.solution.is_none() { format!("; largest motion {}", short(largest)) } else { String::new() };
-        let text = format!("{} ({proof}{size})", states(answer));
+        let text = format!("{} ({proof}{near}{size})", states(answer));
         for line in style.hanging(&format!("{:>3}  ", k + 1), &style.text(&text)) {
             writeln!(out, "{line}")?;
         }
     }
-    let count = match all.answers.len() {
-        0 if all.undecided == 0 => "no answer: proved by going through all of them".to_owned(),
-        0 => "no answer found".to_owned(),
-        1 => "one answer".to_owned(),
-        n => format!("{n} answers"),
-    };
+    for piece in &all.continua {
+        for line in style.hanging("     ", &style.text(&continuum(all, piece))) {
+            writeln!(out, "{line}")?;
+        }
+    }
     let cut = if all.cut > 0 { format!(", {} branches cut by their signs", all.cut) } else { String::new() };
-    let doubt = if all.undecided > 0 { format!("; {} could not be decided", all.undecided) } else { String::new() };
-    let text = format!("{count}; {} of {} working schemes solved{cut}{doubt}", all.visited, all.total);
+    let doubt = match all.undecided {
+        0 => String::new(),
+        n => format!("; {n} sets of answers have too many corners to list them all"),
+    };
+    let of = if all.total == u64::MAX { String::new() } else { format!(" of {}", all.total) };
+    let mut text = format!("{}; {}{of} working schemes solved{cut}{doubt}", count(all), all.visited);
+    if !all.complete {
+        text = format!("stopped: there may be more. So far {text}");
+    }
     for line in style.wrap(&style.text(&text), style.width) {
         writeln!(out, "{}", style.paint(Role::Muted, &line))?;
     }

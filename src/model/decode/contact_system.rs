@@ -6,7 +6,8 @@ use std::path::Path;
 use super::law::{LawKind, NUMBERS, per_pair};
 use super::lcp::square;
 use super::loads::{check_case_name, factor};
-use super::matrix_market;
+use super::matrix_file;
+use super::matrix_market::Size;
 use super::reader::{Cursor, Fields};
 use super::words::{counted, is_id, quoted};
 use crate::model::memory;
@@ -98,8 +99,8 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
         return None;
     }
     let (matrix, at): (_, Option<Cursor<'_>>) = if cursor.is_object() {
-        let at = cursor.fields(&["file"])?.required("file")?;
-        (from_file(at, size, path)?, Some(at))
+        let (matrix, at) = matrix_file::read(cursor, Size::OfPairs(pairs), path)?;
+        (matrix, Some(at))
     } else {
         let rows = cursor.list()?.len();
         if rows != size {
@@ -139,35 +140,6 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
 
 fn largest(matrix: &[Vec<f64>]) -> f64 {
     matrix.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()))
-}
-
-fn from_file(cursor: Cursor<'_>, size: usize, path: Option<&Path>) -> Option<Vec<Vec<f64>>> {
-    let name = cursor.string()?;
-    let Some(scenario) = path else {
-        cursor.problem(
-            "a scenario without a file of its own cannot name another file",
-            "write the matrix out, or save the scenario to a file",
-        );
-        return None;
-    };
-    let file = scenario.parent().unwrap_or(Path::new("")).join(name);
-    let text = match crate::text::file::read_text(&file) {
-        Ok(text) => text,
-        Err(error) => {
-            cursor.problem(
-                format!("cannot read the matrix {}: {error}", quoted(name)),
-                "the file is looked for beside the scenario file",
-            );
-            return None;
-        }
-    };
-    match matrix_market::read(&text, size) {
-        Ok(matrix) => Some(matrix),
-        Err(error) => {
-            cursor.problem(format!("{name}:{}: {}", error.line, error.message), error.help);
-            None
-        }
-    }
 }
 
 fn load_cases(cursor: Cursor<'_>, pairs: usize) -> Option<Vec<GivenLoad>> {

@@ -1,17 +1,24 @@
 //! The source *lcp*: w = M z + q.
 
 use std::collections::HashSet;
+use std::path::Path;
 
+use super::matrix_file;
+use super::matrix_market::Size;
 use super::reader::Cursor;
 use super::words::quoted;
 use crate::model::parameter::Number;
 use crate::model::scenario::GivenLcp;
 use crate::model::uses::Region;
 
-/// Reads a bare LCP.
-pub fn read(cursor: Cursor<'_>) -> Option<GivenLcp> {
+/// Reads a bare LCP; `path` is the scenario file, for the file of M.
+pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenLcp> {
     let fields = cursor.fields(&["M", "q", "covering", "names"])?;
     let rows = fields.required("M").and_then(|matrix| {
+        if matrix.is_object() {
+            let (matrix, _) = matrix_file::read(matrix, Size::Square, path)?;
+            return Some((matrix.len(), Some(matrix)));
+        }
         let rows = matrix.list()?;
         if rows.len() == 0 {
             matrix.problem("M is empty", "an lcp has at least one row");

@@ -1,6 +1,8 @@
 //! Matrix Market files: real or integer, array or coordinate, general or symmetric
 //! (<https://math.nist.gov/MatrixMarket/formats.html>).
 
+use crate::model::memory;
+
 /// What is wrong with a file, and on which line.
 #[derive(Debug, PartialEq)]
 pub struct MatrixError {
@@ -12,8 +14,34 @@ pub struct MatrixError {
     pub help: String,
 }
 
-/// Reads a square matrix of the given size, row by row.
-pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
+/// What the size of a matrix must be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Size {
+    /// 2m × 2m for m contact pairs.
+    OfPairs(usize),
+    /// As many rows as columns, at least one.
+    Square,
+}
+
+impl Size {
+    /// The number of rows, or why `rows` × `columns` does not fit: what was expected, and what to do.
+    fn of(self, rows: usize, columns: usize) -> Result<usize, (String, &'static str)> {
+        match self {
+            Size::OfPairs(pairs) if rows == 2 * pairs && columns == rows => Ok(rows),
+            Size::OfPairs(pairs) => Err((
+                format!("expected 2m × 2m = {0} × {0}", 2 * pairs),
+                "rows and columns: all normals, then all tangentials",
+            )),
+            Size::Square if rows == columns && rows > 0 => Ok(rows),
+            Size::Square => {
+                Err(("expected a square one with at least one row".into(), "M has a row for each entry of q"))
+            }
+        }
+    }
+}
+
+/// Reads a square matrix, row by row.
+pub fn read(text: &str, size: Size) -> Result<Vec<Vec<f64>>, MatrixError> {
     let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
     let (number, banner) = lines.next().unwrap_or((1, ""));
     let header = Header::parse(banner).map_err(|message| {
@@ -27,12 +55,16 @@ pub fn read(text: &str, size: usize) -> Result<Vec<Vec<f64>>, MatrixError> {
     let last = text.lines().count().max(1);
     let (number, sizes) = lines.next().ok_or_else(|| error(last, "the line with the sizes is missing", ""))?;
     let sizes = words::<usize>(number, sizes, if header.coordinate { 3 } else { 2 })?;
-    if sizes[0] != size || sizes[1] != size {
-        return Err(error(
-            number,
-            format!("the matrix is {} × {}, expected 2m × 2m = {size} × {size}", sizes[0], sizes[1]),
-            "rows and columns: all normals, then all tangentials",
-        ));
+    let size = size.of(sizes[0], sizes[1]).map_err(|(expected, help)| {
+        error(number, format!("the matrix is {} × {}, {expected}", sizes[0], sizes[1]), help)
+    })?;
+    // An array has at least its lower triangle in the file, and every number two bytes.
+    let claimed = if header.coordinate { sizes[2] } else { size.saturating_mul(size) / 2 };
+    if claimed > text.len() {
+        return Err(error(number, format!("{claimed} entries are announced, more than the file has characters"), ""));
+    }
+    if let Some(refusal) = memory::refusal(memory::for_joints(size as f64)) {
+        return Err(error(number, format!("a matrix of {size} rows {refusal}"), "use a smaller one"));
     }
     let mut matrix = vec![vec![0.0; size]; size];
     let places: Vec<(usize, usize)> = if header.coordinate {
@@ -201,12 +233,28 @@ mod tests {
             "%%MatrixMarket matrix coordinate real general\n2 2 4\n1 1 2\n2 1 -1\n1 2 -1\n2 2 3e0\n",
             "%%MatrixMarket matrix coordinate integer symmetric\n2 2 3\n\n1 1 2\n2 1 -1\n2 2 3",
         ] {
-            assert_eq!(read(text, 2).unwrap(), expected(), "{text}");
+            assert_eq!(read(text, Size::OfPairs(1)).unwrap(), expected(), "{text}");
         }
         let general = "%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n4\n";
-        assert_eq!(read(general, 2).unwrap(), [[1.0, 3.0], [2.0, 4.0]]);
+        assert_eq!(read(general, Size::Square).unwrap(), [[1.0, 3.0], [2.0, 4.0]]);
         let sparse = "%%MatrixMarket matrix coordinate real general\n2 2 1\n2 1 5\n";
-        assert_eq!(read(sparse, 2).unwrap(), [[0.0, 0.0], [5.0, 0.0]]);
+        assert_eq!(read(sparse, Size::Square).unwrap(), [[0.0, 0.0], [5.0, 0.0]]);
+    }
+
+    #[test]
+    fn what_a_file_claims_is_not_believed() {
+        let banner = "%%MatrixMarket matrix";
+        for (text, part) in [
+            (format!("{banner} array real general\n2 3\n"), "2 × 3"),
+            (format!("{banner} array real general\n0 0\n"), "0 × 0"),
+            (format!("{banner} array real general\n3000000000 3000000000\n1\n"), "more than the file"),
+            (format!("{banner} coordinate real general\n3000000000 3000000000 1\n1 1 1\n"), "memory"),
+            (format!("{banner} coordinate real general\n2 2 99999999999\n1 1 1\n"), "more than the file"),
+        ] {
+            let error = read(&text, Size::Square).unwrap_err();
+            assert_eq!(error.line, 2, "{text}: {error:?}");
+            assert!(error.message.contains(part), "{text}: {error:?}");
+        }
     }
 
     #[test]
@@ -225,7 +273,7 @@ mod tests {
             (format!("{banner}2 2 2\n1 1 1\n"), 3, "1 of 2"),
             (format!("{banner}2 2 1\n1 1 1\n2 2 1\n"), 4, "more than"),
         ] {
-            let error = read(&text, 2).unwrap_err();
+            let error = read(&text, Size::OfPairs(1)).unwrap_err();
             assert_eq!(error.line, line, "{text}: {error:?}");
             assert!(error.message.contains(part), "{text}: {error:?}");
         }

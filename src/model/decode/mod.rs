@@ -9,6 +9,7 @@ mod findings;
 mod law;
 mod lcp;
 mod loads;
+mod matrix_file;
 mod matrix_market;
 mod numbers;
 mod parameters;
@@ -137,7 +138,7 @@ fn read(
         }
         SourceKey::Lcp(cursor) => {
             refuse_covering(solver);
-            Source::Lcp(lcp::read(cursor)?)
+            Source::Lcp(lcp::read(cursor, path.as_deref())?)
         }
     };
     let stages = match (fields.entry("stages"), &source) {

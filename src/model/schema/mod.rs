@@ -273,8 +273,8 @@ struct ContactSystem {
     pairs: Vec<String>,
     /// Places of the pairs, for plots
     positions: Option<Vec<Number>>,
-    /// 2m × 2m: all normals, then all tangentials
-    stiffness: Stiffness,
+    /// Symmetric, 2m × 2m: all normals, then all tangentials
+    stiffness: Matrix,
     /// Load cases by name
     loads: BTreeMap<String, JointLoad>,
     /// Law of each pair; coulomb if left out
@@ -291,10 +291,10 @@ struct ContactSystem {
     kernel: Option<Vec<Vec<Number>>>,
 }
 
-/// A symmetric matrix
+/// A square matrix
 #[derive(JsonSchema)]
 #[schemars(untagged)]
-enum Stiffness {
+enum Matrix {
     /// Its rows
     Rows(Vec<Vec<Number>>),
     /// In a Matrix Market file
@@ -322,9 +322,9 @@ struct JointLoad {
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct Lcp {
-    /// Rows of the matrix
+    /// n × n
     #[schemars(rename = "M")]
-    matrix: Vec<Vec<Number>>,
+    matrix: Matrix,
     /// Right-hand side
     q: Vec<Number>,
     /// Covering vector d; ones if left out

@@ -1,0 +1,166 @@
+//! "There is no answer" by linear programming: {z ≥ 0 : M z + q ≥ 0} is empty if and only if some y ≥ 0 has Mᵀy ≤ 0
+//! and qᵀy < 0 (Farkas).
+//!
+//! The linear program is an LCP itself, with the skew matrix [[0, M], [−Mᵀ, 0]] over (y, z): Lemke's algorithm ends at
+//! a feasible z or in a ray whose y-part is such a vector. The run in f64 only *proposes* it: which entries are
+//! positive, and which columns are tight. These equations are then solved in integers and every sign is told exactly;
+//! only then it is a proof. For smaller problems the exact dictionary decides where f64 cannot.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+use num_traits::{One, Signed, Zero};
+
+use super::driver::run;
+use super::dyadic::WholeRows;
+use super::lemke::SchemeEngine;
+use super::mirrored::MirroredLcp;
+use super::outcome::Outcome;
+use super::polyhedron::{Polyhedron, State};
+use super::problem::{Lcp, Scale};
+use super::ratio_test::TieRule;
+use super::rational_solve::{RationalSolution, solve};
+use super::scalar::{BigInt, ratio_to_f64};
+
+/// Most pivots of a run in f64.
+const MOST_PIVOTS: usize = 20_000;
+/// Entries below this times the largest, and sums below this times their terms, are proposed to be zero.
+const NOTHING: f64 = 1e-9;
+/// Pivots of the exact dictionary times n³ that are made to decide what f64 could not.
+const MOST_EXACT: usize = 20_000_000;
+
+/// The proof that {z ≥ 0 : M z + q ≥ 0} is empty, verified in integers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Farkas {
+    /// y ≥ 0 rounded to f64, largest entry 1.
+    pub multipliers: Vec<f64>,
+    /// −qᵀy > 0 of it.
+    pub gap: f64,
+}
+
+/// Looks for the proof; `None`: nothing is proved, there may be a feasible z or not. `go_on` is asked now and then.
+pub fn farkas(matrix: &DMatrix<f64>, q: &DVector<f64>, go_on: &mut dyn FnMut() -> bool) -> Option<Farkas> {
+    // y times a row, not times the whole number it stands for.
+    let whole = WholeRows::of_lcp(matrix, q);
+    if let Some(y) = proposed(matrix, q, go_on)
+        && let Some(found) = confirm(&whole, matrix, &y, go_on)
+    {
+        return Some(found);
+    }
+    exactly(&whole, go_on)
+}
+
+/// The y-part of the ray of the skew LCP, in f64.
+fn proposed(matrix: &DMatrix<f64>, q: &DVector<f64>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<f64>> {
+    let n = q.len();
+    let entry = |i: usize, j: usize| match (i < n, j < n) {
+        (true, false) => matrix[(i, j - n)],
+        (false, true) => -matrix[(j, i - n)],
+        _ => 0.0,
+    };
+    let skew: Vec<Vec<f64>> = (0..2 * n).map(|i| (0..2 * n).map(|j| entry(i, j)).collect()).collect();
+    let lcp = Lcp {
+        scale: Scale::plain(&skew),
+        matrix: skew,
+        q: q.iter().copied().chain(std::iter::repeat_n(0.0, n)).collect(),
+        covering: vec![1.0; 2 * n],
+    };
+    let rule = TieRule::Lexicographic((0..2 * n).collect());
+    let mut engine = SchemeEngine::new(Arc::new(MirroredLcp::plain(&lcp)), rule);
+    let mut observer =
+        |_: &super::trace::Pivot| if go_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+    match run(&mut engine, MOST_PIVOTS, &mut observer).outcome {
+        Outcome::Ray(ray) => Some(ray.z[..n].to_vec()),
+        _ => None,
+    }
+}
+
+/// Solves for the proposed y exactly and tells every sign.
+fn confirm(
+    whole: &WholeRows,
+    matrix: &DMatrix<f64>,
+    proposed: &[f64],
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Farkas> {
+    let n = proposed.len();
+    let largest = proposed.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let support: Vec<usize> = (0..n).filter(|&i| proposed[i] > NOTHING * largest).collect();
+    let tight: Vec<usize> = (0..n)
+        .filter(|&j| {
+            let terms = support.iter().map(|&i| matrix[(i, j)] * proposed[i]);
+            let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
+            sum.abs() <= NOTHING * size
+        })
+        .collect();
+    // Unknowns y_i / scale_i; the last equation gives them a size. Padded to a square.
+    let size = support.len().max(tight.len() + 1);
+    let mut equations = vec![vec![BigInt::zero(); size]; size];
+    let mut right = vec![BigInt::zero(); size];
+    for (k, &i) in support.iter().enumerate() {
+        for (e, &j) in tight.iter().enumerate() {
+            equations[e][k] = whole.rows[i][j].clone();
+        }
+        equations[tight.len()][k] = whole.scale[i].clone();
+    }
+    right[tight.len()] = BigInt::one();
+    let mut progress = |_: f64| if go_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+    let solution = match solve(&equations, &right, &mut progress) {
+        RationalSolution::Unique(solution) | RationalSolution::Singular { particular: Some(solution), .. } => solution,
+        _ => return None,
+    };
+    let mut y = vec![BigInt::zero(); n];
+    for (&i, numerator) in support.iter().zip(solution.numerators) {
+        y[i] = numerator;
+    }
+    verified(whole, &y)
+}
+
+/// The exact dictionary of {z ≥ 0 : M z + q ≥ 0}: its proof of emptiness is the row that cannot be mended.
+fn exactly(whole: &WholeRows, go_on: &mut dyn FnMut() -> bool) -> Option<Farkas> {
+    let n = whole.rows.len();
+    let mut left = MOST_EXACT / (n * n * n).max(1);
+    let mut polyhedron = Polyhedron::new(n, whole.clone(), &[]);
+    let state = polyhedron.restore(&mut || {
+        left = left.saturating_sub(1);
+        left > 0 && go_on()
+    });
+    if state != State::Empty {
+        return None;
+    }
+    let row = polyhedron.hopeless_row()?;
+    let mut y = vec![BigInt::zero(); n];
+    if let Some(i) = polyhedron.basic()[row].checked_sub(n) {
+        y[i] = polyhedron.denominator().clone();
+    }
+    for (column, variable) in polyhedron.nonbasic().iter().enumerate() {
+        if let Some(i) = variable.checked_sub(n) {
+            y[i] = -polyhedron.entry(row, column);
+        }
+    }
+    verified(whole, &y)
+}
+
+/// y ≥ 0, Mᵀy ≤ 0, qᵀy < 0 in integers; y over the rows of `whole`, any positive multiple.
+fn verified(whole: &WholeRows, y: &[BigInt]) -> Option<Farkas> {
+    let n = y.len();
+    let sum = |column: usize| -> BigInt {
+        (0..n)
+            .filter(|&i| !y[i].is_zero() && !whole.rows[i][column].is_zero())
+            .map(|i| &whole.rows[i][column] * &y[i])
+            .sum()
+    };
+    let gap = -sum(n);
+    if y.iter().any(Signed::is_negative) || !gap.is_positive() || (0..n).any(|j| sum(j).is_positive()) {
+        return None;
+    }
+    // As multipliers of the rows of M they are y_i · scale_i.
+    let own: Vec<BigInt> = y.iter().zip(&whole.scale).map(|(y, scale)| y * scale).collect();
+    let largest = own.iter().max()?;
+    let multipliers = own.iter().map(|y| ratio_to_f64(y, largest)).collect();
+    Some(Farkas { multipliers, gap: ratio_to_f64(&gap, largest) })
+}
+
+#[cfg(test)]
+#[path = "farkas_tests.rs"]
+mod tests;

@@ -1,0 +1,38 @@
+//! A matrix that stands in a file of its own: `{ "file": "M.mtx" }`, relative to the scenario.
+
+use std::path::Path;
+
+use super::matrix_market::{self, Size};
+use super::reader::Cursor;
+use super::words::quoted;
+
+/// Reads the matrix that `cursor`, an object, names; also where the name stands.
+pub fn read<'a>(cursor: Cursor<'a>, size: Size, path: Option<&Path>) -> Option<(Vec<Vec<f64>>, Cursor<'a>)> {
+    let at = cursor.fields(&["file"])?.required("file")?;
+    let name = at.string()?;
+    let Some(scenario) = path else {
+        at.problem(
+            "a scenario without a file of its own cannot name another file",
+            "write the matrix out, or save the scenario to a file",
+        );
+        return None;
+    };
+    let file = scenario.parent().unwrap_or(Path::new("")).join(name);
+    let text = match crate::text::file::read_text(&file) {
+        Ok(text) => text,
+        Err(error) => {
+            at.problem(
+                format!("cannot read the matrix {}: {error}", quoted(name)),
+                "the file is looked for beside the scenario file",
+            );
+            return None;
+        }
+    };
+    match matrix_market::read(&text, size) {
+        Ok(matrix) => Some((matrix, at)),
+        Err(error) => {
+            at.problem(format!("{name}:{}: {}", error.line, error.message), error.help);
+            None
+        }
+    }
+}
