@@ -207,10 +207,7 @@ fn transcripts_of_the_questions() {
         insta::assert_snapshot!(format!("questions-{name}"), transcript(&script));
     }
     let limit = transcript("beam-limit\nenumerate\ncheck exact");
-    for said in [
-        "c1 stick, c2 slip+, c3 slip+, c4 slip+, c5 slip+, c6 slip+",
-        "one answer; 4096 of 4096 working schemes solved",
-    ] {
+    for said in ["c1 stick, c2 slip+, c3 slip+, c4 slip+, c5 slip+, c6 slip+", "one answer"] {
         assert!(limit.contains(said), "{limit}");
     }
     assert!(

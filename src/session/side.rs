@@ -37,6 +37,8 @@ pub struct AllAnswers {
     pub complete: bool,
 }
 
+/// Most pairs whose answers are shown side by side.
+const MOST_PAIRS: usize = 10;
 /// Relative difference up to which an enumerated answer is the present one.
 const SAME: f64 = 1e-6;
 
@@ -81,6 +83,13 @@ impl Session {
                     "answers are enumerated for contact problems, this is a bare LCP".into(),
                 ));
             };
+            if system.pair_count() > MOST_PAIRS {
+                return Err(CommandError::Refused(format!(
+                    "{} contact pairs are too many for all answers side by side: at most {MOST_PAIRS}; `enumerate` goes on \
+                     until it is stopped",
+                    system.pair_count()
+                )));
+            }
             let found = enumerate(system, numbers, &mut |progress| {
                 watch.progress("all answers", progress.share);
                 if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

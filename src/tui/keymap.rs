@@ -119,7 +119,7 @@ pub const BINDINGS: &[Binding] = &[
     row(Everywhere, "redo", &["U", "ctrl-y"], Do::Redo, "do it again", ""),
     row(Everywhere, "next-plot", &["p"], Do::NextPlot, "next plot: slip, force, pressure, opening, p", ""),
     row(Everywhere, "previous-plot", &["P"], Do::PreviousPlot, "plot before", ""),
-    row(Everywhere, "answers", &["a"], Do::Answers, "all answers side by side", ""),
+    row(Everywhere, "answers", &["a"], Do::Answers, "all answers side by side, up to 10 pairs", ""),
     row(Everywhere, "mode", &["m"], Do::Mode, "let the mode of a ray move, or stop it", ""),
     row(Everywhere, "before", &["b"], Do::Before, "show or hide the answer before the last change", ""),
     row(Everywhere, "explain", &["e"], Do::Explain, "show or hide the line that explains each pane", ""),
