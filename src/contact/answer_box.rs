@@ -17,7 +17,7 @@ pub(crate) fn ellipsoid(system: &ContactSystem, joints: &[usize], constants: &[f
         return None; // no joints: nothing to box, and an empty matrix has no eigenvalues
     }
     let root: Vec<f64> = joints.iter().map(|&j| system.stiffness[(j, j)].max(0.0).sqrt()).collect();
-    if root.iter().any(|root| *root == 0.0) {
+    if root.contains(&0.0) {
         return None;
     }
     let r = DMatrix::from_fn(k, k, |i, j| system.stiffness[(joints[i], joints[j])] / root[i] / root[j]);

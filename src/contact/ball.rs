@@ -63,8 +63,7 @@ impl Ball {
     /// `None` where the divisor may be zero.
     pub fn over(self, other: Self) -> Option<Self> {
         let least = (other.middle.abs() - other.radius) * (1.0 - 2.0 * ROUNDING);
-        // NaN counts as unknown, too.
-        if !(least > 0.0) {
+        if least.is_nan() || least <= 0.0 {
             return None;
         }
         if self.is_nothing() {
@@ -84,6 +83,22 @@ impl Ball {
             .fold(f64::NEG_INFINITY, |most, value| if value.is_nan() { f64::INFINITY } else { most.max(value) });
         largest + ROUNDING * largest.abs()
     }
+}
+
+/// An affine function of undecided displacements, the constant last.
+pub(crate) type Row = Vec<Ball>;
+
+/// Largest entry of a row.
+pub(crate) fn size(row: &[Ball]) -> f64 {
+    row.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.middle.abs()))
+}
+
+/// The displacement of `column` from an equation; `None` where its coefficient may be zero.
+pub(crate) fn solved(equation: &[Ball], column: usize) -> Option<Row> {
+    let pivot = equation[column].negative();
+    let mut row: Row = equation.iter().map(|entry| entry.over(pivot)).collect::<Option<_>>()?;
+    row[column] = Ball::ZERO;
+    Some(row)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use crate::lcp::polyhedron::{Polyhedron, State};
 use crate::model::pair::Law;
 
 use super::answer_box::ellipsoid;
-use super::ball::Ball;
+use super::ball::{Ball, Row, size, solved};
 use super::exact_system::{ExactSystem, PairVariables};
 use super::numbers::ContactNumbers;
 use super::scheme_word::{PairScheme, Tangential};
@@ -131,9 +131,6 @@ struct Level {
     first: usize,
     rows: Vec<Ball>,
 }
-
-/// An affine function of the undecided displacements, the constant last.
-type Row = Vec<Ball>;
 
 struct Search<'a> {
     exact: ExactSystem<'a>,
@@ -278,10 +275,10 @@ impl<'a> Search<'a> {
                 (polyhedron, state, 0)
             }
         };
-        for pair in decided..scheme.len() {
+        for (pair, chosen) in scheme.iter().enumerate().skip(decided) {
             if state == State::Feasible {
                 let holds = fixed_bound(self.exact.system, self.exact.numbers, pair) > 0.0;
-                state = self.variables[pair].impose(&mut polyhedron, scheme[pair], holds, &mut go_on);
+                state = self.variables[pair].impose(&mut polyhedron, *chosen, holds, &mut go_on);
             }
         }
         match state {
@@ -484,19 +481,6 @@ impl<'a> Search<'a> {
         }
         scheme
     }
-}
-
-/// Largest entry of a row.
-fn size(row: &Row) -> f64 {
-    row.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.middle.abs()))
-}
-
-/// The displacement of `column` from an equation; `None` where its coefficient may be zero.
-fn solved(equation: &Row, column: usize) -> Option<Row> {
-    let pivot = equation[column].negative();
-    let mut row: Row = equation.iter().map(|entry| entry.over(pivot)).collect::<Option<_>>()?;
-    row[column] = Ball::ZERO;
-    Some(row)
 }
 
 #[cfg(test)]

@@ -131,8 +131,8 @@ impl Search<'_> {
             return true;
         }
         let n = self.size;
-        for i in 0..n {
-            decided[i] |= polyhedron.vanishes(i) || polyhedron.vanishes(n + i);
+        for (i, decided) in decided.iter_mut().enumerate() {
+            *decided |= polyhedron.vanishes(i) || polyhedron.vanishes(n + i);
         }
         let open: Vec<usize> = (0..n).filter(|&i| !decided[i]).collect();
         let broken = open.iter().copied().find(|&i| !polyhedron.is_zero(i) && !polyhedron.is_zero(n + i));

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
-use num_traits::{One, Signed, Zero};
+use num_traits::{Signed, Zero};
 
 use super::driver::run;
 use super::dyadic::WholeRows;
@@ -93,27 +93,51 @@ fn confirm(
             sum.abs() <= NOTHING * size
         })
         .collect();
-    // Unknowns y_i / scale_i; the last equation gives them a size. Padded to a square.
-    let size = support.len().max(tight.len() + 1);
-    let mut equations = vec![vec![BigInt::zero(); size]; size];
-    let mut right = vec![BigInt::zero(); size];
-    for (k, &i) in support.iter().enumerate() {
-        for (e, &j) in tight.iter().enumerate() {
-            equations[e][k] = whole.rows[i][j].clone();
-        }
-        equations[tight.len()][k] = whole.scale[i].clone();
-    }
-    right[tight.len()] = BigInt::one();
+    // The largest y_i is given; of the others and of the tight columns as many as are independent decide. The numbers of
+    // `whole` are rows of M times a scale: unknowns y_i / scale_i.
+    let given = *support.iter().max_by(|a, b| proposed[**a].total_cmp(&proposed[**b]))?;
+    let others: Vec<usize> = support.iter().copied().filter(|&i| i != given).collect();
+    let coefficient = |j: usize, i: usize| matrix[(i, j)] * proposed[i];
+    let (columns, rows) = independent(&tight, &others, &coefficient);
+    let equations: Vec<Vec<BigInt>> =
+        columns.iter().map(|&j| rows.iter().map(|&i| whole.rows[i][j].clone()).collect()).collect();
+    let right: Vec<BigInt> = columns.iter().map(|&j| -&whole.rows[given][j]).collect();
     let mut progress = |_: f64| if go_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
-    let solution = match solve(&equations, &right, &mut progress) {
-        RationalSolution::Unique(solution) | RationalSolution::Singular { particular: Some(solution), .. } => solution,
-        _ => return None,
+    let RationalSolution::Unique(solution) = solve(&equations, &right, &mut progress) else {
+        return None;
     };
     let mut y = vec![BigInt::zero(); n];
-    for (&i, numerator) in support.iter().zip(solution.numerators) {
+    y[given] = solution.denominator;
+    for (&i, numerator) in rows.iter().zip(solution.numerators) {
         y[i] = numerator;
     }
     verified(whole, &y)
+}
+
+/// As many columns and rows as make a regular matrix, by elimination in f64 with full pivoting.
+fn independent(
+    columns: &[usize],
+    rows: &[usize],
+    coefficient: &dyn Fn(usize, usize) -> f64,
+) -> (Vec<usize>, Vec<usize>) {
+    if columns.is_empty() || rows.is_empty() {
+        return (Vec::new(), Vec::new());
+    }
+    let mut matrix = DMatrix::from_fn(columns.len(), rows.len(), |j, i| coefficient(columns[j], rows[i]));
+    for mut row in matrix.row_iter_mut() {
+        let size = row.amax();
+        if size > 0.0 {
+            row /= size;
+        }
+    }
+    let lu = matrix.full_piv_lu();
+    let pivots = lu.u().diagonal().map(f64::abs);
+    let rank = pivots.iter().filter(|pivot| **pivot > NOTHING).count();
+    let mut columns = DVector::from_column_slice(columns);
+    lu.p().permute_rows(&mut columns);
+    let mut rows = DVector::from_column_slice(rows).transpose();
+    lu.q().permute_columns(&mut rows);
+    (columns.iter().take(rank).copied().collect(), rows.iter().take(rank).copied().collect())
 }
 
 /// The exact dictionary of {z ≥ 0 : M z + q ≥ 0}: its proof of emptiness is the row that cannot be mended.

@@ -216,17 +216,29 @@ impl<'t> Words<'t> {
         if self.words.next_if(|(_, word)| *word == "1-norm:").is_some() {
             self.next("the norm")?;
         }
-        let mut seen = 0;
-        if triplets {
-            while seen < count {
-                let (i, j) = (self.index(n, "row")?, self.index(n, "column")?);
-                self.word(":")?;
-                matrix[i][j] += self.real("an entry of M")?;
-                seen += 1;
-            }
-            return Ok(());
+        let entries = if triplets { self.triplets(n, count)? } else { self.compressed(n, count)? };
+        for (i, j, value) in entries {
+            // Of the rows of a matrix CSparse makes the columns.
+            let (i, j) = if origin == 3 && !triplets { (j, i) } else { (i, j) };
+            matrix[i][j] += value;
         }
-        // "col 0 : locations 0 to 1", then "0 : 2.5" an entry.
+        Ok(())
+    }
+
+    /// "0 1 : 2.5" an entry.
+    fn triplets(&mut self, n: usize, count: usize) -> Result<Vec<(usize, usize, f64)>, SiconosError> {
+        let mut entries = Vec::new();
+        for _ in 0..count {
+            let (i, j) = (self.index(n, "row")?, self.index(n, "column")?);
+            self.word(":")?;
+            entries.push((i, j, self.real("an entry of M")?));
+        }
+        Ok(entries)
+    }
+
+    /// "col 0 : locations 0 to 1", then "0 : 2.5" an entry.
+    fn compressed(&mut self, n: usize, count: usize) -> Result<Vec<(usize, usize, f64)>, SiconosError> {
+        let mut entries = Vec::new();
         for j in 0..n {
             self.word("col")?;
             let number = self.index(n, "column")?;
@@ -237,26 +249,24 @@ impl<'t> Words<'t> {
             self.word("locations")?;
             let first = self.whole("the first location")?;
             self.word("to")?;
-            // An empty column goes "to −1" of its start.
+            // An empty column ends before it begins.
             let word = self.next("the last location")?;
             let end = word.parse::<i64>().ok().and_then(|last| usize::try_from(last.checked_add(1)?).ok());
+            let seen = entries.len();
             let Some(end) = end.filter(|end| first == seen && (first..=count).contains(end)) else {
-                return Err(
-                    self.error(format!("column {j} has the locations {first} to {}, expected {seen} on", short(word)))
-                );
+                let message = format!("column {j} has the locations {first} to {}, expected {seen} on", short(word));
+                return Err(self.error(message));
             };
             for _ in first..end {
                 let i = self.index(n, "row")?;
                 self.word(":")?;
-                let value = self.real("an entry of M")?;
-                if origin == 3 { matrix[j][i] += value } else { matrix[i][j] += value }
+                entries.push((i, j, self.real("an entry of M")?));
             }
-            seen = end;
         }
-        if seen < count {
-            return Err(self.error(format!("there are {seen} entries, expected {count}")));
+        if entries.len() < count {
+            return Err(self.error(format!("there are {} entries, expected {count}", entries.len())));
         }
-        Ok(())
+        Ok(entries)
     }
 
     fn index(&mut self, n: usize, what: &str) -> Result<usize, SiconosError> {
