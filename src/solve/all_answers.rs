@@ -410,6 +410,15 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
     schemes
 }
 
+/// "there are 3 answers; this is one of them", where there are others.
+pub(super) fn others(count: usize, infinite: bool, complete: bool) -> Option<String> {
+    if infinite {
+        return Some("there are infinitely many answers; this is one of them (`enumerate`)".to_owned());
+    }
+    let known = if complete { "" } else { "at least " };
+    (count > 1).then(|| format!("there are {known}{count} answers; this is one of them"))
+}
+
 /// Refuses what no search comes to an end of, and what its exact numbers would fill the memory with.
 fn too_many(what: &str, found: usize, most: usize) -> Result<(), QuestionError> {
     if found <= most {

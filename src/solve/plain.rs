@@ -7,7 +7,7 @@ use std::time::Instant;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::all_answers::plain_answer;
+use super::all_answers::{others, plain_answer};
 use super::attempt::run_scheme;
 use super::judge::{EXACT_ROWS, run_exact_plain, run_tableau};
 use super::ladder::{Ladder, within_budget};
@@ -240,7 +240,8 @@ pub(super) fn solve_plain_judged(
     if let Some(found) = found {
         for z in &found.answers {
             if let Ok(mut answer) = ladder.add(plain_answer(&problem.lcp, z, &ladder.first().answer)) {
-                answer.answer.notes.extend(found.others());
+                let infinite = !found.continua.is_empty();
+                answer.answer.notes.extend(others(found.answers.len(), infinite, found.complete));
                 return Ok(answer);
             }
         }

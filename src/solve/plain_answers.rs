@@ -62,16 +62,6 @@ impl PlainAnswers {
     pub fn none(&self) -> bool {
         self.complete && self.undecided == 0 && self.answers.is_empty()
     }
-
-    /// "there are 3 answers; this is one of them", where there are others.
-    pub fn others(&self) -> Option<String> {
-        if !self.continua.is_empty() {
-            return Some("there are infinitely many answers; this is one of them (`enumerate`)".to_owned());
-        }
-        let known = if self.complete { "" } else { "at least " };
-        let count = self.answers.len();
-        (count > 1).then(|| format!("there are {known}{count} answers; this is one of them"))
-    }
 }
 
 /// The final basis of a bare LCP in exact arithmetic.

@@ -5,6 +5,7 @@
 //! an answer like any other: it passes the same fresh check. Rules that the user chose are run as chosen; the default
 //! rules are then run silently, to name them if they succeed.
 
+use super::all_answers::others;
 use super::judge::EXACT_PAIRS;
 use super::ladder::{Ladder, within_budget};
 use super::numbers::{contact_numbers, factors};
@@ -184,10 +185,7 @@ impl Job<'_> {
             for candidate in &found.answers {
                 let again = self.prepared.enumerated_answer(self.system, self.numbers, self.factors, candidate)?;
                 if let Ok(mut answer) = ladder.add(again) {
-                    if found.answers.len() > 1 {
-                        let said = format!("there are {} answers; this is one of them", found.answers.len());
-                        answer.answer.notes.push(said);
-                    }
+                    answer.answer.notes.extend(others(found.answers.len(), !found.continua.is_empty(), true));
                     return Ok(answer);
                 }
             }
