@@ -1,5 +1,7 @@
 //! A look from outside into long work: progress, and whether to stop.
 
+use std::time::{Duration, Instant};
+
 /// Hears of progress and may ask to stop. Both are called often and return at once.
 pub trait Watch: Sync {
     /// `what` is being done; `fraction` of it (0 … 1) is ready.
@@ -17,3 +19,31 @@ pub trait Watch: Sync {
 pub struct Quiet;
 
 impl Watch for Quiet {}
+
+/// Another watch that also asks to stop when a time budget is used up.
+pub struct Budget<'a> {
+    watch: &'a dyn Watch,
+    end: Instant,
+}
+
+impl<'a> Budget<'a> {
+    /// So much time from now.
+    pub fn new(watch: &'a dyn Watch, time: Duration) -> Budget<'a> {
+        Budget { watch, end: Instant::now() + time }
+    }
+
+    /// What is left.
+    pub fn left(&self) -> Duration {
+        self.end.saturating_duration_since(Instant::now())
+    }
+}
+
+impl Watch for Budget<'_> {
+    fn progress(&self, what: &str, fraction: f64) {
+        self.watch.progress(what, fraction);
+    }
+
+    fn stop(&self) -> bool {
+        self.watch.stop() || self.left().is_zero()
+    }
+}

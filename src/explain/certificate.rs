@@ -1,34 +1,41 @@
-//! The equilibrium LP: are there contact forces within the laws' bounds that balance the loads on every motion that
-//! costs nothing? If not, a motion proves it.
+//! Are there contact forces within the laws' bounds that balance the loads on every motion that costs nothing? If not,
+//! a motion proves it.
 //!
 //! ```text
 //!   find λ:  x_n ≥ 0,  |x_τ| ≤ f x_n + c,   Zᵀ λ = Zᵀ RF           (bound pairs: |x_τ| ≤ r_f, x_n free)
-//!   none  ⇔  a motion ζ = Z y with  ζ_n ≥ f |ζ_τ|  in every pair and  RF·ζ + Σ c |ζ_τ| < 0
+//!   none  ⇔  a motion ζ with  ζ_n ≥ f |ζ_τ|  in every pair and  work of the loads > Σ c |ζ_τ|
 //! ```
-//! The second line is the Farkas alternative: on ζ every admissible λ does at least the work −Σ c |ζ_τ|, and the loads
-//! do more. The LP crate only *proposes* ζ, by f64 and with tolerances; what it proposes is then verified in exact
-//! rational arithmetic, with a margin for the rounding of RF. No verified motion, no certificate.
+//! The second line is the Farkas alternative: on ζ every admissible λ takes at most Σ c |ζ_τ|, and the loads do more.
+//!
+//! The motion looked for is the one with the largest least margin: the signs of such a motion have room, so that f64
+//! sums with the bounds of their rounding prove them (theory §4, "The certificate, fast"). Where a part is confined
+//! on both sides no motion has room everywhere: then the inequalities that must hold as equations are found, solved in
+//! rationals, and every sign that has no room is evaluated exactly. A linear program only *proposes*; no verified
+//! motion, no certificate.
 
-use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOptions, SolveOutcome, Variable};
-use nalgebra::{DMatrix, DVector};
+use std::time::{Duration, Instant};
+
+use nalgebra::DVector;
 use num_rational::BigRational;
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 
-use super::kernel::{clean, releasable_kernel};
+use super::exact_equations::{Equations, Solved, exact, nearest};
+use super::motions::{Entry, FreeMotions, Rounded};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::lcp::problem::NOISE;
+use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::model::pair::Law;
 
-/// The power of the loads has to exceed this multiple of the terms that it sums.
-const MARGIN: f64 = NOISE;
-
-/// Solves with the tightest tolerance that still allows for the rounding of the data.
-fn run(problem: &Problem) -> Result<SolveOutcome, microlp::Error> {
-    let mut options = SolveOptions::default();
-    options.tolerances.feasibility = 1e-9;
-    problem.solve_with(options)
-}
+/// Time for all that is tried.
+pub const BUDGET: Duration = Duration::from_secs(5);
+/// A margin below this share of the motion is looked at more closely: the linear program cannot tell it from 0.
+const UNCLEAR: f64 = 1e-5;
+/// Magnifications of the closer looks.
+const ZOOMS: [f64; 2] = [1e6, 1e9];
+/// A share of the motion that the linear program can tell from 0.
+const CLEAR: f64 = 1e-7;
+/// An inequality that can be slack by no more than this share must hold as an equation.
+const TIGHT: f64 = 1e-6;
 
 /// A motion that proves that no contact forces within the laws' bounds balance the loads.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +46,17 @@ pub struct Certificate {
     pub power: f64,
     /// Σ c |ζ_τ| + Σ r_f |ζ_τ|: the most that cohesion and known bounds can take.
     pub dissipation: f64,
+    /// Whether some sign had no room and was proved in exact arithmetic.
+    pub exact: bool,
+}
+
+/// What a search for a certificate found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Search {
+    /// The proof, if there is one.
+    pub certificate: Option<Certificate>,
+    /// Whether the time was up before everything was tried.
+    pub out_of_time: bool,
 }
 
 /// What a pair allows of the forces in it.
@@ -65,292 +83,285 @@ pub(super) fn bounds(system: &ContactSystem, numbers: &ContactNumbers) -> Vec<Bo
         .collect()
 }
 
-/// The rows of Z at the pairs.
-struct Motions<'a> {
+/// Looks for a certificate.
+pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotions) -> Search {
+    let work = motions.work(&numbers.load, &numbers.load_terms);
+    let scale = work.iter().fold(0.0, |a: f64, work| a.max(work.value.abs()));
+    if scale == 0.0 {
+        return Search::default();
+    }
+    let bounds = bounds(system, numbers);
+    let mut problem =
+        Problem { system, motions, bounds, work, scale, end: Instant::now() + BUDGET, out_of_time: false };
+    let certificate = problem.with_room().or_else(|| problem.confined());
+    Search { certificate, out_of_time: problem.out_of_time }
+}
+
+/// ζ_n − side · f ζ_τ ≥ 0 of a pair.
+struct Slack {
+    pair: usize,
+    side: f64,
+    terms: Vec<(usize, f64)>,
+}
+
+struct Problem<'a> {
     system: &'a ContactSystem,
-    /// Motions that no bound pair's normal joint holds, noise removed.
-    z: DMatrix<f64>,
+    motions: &'a FreeMotions,
     bounds: Vec<Bounds>,
-    load: &'a DVector<f64>,
+    /// Work of the loads per unit of each motion.
+    work: Vec<Rounded>,
+    /// Largest work of a motion.
+    scale: f64,
+    end: Instant,
+    out_of_time: bool,
 }
 
-/// Looks for a certificate; `hint` is a motion near which it may lie (the direction of a ray).
-pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, hint: Option<&DVector<f64>>) -> Option<Certificate> {
-    let motions =
-        Motions { system, z: clean(&releasable_kernel(system)), bounds: bounds(system, numbers), load: &numbers.load };
-    if motions.z.ncols() == 0 || motions.load.amax() == 0.0 {
-        return None;
+/// A sparse row plus `factor` times another one.
+fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Vec<(usize, f64)> {
+    let mut terms: Vec<(usize, f64)> = row.iter().map(|entry| (entry.motion, entry.value)).collect();
+    for entry in other {
+        let value = factor * entry.value;
+        match terms.iter_mut().find(|(motion, _)| *motion == entry.motion) {
+            Some((_, sum)) => *sum += value,
+            None => terms.push((entry.motion, value)),
+        }
     }
-    let inward = motions.inward();
-    // The plain hint first: a lift-off or overturning mode is its own proof.
-    let plain = hint.map(|hint| motions.z.transpose() * hint);
-    let near = hint.and_then(|hint| motions.least_power(Some(hint)));
-    [plain, near].into_iter().flatten().find_map(|y| motions.verify(&y, inward.as_ref())).or_else(|| {
-        let y = motions.least_power(None)?;
-        motions.verify(&y, inward.as_ref())
-    })
+    terms.retain(|(_, value)| *value != 0.0);
+    terms
 }
 
-impl Motions<'_> {
-    fn row(&self, joint: usize) -> Vec<f64> {
-        self.z.row(joint).iter().copied().collect()
+impl Problem<'_> {
+    fn tangential(&self, pair: usize) -> &[Entry] {
+        self.system.pairs[pair].tangential.map_or(&[], |joint| self.motions.row(joint))
     }
 
-    /// Adds y and the constraints ζ_n − f |ζ_τ| ≥ s (s = 0 without `slack`); returns y and the cost of |ζ_τ| is put on t.
-    fn problem(
-        &self,
-        direction: OptimizationDirection,
-        power: bool,
-        limit: f64,
-        slack: bool,
-    ) -> (Problem, Vec<Variable>) {
-        let size = self.load.amax();
-        let mut problem = Problem::new(direction);
-        let cost = self.z.transpose() * self.load / size;
-        let y: Vec<Variable> =
-            (0..self.z.ncols()).map(|k| problem.add_var(if power { cost[k] } else { 0.0 }, (-limit, limit))).collect();
-        let s = slack.then(|| problem.add_var(1.0, (0.0, 1.0)));
-        for (i, bounds) in self.bounds.iter().enumerate() {
-            let normal = self.row(i);
-            let tangential = self.system.pairs[i].tangential.map(|joint| self.row(joint));
-            let moves = |row: &[f64]| row.iter().any(|v| *v != 0.0);
-            if !moves(&normal) && !tangential.as_deref().is_some_and(moves) {
-                continue;
-            }
-            let terms = |row: &[f64], sign: f64| -> Vec<(Variable, f64)> {
-                y.iter().zip(row).filter(|(_, v)| **v != 0.0).map(|(y, v)| (*y, sign * v)).collect()
+    /// Every inequality that some motion touches.
+    fn slacks(&self) -> Vec<Slack> {
+        let mut slacks = Vec::new();
+        for (pair, bounds) in self.bounds.iter().enumerate() {
+            let normal = self.motions.row(pair);
+            let (f, sides): (f64, &[f64]) = match *bounds {
+                Bounds::Cone(f, _) if f > 0.0 => (f, &[1.0, -1.0]),
+                Bounds::Cone(..) | Bounds::Normal => (0.0, &[0.0]),
+                Bounds::Band(_) => continue,
             };
-            let (f, c, unilateral) = match *bounds {
-                Bounds::Cone(f, c) => (f, c, true),
-                Bounds::Normal => (0.0, 0.0, true),
-                Bounds::Band(r) => (0.0, r, false),
-            };
-            let mut cone = terms(&normal, 1.0);
-            if let Some(tangential) = tangential.filter(|_| f > 0.0 || c > 0.0) {
-                let t = problem.add_var(if power { c / size } else { 0.0 }, (0.0, f64::INFINITY));
-                for sign in [1.0, -1.0] {
-                    let mut terms = terms(&tangential, sign);
-                    terms.push((t, -1.0));
-                    problem.add_constraint(terms.as_slice(), ComparisonOp::Le, 0.0);
+            for &side in sides {
+                let terms = combined(normal, -side * f, self.tangential(pair));
+                if !terms.is_empty() {
+                    slacks.push(Slack { pair, side, terms });
                 }
-                if f > 0.0 {
-                    cone.push((t, -f));
-                }
-            }
-            if unilateral && !cone.is_empty() {
-                if let Some(s) = s {
-                    cone.push((s, -1.0));
-                }
-                problem.add_constraint(cone.as_slice(), ComparisonOp::Ge, 0.0);
             }
         }
-        (problem, y)
+        slacks
     }
 
-    fn solve(problem: &Problem, y: &[Variable]) -> Option<DVector<f64>> {
-        match run(problem) {
-            Ok(SolveOutcome::Solution(solution)) => {
-                Some(DVector::from_iterator(y.len(), y.iter().map(|y| solution.var_value(*y))))
+    /// The joints that no motion of a proof may move: normals of bound pairs.
+    fn held(&self) -> impl Iterator<Item = usize> {
+        (0..self.bounds.len()).filter(|&i| matches!(self.bounds[i], Bounds::Band(_)))
+    }
+
+    /// The amounts of the motions within ±1, bound pairs held, and the terms of
+    /// (work of the loads − what cohesion and bounds take) / scale.
+    fn base(&self) -> (LinearProgram, Vec<(usize, f64)>) {
+        let mut program = LinearProgram::default();
+        for k in 0..self.motions.count() {
+            program.variable(0.0);
+            program.at_most(vec![(k, 1.0)], 1.0);
+            program.at_most(vec![(k, -1.0)], 1.0);
+        }
+        for joint in self.held() {
+            let terms = combined(self.motions.row(joint), 0.0, &[]);
+            if !terms.is_empty() {
+                program.equal(terms, 0.0);
             }
-            // Infeasible, interrupted or a numerical failure: nothing is proposed.
+        }
+        let mut surplus: Vec<(usize, f64)> =
+            self.work.iter().enumerate().map(|(k, work)| (k, work.value / self.scale)).collect();
+        for (pair, bounds) in self.bounds.iter().enumerate() {
+            let (Bounds::Cone(_, c) | Bounds::Band(c)) = *bounds else { continue };
+            let slip = combined(self.tangential(pair), 0.0, &[]);
+            if c > 0.0 && !slip.is_empty() {
+                let most = program.variable(0.0);
+                for sign in [1.0, -1.0] {
+                    let mut terms: Vec<(usize, f64)> = slip.iter().map(|(k, a)| (*k, sign * a)).collect();
+                    terms.push((most, -1.0));
+                    program.at_most(terms, 0.0);
+                }
+                surplus.push((most, -c / self.scale));
+            }
+        }
+        (program, surplus)
+    }
+
+    fn seconds(&self) -> f64 {
+        self.end.saturating_duration_since(Instant::now()).as_secs_f64()
+    }
+
+    fn solve(&mut self, program: &LinearProgram) -> Option<Vec<f64>> {
+        match program.solve(self.seconds()) {
+            Outcome::Optimum(found) => Some(found.x),
+            Outcome::OutOfTime => {
+                self.out_of_time = true;
+                None
+            }
             _ => None,
         }
     }
 
-    /// The admissible motion on which the loads do most work: in a box, or among those that have as much of the hint
-    /// as the hint itself (a slice does not have the optimum y = 0 that hides a very small power).
-    fn least_power(&self, hint: Option<&DVector<f64>>) -> Option<DVector<f64>> {
-        let limit = if hint.is_some() { 1e3 } else { 1.0 };
-        let (mut problem, y) = self.problem(OptimizationDirection::Minimize, true, limit, false);
-        if let Some(hint) = hint {
-            let along = self.z.transpose() * hint;
-            if along.amax() == 0.0 {
+    /// The motion with the largest least margin, verified.
+    fn with_room(&mut self) -> Option<Certificate> {
+        let (mut program, surplus) = self.base();
+        let margin = program.variable(-1.0);
+        let below = |terms: &[(usize, f64)]| -> Vec<(usize, f64)> {
+            terms.iter().map(|(k, a)| (*k, -a)).chain([(margin, 1.0)]).collect()
+        };
+        program.at_most(below(&surplus), 0.0);
+        for slack in self.slacks() {
+            program.at_most(below(&slack.terms), 0.0);
+        }
+        let mut x = self.solve(&program)?;
+        let found = self.proof(&x, &[]);
+        if found.is_some() || x[margin] > UNCLEAR {
+            return found;
+        }
+        for zoom in ZOOMS {
+            x = program.refined(&x, zoom, self.seconds())?;
+            if x[margin] <= 0.0 {
                 return None;
             }
-            let terms: Vec<(Variable, f64)> = y.iter().copied().zip(along.iter().copied()).collect();
-            problem.add_constraint(terms.as_slice(), ComparisonOp::Eq, along.norm_squared());
-        }
-        Self::solve(&problem, &y)
-    }
-
-    /// A motion with ζ_n > f |ζ_τ| in every pair that moves at all, if there is one.
-    fn inward(&self) -> Option<DVector<f64>> {
-        let (problem, y) = self.problem(OptimizationDirection::Maximize, false, 1.0, true);
-        Self::solve(&problem, &y)
-    }
-
-    /// Smallest ζ_n − f |ζ_τ| of the pairs that move.
-    fn least_slack(&self, y: &DVector<f64>) -> f64 {
-        let zeta = &self.z * y;
-        let mut least = f64::INFINITY;
-        for (i, bounds) in self.bounds.iter().enumerate() {
-            let tangential = self.system.pairs[i].tangential;
-            let rows = [Some(i), tangential];
-            if rows.into_iter().flatten().all(|joint| self.z.row(joint).amax() == 0.0) {
-                continue;
-            }
-            let slip = tangential.map_or(0.0, |joint| zeta[joint].abs());
-            match *bounds {
-                Bounds::Cone(f, _) => least = least.min(zeta[i] - f * slip),
-                Bounds::Normal => least = least.min(zeta[i]),
-                Bounds::Band(_) => {}
+            let found = self.proof(&x, &[]);
+            if found.is_some() {
+                return found;
             }
         }
-        least
+        None
     }
 
-    /// The certificate if y, or y moved inward by as much as it lacks, is one in exact arithmetic.
-    fn verify(&self, y: &DVector<f64>, inward: Option<&DVector<f64>>) -> Option<Certificate> {
-        let size = (&self.z * y).amax();
-        if size == 0.0 || !size.is_finite() {
+    /// A motion that leaves no room where a part is confined: the inequalities that must hold as equations are found,
+    /// and solved exactly.
+    fn confined(&mut self) -> Option<Certificate> {
+        let (mut program, surplus) = self.base();
+        let slacks = self.slacks();
+        for slack in &slacks {
+            program.at_most(slack.terms.iter().map(|(k, a)| (*k, -a)).collect(), 0.0);
+        }
+        program.set_costs(surplus.iter().map(|(k, a)| (*k, -a)));
+        let x = self.solve(&program)?;
+        let most: f64 = surplus.iter().map(|(k, a)| a * x[*k]).sum();
+        if most <= CLEAR {
             return None;
         }
-        let y = y / size;
-        if let Some(found) = self.exactly(&y) {
-            return Some(found);
+        // As much room as there can be in all inequalities at once.
+        let (mut program, _) = self.base();
+        let mut rooms = Vec::new();
+        for slack in &slacks {
+            let room = program.variable(-1.0);
+            program.at_most(slack.terms.iter().map(|(k, a)| (*k, -a)).chain([(room, 1.0)]).collect(), 0.0);
+            program.at_most(vec![(room, 1.0)], most);
+            program.at_most(vec![(room, -1.0)], 0.0);
+            rooms.push(room);
         }
-        let inward = inward?;
-        let room = self.least_slack(inward);
-        if room <= 0.0 {
-            return None;
-        }
-        let lacks = (-self.least_slack(&y)).max(0.0) + 16.0 * f64::EPSILON;
-        self.exactly(&(&y + inward * (2.0 * lacks / room)))
+        program.at_most(surplus.iter().map(|(k, a)| (*k, -a)).collect(), -0.5 * most);
+        let x = self.solve(&program)?;
+        let tight: Vec<&Slack> =
+            slacks.iter().zip(&rooms).filter(|(_, room)| x[**room] < TIGHT * most).map(|(s, _)| s).collect();
+        self.proof(&x, &tight)
     }
 
-    fn exactly(&self, y: &DVector<f64>) -> Option<Certificate> {
-        let exact = |value: f64| BigRational::from_float(value);
-        let y_exact: Vec<BigRational> = y.iter().map(|v| exact(*v)).collect::<Option<_>>()?;
-        let zeta = |joint: usize| -> Option<BigRational> {
-            let mut sum = BigRational::zero();
-            for (k, y) in y_exact.iter().enumerate() {
-                let entry = self.z[(joint, k)];
-                if entry != 0.0 {
-                    sum += exact(entry)? * y;
-                }
+    /// The certificate if these amounts, put right where inequalities must hold as equations, are one.
+    fn proof(&mut self, x: &[f64], tight: &[&Slack]) -> Option<Certificate> {
+        let mut amounts = x[..self.motions.count()].to_vec();
+        let mut equations = Equations::new(amounts.len(), self.end);
+        let held: Vec<usize> = self.held().collect();
+        for joint in held {
+            equations.add(self.motions.row(joint).iter().map(|entry| (entry.motion, exact(entry.value))));
+        }
+        for slack in tight {
+            equations.add(self.exact_terms(slack.pair, slack.side));
+        }
+        let exactly = match equations.nearest(&amounts) {
+            Solved::Free => None,
+            Solved::Exactly(exactly) => {
+                amounts = exactly.iter().map(nearest).collect();
+                Some(exactly)
             }
-            Some(sum)
+            Solved::OutOfTime => {
+                self.out_of_time = true;
+                return None;
+            }
         };
-        // −(RF·ζ + Σ c |ζ_τ|), and the sum of the sizes of its terms.
-        let mut surplus = BigRational::zero();
-        let f64_zeta = &self.z * y;
-        let (power, mut terms) = self
-            .load
-            .iter()
-            .zip(f64_zeta.iter())
-            .fold((0.0, 0.0), |(power, terms), (load, zeta)| (power - load * zeta, terms + (load * zeta).abs()));
-        let mut dissipation = 0.0;
-        let mut add = |joint: usize, zeta: &BigRational| -> Option<()> {
-            surplus -= exact(self.load[joint])? * zeta;
-            Some(())
+        self.verified(&amounts, exactly.as_deref())
+    }
+
+    /// Terms of ζ_n − side · f ζ_τ as the data have them.
+    fn exact_terms(&self, pair: usize, side: f64) -> Vec<(usize, BigRational)> {
+        let f = match self.bounds[pair] {
+            Bounds::Cone(f, _) => exact(side * f),
+            _ => BigRational::zero(),
         };
-        let mut taken = BigRational::zero();
-        for (i, bounds) in self.bounds.iter().enumerate() {
-            let normal = zeta(i)?;
-            add(i, &normal)?;
-            let slip = match self.system.pairs[i].tangential {
-                Some(joint) => {
-                    let slip = zeta(joint)?;
-                    add(joint, &slip)?;
-                    slip.abs()
-                }
-                None => BigRational::zero(),
-            };
+        let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, exact(entry.value)));
+        let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -exact(entry.value) * &f));
+        normal.chain(tangential).collect()
+    }
+
+    /// Every sign of the proof: by f64 sums with the bounds of their rounding, exactly where they have no room.
+    fn verified(&mut self, amounts: &[f64], exactly: Option<&[BigRational]>) -> Option<Certificate> {
+        let amount = |k: usize| exactly.map_or_else(|| exact(amounts[k]), |exactly| exactly[k].clone());
+        let value = |terms: Vec<(usize, BigRational)>| -> BigRational {
+            terms.into_iter().filter(|(k, _)| amounts[*k] != 0.0).map(|(k, a)| a * amount(k)).sum()
+        };
+        let mut taken = Rounded::default();
+        let mut needed_exact = false;
+        for (pair, bounds) in self.bounds.iter().enumerate() {
+            let normal = self.motions.displacement(pair, amounts);
+            let slip = self.system.pairs[pair]
+                .tangential
+                .map_or(Rounded::default(), |joint| self.motions.displacement(joint, amounts));
             let (f, c) = match *bounds {
                 Bounds::Cone(f, c) => (f, c),
                 Bounds::Normal => (0.0, 0.0),
-                Bounds::Band(r) => {
-                    if !normal.is_zero() {
-                        return None;
-                    }
-                    (0.0, r)
-                }
+                Bounds::Band(r) => (0.0, r),
             };
-            if normal < exact(f)? * &slip {
+            taken.value += c * slip.value.abs();
+            taken.magnitude += c * slip.magnitude;
+            let sure = normal.value - f * slip.value.abs() > normal.error() + 2.0 * f * slip.error();
+            let still = normal.magnitude == 0.0 && (f == 0.0 || slip.magnitude == 0.0);
+            if still || (sure && !matches!(bounds, Bounds::Band(_))) {
+                continue;
+            }
+            if Instant::now() > self.end {
+                self.out_of_time = true;
                 return None;
             }
-            if c > 0.0
-                && let Some(joint) = self.system.pairs[i].tangential
-            {
-                taken += exact(c)? * slip;
-                let work = c * f64_zeta[joint].abs();
-                dissipation += work;
-                terms += work;
+            needed_exact = true;
+            // What is neither 0 nor clear of its rounding proves nothing.
+            let error = normal.error() + 2.0 * f * slip.error();
+            let holds = match bounds {
+                Bounds::Band(_) => value(self.exact_terms(pair, 0.0)).is_zero(),
+                _ => [1.0, -1.0].iter().all(|side| {
+                    let slack = value(self.exact_terms(pair, *side));
+                    slack.is_zero() || nearest(&slack) > error
+                }),
+            };
+            if !holds {
+                return None;
             }
         }
-        if surplus - taken <= exact(MARGIN * terms)? {
+        let mut power = Rounded::default();
+        for (work, amount) in self.work.iter().zip(amounts) {
+            power.value += work.value * amount;
+            power.magnitude += work.magnitude * amount.abs();
+        }
+        if power.value - taken.value <= power.error() + 2.0 * taken.error() {
             return None;
         }
-        let largest = f64_zeta.amax();
-        Some(Certificate { direction: f64_zeta / largest, power: power / largest, dissipation: dissipation / largest })
+        let direction = self.motions.displacements(amounts);
+        let largest = direction.amax();
+        Some(Certificate {
+            direction: direction / largest,
+            power: power.value / largest,
+            dissipation: taken.value / largest,
+            exact: needed_exact,
+        })
     }
-}
-
-/// Interval of multipliers α for which the LP finds admissible forces under `fixed` + α·`varied`; `None` if it finds
-/// none for any α. Ends beyond 1e6 are infinite. By the LP alone, in f64: necessary for an answer, not sufficient.
-pub fn balanced_multipliers(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    fixed: &DVector<f64>,
-    varied: &DVector<f64>,
-) -> Option<[f64; 2]> {
-    const FAR: f64 = 1e6;
-    let z = clean(&releasable_kernel(system));
-    let size = fixed.amax().max(varied.amax());
-    if z.ncols() == 0 || size == 0.0 {
-        return None;
-    }
-    let end = |direction: OptimizationDirection| {
-        let mut problem = Problem::new(direction);
-        let alpha = problem.add_var(1.0, (-FAR, FAR));
-        let mut balance: Vec<Vec<(Variable, f64)>> = vec![Vec::new(); z.ncols()];
-        let mut put = |variable: Variable, joint: usize| {
-            for (k, row) in balance.iter_mut().enumerate() {
-                if z[(joint, k)] != 0.0 {
-                    row.push((variable, z[(joint, k)]));
-                }
-            }
-        };
-        for (i, bounds) in bounds(system, numbers).into_iter().enumerate() {
-            let lowest = if matches!(bounds, Bounds::Band(_)) { f64::NEG_INFINITY } else { 0.0 };
-            let normal = problem.add_var(0.0, (lowest, f64::INFINITY));
-            put(normal, i);
-            let Some(joint) = system.pairs[i].tangential else {
-                continue;
-            };
-            let (f, c) = match bounds {
-                Bounds::Cone(f, c) => (f, c / size),
-                Bounds::Normal => continue,
-                Bounds::Band(r) => (0.0, r / size),
-            };
-            let slip = if f > 0.0 {
-                problem.add_var(0.0, (f64::NEG_INFINITY, f64::INFINITY))
-            } else {
-                problem.add_var(0.0, (-c, c))
-            };
-            put(slip, joint);
-            if f > 0.0 {
-                for sign in [1.0, -1.0] {
-                    problem.add_constraint([(slip, sign), (normal, -f)], ComparisonOp::Le, c);
-                }
-            }
-        }
-        let (right, left) = (z.transpose() * fixed / size, z.transpose() * varied / size);
-        for (k, mut row) in balance.into_iter().enumerate() {
-            if left[k] != 0.0 {
-                row.push((alpha, -left[k]));
-            }
-            problem.add_constraint(row.as_slice(), ComparisonOp::Eq, right[k]);
-        }
-        match run(&problem) {
-            Ok(SolveOutcome::Solution(solution)) => Some(solution.var_value(alpha)),
-            _ => None,
-        }
-    };
-    let low = end(OptimizationDirection::Minimize)?;
-    let high = end(OptimizationDirection::Maximize)?;
-    let far = |value: f64| {
-        if value.abs() >= 0.999 * FAR { value.signum() * f64::INFINITY } else { value }
-    };
-    Some([far(low), far(high)])
 }

@@ -1,10 +1,13 @@
 //! Why: pivots in sentences, rays by class, in the words of the structure.
 
+pub mod balance;
 pub mod certificate;
+mod exact_equations;
 pub mod kernel;
 pub mod loose;
 pub mod margin;
 pub mod mode;
+pub mod motions;
 pub mod plain_ray;
 pub mod plain_why;
 pub mod ray;

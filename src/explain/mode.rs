@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::words::{list, short};
 use crate::contact::system::ContactSystem;
-use crate::fem::{MainSystem, Motion};
+use crate::fem::{MainSystem, mutual_displacements};
 use crate::model::pair::joints;
 use crate::model::structure::Structure;
 
@@ -104,15 +104,7 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
     if motions.is_empty() || direction.amax() == 0.0 {
         return None;
     }
-    let joints = joints(&structure.pairs);
-    let at = |motion: &Motion, joint: usize| -> f64 {
-        joints[joint].terms.iter().map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1]).sum()
-    };
-    let b = DMatrix::from_fn(joints.len(), motions.len(), |joint, k| at(&motions[k], joint));
-    let amounts = b.clone().svd(true, true).solve(direction, 1e-12).ok()?;
-    if (&b * &amounts - direction).amax() > 1e-6 * direction.amax() {
-        return None;
-    }
+    let amounts = main.amounts(direction);
     let mut displacements = vec![[0.0; 3]; structure.nodes.len()];
     for (motion, amount) in motions.iter().zip(amounts.iter()) {
         for (sum, u) in displacements.iter_mut().zip(&motion.u) {
@@ -120,6 +112,10 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
                 *sum += amount * u;
             }
         }
+    }
+    let moved = mutual_displacements(&joints(&structure.pairs), &displacements);
+    if (moved - direction).amax() > 1e-6 * direction.amax() {
+        return None;
     }
     let parts = parts(structure, &displacements).unwrap_or_default();
     Some(Mode { displacements, parts })

@@ -1,14 +1,16 @@
-//! Rays: class by the signs of theory §4, verdict, the motion in words, the work of the loads on it, and what would
-//! stop it. Never more than was proved.
+//! Rays: class by the signs of theory §4, verdict, the motion in words and the work of the loads on it. Never more than
+//! was proved.
 
 use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
-use super::certificate::{Certificate, certify};
+use super::balance::is_balanced;
+use super::certificate::{BUDGET, Certificate, certify};
 use super::kernel::releasable_kernel;
 use super::mode::{Mode, mode, pair_words};
-use super::remedy::{Remedy, Try, digits, remedies, sentence};
+use super::motions::FreeMotions;
+use super::remedy::digits;
 use super::words::{list, short};
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::complementarity::ContactLcp;
@@ -57,18 +59,18 @@ pub struct RayReport {
     pub direction: DVector<f64>,
     /// Pair whose z⁺ and z⁻ grow together, of an artefact.
     pub artefact: Option<usize>,
-    /// The motion of the structure, where z̄ costs no energy.
+    /// The motion of the structure, where z̄ costs no energy; found by [`explain`].
     pub mode: Option<Mode>,
     /// Work of each load case on z̄.
     pub powers: Vec<CasePower>,
     /// The proof of *certified*: a motion and the work on it.
     pub certificate: Option<Certificate>,
-    /// The motion of the structure behind the certificate.
+    /// Whether the search for a proof was given up when its time was used up.
+    pub out_of_time: bool,
+    /// The motion of the structure behind the certificate; found by [`explain`].
     pub certificate_mode: Option<Mode>,
-    /// Whether forces within the laws' bounds that balance the loads were found by the LP.
+    /// Whether forces within the laws' bounds that balance the loads were found by a linear program; by [`explain`].
     pub balanced: bool,
-    /// What would stop it.
-    pub remedies: Vec<Remedy>,
 }
 
 /// What is looked at: a contact problem and, where it has one, its structure.
@@ -82,6 +84,13 @@ pub struct Subject<'a> {
     pub cases: &'a [(String, f64)],
     /// The structure and its main system.
     pub structure: Option<(&'a Structure, &'a MainSystem)>,
+}
+
+impl Subject<'_> {
+    /// Its motions that cost no energy.
+    pub fn motions(&self) -> FreeMotions {
+        FreeMotions::new(self.system, self.structure)
+    }
 }
 
 /// z̄ over the joints, scaled to largest 1; the class; the pair of an artefact.
@@ -129,12 +138,11 @@ fn power(load: &DVector<f64>, z: &DVector<f64>) -> (f64, f64) {
     load.iter().zip(z.iter()).fold((0.0, 0.0), |(sum, terms), (a, b)| (sum - a * b, terms + (a * b).abs()))
 }
 
-/// Class, direction, mode and power; nothing proved yet.
+/// Class, direction and power; nothing proved, nothing put into words of the structure yet.
 pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64) -> RayReport {
-    let Subject { system, numbers, cases, structure } = *subject;
+    let Subject { system, numbers, cases, .. } = *subject;
     let (direction, class, artefact) = classify(system, numbers, contact, ray);
     let moves = matches!(class, RayClass::Mechanism | RayClass::NoEquilibrium);
-    let mode = structure.filter(|_| moves).and_then(|(structure, main)| mode(structure, main, &direction));
     let powers = if moves {
         system
             .loads
@@ -156,36 +164,44 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
         driver: contact.name(ray.entering, system),
         direction,
         artefact,
-        mode,
+        mode: None,
         powers,
         certificate: None,
+        out_of_time: false,
         certificate_mode: None,
         balanced: false,
-        remedies: Vec::new(),
     }
 }
 
-/// Tries the equilibrium LP; true if it certifies that there is no answer.
+/// Looks for a certificate; true if it proves that there is no answer.
 pub fn certify_ray(report: &mut RayReport, subject: &Subject) -> bool {
     if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
         return false;
     }
-    report.certificate = certify(subject.system, subject.numbers, Some(&report.direction));
-    if let Some(certificate) = &report.certificate {
-        report.verdict = Some(Verdict::Certified);
-        report.certificate_mode =
-            subject.structure.and_then(|(structure, main)| mode(structure, main, &certificate.direction));
-        return true;
-    }
-    report.verdict = Some(Verdict::Undecided);
-    let none = DVector::zeros(subject.numbers.load.len());
-    report.balanced =
-        super::certificate::balanced_multipliers(subject.system, subject.numbers, &subject.numbers.load, &none)
-            .is_some();
-    false
+    let search = certify(subject.system, subject.numbers, &subject.motions());
+    report.certificate = search.certificate;
+    report.out_of_time = search.out_of_time;
+    let certified = report.certificate.is_some();
+    report.verdict = Some(if certified { Verdict::Certified } else { Verdict::Undecided });
+    certified
 }
 
-/// A ray of a path: class, direction and mode by pairs, certified where the equilibrium LP does.
+/// Adds what the words need: the motions of the structure, and whether balanced forces exist where nothing is proved.
+pub fn explain(report: &mut RayReport, subject: &Subject) {
+    if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
+        return;
+    }
+    let of_structure =
+        |direction: &DVector<f64>| subject.structure.and_then(|(structure, main)| mode(structure, main, direction));
+    report.mode = of_structure(&report.direction);
+    report.certificate_mode = report.certificate.as_ref().and_then(|found| of_structure(&found.direction));
+    if report.verdict == Some(Verdict::Undecided) {
+        let found = is_balanced(subject.system, subject.numbers, &subject.motions(), BUDGET.as_secs_f64());
+        report.balanced = found == Some(true);
+    }
+}
+
+/// A ray of a path, where the structure behind it is not at hand: explained by pairs.
 pub fn report(
     system: &ContactSystem,
     numbers: &ContactNumbers,
@@ -193,10 +209,15 @@ pub fn report(
     ray: &RayDirection,
     p: f64,
 ) -> Ray {
-    let subject = Subject { system, numbers, cases: &[], structure: None };
-    let mut report = look(&subject, contact, ray, p);
-    certify_ray(&mut report, &subject);
-    report.record(system, Covering::default())
+    full_report(&Subject { system, numbers, cases: &[], structure: None }, contact, ray, p)
+}
+
+/// A ray of a path: class and mode, certified where there is a certificate.
+pub fn full_report(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64) -> Ray {
+    let mut report = look(subject, contact, ray, p);
+    certify_ray(&mut report, subject);
+    explain(&mut report, subject);
+    report.record(subject.system, Covering::default())
 }
 
 /// Goes through all working schemes; `None` where that takes too many steps or the search was stopped.
@@ -213,15 +234,6 @@ pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> 
         if steps > most || watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     found.complete.then_some(found)
-}
-
-/// Looks for what would stop a certified motion.
-pub fn add_remedies(report: &mut RayReport, subject: &Subject, solves: Try, watch: &dyn Watch) {
-    if report.class != RayClass::Mechanism {
-        return;
-    }
-    let parts = report.mode.as_ref().map_or(&[][..], |mode| mode.parts.as_slice());
-    report.remedies = remedies(subject.system, subject.numbers, subject.cases, parts, solves, watch);
 }
 
 impl RayReport {
@@ -325,6 +337,9 @@ impl RayReport {
             }
             _ => text += " Whether there is an answer is not proved.",
         }
+        if self.out_of_time {
+            text += &format!(" The search for a proof was given up after {} s.", BUDGET.as_secs());
+        }
         let powers: Vec<String> = self
             .powers
             .iter()
@@ -337,7 +352,7 @@ impl RayReport {
         if self.class == RayClass::Mechanism && !powers.is_empty() {
             text += &format!(" Work of the loads per unit of the motion: {}.", list(&powers));
         }
-        text + &sentence(&self.remedies)
+        text
     }
 
     /// As it stands in the result.

@@ -1,27 +1,29 @@
 //! What would stop a mechanism, as far as it can be proved: a restraint, more friction, less (or more) of a load.
 //!
-//! "Needed" comes from the equilibrium LP: short of it no forces within the laws' bounds balance the loads. "Tried"
-//! comes from solving: just inside it an answer was found, which is the proof that it is enough.
+//! "Needed" comes from balanced forces: short of it none within the laws' bounds balance the loads. "Tried" comes from
+//! solving: just beyond it an answer was found, which is the proof that it is enough.
 
-use nalgebra::DVector;
+use serde::Serialize;
 
-use super::certificate::balanced_multipliers;
+use super::balance::{Multiples, balanced_multiples, is_balanced};
 use super::mode::{PartMotion, RigidMotion, direction_word};
-use super::words::{list, short};
+use super::motions::FreeMotions;
+use super::ray::Subject;
+use super::words::short;
 use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
 use crate::model::pair::Law;
-use crate::watch::Watch;
+use crate::watch::{Budget, Watch};
 
-/// Most pairs for which friction and loads that would do are looked for.
-pub const MOST_PAIRS: usize = 64;
 /// Friction (or its multiplier) up to which is looked.
 const MOST_FRICTION: f64 = 1e3;
 /// How far inside a limit an answer is tried.
 const INSIDE: f64 = 1e-6;
+/// A threshold is found to this share of itself; nearer to the present value it says nothing.
+const FOUND_TO: f64 = 1e-7;
 
 /// Something that would stop the mechanism.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Remedy {
     /// A restraint of a part against its motion. It stops this mode; that no other follows is not proved.
     Restraint {
@@ -32,6 +34,8 @@ pub enum Remedy {
     },
     /// Friction of all Coulomb pairs.
     Friction {
+        /// Present friction; 1 if `multiplier`.
+        present: f64,
         /// Smallest friction (if `multiplier`: multiple of the present frictions) for which balanced forces exist;
         /// `None`: none up to 1000.
         needed: Option<f64>,
@@ -46,25 +50,27 @@ pub enum Remedy {
         case: String,
         /// Its present factor.
         present: f64,
-        /// Factors between which balanced forces exist (may be infinite).
-        between: [f64; 2],
+        /// The end, nearer to `present`, of the factors for which balanced forces exist; of the sign of `present`.
+        needed: f64,
         /// The factor just inside at which an answer was found.
         tried: Option<f64>,
     },
+}
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Remedies {
+    /// The remedies.
+    pub remedies: Vec<Remedy>,
+    /// Whether all were looked for; otherwise the time was up.
+    pub complete: bool,
 }
 
 /// Solves under other numbers (and, if given, with another factor of one load case); whether an answer was found.
 pub type Try<'a> = &'a dyn Fn(&ContactNumbers, Option<(usize, f64)>) -> bool;
 
 /// Looks for what would stop the motion of these parts.
-pub fn remedies(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    cases: &[(String, f64)],
-    parts: &[PartMotion],
-    solves: Try,
-    watch: &dyn Watch,
-) -> Vec<Remedy> {
+pub fn remedies(subject: &Subject, parts: &[PartMotion], solves: Try, budget: &Budget) -> Remedies {
     let mut found: Vec<Remedy> = parts
         .iter()
         .map(|part| Remedy::Restraint {
@@ -79,154 +85,203 @@ pub fn remedies(
             },
         })
         .collect();
-    if system.pairs.len() > MOST_PAIRS {
-        return found;
-    }
-    found.extend(friction(system, numbers, solves, watch));
-    for (k, (case, factor)) in cases.iter().enumerate() {
-        if watch.stop() {
-            break;
-        }
-        found.extend(load(system, numbers, k, case, *factor, solves));
-    }
-    found
-}
-
-fn is_balanced(system: &ContactSystem, numbers: &ContactNumbers) -> bool {
-    let none = DVector::zeros(numbers.load.len());
-    balanced_multipliers(system, numbers, &numbers.load, &none).is_some()
-}
-
-fn friction(system: &ContactSystem, numbers: &ContactNumbers, solves: Try, watch: &dyn Watch) -> Option<Remedy> {
-    let coulomb: Vec<usize> =
-        (0..system.pairs.len()).filter(|&i| matches!(system.pairs[i].law, Law::Coulomb { .. })).collect();
-    let first = numbers.friction[*coulomb.first()?];
-    let equal = coulomb.iter().all(|&i| numbers.friction[i] == first);
-    let largest = coulomb.iter().map(|&i| numbers.friction[i]).fold(0.0, f64::max);
-    let multiplier = !equal && largest > 0.0;
-    let with = |value: f64| {
-        let mut changed = numbers.clone();
-        for &i in &coulomb {
-            changed.friction[i] = if multiplier { value * numbers.friction[i] } else { value };
-        }
-        changed
+    let motions = subject.motions();
+    let search = Search { subject, motions: &motions, solves, budget };
+    let mut complete = true;
+    let mut note = |result: Option<Option<Remedy>>| match result {
+        Some(remedy) => found.extend(remedy),
+        None => complete = false,
     };
-    let mut low = if multiplier { 1.0 } else { first };
-    if is_balanced(system, &with(low)) {
-        return None;
+    note(search.friction());
+    for (k, (case, factor)) in subject.cases.iter().enumerate() {
+        note(search.load(k, case, *factor));
     }
-    let mut high = if low > 0.0 { 2.0 * low } else { 0.125 };
-    while !is_balanced(system, &with(high)) {
-        if high >= MOST_FRICTION || watch.stop() {
-            return Some(Remedy::Friction { needed: None, multiplier, tried: false });
-        }
-        low = high;
-        high = (2.0 * high).min(MOST_FRICTION);
-    }
-    for _ in 0..40 {
-        if high - low <= 1e-9 * high || watch.stop() {
-            break;
-        }
-        let middle = 0.5 * (low + high);
-        if is_balanced(system, &with(middle)) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Some(Remedy::Friction { needed: Some(high), multiplier, tried: solves(&with(high * (1.0 + INSIDE)), None) })
+    Remedies { remedies: found, complete }
 }
 
-fn load(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    case: usize,
-    name: &str,
-    factor: f64,
-    solves: Try,
-) -> Option<Remedy> {
-    let unit = &system.loads.get(case)?.vector;
-    if unit.amax() == 0.0 {
-        return None;
+/// The searches; each gives `None` when the time is up or nothing could be decided, `Some(None)` where there is no such
+/// remedy.
+struct Search<'a> {
+    subject: &'a Subject<'a>,
+    motions: &'a FreeMotions,
+    solves: Try<'a>,
+    budget: &'a Budget<'a>,
+}
+
+impl Search<'_> {
+    fn seconds(&self) -> f64 {
+        self.budget.left().as_secs_f64()
     }
-    let fixed = &numbers.load - factor * unit;
-    let between = balanced_multipliers(system, numbers, &fixed, unit)?;
-    if between[0] <= factor && factor <= between[1] {
-        return None;
+
+    fn is_balanced(&self, numbers: &ContactNumbers) -> Option<bool> {
+        if self.budget.stop() {
+            return None;
+        }
+        is_balanced(self.subject.system, numbers, self.motions, self.seconds())
     }
-    // The end that is nearer to the present factor, and a little inside.
-    let (end, other) = if factor > between[1] { (between[1], between[0]) } else { (between[0], between[1]) };
-    let width = (end - other).abs().min(end.abs().max(f64::MIN_POSITIVE));
-    let inside = end + (other - end).signum() * INSIDE * width;
-    let mut changed = numbers.clone();
-    changed.set_load(fixed + inside * unit);
-    Some(Remedy::Load {
-        case: name.to_owned(),
-        present: factor,
-        between,
-        tried: solves(&changed, Some((case, inside))).then_some(inside),
-    })
+
+    fn friction(&self) -> Option<Option<Remedy>> {
+        let Subject { system, numbers, .. } = *self.subject;
+        let coulomb: Vec<usize> =
+            (0..system.pairs.len()).filter(|&i| matches!(system.pairs[i].law, Law::Coulomb { .. })).collect();
+        let Some(&one) = coulomb.first() else { return Some(None) };
+        let first = numbers.friction[one];
+        let equal = coulomb.iter().all(|&i| numbers.friction[i] == first);
+        let largest = coulomb.iter().map(|&i| numbers.friction[i]).fold(0.0, f64::max);
+        let multiplier = !equal && largest > 0.0;
+        let with = |value: f64| {
+            let mut changed = numbers.clone();
+            for &i in &coulomb {
+                changed.friction[i] = if multiplier { value * numbers.friction[i] } else { value };
+            }
+            changed
+        };
+        let present = if multiplier { 1.0 } else { first };
+        let mut low = present;
+        if self.is_balanced(&with(low))? {
+            return Some(None);
+        }
+        let mut high = if low > 0.0 { 2.0 * low } else { 0.125 };
+        while !self.is_balanced(&with(high))? {
+            if high >= MOST_FRICTION {
+                return Some(Some(Remedy::Friction { present, needed: None, multiplier, tried: false }));
+            }
+            low = high;
+            high = (2.0 * high).min(MOST_FRICTION);
+        }
+        while high - low > 0.1 * FOUND_TO * high {
+            let middle = 0.5 * (low + high);
+            if self.is_balanced(&with(middle))? {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        if high - present <= FOUND_TO * high {
+            return Some(None);
+        }
+        let tried = (self.solves)(&with(high * (1.0 + INSIDE)), None);
+        Some(Some(Remedy::Friction { present, needed: Some(high), multiplier, tried }))
+    }
+
+    fn load(&self, case: usize, name: &str, present: f64) -> Option<Option<Remedy>> {
+        let Subject { system, numbers, .. } = *self.subject;
+        // A load that does not act is no remedy, nor is one that has to be reversed or left out.
+        let Some(unit) = system.loads.get(case).map(|load| &load.vector).filter(|unit| unit.amax() > 0.0) else {
+            return Some(None);
+        };
+        if present == 0.0 {
+            return Some(None);
+        }
+        if self.budget.stop() {
+            return None;
+        }
+        let fixed = &numbers.load - present * unit;
+        let between = match balanced_multiples(system, numbers, self.motions, &fixed, unit, self.seconds()) {
+            Multiples::Between(between) => between,
+            Multiples::None => return Some(None),
+            Multiples::Unknown => return None,
+        };
+        let (needed, other) = if present > between[1] {
+            (between[1], between[0])
+        } else if present < between[0] {
+            (between[0], between[1])
+        } else {
+            return Some(None);
+        };
+        let same_sign = needed * present > 0.0;
+        if !same_sign
+            || (needed - present).abs() <= FOUND_TO * present.abs()
+            || needed.abs() <= FOUND_TO * present.abs()
+        {
+            return Some(None);
+        }
+        let width = (needed - other).abs().min(needed.abs());
+        let inside = needed + (other - needed).signum() * INSIDE * width;
+        let mut changed = numbers.clone();
+        changed.set_load(fixed + inside * unit);
+        let tried = (self.solves)(&changed, Some((case, inside))).then_some(inside);
+        Some(Some(Remedy::Load { case: name.to_owned(), present, needed, tried }))
+    }
 }
 
 /// Six digits, trailing zeros dropped: limits are worth more than running text.
 pub fn digits(value: f64) -> String {
+    rounded(value, 6)
+}
+
+fn rounded(value: f64, digits: usize) -> String {
     if value.is_infinite() {
         return if value > 0.0 { "∞" } else { "-∞" }.to_owned();
     }
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    let rounded = if rounded.abs() < 1e-9 { 0.0 } else { rounded };
+    let text = format!("{value:.*e}", digits - 1);
+    let rounded: f64 = text.parse().unwrap_or(value);
+    let rounded = if rounded.abs() < 1e-9 && digits == 6 { 0.0 } else { rounded };
     format!("{rounded}")
 }
 
+/// Two numbers with as many digits, six at least, as it takes to tell them apart.
+pub fn told_apart(a: f64, b: f64) -> (String, String) {
+    (6..17)
+        .map(|digits| (rounded(a, digits), rounded(b, digits)))
+        .find(|(a, b)| a != b)
+        .unwrap_or_else(|| (format!("{a}"), format!("{b}")))
+}
+
+/// A remedy as a row of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RemedyWords {
+    /// "more friction in every pair".
+    pub remedy: String,
+    /// "above 0.21"; empty where there is none.
+    pub threshold: String,
+    /// "0.2"; empty where there is none.
+    pub now: String,
+    /// What was shown of it.
+    pub shown: &'static str,
+}
+
 impl Remedy {
-    /// As the end of "What would stop it: …".
-    pub fn words(&self) -> String {
+    /// As a row of a table.
+    pub fn words(&self) -> RemedyWords {
         match self {
-            Remedy::Restraint { part, against } => {
-                format!("a restraint of {part} {against} (stops this motion; that no other follows is not proved)")
+            Remedy::Restraint { part, against } => RemedyWords {
+                remedy: format!("a restraint of {part} {against}"),
+                threshold: String::new(),
+                now: String::new(),
+                shown: "stops this motion, not surely the next",
+            },
+            Remedy::Friction { present, needed: None, multiplier, .. } => RemedyWords {
+                remedy: friction_words(*multiplier),
+                threshold: "none up to 1000".to_owned(),
+                now: digits(*present),
+                shown: "no friction gives balanced forces",
+            },
+            Remedy::Friction { present, needed: Some(needed), multiplier, tried } => {
+                let (threshold, now) = told_apart(*needed, *present);
+                let shown = shown(*tried);
+                RemedyWords { remedy: friction_words(*multiplier), threshold: format!("above {threshold}"), now, shown }
             }
-            Remedy::Friction { needed: None, .. } => {
-                "no friction up to 1000 (none gives forces that balance the loads)".to_owned()
-            }
-            Remedy::Friction { needed: Some(needed), multiplier, tried } => {
-                let what = if *multiplier {
-                    format!("{} times the friction", digits(*needed))
-                } else {
-                    format!("friction above {}", digits(*needed))
-                };
-                let proof = if *tried {
-                    "below it no forces balance the loads, just above it an answer was found"
-                } else {
-                    "below it no forces balance the loads; that it is enough is not proved"
-                };
-                format!("{what} ({proof})")
-            }
-            Remedy::Load { case, present, between: [low, high], tried } => {
-                let what = if *present > *high {
-                    format!("a factor of `{case}` below {}", digits(*high))
-                } else {
-                    format!("a factor of `{case}` above {}", digits(*low))
-                };
-                let proof = if tried.is_some() {
-                    "beyond it no forces balance the loads, just inside it an answer was found"
-                } else {
-                    "beyond it no forces balance the loads; that this is enough is not proved"
-                };
-                format!("{what}, now {} ({proof})", digits(*present))
+            Remedy::Load { case, present, needed, tried } => {
+                let (threshold, now) = told_apart(*needed, *present);
+                let (word, side) = if present > needed { ("less", "below") } else { ("more", "above") };
+                // Of a load with a negative factor more is further down.
+                let word = if *present < 0.0 { if word == "less" { "more" } else { "less" } } else { word };
+                RemedyWords {
+                    remedy: format!("{word} of load case `{case}` (its factor)"),
+                    threshold: format!("{side} {threshold}"),
+                    now,
+                    shown: shown(tried.is_some()),
+                }
             }
         }
     }
 }
 
-/// All remedies as one sentence; empty without any.
-pub fn sentence(remedies: &[Remedy]) -> String {
-    if remedies.is_empty() {
-        return String::new();
-    }
-    let words: Vec<String> = remedies.iter().map(Remedy::words).collect();
-    let all = match words.as_slice() {
-        [head @ .., last] if !head.is_empty() => format!("{}; or {last}", head.join("; ")),
-        _ => list(&words),
-    };
-    format!(" What would stop it: {all}.")
+fn friction_words(multiplier: bool) -> String {
+    if multiplier { "more friction (a multiple of all)" } else { "more friction in every pair" }.to_owned()
+}
+
+fn shown(tried: bool) -> &'static str {
+    if tried { "an answer was found just beyond it" } else { "needed; that it is enough is not proved" }
 }

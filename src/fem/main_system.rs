@@ -75,6 +75,8 @@ pub struct MainSystem {
     z: DMatrix<f64>,
     /// Of the first of the motions; internal ones follow.
     rigid: RigidKernel,
+    /// Column j of `z` is B applied to Σ_i coefficients[(i, j)] · motion i; r × r.
+    coefficients: DMatrix<f64>,
     motions: Vec<Motion>,
     seconds: Seconds,
 }
@@ -149,6 +151,7 @@ impl MainSystem {
             r,
             rf: Vec::new(),
             z: rigid.z.clone(),
+            coefficients: rigid.coefficients.clone(),
             rigid,
             motions,
             seconds,
@@ -221,13 +224,22 @@ impl MainSystem {
                 continue;
             }
             if let Some(extended) = kernel::extend(&self.z, &z) {
-                self.z = extended;
                 let mut u = self.dofs.scatter(&u);
-                let largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
-                if largest > 0.0 {
-                    u.iter_mut().flatten().for_each(|u| *u /= largest);
+                let mut largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+                if largest == 0.0 {
+                    largest = 1.0;
                 }
+                u.iter_mut().flatten().for_each(|u| *u /= largest);
                 self.motions.push(Motion { u, internal: true });
+                // The new column is (z − Z Zᵀ z) / norm, and z is B applied to largest · the new motion.
+                let at = self.z.ncols();
+                let norm = extended.column(at).dot(&z);
+                let inside = &self.coefficients * (self.z.transpose() * &z);
+                let mut coefficients = self.coefficients.clone().resize(at + 1, at + 1, 0.0);
+                coefficients.view_mut((0, at), (at, 1)).copy_from(&(-inside / norm));
+                coefficients[(at, at)] = largest / norm;
+                self.coefficients = coefficients;
+                self.z = extended;
             }
         }
         kernel::project(&mut self.r, &self.z);
@@ -248,6 +260,11 @@ impl MainSystem {
     /// joints, but in a convenient basis (translations, then rotations, part by part), not column by column.
     pub fn kernel_motions(&self) -> &[Motion] {
         &self.motions
+    }
+
+    /// How much of each of the motions is in a motion of the joints, as far as it lies in the kernel.
+    pub fn amounts(&self, z: &DVector<f64>) -> DVector<f64> {
+        &self.coefficients * (self.z.transpose() * z)
     }
 
     /// RF per load case and unit factor, in the order of the joints.

@@ -40,6 +40,7 @@ mod tests;
 
 pub use element::bar_load::Piece;
 pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
+pub(crate) use kernel::mutual_displacements;
 pub use loose::Motion;
 pub use main_system::{Displacements, MainSystem, Seconds, Unknowns};
 pub use recovery::{EndForces, MemberDiagram, MemberForces, MembraneStress, NodeStress, Reaction};

@@ -12,6 +12,7 @@ pub mod exact;
 pub mod farkas;
 pub mod filtered;
 pub mod lemke;
+pub mod linear_program;
 pub mod mirrored;
 pub mod outcome;
 pub mod parametric;

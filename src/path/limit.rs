@@ -5,6 +5,7 @@ use super::start::{PathError, cold};
 use crate::answer::record::Ray;
 use crate::explain::ray;
 use crate::model::parameter::ParameterValues;
+use crate::model::rules::Covering;
 use crate::model::scenario::Scenario;
 use crate::solve::{Prepared, Solved};
 use crate::watch::Watch;
@@ -61,15 +62,19 @@ pub fn limit(
     let size = factor.abs().max(f64::MIN_POSITIVE);
     let above = limit.path.numbers(factor + BESIDE * size);
     let below = limit.path.numbers(factor - BESIDE * size);
-    let mut collapse = ray::report(system, &above, limit.path.contact(), direction, 0.0);
+    let cases = |factor: f64| prepared.named_factors(&limit.path.case_factors(factor));
+    let beyond = cases(factor + BESIDE * size);
+    let subject = prepared.subject(system, &above, &beyond);
+    let mut collapse = ray::look(&subject, limit.path.contact(), direction, 0.0);
     let over = cold(system, &above, watch)?;
     limit.confirmed = over.basis.is_none() && cold(system, &below, watch)?.basis.is_some();
     if let Some(found) = over.ray() {
         let p = over.point.p * over.contact.force_unit;
-        let judged = ray::report(system, &above, &over.contact, found, p);
-        collapse.verdict = judged.verdict;
-        collapse.class = judged.class;
+        collapse.class = ray::look(&subject, &over.contact, found, p).class;
     }
+    ray::certify_ray(&mut collapse, &subject);
+    ray::explain(&mut collapse, &subject);
+    let mut collapse = collapse.record(system, Covering::default());
     collapse.p = 0.0;
     collapse.explanation = format!(
         "At this load the structure is on the point of moving: {}. Beyond it nothing resists that motion.",

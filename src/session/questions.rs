@@ -1,6 +1,5 @@
 //! Commands that ask why: ties, the dictionary, other rules, all answers, critical friction, the exact check.
 
-use std::io::{self, Write};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,7 +12,6 @@ use crate::model::uses::Region;
 use crate::solve::all_answers::{AllAnswers, Continuum, Moving, QuestionError};
 use crate::solve::{Prepared, Solved};
 use crate::view;
-use crate::view::style::Style;
 use crate::watch::Watch;
 
 use super::{CommandError, Output, Session, worker};
@@ -82,15 +80,38 @@ impl Session {
         pair.map_or_else(Vec::new, |pair| solved.margins(prepared, &self.now.scenario, &self.now.values, pair))
     }
 
-    /// Work of the loads on the mode, and the motion of the certificate.
-    pub(super) fn write_ray_details(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
-            return Ok(());
+    /// `ray`: what it is, the work of the loads on it, its proof, and what would stop it.
+    pub(super) fn report_ray(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        let ray = answer.ray.as_ref().ok_or_else(|| {
+            CommandError::Refused(format!("no ray: the run ended {}", view::status::outcome_word(answer.outcome)))
+        })?;
+        let (prepared, solved) = self.both()?;
+        let remedies = {
+            let (prepared, solved) = (Arc::clone(&prepared), Arc::clone(&solved));
+            worker::run(io.watch, move |watch| prepared.remedies(&solved, watch))?
         };
-        let (Some(ray), Some(system)) = (&solved.ray, prepared.system()) else {
-            return Ok(());
-        };
-        view::ray::write_details(out, ray, system, style)
+        io.report(
+            || {
+                let mut value = json!(ray);
+                if let Some(found) = &remedies {
+                    value["remedies"] = json!(found.remedies);
+                    value["remedies_complete"] = json!(found.complete);
+                }
+                value
+            },
+            |out, style| {
+                view::ray::write(out, ray, &self.now.scenario.units, style)?;
+                if let (Some(report), Some(system)) = (&solved.ray, prepared.system()) {
+                    view::ray::write_details(out, report, system, style)?;
+                }
+                match &remedies {
+                    Some(found) => view::ray::write_remedies(out, found, style),
+                    None => Ok(()),
+                }
+            },
+        )?;
+        Ok(())
     }
 
     pub(super) fn report_ties(&self, io: &mut Output<'_>) -> Result<(), CommandError> {

@@ -374,21 +374,6 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn report_ray(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        let ray = answer.ray.as_ref().ok_or_else(|| {
-            CommandError::Refused(format!("no ray: the run ended {}", view::status::outcome_word(answer.outcome)))
-        })?;
-        io.report(
-            || json!(ray),
-            |out, style| {
-                view::ray::write(out, ray, &self.now.scenario.units, style)?;
-                self.write_ray_details(out, style)
-            },
-        )?;
-        Ok(())
-    }
-
     pub(super) fn report_history(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         io.report(
             || json!(self.history),

@@ -1,18 +1,28 @@
-//! Questions to a solved state: its ties, its dictionary, how far its scheme holds, what is loose.
+//! Questions to a solved state: its ties, its dictionary, how far its scheme holds, what would stop a collapse, what is
+//! loose.
+
+use std::time::Duration;
 
 use super::numbers::contact_numbers;
 use super::prepared::{Geometry, Prepared};
 use super::solved::{Solved, Trace};
+use crate::answer::record::RayClass;
+use crate::contact::numbers::ContactNumbers;
 use crate::explain::loose::{LoosePart, loose_pairs, loose_parts};
 use crate::explain::margin::{FinalScheme, Margin, friction_margin, load_margin};
+use crate::explain::remedy::{Remedies, remedies};
 use crate::explain::tableau::{Dictionary, NoDictionary, dictionary};
 use crate::explain::ties::{TieReport, ties};
 use crate::explain::vertex::Naming;
 use crate::lcp::trace::PivotLog;
 use crate::lcp::vertex::vertex;
 use crate::model::parameter::ParameterValues;
-use crate::model::rules::TieBreak;
+use crate::model::rules::{Engine, Rules, TieBreak};
 use crate::model::scenario::Scenario;
+use crate::watch::{Budget, Watch};
+
+/// Time for all remedies.
+pub const REMEDY_TIME: Duration = Duration::from_secs(10);
 
 impl Solved {
     fn naming<'a>(&'a self, prepared: &'a Prepared) -> Option<Naming<'a>> {
@@ -109,6 +119,28 @@ impl Solved {
 }
 
 impl Prepared {
+    /// What would stop a collapse; `None` where there is none. Takes at most [`REMEDY_TIME`] and says whether all
+    /// was looked for.
+    pub fn remedies(&self, solved: &Solved, watch: &dyn Watch) -> Option<Remedies> {
+        let (Trace::Contact { numbers, factors, .. }, Some(system)) = (&solved.trace, self.system()) else {
+            return None;
+        };
+        let report = solved.ray.as_ref().filter(|report| report.class == RayClass::Mechanism)?;
+        let cases = self.named_factors(factors);
+        let subject = self.subject(system, numbers, &cases);
+        let budget = Budget::new(watch, REMEDY_TIME);
+        let solves = |numbers: &ContactNumbers, changed: Option<(usize, f64)>| {
+            let mut factors = factors.clone();
+            if let Some((case, factor)) = changed {
+                factors[case] = factor;
+            }
+            let rules = Rules { engine: Engine::Scheme, ..Rules::default() };
+            self.attempt_contact(system, numbers, &factors, rules, &budget).is_ok_and(|found| found.answer.is_answer())
+        };
+        let parts = report.mode.as_ref().map_or(&[][..], |mode| mode.parts.as_slice());
+        Some(remedies(&subject, parts, &solves, &budget))
+    }
+
     /// Parts that only contact holds, each with its motions in words.
     pub fn loose_parts(&self) -> Vec<LoosePart> {
         match &self.geometry {

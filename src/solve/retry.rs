@@ -15,7 +15,7 @@ use crate::answer::record::{RayClass, Verdict};
 use crate::contact::enumerate::Enumeration;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::explain::ray::{Subject, add_remedies, all_answers, certify_ray};
+use crate::explain::ray::{Subject, all_answers, certify_ray, explain};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 use crate::watch::Watch;
@@ -43,11 +43,11 @@ pub fn retries(exact: bool) -> Vec<Rules> {
 }
 
 impl Prepared {
-    pub(super) fn named_factors(&self, factors: &[f64]) -> Vec<(String, f64)> {
+    pub(crate) fn named_factors(&self, factors: &[f64]) -> Vec<(String, f64)> {
         self.cases.iter().map(|(name, _)| name.clone()).zip(factors.iter().copied()).collect()
     }
 
-    pub(super) fn subject<'a>(
+    pub(crate) fn subject<'a>(
         &'a self,
         system: &'a ContactSystem,
         numbers: &'a ContactNumbers,
@@ -88,16 +88,7 @@ impl Prepared {
             job.compare_with_default(&mut solved, &subject)?;
         }
         if let Some(report) = solved.ray.as_mut().filter(|_| !brief) {
-            let solves = |numbers: &ContactNumbers, changed: Option<(usize, f64)>| {
-                let default = Rules { engine: Engine::Scheme, ..Rules::default() };
-                let mut factors = factors.clone();
-                if let Some((case, factor)) = changed {
-                    factors[case] = factor;
-                }
-                self.attempt_contact(system, numbers, &factors, default, watch)
-                    .is_ok_and(|solved| solved.answer.is_answer())
-            };
-            add_remedies(report, &subject, &solves, watch);
+            explain(report, &subject);
             if watch.stop() {
                 return Err(SolveError::Interrupted);
             }

@@ -9,8 +9,15 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{Ray, RayClass, VariableRate, Verdict};
 use crate::contact::system::ContactSystem;
+use crate::explain::certificate::Certificate;
+use crate::explain::mode::{PartMotion, pair_words};
 use crate::explain::ray::RayReport;
+use crate::explain::remedy::Remedies;
 use crate::model::scenario::Units;
+use crate::solve::explain::REMEDY_TIME;
+
+/// Parts of a motion that are named one by one.
+const MOST_PARTS: usize = 6;
 
 /// What a class means, in a few words.
 pub fn class_meaning(class: RayClass) -> &'static str {
@@ -140,21 +147,65 @@ pub fn write_details(out: &mut dyn Write, report: &RayReport, system: &ContactSy
     }
     if let Some(certificate) = &report.certificate {
         writeln!(out)?;
-        let words = match &report.certificate_mode {
-            Some(mode) if !mode.parts.is_empty() => {
-                mode.parts.iter().map(crate::explain::mode::PartMotion::words).collect::<Vec<_>>().join("; ")
-            }
-            _ => crate::explain::mode::pair_words(system, &certificate.direction).join("; "),
-        };
-        let text = format!(
-            "motion: {words}. Per unit of its largest entry the loads do the work {} on it; cohesion and known bounds take \
-             at most {}, pressed contact nothing (every pair parts by at least f times its slip). Verified in exact \
-             arithmetic",
-            short(certificate.power),
-            short(certificate.dissipation)
-        );
+        let text = proof_words(report, certificate, system);
         for line in style.hanging("proof    ", &style.text(&text)) {
             writeln!(out, "{line}")?;
+        }
+    }
+    Ok(())
+}
+
+/// The motion of a certificate, why it proves, and how that was verified.
+fn proof_words(report: &RayReport, certificate: &Certificate, system: &ContactSystem) -> String {
+    let parts = match &report.certificate_mode {
+        Some(mode) => mode.parts.as_slice(),
+        None => &[],
+    };
+    let motion = match parts {
+        [] => pair_words(system, &certificate.direction).join("; "),
+        few if few.len() <= MOST_PARTS => few.iter().map(PartMotion::words).collect::<Vec<_>>().join("; "),
+        many => format!("{} parts move against one another", many.len()),
+    };
+    let signs = if certificate.exact {
+        "Every sign was verified from the data, by more than its rounding or in exact arithmetic."
+    } else {
+        "Every sign was verified from the data by more than its rounding."
+    };
+    format!(
+        "motion: {motion}. Per unit of its largest entry the loads do the work {} on it; cohesion and known bounds take \
+         at most {}, pressed contact nothing, for every pair that moves parts by at least f times its slip. A real slip \
+         parts nothing (friction is not associated), but forces within friction cannot tell: whatever they are, they \
+         take nothing from such a motion. {signs}",
+        short(certificate.power),
+        short(certificate.dissipation)
+    )
+}
+
+/// Writes what would stop a collapse: remedy, threshold, present value.
+pub fn write_remedies(out: &mut dyn Write, found: &Remedies, style: &Style) -> io::Result<()> {
+    if !found.remedies.is_empty() {
+        writeln!(out)?;
+        let mut table = Table::new(vec![
+            Column::words("what would stop it"),
+            Column::words("threshold"),
+            Column::words("now"),
+            Column::words("shown").droppable(1),
+        ]);
+        for remedy in &found.remedies {
+            let words = remedy.words();
+            table.rows.push(Row::new(vec![
+                Cell::from(words.remedy),
+                Cell::from(words.threshold),
+                Cell::from(words.now),
+                Cell::from(words.shown),
+            ]));
+        }
+        table.write(out, style)?;
+    }
+    if !found.complete {
+        let text = format!("not all remedies were looked for: {} s were used up", REMEDY_TIME.as_secs());
+        for line in style.wrap(&text, style.width) {
+            writeln!(out, "{}", style.paint(Role::Muted, &line))?;
         }
     }
     Ok(())

@@ -1,0 +1,129 @@
+//! Forces within the laws' bounds that balance the loads on every motion that costs nothing: whether there are any,
+//! and for which multiples of a load. By a linear program in f64: necessary for an answer, neither sufficient nor a
+//! proof.
+
+use nalgebra::DVector;
+
+use super::certificate::{Bounds, bounds};
+use super::motions::FreeMotions;
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::lcp::linear_program::{LinearProgram, Outcome};
+
+/// Multiples beyond this are infinite.
+const FAR: f64 = 1e6;
+/// Magnification of the closer look at the end of an interval.
+const ZOOM: f64 = 1e6;
+
+/// What is known of the multiples α of a load for which there are balanced forces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Multiples {
+    /// All in this interval, whose ends may be infinite.
+    Between([f64; 2]),
+    /// None.
+    None,
+    /// It could not be decided in the time.
+    Unknown,
+}
+
+/// The forces of all pairs that some motion touches and how the motions are balanced by them.
+struct Forces {
+    program: LinearProgram,
+    /// For each motion, the terms of its balance.
+    balance: Vec<Vec<(usize, f64)>>,
+}
+
+/// Forces divided by `size`.
+fn forces(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotions, size: f64) -> Forces {
+    let mut program = LinearProgram::default();
+    let mut balance = vec![Vec::new(); motions.count()];
+    let mut put = |variable: usize, joint: usize| {
+        for entry in motions.row(joint).iter().filter(|entry| entry.value != 0.0) {
+            balance[entry.motion].push((variable, entry.value));
+        }
+    };
+    for (pair, bounds) in bounds(system, numbers).into_iter().enumerate() {
+        let tangential = system.pairs[pair].tangential;
+        let touched = |joint: usize| !motions.row(joint).is_empty();
+        if !touched(pair) && !tangential.is_some_and(touched) {
+            continue;
+        }
+        let normal = program.variable(0.0);
+        put(normal, pair);
+        if !matches!(bounds, Bounds::Band(_)) {
+            program.at_most(vec![(normal, -1.0)], 0.0);
+        }
+        let (f, c) = match bounds {
+            Bounds::Cone(f, c) => (f, c / size),
+            Bounds::Normal => continue,
+            Bounds::Band(r) => (0.0, r / size),
+        };
+        let Some(joint) = tangential.filter(|_| f > 0.0 || c > 0.0) else { continue };
+        let slip = program.variable(0.0);
+        put(slip, joint);
+        for sign in [1.0, -1.0] {
+            program.at_most(vec![(slip, sign), (normal, -f)], c);
+        }
+    }
+    Forces { program, balance }
+}
+
+/// The multiples α for which there are balanced forces under `fixed` + α · `varied`.
+pub fn balanced_multiples(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    motions: &FreeMotions,
+    fixed: &DVector<f64>,
+    varied: &DVector<f64>,
+    seconds: f64,
+) -> Multiples {
+    let size = fixed.amax().max(varied.amax());
+    if motions.count() == 0 || size == 0.0 {
+        return Multiples::Between([f64::NEG_INFINITY, f64::INFINITY]);
+    }
+    let Forces { mut program, balance } = forces(system, numbers, motions, size);
+    let multiple = program.variable(0.0);
+    let (right, left) = (motions.work(fixed, fixed), motions.work(varied, varied));
+    for ((mut row, right), left) in balance.into_iter().zip(right).zip(left) {
+        if left.value != 0.0 {
+            row.push((multiple, left.value / size));
+        }
+        program.equal(row, -right.value / size);
+    }
+    let mut ends = [0.0; 2];
+    for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
+        program.set_costs([(multiple, sign)]);
+        *end = match program.solve(seconds) {
+            Outcome::Optimum(found) => {
+                let found = program.refined(&found.x, ZOOM, seconds).unwrap_or(found.x)[multiple];
+                if found.abs() > FAR { found.signum() * f64::INFINITY } else { found }
+            }
+            Outcome::Unbounded(_) => -sign * f64::INFINITY,
+            Outcome::Infeasible(_) => return Multiples::None,
+            Outcome::OutOfTime | Outcome::Undecided => return Multiples::Unknown,
+        };
+    }
+    Multiples::Between(ends)
+}
+
+/// Whether there are balanced forces under the load of `numbers`; `None` where that could not be decided.
+pub fn is_balanced(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    motions: &FreeMotions,
+    seconds: f64,
+) -> Option<bool> {
+    let size = numbers.load.amax();
+    if motions.count() == 0 || size == 0.0 {
+        return Some(true);
+    }
+    let Forces { mut program, balance } = forces(system, numbers, motions, size);
+    for (row, work) in balance.into_iter().zip(motions.work(&numbers.load, &numbers.load_terms)) {
+        program.equal(row, -work.value / size);
+    }
+    match program.solve(seconds) {
+        Outcome::Optimum(_) => Some(true),
+        Outcome::Infeasible(_) => Some(false),
+        _ => None,
+    }
+}

@@ -1,0 +1,143 @@
+//! The motions that cost no energy as a sparse table: what each does to each joint, with the rounding it carries.
+//!
+//! For a structure the motions are those of its loose parts, so a joint moves with the few parts that meet there; for
+//! a contact system read from a file they are the columns of its kernel.
+
+use nalgebra::DVector;
+
+use super::kernel::clean;
+use crate::contact::system::ContactSystem;
+use crate::fem::MainSystem;
+use crate::lcp::problem::NOISE;
+use crate::model::pair::joints;
+use crate::model::structure::Structure;
+
+/// A motion found as an eigenvector is known to about this share of its largest displacement: the rounding of R over
+/// the distance of its zero eigenvalue to the next (1e-16 / 1e-10).
+const EIGENVECTOR: f64 = 1e-6;
+/// A sum below this multiple of the magnitudes of its terms is zero.
+const ZERO: f64 = 8.0 * f64::EPSILON;
+
+/// The part of one motion in the displacement of one joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Index of the motion.
+    pub motion: usize,
+    /// Mutual displacement of the joint per unit of the motion.
+    pub value: f64,
+    /// Sum of the magnitudes of the terms of `value`: it is wrong by a few ε of this.
+    pub magnitude: f64,
+}
+
+/// Motions that cost no energy, joint by joint.
+#[derive(Clone, Debug)]
+pub struct FreeMotions {
+    rows: Vec<Vec<Entry>>,
+    count: usize,
+}
+
+/// A sum with what its rounding can amount to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rounded {
+    /// The sum.
+    pub value: f64,
+    /// Sum of the magnitudes of its terms.
+    pub magnitude: f64,
+}
+
+impl Rounded {
+    fn add(&mut self, value: f64, magnitude: f64) {
+        self.value += value;
+        self.magnitude += magnitude;
+    }
+
+    /// Most that rounding can have changed the sum by.
+    pub fn error(&self) -> f64 {
+        NOISE * self.magnitude
+    }
+}
+
+impl FreeMotions {
+    /// Of a contact system, and of the structure behind it where there is one.
+    pub fn new(system: &ContactSystem, structure: Option<(&Structure, &MainSystem)>) -> FreeMotions {
+        match structure {
+            Some((structure, main)) => FreeMotions::of_structure(structure, main),
+            None => FreeMotions::of_kernel(system),
+        }
+    }
+
+    fn of_structure(structure: &Structure, main: &MainSystem) -> FreeMotions {
+        let motions = main.kernel_motions();
+        let known = |internal: bool| if internal { EIGENVECTOR / NOISE } else { 1.0 };
+        let rows = joints(&structure.pairs)
+            .iter()
+            .map(|joint| {
+                let entry = |(motion, k): (&crate::fem::Motion, usize)| {
+                    let mut sum = Rounded::default();
+                    for (node, a) in &joint.terms {
+                        for (a, u) in a.iter().zip(&motion.u[*node]) {
+                            sum.add(a * u, (a * u).abs());
+                        }
+                    }
+                    let value = if sum.value.abs() <= ZERO * sum.magnitude { 0.0 } else { sum.value };
+                    let magnitude = sum.magnitude * known(motion.internal);
+                    (magnitude > 0.0).then_some(Entry { motion: k, value, magnitude })
+                };
+                motions.iter().zip(0..).filter_map(entry).collect()
+            })
+            .collect();
+        FreeMotions { rows, count: motions.len() }
+    }
+
+    fn of_kernel(system: &ContactSystem) -> FreeMotions {
+        let kernel = clean(&system.kernel);
+        let rows = kernel
+            .row_iter()
+            .map(|row| {
+                // The columns are orthonormal to rounding: every entry is wrong by some ε of 1.
+                let entry = |(value, motion): (&f64, usize)| {
+                    (*value != 0.0).then_some(Entry { motion, value: *value, magnitude: 1.0 })
+                };
+                row.iter().zip(0..).filter_map(entry).collect()
+            })
+            .collect();
+        FreeMotions { rows, count: kernel.ncols() }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// What moves a joint.
+    pub fn row(&self, joint: usize) -> &[Entry] {
+        &self.rows[joint]
+    }
+
+    /// Displacement of a joint under so much of each motion.
+    pub fn displacement(&self, joint: usize, amounts: &[f64]) -> Rounded {
+        let mut sum = Rounded::default();
+        for entry in &self.rows[joint] {
+            let amount = amounts[entry.motion];
+            sum.add(entry.value * amount, entry.magnitude * amount.abs());
+        }
+        sum
+    }
+
+    /// Displacements of all joints.
+    pub fn displacements(&self, amounts: &[f64]) -> DVector<f64> {
+        DVector::from_fn(self.rows.len(), |joint, _| self.displacement(joint, amounts).value)
+    }
+
+    /// Work −RF·z of a load over the joints, per unit of each motion; `terms`: what each entry of the load was summed
+    /// from.
+    pub fn work(&self, load: &DVector<f64>, terms: &DVector<f64>) -> Vec<Rounded> {
+        let mut work = vec![Rounded::default(); self.count];
+        for (row, (load, terms)) in self.rows.iter().zip(load.iter().zip(terms.iter())) {
+            for entry in row {
+                work[entry.motion].add(-load * entry.value, terms.max(load.abs()) * entry.magnitude);
+            }
+        }
+        work
+    }
+}
