@@ -47,21 +47,25 @@ fn block_on_a_rough_plane() {
     for (direction, expected) in ray.direction.pairs().iter().zip([1.0, 0.75, 0.5, 0.25, 0.0]) {
         assert!((direction.z_n - expected).abs() < 1e-9 && direction.z_t.abs() < 1e-9);
     }
-    let report = over.ray.as_ref().expect("a report");
-    // No friction stops a block from overturning; a push below 0.25 does.
-    assert!(report.remedies.iter().any(|remedy| matches!(remedy, Remedy::Friction { needed: None, .. })));
-    assert!(report.remedies.iter().any(|remedy| matches!(
-        remedy,
-        Remedy::Load { case, between, tried: Some(_), .. } if case == "push" && (between[1] - 0.25).abs() < 1e-7
-    )));
+    let found = block.1.remedies(&over, &Quiet).expect("a collapse");
+    assert!(found.complete);
+    // No friction stops a block from overturning; a push below 0.25 does, and so does a weight above H / 0.25.
+    assert!(found.remedies.iter().any(|remedy| matches!(remedy, Remedy::Friction { needed: None, .. })));
+    let load = |name: &str, needed: f64| {
+        found.remedies.iter().any(|remedy| {
+            matches!(remedy, Remedy::Load { case, needed: at, tried: Some(_), .. }
+                if case == name && (at - needed).abs() < 1e-7)
+        })
+    };
+    assert!(load("push", 0.25) && load("weight", 0.26 / 0.25), "{:?}", found.remedies);
 
     let slide = solve(&block, &[("f", 0.2), ("H", 0.21)], Rules::default());
     let ray = mechanism(&slide);
     close(ray.p, 0.01 / 6.0, 1e-9);
     assert_eq!(ray.mode, "rigid translation of `block` along +x: all pairs slip +");
     // Rigid sliding on one plane: the friction needed is the ratio of the forces.
-    let report = slide.ray.as_ref().expect("a report");
-    assert!(report.remedies.iter().any(|remedy| matches!(
+    let found = block.1.remedies(&slide, &Quiet).expect("a collapse");
+    assert!(found.remedies.iter().any(|remedy| matches!(
         remedy,
         Remedy::Friction { needed: Some(f), tried: true, .. } if (f - 0.21).abs() < 1e-6
     )));
@@ -179,6 +183,28 @@ fn margins_of_the_bar_are_its_breakpoints() {
     // Two pairs slip as long as 2 f F < F2 < 3 f F.
     close(friction.up.as_ref().expect("up").at, 0.6, 1e-8);
     close(friction.down.as_ref().expect("down").at, 0.4, 1e-8);
+}
+
+/// Beyond a limit by less than six digits show: the threshold is printed until it differs from the present value, and
+/// a load that would have to be reversed is no remedy.
+#[test]
+fn remedies_tell_the_threshold_from_the_present_value() {
+    let block = load("block");
+    let slide = solve(&block, &[("f", 0.2), ("H", 0.2 * (1.0 + 3e-7))], Rules::default());
+    let found = block.1.remedies(&slide, &Quiet).expect("a collapse");
+    let rows: Vec<_> = found.remedies.iter().map(Remedy::words).filter(|row| !row.threshold.is_empty()).collect();
+    assert_eq!(rows.len(), 3, "{rows:?}");
+    for row in rows {
+        let threshold: f64 = row.threshold.split(' ').nth(1).expect("a number").parse().expect("a number");
+        let now: f64 = row.now.parse().expect("a number");
+        assert!((threshold / now - 1.0).abs() > 1e-8, "{row:?}");
+    }
+    // Nothing but a push the other way stops a plate that friction cannot hold: not said as "a factor below −…".
+    for remedy in &found.remedies {
+        if let Remedy::Load { present, needed, .. } = remedy {
+            assert!(present * needed > 0.0);
+        }
+    }
 }
 
 fn transcript(script: &str) -> String {

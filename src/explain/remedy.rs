@@ -199,7 +199,7 @@ impl Search<'_> {
         let width = (needed - other).abs().min(needed.abs());
         let inside = needed + (other - needed).signum() * INSIDE * width;
         let mut changed = numbers.clone();
-        changed.set_load(fixed + inside * unit);
+        changed.add_load(inside - present, unit, &system.loads[case].terms);
         let tried = (self.solves)(&changed, Some((case, inside))).then_some(inside);
         Some(Some(Remedy::Load { case: name.to_owned(), present, needed, tried }))
     }

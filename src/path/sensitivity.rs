@@ -1,9 +1,11 @@
 //! Sensitivity: derivatives of slips and forces with respect to every parameter, from the final scheme.
 
+use nalgebra::DVector;
+
 use super::rate::{fixed_place, number_rates, rate, rate_lcp};
 use super::start::{PathError, final_basis};
 use crate::answer::record::PairState;
-use crate::contact::complementarity::load_with_gaps;
+use crate::contact::sums::{is_still, joint_forces};
 use crate::lcp::vertex::vertex;
 use crate::model::scenario::Scenario;
 use crate::solve::solved::Trace;
@@ -72,7 +74,9 @@ pub fn sensitivity(
         let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
-        let force = &system.stiffness * &z + load_with_gaps(system, &rates);
+        // A rate below the rounding of its terms is 0.
+        let forces = joint_forces(system, &rates, &z);
+        let z = DVector::from_fn(z.len(), |k, _| if is_still(system, &z, &forces, k) { 0.0 } else { z[k] });
         // The released slips are linear in all of this, so their rates follow from the rates.
         let mut shown = solved.answer.pairs.clone();
         prepared.add_released_slips(&mut shown, &rates, &factor_rates, &z);
@@ -82,13 +86,14 @@ pub fn sensitivity(
             .enumerate()
             .map(|(i, pair)| {
                 let row = |row: Option<usize>| row.map(|row| direction.w[row] * contact.force_unit);
-                let x_n = row(contact.normal_row[i]).unwrap_or(force[i]);
+                let of_joint = |value: f64, joint: usize| if forces[joint].is_zero() { 0.0 } else { value };
+                let x_n = of_joint(row(contact.normal_row[i]).unwrap_or(forces[i].value), i);
                 let reserves = (row(contact.plus_row[i]), row(contact.minus_row[i]));
                 PairRate {
                     pair: pair.id.clone(),
                     x_n,
-                    x_t: match reserves {
-                        (Some(plus), Some(minus)) => 0.5 * (plus - minus),
+                    x_t: match (reserves, pair.tangential) {
+                        ((Some(plus), Some(minus)), Some(joint)) => of_joint(0.5 * (plus - minus), joint),
                         _ => 0.0,
                     },
                     z_n: contact.normal_row[i].map_or(0.0, |_| z[i]),

@@ -36,6 +36,7 @@ use serde_json::json;
 pub use crate::answer::record as results;
 pub use crate::answer::record::Answer;
 use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
+pub use crate::explain::remedy::Remedies;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
@@ -132,6 +133,8 @@ pub struct Session {
     depth: usize,
     /// What the last `trace` or `stages` followed.
     path: Option<Arc<PathRecord>>,
+    /// What would stop the collapse of this answer, once it was looked for.
+    remedies: Option<(Arc<Solved>, Arc<Remedies>)>,
 }
 
 impl Session {
@@ -184,6 +187,7 @@ impl Session {
             trouble: None,
             depth: 0,
             path: None,
+            remedies: None,
         };
         session.take_answer(Some(solved));
         Ok(session)

@@ -192,7 +192,11 @@ impl Session {
             },
             |out, style| view::path::write_limit(out, &found, unit.as_deref(), style),
         )?;
-        self.path = Some(Arc::new(PathRecord::of_load(&found.path, &cases)));
+        let record = PathRecord::of_load(&found.path, &cases);
+        // A single place draws no picture: a path that does is kept.
+        if record.places.len() > 1 || self.path.is_none() {
+            self.path = Some(Arc::new(record));
+        }
         Ok(())
     }
 

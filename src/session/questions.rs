@@ -14,7 +14,7 @@ use crate::solve::{Prepared, Solved};
 use crate::view;
 use crate::watch::Watch;
 
-use super::{CommandError, Output, Session, worker};
+use super::{CommandError, Output, Remedies, Session, worker};
 
 /// How long the answers of a stopped search are waited for.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -80,17 +80,39 @@ impl Session {
         pair.map_or_else(Vec::new, |pair| solved.margins(prepared, &self.now.scenario, &self.now.values, pair))
     }
 
+    /// Looks for what would stop the collapse shown, where there is one and it was not looked for yet.
+    ///
+    /// # Errors
+    /// An interruption.
+    pub fn ensure_remedies(&mut self, watch: &dyn Watch) -> Result<(), CommandError> {
+        if self.remedies().is_some() {
+            return Ok(());
+        }
+        let (prepared, solved) = self.both()?;
+        let asked = Arc::clone(&solved);
+        if let Some(found) = worker::run(watch, move |watch| prepared.remedies(&asked, watch))? {
+            self.remedies = Some((solved, Arc::new(found)));
+        }
+        Ok(())
+    }
+
+    /// What would stop the collapse shown, if it was looked for.
+    pub fn remedies(&self) -> Option<Arc<Remedies>> {
+        let (of, found) = self.remedies.as_ref()?;
+        self.solved.as_ref().filter(|solved| Arc::ptr_eq(solved, of)).map(|_| Arc::clone(found))
+    }
+
     /// `ray`: what it is, the work of the loads on it, its proof, and what would stop it.
-    pub(super) fn report_ray(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn report_ray(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        if self.need_answer()?.ray.is_some() {
+            self.ensure_remedies(io.watch)?;
+        }
         let answer = self.need_answer()?;
         let ray = answer.ray.as_ref().ok_or_else(|| {
             CommandError::Refused(format!("no ray: the run ended {}", view::status::outcome_word(answer.outcome)))
         })?;
         let (prepared, solved) = self.both()?;
-        let remedies = {
-            let (prepared, solved) = (Arc::clone(&prepared), Arc::clone(&solved));
-            worker::run(io.watch, move |watch| prepared.remedies(&solved, watch))?
-        };
+        let remedies = self.remedies();
         io.report(
             || {
                 let mut value = json!(ray);

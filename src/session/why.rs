@@ -61,6 +61,10 @@ impl Session {
         };
         let shown = self.shown_step();
         let margins = self.margins(id);
+        let moved = answer.ray.as_ref().filter(|_| shown.is_none()).and_then(|ray| {
+            let direction = ray.direction.pairs().iter().find(|direction| direction.pair == id)?;
+            Some((direction, view::ray::motion_words(direction)))
+        });
         let turned: Vec<_> = answer
             .pivots
             .iter()
@@ -68,11 +72,27 @@ impl Session {
             .filter(|pivot| pivot.turned.as_ref().is_some_and(|turned| turned.pair == id))
             .collect();
         io.report(
-            || json!({"pair": pair, "cause": cause, "pivots": turned, "margins": margins}),
+            || {
+                json!({"pair": pair, "cause": cause, "pivots": turned, "margins": margins,
+                       "ray": moved.as_ref().map(|(direction, _)| direction)})
+            },
             |out, style| {
                 let label = format!("{id} {state}: ");
                 for line in style.hanging(&style.text(&label), &style.text(&cause)) {
                     writeln!(out, "{line}")?;
+                }
+                if let Some((direction, words)) = &moved {
+                    let text = match words {
+                        Some(words) => format!(
+                            "it {words}: z̄_n = {}, z̄_τ = {} of the largest displacement",
+                            short(direction.z_n),
+                            short(direction.z_t)
+                        ),
+                        None => "it does not move".to_owned(),
+                    };
+                    for line in style.hanging("in the ray: ", &style.text(&text)) {
+                        writeln!(out, "{line}")?;
+                    }
                 }
                 if turned.is_empty() {
                     writeln!(out, "no pivot turned it: it is as in the main system")?;

@@ -170,6 +170,8 @@ pub enum Job {
     Answers,
     /// The pivots of an answer that was found by a warm start.
     Pivots,
+    /// What would stop the collapse shown.
+    Remedies,
 }
 
 /// How a job ended.

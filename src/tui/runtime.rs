@@ -21,7 +21,7 @@ use super::overlay;
 use super::shown::Shown;
 use super::terminal::{Asked, Screen, asked};
 use super::theme::Look;
-use super::update::{begin_tour, update};
+use super::update::{background, begin_tour, update};
 use super::worker::Worker;
 
 /// Between two looks at the signals while no key comes.
@@ -191,11 +191,10 @@ struct Loop {
 
 impl Loop {
     fn run(&mut self, tour: bool) -> io::Result<Ended> {
-        if tour {
-            let effects = begin_tour(&mut self.state, 0);
-            if let Some(ended) = self.carry_out(effects)? {
-                return Ok(ended);
-            }
+        let mut effects = if tour { begin_tour(&mut self.state, 0) } else { Vec::new() };
+        effects.extend(background(&mut self.state));
+        if let Some(ended) = self.carry_out(effects)? {
+            return Ok(ended);
         }
         self.screen.draw(&self.state)?;
         let mut last_tick = Instant::now();

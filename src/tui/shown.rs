@@ -7,8 +7,8 @@ use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
 use crate::session::complete::Vocabulary;
-use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, Start};
-use crate::session::{Prepared, Session, Solved};
+use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, RayClass, Start};
+use crate::session::{Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
 
 /// A session at one moment.
@@ -38,6 +38,8 @@ pub struct Shown {
     pub p: Option<f64>,
     /// Motion of the ray.
     pub mode: Option<Vec<NodeDisplacement>>,
+    /// What would stop the collapse, once it was looked for.
+    pub remedies: Option<Arc<Remedies>>,
     /// Names for completion.
     pub vocabulary: Vocabulary,
     /// Pairs whose state differs from the answer before.
@@ -64,6 +66,7 @@ impl Shown {
             solution: session.solution(),
             p: session.p(),
             mode: session.mode(),
+            remedies: session.remedies(),
             vocabulary: session.vocabulary(),
             changes,
         }
@@ -102,6 +105,12 @@ impl Shown {
     /// Whether the ray itself is shown: its end, not a pivot on the way.
     pub fn at_ray(&self) -> bool {
         self.position.is_none() && self.answer().is_some_and(|answer| answer.ray.is_some())
+    }
+
+    /// Whether this is a collapse of which it is not known yet what would stop it.
+    pub fn lacks_remedies(&self) -> bool {
+        let ray = self.answer().and_then(|answer| answer.ray.as_ref());
+        self.remedies.is_none() && ray.is_some_and(|ray| ray.class == RayClass::Mechanism)
     }
 
     /// Whether the answer was followed from the last one and has no pivots yet.

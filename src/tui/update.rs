@@ -373,6 +373,9 @@ fn order(state: &mut State, job: Job) -> Vec<Effect> {
         return vec![Effect::Run(job)];
     };
     let mut effects = Vec::new();
+    if *running == Job::Remedies {
+        effects.push(Effect::Stop);
+    }
     match &job {
         Job::Set { name, .. } => {
             state.waiting.retain(|waiting| {
@@ -389,7 +392,7 @@ fn order(state: &mut State, job: Job) -> Vec<Effect> {
             }
         }
         Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
-        Job::Answers | Job::Line { .. } | Job::Pivots => {}
+        Job::Answers | Job::Line { .. } | Job::Pivots | Job::Remedies => {}
     }
     state.waiting.push_back(job);
     effects
@@ -473,7 +476,8 @@ fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         state.new_scenario();
     }
     settle(state, &done.job);
-    let changed = matches!(done.job, Job::Set { .. } | Job::Pivots);
+    let changed = matches!(done.job, Job::Set { .. } | Job::Pivots | Job::Remedies);
+    let looked = done.job == Job::Remedies;
     let followed = changed && !done.interrupted && done.error.is_none();
     if let Some(error) = done.error {
         if done.interrupted {
@@ -508,7 +512,18 @@ fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         // The answer is there; its pivots follow unless a slider moves on.
         effects.extend(order(state, Job::Pivots));
     }
+    if !looked {
+        effects.extend(background(state));
+    }
     effects
+}
+
+/// What is computed while nothing else is asked for: the remedies of a collapse. Whatever is asked for stops it.
+pub(super) fn background(state: &mut State) -> Vec<Effect> {
+    if state.running.is_some() || !state.waiting.is_empty() || !state.shown.lacks_remedies() {
+        return Vec::new();
+    }
+    order(state, Job::Remedies)
 }
 
 /// Brings the selections and what was asked for in line with what is shown.
@@ -577,7 +592,7 @@ fn show_output(state: &mut State, job: &Job, output: &str) {
                 state.say(Role::Plain, text);
             }
         }
-        Job::Step(_) | Job::Answers => {}
+        Job::Step(_) | Job::Answers | Job::Remedies => {}
     }
 }
 
@@ -596,6 +611,7 @@ fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
         Job::Step(_) => "step".into(),
         Job::Answers => "answers".into(),
         Job::Pivots => "pivots".into(),
+        Job::Remedies => "ray".into(),
     };
     let style = state.look.role(role);
     let report = state.look.report(overlay::text_width(state));

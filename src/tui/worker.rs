@@ -29,6 +29,7 @@ pub fn perform(session: &mut Session, job: Job, style: Style, watch: &dyn Watch)
         Job::Step(step) => run(session, &format!("step to {step}"), &mut output, style, watch),
         Job::Line { text, .. } => run(session, text, &mut output, style, watch),
         Job::Pivots => session.ensure_pivots(&mut Output::text(&mut output, style, watch)).map(|()| Next::Continue),
+        Job::Remedies => session.ensure_remedies(watch).map(|()| Next::Continue),
         Job::Answers => session.all_answers(watch).map(|found| {
             answers = Some(found);
             Next::Continue

@@ -7,7 +7,7 @@ use super::number::{denoised, in_column, short, with_unit};
 use super::status::{class_word, verdict_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::{Ray, RayClass, VariableRate, Verdict};
+use crate::answer::record::{PairDirection, Ray, RayClass, VariableRate, Verdict};
 use crate::contact::system::ContactSystem;
 use crate::explain::certificate::Certificate;
 use crate::explain::mode::{PartMotion, pair_words};
@@ -37,6 +37,18 @@ pub fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
         Some(Verdict::Undecided) => "neither an answer nor a proof that there is none was found",
         None => "not examined",
     }
+}
+
+/// What a pair does in a ray; `None` where it does not move.
+pub fn motion_words(direction: &PairDirection) -> Option<&'static str> {
+    let moves = |value: f64| denoised(value, 1.0) != 0.0;
+    Some(match (moves(direction.z_n), moves(direction.z_t)) {
+        (false, false) => return None,
+        (true, true) => "parts and slips",
+        (true, false) => "parts",
+        _ if direction.z_t > 0.0 => "slips +",
+        _ => "slips -",
+    })
 }
 
 /// Writes class, verdict, p, mode, explanation and the direction pair by pair (pairs that do not move are counted).
@@ -74,8 +86,8 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
     if !ray.direction.variables().is_empty() {
         return write_variables(out, ray.direction.variables(), style);
     }
-    let moves = |value: f64| denoised(value, 1.0) != 0.0;
-    let moving: Vec<_> = ray.direction.pairs().iter().filter(|d| moves(d.z_n) || moves(d.z_t)).collect();
+    let moving: Vec<_> =
+        ray.direction.pairs().iter().filter_map(|direction| Some((direction, motion_words(direction)?))).collect();
     if moving.is_empty() {
         return Ok(());
     }
@@ -86,18 +98,12 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         Column::numbers("z̄_τ", None),
         Column::words("motion").droppable(1),
     ]);
-    for direction in &moving {
-        let motion = match (moves(direction.z_n), moves(direction.z_t)) {
-            (true, true) => "parts and slips",
-            (true, false) => "parts",
-            _ if direction.z_t > 0.0 => "slips +",
-            _ => "slips -",
-        };
+    for (direction, motion) in &moving {
         table.rows.push(Row::new(vec![
             Cell::from(direction.pair.as_str()),
             Cell::from(in_column(direction.z_n, 1.0)),
             Cell::from(in_column(direction.z_t, 1.0)),
-            Cell::from(motion),
+            Cell::from(*motion),
         ]));
     }
     table.write(out, style)?;

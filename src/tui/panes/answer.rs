@@ -4,9 +4,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
+use crate::tui::action::Job;
 use crate::tui::app::{Pane, State};
 use crate::tui::layout;
-use crate::view::status;
+use crate::view::style::Role;
+use crate::view::{self, status};
 
 fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
     let shown = &state.shown;
@@ -18,6 +20,13 @@ fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
             // the title of the scenario stands at the top of the screen
             if !lines.is_empty() {
                 lines.remove(0);
+            }
+            if let Some(remedies) = &shown.remedies {
+                lines.extend(super::report(state.look, width, |out, style| {
+                    view::ray::write_remedies(out, remedies, style)
+                }));
+            } else if state.running == Some(Job::Remedies) {
+                lines.push(Line::styled("looking for what would stop it", state.look.role(Role::Muted)));
             }
             lines
         }
