@@ -15,6 +15,11 @@ const FAR: f64 = 1e6;
 /// Magnification of the closer look at the end of an interval.
 const ZOOM: f64 = 1e6;
 
+/// Work left over, per unit of load and motion, that the linear program cannot tell from 0 without a closer look.
+const UNCLEAR: f64 = 1e-5;
+/// And with it.
+const BALANCED: f64 = 1e-11;
+
 /// What is known of the multiples α of a load for which there are balanced forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Multiples {
@@ -106,7 +111,8 @@ pub fn balanced_multiples(
     Multiples::Between(ends)
 }
 
-/// Whether there are balanced forces under the load of `numbers`; `None` where that could not be decided.
+/// Whether there are balanced forces under the load of `numbers`, as far as f64 can tell; `None` where that could not
+/// be decided in the time.
 pub fn is_balanced(
     system: &ContactSystem,
     numbers: &ContactNumbers,
@@ -117,13 +123,26 @@ pub fn is_balanced(
     if motions.count() == 0 || size == 0.0 {
         return Some(true);
     }
+    // The least work that is left over on all motions together: a program that always has an optimum, unlike the
+    // question itself, which next to a limit has no room for an answer.
     let Forces { mut program, balance } = forces(system, numbers, motions, size);
-    for (row, work) in balance.into_iter().zip(motions.work(&numbers.load, &numbers.load_terms)) {
+    let mut left_over = Vec::new();
+    for (mut row, work) in balance.into_iter().zip(motions.work(&numbers.load, &numbers.load_terms)) {
+        for sign in [1.0, -1.0] {
+            let left = program.variable(1.0);
+            program.at_most(vec![(left, -1.0)], 0.0);
+            row.push((left, sign));
+            left_over.push(left);
+        }
         program.equal(row, -work.value / size);
     }
+    let sum = |x: &[f64]| left_over.iter().map(|left| x[*left]).sum::<f64>();
     match program.solve(seconds) {
-        Outcome::Optimum(_) => Some(true),
-        Outcome::Infeasible(_) => Some(false),
+        Outcome::Optimum(found) if sum(&found.x) > UNCLEAR => Some(false),
+        Outcome::Optimum(found) => {
+            let fine = program.refined(&found.x, ZOOM, seconds).unwrap_or(found.x);
+            Some(sum(&fine) <= BALANCED)
+        }
         _ => None,
     }
 }

@@ -361,7 +361,7 @@ impl Problem<'_> {
             direction: direction / largest,
             power: power.value / largest,
             dissipation: taken.value / largest,
-            exact: needed_exact,
+            exact: needed_exact || exactly.is_some(),
         })
     }
 }

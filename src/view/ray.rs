@@ -179,9 +179,9 @@ fn proof_words(report: &RayReport, certificate: &Certificate, system: &ContactSy
     };
     format!(
         "motion: {motion}. Per unit of its largest entry the loads do the work {} on it; cohesion and known bounds take \
-         at most {}, pressed contact nothing, for every pair that moves parts by at least f times its slip. A real slip \
-         parts nothing (friction is not associated), but forces within friction cannot tell: whatever they are, they \
-         take nothing from such a motion. {signs}",
+         at most {}, pressed contact nothing: every pair parts by at least f times its slip. The real motion need not part \
+         (friction is not associated); that of the proof may, for it only asks whether any forces within friction could \
+         balance the loads. {signs}",
         short(certificate.power),
         short(certificate.dissipation)
     )
@@ -209,7 +209,7 @@ pub fn write_remedies(out: &mut dyn Write, found: &Remedies, style: &Style) -> i
         table.write(out, style)?;
     }
     if !found.complete {
-        let text = format!("not all remedies were looked for: {} s were used up", REMEDY_TIME.as_secs());
+        let text = format!("not every remedy could be decided (at most {} s are spent on them)", REMEDY_TIME.as_secs());
         for line in style.wrap(&text, style.width) {
             writeln!(out, "{}", style.paint(Role::Muted, &line))?;
         }
