@@ -2,5 +2,6 @@
 
 pub mod check;
 pub mod check_plain;
+pub mod diagram;
 pub mod pairs;
 pub mod record;

@@ -3,6 +3,8 @@
 
 use serde::Serialize;
 
+use crate::fem::Piece;
+
 use crate::model::uses::Redone;
 
 /// How the run ended, as the user reads it.
@@ -289,6 +291,9 @@ pub struct MemberForces {
     pub start: EndForces,
     /// At its end.
     pub end: EndForces,
+    /// Exactly in between; ranges are distances from the start of the bar.
+    #[serde(skip)]
+    pub pieces: Vec<Piece>,
 }
 
 /// Force of the supports and springs of a node on the structure, their sum.

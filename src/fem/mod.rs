@@ -43,5 +43,5 @@ pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub(crate) use kernel::mutual_displacements;
 pub use loose::Motion;
 pub use main_system::{Displacements, MainSystem, Seconds, Unknowns};
-pub use recovery::{EndForces, MemberDiagram, MemberForces, MembraneStress, NodeStress, Reaction};
+pub use recovery::{EndForces, MemberForces, MembraneStress, NodeStress, Reaction};
 pub use sparse::SymmetricSparse;

@@ -21,7 +21,7 @@ pub struct EndForces {
 }
 
 /// Internal forces of one element of a bar.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MemberForces {
     /// Index into [`Structure::bars`].
     pub bar: usize,
@@ -31,16 +31,7 @@ pub struct MemberForces {
     pub start: EndForces,
     /// At its end.
     pub end: EndForces,
-}
-
-/// Internal forces along a whole bar: exact between the nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MemberDiagram {
-    /// Index into [`Structure::bars`].
-    pub bar: usize,
-    /// Length of the bar.
-    pub length: f64,
-    /// From its start to its end without a gap; ranges are distances along the bar.
+    /// Exactly in between; ranges are distances from the start of the bar.
     pub pieces: Vec<Piece>,
 }
 
@@ -74,40 +65,26 @@ pub struct Reaction {
 }
 
 impl MainSystem {
-    /// N, Q, M at both ends of every bar element under Σ factor·F and the displacements `u`.
+    /// N, Q, M of every bar element under Σ factor·F and the displacements `u`: at both ends and in between.
     pub fn member_forces(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberForces> {
         let (loads, none) = (bar_loads(structure, factors), BarLoad::default());
         let mut members = Vec::new();
         for (bar, data) in structure.bars.iter().enumerate() {
+            let mut from = 0.0;
             for (position, index) in data.elements.clone().enumerate() {
-                let ends = bar_end_forces(structure, index, u, loads.get(&index).unwrap_or(&none));
+                let load = loads.get(&index).unwrap_or(&none);
+                let ends = bar_end_forces(structure, index, u, load);
+                let length = Axis::of(structure, &structure.elements[index]).map_or(0.0, |axis| axis.length);
+                let mut pieces = load.pieces(ends[0], length);
+                for piece in &mut pieces {
+                    piece.range = piece.range.map(|s| from + s);
+                }
+                from += length;
                 let [start, end] = ends.map(|[normal, shear, moment]| EndForces { normal, shear, moment });
-                members.push(MemberForces { bar, element: position, start, end });
+                members.push(MemberForces { bar, element: position, start, end, pieces });
             }
         }
         members
-    }
-
-    /// N, Q, M along every bar under Σ factor·F and the displacements `u`.
-    pub fn member_diagrams(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberDiagram> {
-        let (loads, none) = (bar_loads(structure, factors), BarLoad::default());
-        let diagrams = structure.bars.iter().enumerate().map(|(bar, data)| {
-            let mut diagram = MemberDiagram { bar, length: 0.0, pieces: Vec::new() };
-            for index in data.elements.clone() {
-                let Some(axis) = Axis::of(structure, &structure.elements[index]) else { continue };
-                let load = loads.get(&index).unwrap_or(&none);
-                let [start, _] = bar_end_forces(structure, index, u, load);
-                let from = diagram.length;
-                diagram.pieces.extend(
-                    load.pieces(start, axis.length)
-                        .into_iter()
-                        .map(|piece| Piece { range: piece.range.map(|s| from + s), ..piece }),
-                );
-                diagram.length += axis.length;
-            }
-            diagram
-        });
-        diagrams.collect()
     }
 
     /// Stresses at the centres of all membrane elements under the displacements `u` and Σ factor·case.

@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
+use crate::answer::diagram::Internal;
 use crate::answer::record::{NodeDisplacement, PairState};
-use crate::view::plot::diagram::{self, Force};
+use crate::view::plot::diagram;
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
 use crate::view::style::Style;
@@ -55,9 +56,9 @@ impl Session {
                 Picture::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
                 Picture::Structure => self.plot_structure(height, io),
                 Picture::Mode => self.plot_mode(height, io),
-                Picture::Moment => self.plot_diagram(Force::Moment, bar, height, io),
-                Picture::Shear => self.plot_diagram(Force::Shear, bar, height, io),
-                Picture::Axial => self.plot_diagram(Force::Axial, bar, height, io),
+                Picture::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
+                Picture::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
+                Picture::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
             }
         };
         io.style = saved;
@@ -207,7 +208,7 @@ impl Session {
 
     fn plot_diagram(
         &self,
-        force: Force,
+        force: Internal,
         bar: Option<&str>,
         height: Option<usize>,
         io: &mut Output<'_>,
@@ -233,11 +234,11 @@ impl Session {
         }
         io.report(
             || {
-                let points = diagram::series(structure, members, bar, force).map(|series| series.points);
+                let points = diagram::series(members, bar, force).map(|series| series.points);
                 json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
             },
             |out, style| {
-                let diagram = diagram::Diagram { structure, members, bar, force, height: height.unwrap_or(HEIGHT) };
+                let diagram = diagram::Drawing { members, bar, force, height: height.unwrap_or(HEIGHT) };
                 diagram::write(out, &diagram, &self.now.scenario.units, style)
             },
         )?;

@@ -342,6 +342,7 @@ impl Prepared {
                         element: member.element,
                         start: end_forces(member.start),
                         end: end_forces(member.end),
+                        pieces: member.pieces,
                     })
                     .collect(),
             );

@@ -2,10 +2,11 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest};
+use super::number::{denoised, in_column, largest, short, with_unit};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use super::{force_unit, moment_unit};
+use super::{force_unit, length_unit, moment_unit};
+use crate::answer::diagram::{Diagram, Internal, Place};
 use crate::answer::record::MemberForces;
 use crate::model::scenario::Units;
 
@@ -51,5 +52,24 @@ pub fn write(
             ]));
         }
     }
-    table.write(out, style)
+    table.write(out, style)?;
+    let Some(diagram) = bar.and_then(|bar| Diagram::of(members, bar)) else { return Ok(()) };
+    for which in Internal::ALL {
+        for line in style.wrap(&extremes(&diagram, which, units), style.width) {
+            writeln!(out, "{line}")?;
+        }
+    }
+    Ok(())
+}
+
+/// `M: largest 12.5 kN m at 2.1 m, least 0 kN m at 0 m`: between the nodes too.
+pub fn extremes(diagram: &Diagram, which: Internal, units: &Units) -> String {
+    let unit = if which == Internal::Moment { moment_unit(units) } else { force_unit(units) };
+    let extremes = diagram.extremes(which);
+    let scale = largest(extremes.iter().map(|place| place.value));
+    let [least, most] = extremes.map(|Place { distance, value }| {
+        let value = with_unit(&short(denoised(value, scale)), unit.as_deref());
+        format!("{value} at {}", with_unit(&short(distance), length_unit(units).as_deref()))
+    });
+    format!("{}: largest {most}, least {least}", which.symbol())
 }

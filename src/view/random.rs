@@ -7,7 +7,9 @@ use super::plot::{diagram, structure, trace, zone};
 use super::sample::{beam, beam_ray, beam_structure, plates, scenario, units};
 use super::style::Style;
 use super::*;
+use crate::answer::diagram::Internal;
 use crate::answer::record::*;
+use crate::fem::Piece;
 
 /// Numbers of every size, and those that are none.
 fn number() -> impl Strategy<Value = f64> {
@@ -144,7 +146,7 @@ proptest! {
         narrow(s, |out| reactions::write(out, &supports, 1.5, &units, s));
         let forces: Vec<MemberForces> = answer.pairs.iter().map(|p| MemberForces {
             bar: p.id.clone(), element: 0,
-            start: EndForces { n: p.x_n, q: p.x_t, m: p.z_n }, end: EndForces::default(),
+            start: EndForces { n: p.x_n, q: p.x_t, m: p.z_n }, end: EndForces::default(), pieces: Vec::new(),
         }).collect();
         narrow(s, |out| members::write(out, &forces, None, &units, s));
         if let Some(ray) = &answer.ray {
@@ -206,9 +208,14 @@ proptest! {
                 bar: "AF".into(), element,
                 start: EndForces { n: u[element][0], q: u[element][1], m: u[element][2] },
                 end: EndForces { n: u[element + 9][0], q: u[element + 9][1], m: u[element + 9][2] },
+                pieces: vec![Piece {
+                    range: [element as f64, element as f64 + 1.0],
+                    start: u[element],
+                    q: [0, 1].map(|end| [u[element + 9][end], u[element + 9][end + 1]]),
+                }],
             }).collect();
-            for force in [diagram::Force::Axial, diagram::Force::Shear, diagram::Force::Moment] {
-                let drawn = diagram::Diagram { structure: &structure, members: &members, bar: "AF", force, height };
+            for force in [Internal::Axial, Internal::Shear, Internal::Moment] {
+                let drawn = diagram::Drawing { members: &members, bar: "AF", force, height };
                 narrow(s, |out| diagram::write(out, &drawn, &units(), s));
             }
         }

@@ -3,6 +3,7 @@
 use indexmap::IndexMap;
 
 use crate::answer::record::*;
+use crate::fem::Piece;
 use crate::model::pair::{Law, Pair};
 use crate::model::parameter::{Number, Parameter};
 use crate::model::rules::Rules;
@@ -115,7 +116,9 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
                 .map(|element| {
                     let n: f64 = pull + pairs[element + 1..].iter().map(|p| p.x_t).sum::<f64>();
                     let end = EndForces { n, q: 0.0, m: 0.0 };
-                    MemberForces { bar: "AF".into(), element, start: end, end }
+                    let along = element as f64;
+                    let pieces = vec![Piece { range: [along, along + 1.0], start: [n, 0.0, 0.0], q: [[0.0; 2]; 2] }];
+                    MemberForces { bar: "AF".into(), element, start: end, end, pieces }
                 })
                 .collect(),
         ),
@@ -248,7 +251,11 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
     }];
     let at = |x: f64| EndForces { n: 0.0, q: q * (l - x), m: -q * (l - x) * (l - x) / 2.0 };
     let members = [(0, 0.0, 2.0), (1, 2.0, 4.0)]
-        .map(|(element, start, end)| MemberForces { bar: "AF".into(), element, start: at(start), end: at(end) })
+        .map(|(element, start, end)| {
+            let EndForces { n, q: shear, m } = at(start);
+            let pieces = vec![Piece { range: [start, end], start: [n, shear, m], q: [[0.0, -q]; 2] }];
+            MemberForces { bar: "AF".into(), element, start: at(start), end: at(end), pieces }
+        })
         .to_vec();
     // v = −q x² (6 L² − 4 L x + x²)/24 EI and its derivative.
     let displacements = structure

@@ -8,6 +8,7 @@ use super::plot::{diagram, structure, trace, zone};
 use super::sample::{beam, beam_ray, beam_structure, cantilever, plates, scenario, units};
 use super::style::Style;
 use super::*;
+use crate::answer::diagram::Internal;
 use crate::answer::record::*;
 
 /// All reports of a state, one under the other.
@@ -64,8 +65,7 @@ fn pictures(style: &Style) -> String {
         trace::write(&mut out, &last.pivots, Some(2), &units, 10, style)?;
         let bar = beam_structure();
         let forces = last.members.as_deref().unwrap_or_default();
-        let drawn =
-            diagram::Diagram { structure: &bar, members: forces, bar: "AF", force: diagram::Force::Axial, height: 8 };
+        let drawn = diagram::Drawing { members: forces, bar: "AF", force: Internal::Axial, height: 8 };
         diagram::write(&mut out, &drawn, &units, style)?;
         let picture = structure::Picture {
             title: "beam",
@@ -79,8 +79,8 @@ fn pictures(style: &Style) -> String {
         let values = [("F2".to_owned(), 130.0)].into();
         structure::write_with_loads(&mut out, &picture, &values, style)?;
         let (held, forces, moved) = cantilever();
-        for force in [diagram::Force::Shear, diagram::Force::Moment] {
-            let drawn = diagram::Diagram { structure: &held, members: &forces, bar: "AF", force, height: 9 };
+        for force in [Internal::Shear, Internal::Moment] {
+            let drawn = diagram::Drawing { members: &forces, bar: "AF", force, height: 9 };
             diagram::write(&mut out, &drawn, &units, style)?;
         }
         let picture = structure::Picture {
@@ -231,13 +231,13 @@ fn an_open_pair_says_what_holds_it() {
 /// M(x) = −q (L − x)²/2 of the cantilever, q = 10, L = 4.
 #[test]
 fn moments_between_nodes_are_exact_under_a_line_load() {
-    let (structure, members, _) = cantilever();
-    let series = diagram::series(&structure, &members, "AF", diagram::Force::Moment);
+    let (_, members, _) = cantilever();
+    let series = diagram::series(&members, "AF", Internal::Moment);
     let points = series.expect("there is a bar AF").points;
     assert!(points.len() > 10);
     for (x, m) in points {
         let exact = -10.0 * (4.0 - x) * (4.0 - x) / 2.0;
         assert!((m - exact).abs() < 1e-12 * 80.0, "{m} at {x}");
     }
-    assert_eq!(diagram::series(&structure, &members, "AG", diagram::Force::Moment), None);
+    assert_eq!(diagram::series(&members, "AG", Internal::Moment), None);
 }
