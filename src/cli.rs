@@ -10,14 +10,14 @@ use std::path::{Path, PathBuf};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 
-use crate::export::json as json_export;
+use crate::export::{history as history_json, json as json_export};
 use crate::model::embedded;
 use crate::model::problem::Problems;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::model::schema;
 use crate::session::{Answer, exit_status, import, load, paths, script};
-use crate::session::{CommandError, Format, Output, Session, diagnose};
+use crate::session::{CommandError, Format, History, Output, Session, diagnose};
 use crate::signals::{self, Signals, TerminalWatch, is_dumb};
 use crate::text::printable::{self, Printable};
 use crate::view;
@@ -156,6 +156,9 @@ struct Solve {
     /// Show how long it took
     #[arg(long)]
     timings: bool,
+    /// Solve a scenario with stages in one step, all load cases with their factors, instead of following its history
+    #[arg(long)]
+    at_once: bool,
 }
 
 #[derive(Args, Debug)]
@@ -401,7 +404,12 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     let scenario = named(&arguments.scenario, &watch)?;
     let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
-    let session = session?;
+    let mut session = session?;
+    if !arguments.at_once && !session.scenario().stages.is_empty() {
+        let history = session.follow_stages(&watch);
+        watch.clear();
+        return write_history(&session, &*history?, arguments, style, out);
+    }
     let Some(answer) = session.answer() else {
         return Err(Failure::Status(4, "no answer".to_owned()));
     };
@@ -414,6 +422,50 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     }
     out.flush()?;
     Ok(exit_status(answer))
+}
+
+/// The end of a load history, and its stages.
+fn write_history(
+    session: &Session,
+    history: &History,
+    arguments: &Solve,
+    style: &Style,
+    out: &mut dyn Write,
+) -> Result<u8, Failure> {
+    let scenario = session.scenario();
+    let nothing = || Failure::Status(4, "no answer".to_owned());
+    let answer = history.answer().ok_or_else(nothing)?;
+    if arguments.format == Form::Json {
+        let result = history_json::result(history, &scenario.name, session.values(), arguments.timings);
+        let text = serde_json::to_string_pretty(&result.ok_or_else(nothing)?).map_err(io::Error::other)?;
+        writeln!(out, "{text}")?;
+    } else {
+        let note = "the load history was followed, this is its end (`--at-once`: all load cases at once)";
+        view::stages::write_line(out, note, style)?;
+        view::status::write(out, answer, scenario, session.values(), style)?;
+        writeln!(out)?;
+        view::stages::write(out, history, &scenario.units, style)?;
+        writeln!(out)?;
+        view::pairs::write(out, &answer.pairs, &scenario.units, style)?;
+        if let Some(ray) = &answer.ray {
+            writeln!(out)?;
+            view::ray::write(out, ray, &scenario.units, style)?;
+        }
+        if arguments.timings {
+            write_timings(answer, out)?;
+        }
+    }
+    out.flush()?;
+    Ok(exit_status(answer))
+}
+
+fn write_timings(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
+    let t = &answer.timings;
+    writeln!(
+        out,
+        "\nfactor {:.6} s, condense {:.6} s, lemke {:.6} s, total {:.6} s",
+        t.factor, t.condense, t.lemke, t.total
+    )
 }
 
 fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
@@ -475,12 +527,7 @@ fn write_answer(
         view::ray::write(out, ray, units, style)?;
     }
     if timings {
-        let t = &answer.timings;
-        writeln!(
-            out,
-            "\nfactor {:.6} s, condense {:.6} s, lemke {:.6} s, total {:.6} s",
-            t.factor, t.condense, t.lemke, t.total
-        )?;
+        write_timings(answer, out)?;
     }
     Ok(())
 }

@@ -90,7 +90,7 @@ pub struct ContactLcp {
 }
 
 /// Largest power of two not above `value`; 1 for zero.
-fn power_of_two(value: f64) -> f64 {
+pub fn power_of_two(value: f64) -> f64 {
     if value > 0.0 && value.is_finite() { 2f64.powi(value.log2().floor() as i32) } else { 1.0 }
 }
 

@@ -122,7 +122,7 @@ pub fn reactions(answer: &Answer) -> Value {
 
 /// A record as a value, −0 written as 0. The records hold strings, numbers and lists only, with string keys:
 /// serde_json has no way to fail on them.
-fn value(record: &impl Serialize) -> Value {
+pub(super) fn value(record: &impl Serialize) -> Value {
     let mut value = serde_json::to_value(record).unwrap_or(Value::Null);
     unsign_zeros(&mut value);
     value

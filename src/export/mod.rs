@@ -2,6 +2,7 @@
 
 pub mod atomic;
 pub mod csv;
+pub mod history;
 pub mod json;
 pub mod lcp;
 pub mod path;

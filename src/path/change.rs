@@ -15,9 +15,9 @@ pub struct Change {
 }
 
 /// The state of a pair as a path tells it: its word, and for an open pair held by cohesion what it does.
-pub fn word(pair: &PairState) -> String {
-    match pair.held {
-        None => pair.state.word().to_owned(),
+fn word((state, held): (State, Option<State>)) -> String {
+    match held {
+        None => state.word().to_owned(),
         Some(State::Stick) => "open (held)".to_owned(),
         Some(State::SlipPlus) => "open (slip +)".to_owned(),
         Some(_) => "open (slip -)".to_owned(),
@@ -26,12 +26,20 @@ pub fn word(pair: &PairState) -> String {
 
 /// The pairs whose states differ.
 pub fn changes(before: &[PairState], after: &[PairState]) -> Vec<Change> {
-    before
-        .iter()
-        .zip(after)
-        .filter_map(|(before, after)| {
-            let (from, to) = (word(before), word(after));
-            (from != to).then(|| Change { pair: after.id.clone(), from, to })
+    let states = |pairs: &[PairState]| pairs.iter().map(|pair| (pair.state, pair.held)).collect::<Vec<_>>();
+    between(after.iter().map(|pair| pair.id.as_str()), &states(before), &states(after))
+}
+
+/// The pairs whose states, and what holds them where they are open, differ.
+pub fn between<'a>(
+    ids: impl Iterator<Item = &'a str>,
+    before: &[(State, Option<State>)],
+    after: &[(State, Option<State>)],
+) -> Vec<Change> {
+    ids.zip(before.iter().zip(after))
+        .filter_map(|(id, (before, after))| {
+            let (from, to) = (word(*before), word(*after));
+            (from != to).then(|| Change { pair: id.to_owned(), from, to })
         })
         .collect()
 }

@@ -396,18 +396,31 @@ impl Session {
     }
 
     fn expect(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let expectation = expect::read(words)?;
-        let pairs = self.pairs();
-        let displacements = match expectation {
-            expect::Expectation::Node { .. } => self.displacements(),
-            _ => None,
+        let (stage, words_of_it) = expect::stage(words)?;
+        let expectation = expect::read(words_of_it)?;
+        let error = self.last_error.as_deref();
+        let history = match stage {
+            Some(stage) => Some(self.stage_answer(stage)?),
+            None => self.followed.as_ref().and_then(|history| history.answer()),
         };
-        let facts = Facts {
-            answer: self.answer(),
-            pairs: &pairs,
-            p: self.p(),
-            displacements: displacements.as_deref(),
-            error: self.last_error.as_deref(),
+        let (pairs, displacements);
+        let facts = match history {
+            Some(answer) => Facts {
+                answer: Some(answer),
+                pairs: &answer.pairs,
+                p: Some(answer.p),
+                displacements: answer.displacements.as_deref(),
+                error,
+            },
+            None => {
+                pairs = self.pairs();
+                displacements = match expectation {
+                    expect::Expectation::Node { .. } => self.displacements(),
+                    _ => None,
+                };
+                let displacements = displacements.as_deref();
+                Facts { answer: self.answer(), pairs: &pairs, p: self.p(), displacements, error }
+            }
         };
         expectation.test(&facts).map_err(|failed| match failed {
             Ok(unmet) => CommandError::Unmet(unmet),

@@ -206,8 +206,9 @@ pub enum Command {
     },
     /// Follow the load history of the scenario, with memory
     ///
-    /// Each stage is followed breakpoint by breakpoint from where the one before ended; slips stay. With STAGE the
-    /// way through that stage and the pairs at its end are shown. `plot path` draws the loops.
+    /// Each stage is followed event by event from where the one before ended; slips stay. With STAGE the way through
+    /// that stage and the pairs at its end are shown. `plot path` draws the loops. Until the next change or `solve`,
+    /// `expect` and the tables `pairs`, `displacements`, `members`, `reactions` and `check` mean the end of the history.
     #[command(after_help = "Example:\n  stages\n  stages 2\n  stages; plot path slip c6")]
     Stages {
         /// Number of a stage
@@ -290,6 +291,7 @@ pub enum Command {
     ///   expect unknowns|free|lcp OP NUMBER      (sizes, as `status` shows them)
     ///   expect ray mechanism|artefact|fault|no-equilibrium
     ///   expect verdict certified|proved|undecided
+    ///   expect stage S …                        (after `stages`: at the end of stage S)
     ///   expect error "part of the message"      (after a command that fails)
     /// States, forces and p are those at the pivot chosen by `step`.
     #[command(

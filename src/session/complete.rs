@@ -346,7 +346,7 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             .get_subcommands()
             .map(|command| candidate(command.get_name(), about(command.get_about())))
             .collect(),
-        "EXPECTATION" => match given {
+        "EXPECTATION" => match expect::stage(given).map_or(given, |(_, rest)| rest) {
             [] => expect::subjects().map(|word| candidate(word, "")).collect(),
             [subject] if expect::takes_pair(subject) => plain(&vocabulary.pairs),
             [subject] if expect::takes_node(subject) => plain(&vocabulary.nodes),

@@ -64,6 +64,9 @@ pub enum CommandError {
         /// What happened there.
         error: Box<CommandError>,
     },
+    /// A path whose numbers no longer belong together, or that came to a limit of the program.
+    #[error("{0}")]
+    Lost(String),
     /// Anything else about the words or the state: what, and what to do.
     #[error("{0}")]
     Refused(String),
@@ -95,7 +98,7 @@ impl CommandError {
     pub fn status(&self) -> u8 {
         match self {
             CommandError::Unmet(_) => 1,
-            CommandError::Internal(_) => 4,
+            CommandError::Internal(_) | CommandError::Lost(_) => 4,
             CommandError::Interrupted => 130,
             CommandError::Script { error, .. } => error.status(),
             _ => 2,

@@ -151,7 +151,10 @@ const COMPONENTS: &[&str] = &["ux", "uy", "rz"];
 const SIZES: &[&str] = &["unknowns", "free", "lcp"];
 const OTHERS: &[&str] = &["outcome", "state", "p", "pivots", "ray", "verdict", "error"];
 
-/// The words that may follow `expect`.
+/// What asks for the end of a stage of the history.
+pub const STAGE: &str = "stage";
+
+/// The words that may follow `expect`, or `expect stage S`.
 pub fn subjects() -> impl Iterator<Item = &'static str> {
     OTHERS
         .iter()
@@ -182,7 +185,23 @@ pub fn takes_node(subject: &str) -> bool {
     COMPONENTS.contains(&subject)
 }
 
-/// Reads the words after `expect`.
+/// The stage of `stage S …`, counted from 1, and the words after it.
+///
+/// # Errors
+/// [`ExpectationSyntax`].
+pub fn stage(words: &[String]) -> Result<(Option<usize>, &[String]), ExpectationSyntax> {
+    match words {
+        [word, rest @ ..] if word == STAGE => match rest.split_first().map(|(number, rest)| (number.parse(), rest)) {
+            Some((Ok(number), rest)) if !rest.is_empty() => Ok((Some(number), rest)),
+            _ => Err(ExpectationSyntax {
+                what: "`stage` takes the number of a stage, counted from 1, and what is expected at its end".into(),
+            }),
+        },
+        _ => Ok((None, words)),
+    }
+}
+
+/// Reads the words after `expect`, or after `expect stage S`.
 ///
 /// # Errors
 /// [`ExpectationSyntax`].

@@ -10,6 +10,7 @@ mod error;
 pub mod expect;
 mod exports;
 pub mod help;
+mod history;
 pub mod import;
 pub mod journal;
 pub mod load;
@@ -43,6 +44,7 @@ use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
 use crate::model::uses::Redone;
 use crate::path::record::PathRecord;
+pub use crate::path::stages::History;
 use crate::solve;
 pub use crate::solve::{Prepared, Solved};
 use crate::text::printable;
@@ -135,6 +137,8 @@ pub struct Session {
     path: Option<Arc<PathRecord>>,
     /// What would stop the collapse of this answer, once it was looked for.
     remedies: Option<(Arc<Solved>, Arc<Remedies>)>,
+    /// The load history that quantities mean, until the next change or `solve`.
+    followed: Option<Arc<History>>,
 }
 
 impl Session {
@@ -188,6 +192,7 @@ impl Session {
             depth: 0,
             path: None,
             remedies: None,
+            followed: None,
         };
         session.take_answer(Some(solved));
         Ok(session)
@@ -494,6 +499,7 @@ impl Session {
         self.previous = self.solved.take().or(self.previous.take());
         self.solved = solved;
         self.position = None;
+        self.followed = None;
     }
 }
 

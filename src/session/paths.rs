@@ -1,4 +1,4 @@
-//! `trace`, `limit`, `sensitivity`, `stages`, `sweep`, and what `plot path` and `export path` show of them.
+//! `trace`, `limit`, `sensitivity`, `sweep`, and what `plot path` and `export path` show of them.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,6 @@ use crate::path::merge::Shards;
 use crate::path::rate::fixed_place;
 use crate::path::record::PathRecord;
 use crate::path::sensitivity::sensitivity;
-use crate::path::stages;
 use crate::path::start::PathError;
 use crate::path::sweep::Sweep;
 use crate::path::sweep_file::{SweepFileError, run_to_file};
@@ -39,6 +38,7 @@ impl From<PathError> for CommandError {
     fn from(error: PathError) -> Self {
         match error {
             PathError::Interrupted => CommandError::Interrupted,
+            lost @ PathError::Breakdown { .. } => CommandError::Lost(lost.to_string()),
             error => CommandError::Refused(error.to_string()),
         }
     }
@@ -61,19 +61,19 @@ impl From<SweepFileError> for CommandError {
 }
 
 /// What every path starts from.
-struct Ground {
+pub(super) struct Ground {
     setup: Setup,
-    prepared: Arc<Prepared>,
+    pub(super) prepared: Arc<Prepared>,
     solved: Arc<Solved>,
 }
 
 impl Session {
     /// The present setup, solved.
-    fn ground(&self, io: &mut Output<'_>) -> Result<Ground, CommandError> {
+    pub(super) fn ground(&self, watch: &dyn Watch) -> Result<Ground, CommandError> {
         let mut setup = self.now.clone();
         let solved = match (&self.solved, &setup.prepared) {
             (Some(solved), Some(_)) => Arc::clone(solved),
-            _ => setup.solve(io.watch)?,
+            _ => setup.solve(watch)?,
         };
         let prepared = setup
             .prepared
@@ -103,7 +103,7 @@ impl Session {
                 return Err(CommandError::Refused("trace: expected `trace NAME` or `trace NAME to VALUE`".into()));
             }
         };
-        let ground = self.ground(io)?;
+        let ground = self.ground(io.watch)?;
         let units = self.now.scenario.units.clone();
         let (prepared, solved) = (Arc::clone(&ground.prepared), ground.solved);
         let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
@@ -169,7 +169,7 @@ impl Session {
 
     /// `limit LOAD`.
     pub(super) fn limit(&mut self, name: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let ground = self.ground(io)?;
+        let ground = self.ground(io.watch)?;
         let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
         let cases = Self::case_names(&ground.prepared);
         let what = name.to_owned();
@@ -213,56 +213,9 @@ impl Session {
         {
             return Err(CommandError::Refused(format!("no derivatives with respect to {name}: {refusal}")));
         }
-        let ground = self.ground(io)?;
+        let ground = self.ground(io.watch)?;
         let found = sensitivity(&ground.prepared, &self.now.scenario, &ground.solved, &self.now.values)?;
         io.report(|| json!(found), |out, style| view::sensitivity::write(out, &found, parameter, style))?;
-        Ok(())
-    }
-
-    /// `stages [STAGE]`.
-    pub(super) fn stages(&mut self, stage: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let ground = self.ground(io)?;
-        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
-        let history = worker::run(io.watch, move |watch| stages::follow(&ground.prepared, &scenario, &values, watch))??;
-        let record = Arc::new(PathRecord::of_history(&history));
-        let index = match stage {
-            None => None,
-            Some(number) if (1..=history.stages.len()).contains(&number) => Some(number - 1),
-            Some(number) => {
-                return Err(CommandError::Refused(format!(
-                    "no stage {number}: there are stages 1 to {}",
-                    history.stages.len()
-                )));
-            }
-        };
-        let units = &self.now.scenario.units;
-        io.report(
-            || {
-                json!({
-                    "cases": history.cases,
-                    "stages": history.stages.iter().map(|stage| json!({
-                        "pivots": stage.pivots,
-                        "factors": stage.moments.last().map(|end| &end.factors),
-                        "slip_increment": stage.slip,
-                        "dissipated": stage.dissipated,
-                        "work": stage.energy.map(|energy| energy.work),
-                        "stored": stage.energy.map(|energy| energy.stored),
-                        "balance": stage.energy.map(|energy| energy.residual),
-                        "changes": stage.moments.iter().filter(|at| !at.changes.is_empty()).map(|at| json!({
-                            "done": at.t, "factors": at.factors, "changes": at.changes,
-                            "sentence": at.sentence, "jump": at.jump,
-                        })).collect::<Vec<_>>(),
-                        "pairs": stage.moments.last().map(|end| &end.pairs),
-                    })).collect::<Vec<_>>(),
-                    "end": record.end,
-                })
-            },
-            |out, style| match index {
-                None => view::stages::write(out, &history, units, style),
-                Some(index) => view::stages::write_stage(out, &history, index, units, style),
-            },
-        )?;
-        self.path = Some(record);
         Ok(())
     }
 
@@ -277,7 +230,7 @@ impl Session {
     ) -> Result<(), CommandError> {
         let axes = axes(words)?;
         let grid = Grid::new(&self.now.scenario, axes)?;
-        let ground = self.ground(io)?;
+        let ground = self.ground(io.watch)?;
         let sweep = Sweep {
             prepared: &ground.prepared,
             scenario: &self.now.scenario,

@@ -150,7 +150,8 @@ impl Session {
                 }
             },
         };
-        let all = self.pairs();
+        let place = self.history_place();
+        let all = self.quantity_pairs();
         let mut chosen = if ids.is_empty() {
             all
         } else {
@@ -166,7 +167,9 @@ impl Session {
         io.report(
             || json!(chosen),
             |out, style| {
-                if let Some(step) = self.position {
+                if let Some(place) = &place {
+                    writeln!(out, "{}", style.paint(Role::Muted, place))?;
+                } else if let Some(step) = self.position {
                     let p = self.p().map_or(String::new(), |p| format!(", p = {}", short(p)));
                     writeln!(out, "{}", style.paint(Role::Muted, &format!("at {}{p}", view::pivots::title(step))))?;
                 }
@@ -208,8 +211,8 @@ impl Session {
     }
 
     pub(super) fn report_displacements(&self, nodes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        let all = self.displacements().ok_or_else(|| self.none("displacements", answer))?;
+        let answer = self.need_quantities()?;
+        let all = self.quantity_displacements().ok_or_else(|| self.none("displacements", answer))?;
         let chosen = if nodes.is_empty() {
             all
         } else {
@@ -225,7 +228,10 @@ impl Session {
         };
         io.report(
             || json!(chosen),
-            |out, style| view::displacements::write(out, &chosen, &self.now.scenario.units, style),
+            |out, style| {
+                self.write_place(out, style)?;
+                view::displacements::write(out, &chosen, &self.now.scenario.units, style)
+            },
         )?;
         Ok(())
     }
@@ -245,7 +251,7 @@ impl Session {
     }
 
     pub(super) fn report_members(&self, bar: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
+        let answer = self.need_quantities()?;
         let members = answer.members.as_ref().ok_or_else(|| self.none("member forces", answer))?;
         if let Some(bar) = bar
             && !members.iter().any(|member| member.bar == bar)
@@ -264,7 +270,10 @@ impl Session {
                     .map(|member| json!(member))
                     .collect()
             },
-            |out, style| view::members::write(out, members, bar, &self.now.scenario.units, style),
+            |out, style| {
+                self.write_place(out, style)?;
+                view::members::write(out, members, bar, &self.now.scenario.units, style)
+            },
         )?;
         Ok(())
     }
@@ -282,11 +291,12 @@ impl Session {
     }
 
     pub(super) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
+        let answer = self.need_quantities()?;
         let reactions = answer.reactions.as_ref().ok_or_else(|| self.none("reactions", answer))?;
         io.report(
             || json!(reactions),
             |out, style| {
+                self.write_place(out, style)?;
                 let moment = self.moment_about_origin(reactions);
                 view::reactions::write(out, reactions, moment, &self.now.scenario.units, style)
             },
@@ -295,8 +305,14 @@ impl Session {
     }
 
     pub(super) fn report_check(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        io.report(|| json!(answer.check), |out, style| view::check::write(out, answer, style))?;
+        let answer = self.need_quantities()?;
+        io.report(
+            || json!(answer.check),
+            |out, style| {
+                self.write_place(out, style)?;
+                view::check::write(out, answer, style)
+            },
+        )?;
         Ok(())
     }
 

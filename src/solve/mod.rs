@@ -5,6 +5,7 @@ pub mod attempt;
 mod by_path;
 pub mod compare;
 pub mod explain;
+mod history_answer;
 pub mod judge;
 mod ladder;
 pub mod numbers;

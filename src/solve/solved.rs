@@ -330,6 +330,18 @@ impl Prepared {
         factors: &[f64],
         state: &JointState,
     ) {
+        let equilibrium = self.recover(answer, numbers, factors, state);
+        judge(answer, check_contact(system, numbers, state, equilibrium));
+    }
+
+    /// Displacements, members and reactions of a state; the residual of its equilibrium, where there is a K.
+    pub(super) fn recover(
+        &self,
+        answer: &mut Answer,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        state: &JointState,
+    ) -> Option<f64> {
         let mut equilibrium = None;
         if let Geometry::Structure { main, structure, .. } = &self.geometry {
             let u = main.displacements(factors, &dislocation(numbers, &state.z));
@@ -359,18 +371,7 @@ impl Prepared {
             );
             answer.displacements = Some(named(structure, &u));
         }
-        answer.check = check_contact(system, numbers, state, equilibrium);
-        if !answer.check.passed {
-            fail_check(answer);
-        }
-        for pair in &answer.pairs {
-            if pair.held.is_some() {
-                answer.notes.push(format!(
-                    "pair {} is open and still held by its cohesion: cohesion acts across the gap in this law",
-                    pair.id
-                ));
-            }
-        }
+        equilibrium
     }
 
     /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
@@ -427,6 +428,22 @@ fn named(structure: &crate::model::structure::Structure, u: &Displacements) -> V
         .zip(&u.0)
         .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
         .collect()
+}
+
+/// Takes the check over, and says what holds open pairs.
+pub(super) fn judge(answer: &mut Answer, check: Check) {
+    answer.check = check;
+    if !answer.check.passed {
+        fail_check(answer);
+    }
+    for pair in &answer.pairs {
+        if pair.held.is_some() {
+            answer.notes.push(format!(
+                "pair {} is open and still held by its cohesion: cohesion acts across the gap in this law",
+                pair.id
+            ));
+        }
+    }
 }
 
 pub(super) fn fail_check(answer: &mut Answer) {

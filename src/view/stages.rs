@@ -109,3 +109,11 @@ pub fn write_stage(
         None => Ok(()),
     }
 }
+
+/// Writes a remark about the history.
+pub fn write_line(out: &mut dyn Write, text: &str, style: &Style) -> io::Result<()> {
+    style
+        .wrap(&style.text(text), style.width)
+        .iter()
+        .try_for_each(|line| writeln!(out, "{}", style.paint(Role::Muted, line)))
+}

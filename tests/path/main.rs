@@ -4,6 +4,7 @@
 mod common;
 mod friction;
 mod hertz;
+mod history;
 mod load;
 mod random;
 mod session;

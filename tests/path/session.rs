@@ -91,3 +91,64 @@ fn sweeps_are_tables_or_files() {
     assert!(results[4].as_ref().is_err_and(|error| error.contains("unknown parameter g")));
     assert!(results[5].as_ref().is_err_and(|error| error.contains("too many to show")));
 }
+
+/// After `stages` quantities and tables mean the history, until the next change or `solve`. r = 30: the end slips
+/// 300e-5 under 150 and −300e-5 under −150.
+#[test]
+fn after_stages_quantities_mean_the_history() {
+    let folder = tempfile::tempdir().expect("a place");
+    let beam = embedded::text("beam").expect("embedded");
+    let end = beam.rfind('}').expect("an object");
+    let file = folder.path().join("history.json");
+    let stages = r#"[{"weight": 1}, {"weight": 1, "pull": 1}, {"weight": 1, "pull": -1}]"#;
+    std::fs::write(&file, format!("{}, \"stages\": {stages} }}", beam[..end].trim_end())).expect("written");
+    let load = format!("load {}", file.display());
+    let results = run(
+        "beam",
+        &[
+            "stages",
+            &load,
+            "set f 0.3",
+            "set F2 150",
+            "expect stage 1 z_t c6 = 0",
+            "expect z_t c6 = 0.003 ± 1e-12",
+            "stages",
+            "expect outcome normal",
+            "expect z_t c6 = -0.003 ± 1e-12",
+            "expect ux s6 = -0.003 ± 1e-12",
+            "expect state c6 slip-",
+            "expect stage 2 z_t c6 = 0.003 ± 1e-12",
+            "expect stage 2 state c6 slip+",
+            "expect stage 1 state c6 stick",
+            "expect stage 4 z_t c6 = 0",
+            "expect stage x z_t c6 = 0",
+            "pairs c6",
+            "displacements s6",
+            "plot path slip c6",
+            "stages 2",
+            "solve",
+            "expect z_t c6 = 0.003 ± 1e-12",
+            "stages",
+            "set F2 500",
+            "expect stage 2 z_t c6 = 0.003 ± 1e-12",
+            "stages",
+            "expect outcome ray",
+            "expect ray mechanism",
+            "expect verdict certified",
+            "expect stage 1 outcome normal",
+            "expect stage 3 outcome normal",
+        ],
+    );
+    let refused = [0, 4, 14, 15, 24, 30];
+    for (index, result) in results.iter().enumerate() {
+        assert_eq!(result.is_err(), refused.contains(&index), "{index}: {result:?}");
+    }
+    let error = |index: usize| results[index].as_ref().expect_err("refused").as_str();
+    assert!(error(4).contains("`stages` follows"), "{}", error(4));
+    assert!(error(14).contains("stages 1 to 3"), "{}", error(14));
+    assert!(error(30).contains("was not reached"), "{}", error(30));
+    assert!(text(&results[6]).contains("until the next"), "{}", text(&results[6]));
+    assert!(text(&results[16]).contains("at the end of stage 3 of the load history"), "{}", text(&results[16]));
+    assert!(text(&results[17]).contains("-3.0000e-3"), "{}", text(&results[17]));
+    assert!(text(&results[25]).contains("where the load history ended"), "{}", text(&results[25]));
+}

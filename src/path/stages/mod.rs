@@ -1,0 +1,78 @@
+//! Load history with memory: the stages of a scenario followed one after the other (theory §6, "Load history").
+//!
+//! Eq. (8) relates the *total* slip to the force, which is right for one monotone loading from the unloaded state. A
+//! history is followed event by event instead: at each state the rate problem gives the rates of all displacements
+//! and forces ([`rate_problem`]); they are constant until a contact force, a reserve or a gap is used up ([`event`]);
+//! there every slip is committed and the next rate problem is written ([`walk`]). Where the rate problem has no
+//! answer, that is a limit or a jump ([`beyond`]). Within a stage all factors move in proportion from the last stage's
+//! values to this one's.
+
+mod beyond;
+mod course;
+mod energy;
+mod event;
+mod rate_problem;
+mod record;
+mod released;
+mod standing;
+mod walk;
+
+pub use record::{Energy, History, HistoryEnd, Moment, StageResult};
+
+use standing::Laws;
+use walk::Walk;
+
+use super::start::PathError;
+use crate::model::parameter::ParameterValues;
+use crate::model::scenario::Scenario;
+use crate::solve::Prepared;
+use crate::solve::numbers::{contact_numbers, factors};
+use crate::watch::Watch;
+
+/// Follows the stages of the scenario from the unloaded structure.
+///
+/// # Errors
+/// No stages; a state that cannot be found; see [`PathError`]. A limit load on the way is no error.
+pub fn follow(
+    prepared: &Prepared,
+    scenario: &Scenario,
+    values: &ParameterValues,
+    watch: &dyn Watch,
+) -> Result<History, PathError> {
+    if scenario.stages.is_empty() {
+        return Err(PathError::Missing(
+            "the scenario has no `stages`: nothing tells the order of its loads (see the scenario format)".to_owned(),
+        ));
+    }
+    let own = factors(prepared, values);
+    let targets: Vec<Vec<f64>> = scenario
+        .stages
+        .iter()
+        .map(|stage| {
+            let mut target = vec![0.0; own.len()];
+            for (name, multiplier) in &stage.multipliers {
+                if let Some(case) = prepared.cases.iter().position(|(known, _)| known == name) {
+                    target[case] = own[case] * multiplier.value(values);
+                }
+            }
+            target
+        })
+        .collect();
+    follow_factors(prepared, values, &targets, watch)
+}
+
+/// Follows the unloaded structure through the given factors of all load cases.
+///
+/// # Errors
+/// As [`follow`].
+pub fn follow_factors(
+    prepared: &Prepared,
+    values: &ParameterValues,
+    targets: &[Vec<f64>],
+    watch: &dyn Watch,
+) -> Result<History, PathError> {
+    let system = prepared.system().ok_or(PathError::Plain("stages"))?;
+    let none = vec![0.0; prepared.cases.len()];
+    let numbers = contact_numbers(system, &none, values);
+    Walk::start(prepared, Laws { system, numbers: &numbers }, watch)?.follow(targets)
+}

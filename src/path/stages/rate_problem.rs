@@ -1,0 +1,397 @@
+//! The rate problem (theory §6, "Load history"): where the loads go on at a rate, the rates of all joints.
+//!
+//! ```text
+//!   λ̇ = R ż + Ḟ
+//!   open pair       ẋ_n = 0, and without cohesion λ̇_τ = 0: condensed out
+//!   grazing pair    ẋ_n ≥ 0 ⟂ ż_n ≥ 0
+//!   reserve used up ẋ^σ = σ λ̇_τ + f ẋ_n ≥ 0 ⟂ ż^σ ≥ 0
+//!   all others      ż = 0
+//! ```
+//! Lemke's algorithm solves it under the covering `cohesive` on its rows.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector, Dyn, LU};
+
+use super::released::Released;
+use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
+use crate::contact::complementarity::{ContactLcp, Couple, RowMeaning, power_of_two};
+use crate::lcp::mirrored::{Mirror, MirroredLcp};
+use crate::lcp::outcome::{Outcome, Run};
+use crate::lcp::problem::{NOISE, Scale};
+use crate::lcp::vertex::{Basis, vertex};
+use crate::model::rules::TieBreak;
+use crate::solve::attempt::run_scheme;
+use crate::watch::Watch;
+
+/// Rate problems with at most so many rows are searched basis by basis where Lemke's algorithm ends in a ray.
+const SEARCHED_ROWS: usize = 14;
+
+/// The rounding of a basis found by search stays below this part of the load's rate.
+const HIDDEN: f64 = 1e-6;
+
+/// A primary row: whose it is, and whether the couple of both senses of slip is meant.
+#[derive(Clone, Copy)]
+struct Row {
+    pair: usize,
+    joint: usize,
+    couple: Couple,
+    mirrored: bool,
+}
+
+/// The LCP of one moment, with the way back to the joints.
+pub(super) struct RateProblem<'a> {
+    laws: Laws<'a>,
+    pub(super) contact: ContactLcp,
+    released: Released,
+    rate: &'a DVector<f64>,
+}
+
+/// How the rate problem ends.
+pub(super) enum Ended {
+    /// Rates: constant until the next event.
+    Rates(Rates),
+    /// No rates: the motion in which the run ended, over the joints, and its p.
+    Ray { motion: DVector<f64>, p: f64 },
+    /// Stopped from outside.
+    Interrupted,
+    /// A limit, or numbers that no longer belong together; says which.
+    Breakdown(String),
+}
+
+/// Rates per unit of the stage's place.
+pub(super) struct Rates {
+    pub(super) z: DVector<f64>,
+    pub(super) force: DVector<f64>,
+    /// The couples whose z may grow: their x stays 0.
+    pub(super) moving: Vec<RowMeaning>,
+}
+
+/// The combination of joint forces that is the x of a couple, without its constant.
+fn terms(laws: Laws<'_>, meaning: RowMeaning, open: bool) -> Vec<(usize, f64)> {
+    let RowMeaning { pair, couple } = meaning;
+    let sign = match couple {
+        Couple::Normal => return vec![(pair, 1.0)],
+        Couple::Plus => 1.0,
+        Couple::Minus => -1.0,
+    };
+    let mut terms: Vec<(usize, f64)> =
+        laws.system.pairs[pair].tangential.map(|joint| (joint, sign)).into_iter().collect();
+    if !open && laws.friction(pair) > 0.0 {
+        terms.push((pair, laws.friction(pair)));
+    }
+    terms
+}
+
+/// The joint that the z of a couple moves, and in which sense.
+fn moved(laws: Laws<'_>, meaning: RowMeaning) -> (usize, f64) {
+    let tangential = laws.system.pairs[meaning.pair].tangential.unwrap_or(meaning.pair);
+    match meaning.couple {
+        Couple::Normal => (meaning.pair, 1.0),
+        Couple::Plus => (tangential, 1.0),
+        Couple::Minus => (tangential, -1.0),
+    }
+}
+
+impl<'a> RateProblem<'a> {
+    /// Writes the rate problem of a standing under the load's rate; `None` where the released joints have no stiffness
+    /// matrix that can be factorized.
+    pub(super) fn new(laws: Laws<'a>, standing: &Standing, rate: &'a DVector<f64>) -> Option<RateProblem<'a>> {
+        let pairs = &laws.system.pairs;
+        let mut joints: Vec<usize> = (0..pairs.len()).filter(|&i| standing.is_open(i)).collect();
+        let free = (0..pairs.len()).filter(|&i| standing.tangential[i] == Tangential::Free);
+        joints.extend(free.filter_map(|i| pairs[i].tangential));
+        let released = Released::new(laws.system, joints)?;
+        let contact = write(laws, standing, &released, rate);
+        Some(RateProblem { laws, contact, released, rate })
+    }
+
+    /// Solves it; `sizes`: Σ |terms| of the load's rate.
+    pub(super) fn solve(&self, standing: &Standing, sizes: &DVector<f64>, watch: &dyn Watch) -> (Ended, Run) {
+        let run = run_scheme(&self.contact.lcp, self.contact.tie_rule(TieBreak::Lexicographic), watch);
+        let joints = self.released.pick(self.rate);
+        if let Some(loose) = self.released.driven_motion(&joints, &self.released.pick(sizes)) {
+            let mut motion = DVector::zeros(self.rate.len());
+            self.released.joints.iter().zip(loose.iter()).for_each(|(&joint, v)| motion[joint] = *v);
+            return (Ended::Ray { motion, p: 0.0 }, run);
+        }
+        let found = |z: &[f64], basic: &[usize]| {
+            let z: Vec<f64> = z.iter().map(|z| z.max(0.0) * self.contact.length_unit).collect();
+            Ended::Rates(self.rates(standing, &z, basic))
+        };
+        let ended = match &run.outcome {
+            Outcome::Trivial | Outcome::Normal { .. } => found(&run.point.z, &run.pivots.basis().z),
+            Outcome::Ray(ray) => match search(&self.contact.lcp) {
+                Some((z, basic)) => found(&z, &basic),
+                None => {
+                    let motion = self.with_released(&ray.z, &DVector::zeros(self.rate.len()));
+                    Ended::Ray { motion, p: run.point.p * self.contact.force_unit }
+                }
+            },
+            Outcome::Interrupted => Ended::Interrupted,
+            Outcome::PivotLimit => Ended::Breakdown("the rate problem came to the limit of pivots".to_owned()),
+            Outcome::Cycle(_) => Ended::Breakdown("the rate problem cycles".to_owned()),
+            Outcome::Breakdown(why) => Ended::Breakdown(why.clone()),
+        };
+        (ended, run)
+    }
+
+    /// ż over the joints from that of the rows: the released joints follow, with the load's rate `load` on them.
+    fn with_released(&self, rows: &[f64], load: &DVector<f64>) -> DVector<f64> {
+        let mut z = DVector::zeros(load.len());
+        for (meaning, value) in self.contact.rows.iter().zip(rows) {
+            let (joint, sign) = moved(self.laws, *meaning);
+            z[joint] += sign * value;
+        }
+        let force = self.laws.force(&z, load);
+        let follow = self.released.solve(&self.released.pick(&force));
+        self.released.joints.iter().zip(follow.iter()).for_each(|(&joint, v)| z[joint] = -v);
+        z
+    }
+
+    fn rates(&self, standing: &Standing, rows: &[f64], basic: &[usize]) -> Rates {
+        let moving: Vec<RowMeaning> = basic.iter().map(|&row| self.contact.rows[row]).collect();
+        let mut z = self.with_released(rows, self.rate);
+        self.correct(standing, &moving, &[], &mut z, self.rate, |_| 0.0);
+        let mut force = self.laws.force(&z, self.rate);
+        self.settle(standing, &moving, &mut force, |_| 0.0);
+        Rates { z, force, moving }
+    }
+
+    /// Sets to their exact values the forces that the laws give: 0 in released joints, ∓ bound where a pair slips;
+    /// `constant` is that of the bound.
+    pub(super) fn settle(
+        &self,
+        standing: &Standing,
+        moving: &[RowMeaning],
+        force: &mut DVector<f64>,
+        constant: impl Fn(usize) -> f64,
+    ) {
+        self.released.joints.iter().for_each(|&joint| force[joint] = 0.0);
+        for meaning in moving.iter().filter(|meaning| meaning.couple == Couple::Normal) {
+            force[meaning.pair] = 0.0;
+        }
+        for meaning in moving.iter().filter(|meaning| meaning.couple != Couple::Normal) {
+            let (joint, sign) = moved(self.laws, *meaning);
+            let normal = if standing.is_open(meaning.pair) { 0.0 } else { force[meaning.pair] };
+            force[joint] = 0.0 - sign * (self.laws.friction(meaning.pair) * normal + constant(meaning.pair));
+        }
+    }
+
+    /// One step of Newton's method on the equations that hold while `moving` moves: what the rounding of the steps
+    /// before has left of them is taken out, so that it does not add up over a history. Pairs that `close` here are held
+    /// at z_n = 0. `constant` is that of the bound (0 for rates), `load` that of λ = R z + load.
+    pub(super) fn correct(
+        &self,
+        standing: &Standing,
+        moving: &[RowMeaning],
+        close: &[usize],
+        z: &mut DVector<f64>,
+        load: &DVector<f64>,
+        constant: impl Fn(usize) -> f64,
+    ) {
+        close.iter().for_each(|&pair| z[pair] = 0.0);
+        let narrower = if close.is_empty() {
+            None
+        } else {
+            let joints = self.released.joints.iter().copied().filter(|joint| !close.contains(joint)).collect();
+            Released::new(self.laws.system, joints)
+        };
+        let released = narrower.as_ref().unwrap_or(&self.released);
+        let force = self.laws.force(z, load);
+        // What the released joints will do first: −R_FF⁻¹ r_F.
+        let left = released.solve(&released.pick(&force));
+        let mut after = force.clone();
+        for (&joint, v) in released.joints.iter().zip(left.iter()) {
+            after.axpy(-v, &self.laws.system.stiffness.column(joint), 1.0);
+        }
+        let residual = DVector::from_fn(moving.len(), |a, _| {
+            let own = if moving[a].couple == Couple::Normal { 0.0 } else { constant(moving[a].pair) };
+            let terms = terms(self.laws, moving[a], standing.is_open(moving[a].pair));
+            own + terms.iter().map(|(joint, by)| by * after[*joint]).sum::<f64>()
+        });
+        let steps = self.matrix_of(standing, released, moving).and_then(|matrix| matrix.solve(&residual));
+        let mut own = DVector::zeros(z.len());
+        if let Some(steps) = steps.filter(|steps| steps.iter().all(|step| step.is_finite())) {
+            for (meaning, step) in moving.iter().zip(steps.iter()) {
+                let (joint, sign) = moved(self.laws, *meaning);
+                own[joint] -= sign * step;
+            }
+        }
+        let follow = released.solve(&released.pick(&self.laws.force(&own, &force)));
+        released.joints.iter().zip(follow.iter()).for_each(|(&joint, v)| own[joint] = -v);
+        *z += own;
+    }
+
+    /// The condensed stiffness of the moving couples, factorized.
+    fn matrix_of(&self, standing: &Standing, released: &Released, moving: &[RowMeaning]) -> Option<LU<f64, Dyn, Dyn>> {
+        if moving.is_empty() {
+            return None;
+        }
+        let mut joints: Vec<usize> =
+            moving.iter().flat_map(|meaning| [moved(self.laws, *meaning).0, meaning.pair]).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let stiffness = condensed(self.laws, released, &joints);
+        let place = |joint: usize| joints.binary_search(&joint).unwrap_or_default();
+        let matrix = DMatrix::from_fn(moving.len(), moving.len(), |a, b| {
+            let (joint, sign) = moved(self.laws, moving[b]);
+            let open = standing.is_open(moving[a].pair);
+            let entry = |(row, by): &(usize, f64)| by * stiffness[(place(*row), place(joint))];
+            sign * terms(self.laws, moving[a], open).iter().map(entry).sum::<f64>()
+        });
+        Some(matrix.lu())
+    }
+}
+
+/// The first basis that is an answer, where there are few rows: R alone does not make the rate problem one that Lemke's
+/// algorithm must solve. A basis whose rounding hides the load's rate decides nothing.
+fn search(lcp: &MirroredLcp) -> Option<(Vec<f64>, Vec<usize>)> {
+    let n = lcp.whole_size;
+    if n > SEARCHED_ROWS {
+        return None;
+    }
+    // Primary row of each whole row; the two rows of a couple never move together.
+    let mut primary: Vec<usize> = (0..n).collect();
+    let couples = lcp.mirrors.iter().enumerate().filter_map(|(row, mirror)| Some((row, mirror.as_ref()?.whole)));
+    let couples: Vec<(usize, usize)> = couples.collect();
+    couples.iter().for_each(|&(row, mirror)| primary[mirror] = row);
+    let column = |row: usize| lcp.scale.column[primary[row]];
+    (1_u32..1 << n).find_map(|bits| {
+        let moves = |row: usize| bits & (1 << row) != 0;
+        if couples.iter().any(|&(row, mirror)| moves(row) && moves(mirror)) {
+            return None;
+        }
+        let z: Vec<usize> = (0..n).filter(|&row| moves(row)).collect();
+        let point = vertex(lcp, &Basis { active: z.clone(), z: z.clone(), p: false })?;
+        let size: f64 = point.z.iter().enumerate().map(|(row, z)| column(row) * z.abs()).sum();
+        let stands = (0..n).all(|row| {
+            let noise = NOISE * (lcp.q.amax() + lcp.scale.row[primary[row]] * size);
+            noise <= HIDDEN * lcp.q.amax() && column(row) * point.z[row] >= -NOISE * size && point.w[row] >= -noise
+        });
+        stands.then_some((point.z, z))
+    })
+}
+
+/// R of the given joints, the released ones condensed out. (An open pair's normal joint among them has no entry left.)
+fn condensed(laws: Laws<'_>, released: &Released, joints: &[usize]) -> DMatrix<f64> {
+    let r = &laws.system.stiffness;
+    let own = DMatrix::from_fn(joints.len(), joints.len(), |a, b| r[(joints[a], joints[b])]);
+    if released.joints.is_empty() {
+        return own;
+    }
+    let across = DMatrix::from_fn(released.joints.len(), joints.len(), |a, b| r[(released.joints[a], joints[b])]);
+    own - across.transpose() * released.solve_many(&across)
+}
+
+/// The primary rows: all normal ones, then the tangential ones.
+fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
+    let pairs = &laws.system.pairs;
+    let grazing = (0..pairs.len()).filter(|&i| standing.normal[i] == Normal::Grazing);
+    let normals = grazing.map(|pair| Row { pair, joint: pair, couple: Couple::Normal, mirrored: false });
+    let tangentials = (0..pairs.len()).filter_map(|pair| {
+        let joint = pairs[pair].tangential?;
+        let (couple, mirrored) = match standing.tangential[pair] {
+            Tangential::Limit(Sense::Plus) => (Couple::Plus, false),
+            Tangential::Limit(Sense::Minus) => (Couple::Minus, false),
+            Tangential::Both => (Couple::Plus, true),
+            Tangential::Absent | Tangential::Free | Tangential::Held => return None,
+        };
+        Some(Row { pair, joint, couple, mirrored })
+    });
+    normals.chain(tangentials).collect()
+}
+
+/// Writes the LCP, dimensionless as that of eq. (8).
+fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVector<f64>) -> ContactLcp {
+    let system = laws.system;
+    let primary = primary_rows(laws, standing);
+    let count = primary.len();
+    let mut joints: Vec<usize> = primary.iter().flat_map(|row| [row.joint, row.pair]).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    let place = |joint: usize| joints.binary_search(&joint).unwrap_or_default();
+    let stiffness = condensed(laws, released, &joints);
+    let follow = released.solve(&released.pick(rate));
+    let mut load = rate.clone();
+    for (&joint, v) in released.joints.iter().zip(follow.iter()) {
+        load.axpy(-v, &system.stiffness.column(joint), 1.0);
+    }
+    let normal_of = |pair: usize| primary.iter().position(|row| row.pair == pair && row.couple == Couple::Normal);
+    let meaning_of = |row: &Row| RowMeaning { pair: row.pair, couple: row.couple };
+    // Of a couple of both senses S holds λ_τ alone: the LCP adds f λ_n and makes the mirror.
+    let stored = |row: &Row| match row.mirrored {
+        true => vec![(row.joint, 1.0)],
+        false => terms(laws, meaning_of(row), standing.is_open(row.pair)),
+    };
+    let sum =
+        |terms: &[(usize, f64)], value: &dyn Fn(usize) -> f64| terms.iter().map(|(j, by)| by * value(*j)).sum::<f64>();
+
+    let mut q: DVector<f64> = DVector::from_fn(count, |i, _| {
+        let row = &primary[i];
+        sum(&terms(laws, meaning_of(row), standing.is_open(row.pair)), &|joint| load[joint])
+    });
+    let mirrors_q = primary
+        .iter()
+        .enumerate()
+        .filter(|(_, row)| row.mirrored)
+        .map(|(i, row)| 2.0 * laws.friction(row.pair) * load[row.pair] - q[i]);
+    let largest = mirrors_q.fold(q.amax(), |most: f64, q| most.max(q.abs()));
+    let stiffness_unit = power_of_two(system.stiffness.diagonal().amax());
+    let force_unit = power_of_two(largest);
+    q /= force_unit;
+    let base = DMatrix::from_fn(count, count, |i, j| {
+        let (joint, sign) = moved(laws, meaning_of(&primary[j]));
+        sign * sum(&stored(&primary[i]), &|row| stiffness[(place(row), place(joint))]) / stiffness_unit
+    });
+    let scales = joint_scales(system) / stiffness_unit.sqrt();
+    let mut rows: Vec<RowMeaning> = primary.iter().map(meaning_of).collect();
+    let mut mirrors = vec![None; count];
+    for (i, row) in primary.iter().enumerate().filter(|(_, row)| row.mirrored) {
+        mirrors[i] = Some(Mirror {
+            whole: rows.len(),
+            normal: normal_of(row.pair),
+            friction: laws.friction(row.pair),
+            constant: 0.0,
+            covering: 2.0,
+        });
+        rows.push(RowMeaning { pair: row.pair, couple: Couple::Minus });
+    }
+    let find = |pair: usize, couple: Couple| rows.iter().position(|row| *row == RowMeaning { pair, couple });
+    let rows_of = |couple: Couple| (0..system.pairs.len()).map(|pair| find(pair, couple)).collect();
+    let (normal_row, plus_row, minus_row) = (rows_of(Couple::Normal), rows_of(Couple::Plus), rows_of(Couple::Minus));
+    let lcp = MirroredLcp {
+        base: Arc::new(base),
+        q,
+        covering: DVector::from_iterator(
+            count,
+            primary.iter().map(|row| match row.couple {
+                Couple::Normal => 1.0,
+                _ => 1.0 + laws.friction(row.pair),
+            }),
+        ),
+        whole: (0..count).collect(),
+        mirrors,
+        scale: Scale {
+            row: primary
+                .iter()
+                .map(|row| match row.couple {
+                    Couple::Normal => scales[row.joint],
+                    _ => scales[row.joint] + laws.friction(row.pair) * scales[row.pair],
+                })
+                .collect(),
+            column: primary.iter().map(|row| scales[row.joint]).collect(),
+        },
+        whole_size: rows.len(),
+    };
+    ContactLcp {
+        lcp: Arc::new(lcp),
+        friction: laws.numbers.friction.clone(),
+        rows,
+        force_unit,
+        length_unit: force_unit / stiffness_unit,
+        normal_row,
+        plus_row,
+        minus_row,
+    }
+}

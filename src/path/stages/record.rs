@@ -1,0 +1,130 @@
+//! A followed history as data.
+
+use crate::answer::pairs::JointState;
+use crate::answer::record::{Answer, PairState, Ray, State, Verdict};
+use crate::path::change::Change;
+
+/// The structure at one moment of the history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// Place in its stage, 0 … 1.
+    pub t: f64,
+    /// Factor of each load case.
+    pub factors: Vec<f64>,
+    /// The pairs; z_t is the total slip. A pair that slips here, or has come back to the limit at which it slipped last,
+    /// is shown as slipping; one that rests at its limit sticks.
+    pub pairs: Vec<PairState>,
+    /// The pairs that change their motion here.
+    pub changes: Vec<Change>,
+    /// The changes in words; empty without any.
+    pub sentence: String,
+    /// Whether the structure jumped here: no quasi-static way led on.
+    pub jump: bool,
+    /// What every pair did on the way here, and what held it where it was open.
+    pub(super) way: Vec<(State, Option<State>)>,
+    /// Total z and λ over the joints.
+    pub(super) state: JointState,
+}
+
+/// A stage that was followed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageResult {
+    /// Start, events and end; between two of them everything is affine in t.
+    pub moments: Vec<Moment>,
+    /// Pivots made in all its rate problems.
+    pub pivots: usize,
+    /// Slip of each pair in this stage.
+    pub slip: Vec<f64>,
+    /// Work lost in friction, −∫ x_τ dz_τ ≥ 0.
+    pub dissipated: f64,
+    /// Work of the loads and change of the strain energy; structures only.
+    pub energy: Option<Energy>,
+    /// The state at its end as an answer; a ray, with the state at which it was met, where the history ended in a limit.
+    /// The last stage's has the attempts and pivots of the last rate problem, whose forces are rates per whole stage.
+    pub end: Answer,
+}
+
+/// ∫ F·du = ΔU + D of a stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// ∫ F·du.
+    pub work: f64,
+    /// ΔU, U = ½ uᵀ K u.
+    pub stored: f64,
+    /// |work − stored − dissipated| / the largest energy met in the whole history: a stage that does no work has no
+    /// scale of its own.
+    pub residual: f64,
+}
+
+/// How a history ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HistoryEnd {
+    /// All stages were followed.
+    Complete,
+    /// Within a stage the rate problem had no answer, and no other state was there to jump to.
+    Limit {
+        /// Which stage, from 0.
+        stage: usize,
+        /// Place in it.
+        t: f64,
+        /// The collapse.
+        collapse: Box<Ray>,
+    },
+}
+
+/// A followed history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History {
+    /// Names of the load cases.
+    pub cases: Vec<String>,
+    /// The stages; the last one is incomplete where the history ended in it.
+    pub stages: Vec<StageResult>,
+    /// How it ended.
+    pub end: HistoryEnd,
+}
+
+impl History {
+    /// The end of the last stage followed, as an answer.
+    pub fn answer(&self) -> Option<&Answer> {
+        self.stages.last().map(|stage| &stage.end)
+    }
+
+    /// How the history ended, in a sentence.
+    pub fn end_sentence(&self) -> String {
+        match &self.end {
+            HistoryEnd::Complete => "all stages were followed".to_owned(),
+            HistoryEnd::Limit { stage, t, collapse } => {
+                let proof = match collapse.verdict {
+                    Some(Verdict::Certified) => "the limit load is reached",
+                    _ => "no rates and no other state lead on, which is not proved to be the limit load",
+                };
+                format!("stage {} cannot be completed: at {:.6} of it {proof} ({})", stage + 1, t, collapse.mode)
+            }
+        }
+    }
+
+    /// The pairs at place t of a stage; z_t is the total slip. `None` beyond the end.
+    pub fn pairs_at(&self, stage: usize, t: f64) -> Option<Vec<PairState>> {
+        let moments = &self.stages.get(stage)?.moments;
+        let ends = moments.windows(2).find(|ends| (ends[0].t..=ends[1].t).contains(&t))?;
+        let length = ends[1].t - ends[0].t;
+        let s = if length == 0.0 { 1.0 } else { (t - ends[0].t) / length };
+        let mix = |a: f64, b: f64| if s == 1.0 { b } else { a + s * (b - a) };
+        let mixed = ends[0].pairs.iter().zip(&ends[1].pairs).zip(&ends[1].way).map(|((a, b), &(state, held))| {
+            let (state, held) = if s == 1.0 { (b.state, b.held) } else { (state, held) };
+            PairState {
+                state,
+                held,
+                x_n: mix(a.x_n, b.x_n),
+                x_t: mix(a.x_t, b.x_t),
+                z_n: mix(a.z_n, b.z_n),
+                z_t: mix(a.z_t, b.z_t),
+                bound: mix(a.bound, b.bound),
+                reserve_plus: mix(a.reserve_plus, b.reserve_plus),
+                reserve_minus: mix(a.reserve_minus, b.reserve_minus),
+                ..b.clone()
+            }
+        });
+        Some(mixed.collect())
+    }
+}

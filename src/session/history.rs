@@ -1,0 +1,170 @@
+//! A load history that was followed: after `stages`, quantities, `expect` and the tables mean it, until the next change
+//! or `solve`.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::answer::record::{Answer, NodeDisplacement, PairState};
+use crate::path::record::PathRecord;
+use crate::path::stages::{self, History, HistoryEnd};
+use crate::view;
+use crate::view::number::short;
+use crate::view::style::Style;
+use crate::watch::Watch;
+
+use super::{CommandError, Output, Session, worker};
+
+impl Session {
+    /// The load history that quantities, `expect` and the tables mean at present.
+    pub fn history_followed(&self) -> Option<Arc<History>> {
+        self.followed.clone()
+    }
+
+    /// What a quantity is read from: the end of the last stage followed after `stages`, else the present answer.
+    pub fn quantity_answer(&self) -> Option<&Answer> {
+        match &self.followed {
+            Some(history) => history.answer(),
+            None => self.answer(),
+        }
+    }
+
+    /// As [`Session::quantity_answer`].
+    ///
+    /// # Errors
+    /// There is none because `auto` is off.
+    pub(super) fn need_quantities(&self) -> Result<&Answer, CommandError> {
+        match &self.followed {
+            Some(history) => {
+                history.answer().ok_or_else(|| CommandError::Refused("the history has no stages".to_owned()))
+            }
+            None => self.need_answer(),
+        }
+    }
+
+    /// The pairs that quantities are read from: of the history, else at the pivot shown.
+    pub fn quantity_pairs(&self) -> Vec<PairState> {
+        match &self.followed {
+            Some(history) => history.answer().map_or_else(Vec::new, |answer| answer.pairs.clone()),
+            None => self.pairs(),
+        }
+    }
+
+    /// Likewise the displacements; `None` where there are none.
+    pub(super) fn quantity_displacements(&self) -> Option<Vec<NodeDisplacement>> {
+        match &self.followed {
+            Some(history) => history.answer()?.displacements.clone(),
+            None => self.displacements(),
+        }
+    }
+
+    /// The end of a stage that was followed, counted from 1.
+    ///
+    /// # Errors
+    /// No history was followed; the stage was not reached.
+    pub fn stage_answer(&self, stage: usize) -> Result<&Answer, CommandError> {
+        let refused = |text: String| Err(CommandError::Refused(text));
+        let Some(history) = &self.followed else {
+            return refused(format!("`stage {stage}` of which history? `stages` follows that of the scenario first"));
+        };
+        match stage.checked_sub(1).and_then(|index| history.stages.get(index)) {
+            Some(stage) => Ok(&stage.end),
+            None if (1..=self.now.scenario.stages.len()).contains(&stage) => {
+                refused(format!("stage {stage} was not reached: {}", history.end_sentence()))
+            }
+            None => refused(format!("no stage {stage}: there are stages 1 to {}", self.now.scenario.stages.len())),
+        }
+    }
+
+    /// Where in the history the tables stand; `None` where they show the present answer.
+    pub(super) fn history_place(&self) -> Option<String> {
+        let history = self.followed.as_ref()?;
+        Some(match &history.end {
+            HistoryEnd::Complete => format!("at the end of stage {} of the load history", history.stages.len()),
+            HistoryEnd::Limit { stage, t, .. } => {
+                format!("where the load history ended, at {} of stage {}", short(*t), stage + 1)
+            }
+        })
+    }
+
+    /// Writes [`Session::history_place`] ahead of a table, if there is one.
+    pub(super) fn write_place(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        match self.history_place() {
+            Some(place) => view::stages::write_line(out, &place, style),
+            None => Ok(()),
+        }
+    }
+
+    /// Follows the stages of the scenario; from here on they are what quantities mean.
+    ///
+    /// # Errors
+    /// A scenario without stages, a history that breaks down, an interruption.
+    pub fn follow_stages(&mut self, watch: &dyn Watch) -> Result<Arc<History>, CommandError> {
+        let ground = self.ground(watch)?;
+        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
+        let history = worker::run(watch, move |watch| stages::follow(&ground.prepared, &scenario, &values, watch))??;
+        let history = Arc::new(history);
+        self.path = Some(Arc::new(PathRecord::of_history(&history)));
+        self.followed = Some(Arc::clone(&history));
+        Ok(history)
+    }
+
+    /// `stages [STAGE]`.
+    pub(super) fn stages(&mut self, stage: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let count = self.now.scenario.stages.len();
+        if let Some(number) = stage.filter(|number| count > 0 && !(1..=count).contains(number)) {
+            return Err(CommandError::Refused(format!("no stage {number}: there are stages 1 to {count}")));
+        }
+        let history = self.follow_stages(io.watch)?;
+        let index = match stage {
+            None => None,
+            Some(number) => {
+                self.stage_answer(number)?;
+                Some(number - 1)
+            }
+        };
+        let units = &self.now.scenario.units;
+        let place = self.history_place().unwrap_or_default();
+        io.report(
+            || history_json(&history),
+            |out, style| {
+                match index {
+                    None => view::stages::write(out, &history, units, style),
+                    Some(index) => view::stages::write_stage(out, &history, index, units, style),
+                }?;
+                let line =
+                    format!("quantities, `expect` and tables now stand {place}, until the next change or `solve`");
+                view::stages::write_line(out, &line, style)
+            },
+        )?;
+        Ok(())
+    }
+}
+
+fn history_json(history: &History) -> Value {
+    let stages = history.stages.iter().map(|stage| {
+        let changes = stage.moments.iter().filter(|at| !at.changes.is_empty()).map(|at| {
+            json!({
+                "done": at.t, "factors": at.factors, "changes": at.changes,
+                "sentence": at.sentence, "jump": at.jump,
+            })
+        });
+        json!({
+            "pivots": stage.pivots,
+            "factors": stage.moments.last().map(|end| &end.factors),
+            "slip_increment": stage.slip,
+            "dissipated": stage.dissipated,
+            "work": stage.energy.map(|energy| energy.work),
+            "stored": stage.energy.map(|energy| energy.stored),
+            "balance": stage.energy.map(|energy| energy.residual),
+            "changes": changes.collect::<Vec<_>>(),
+            "pairs": stage.moments.last().map(|end| &end.pairs),
+        })
+    });
+    json!({
+        "cases": history.cases,
+        "stages": stages.collect::<Vec<_>>(),
+        "end": history.end_sentence(),
+    })
+}

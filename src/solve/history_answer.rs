@@ -1,0 +1,48 @@
+//! The state at a moment of a load history as an answer: displacements, members, reactions, and its own fresh check.
+
+use nalgebra::DVector;
+
+use super::prepared::{Geometry, Prepared};
+use super::solved::{empty_answer, judge};
+use crate::answer::check::check_contact;
+use crate::answer::pairs::JointState;
+use crate::answer::record::{Answer, PairState, Size};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::contact::whole::rows;
+use crate::lcp::outcome::{Outcome, Point, Run};
+use crate::lcp::trace::PivotLog;
+use crate::model::rules::Rules;
+
+impl Prepared {
+    /// The answer at a moment of a history: `pairs` and `state` have total displacements, `numbers` the load there.
+    ///
+    /// The laws of contact tie the forces to the slip just before, `last_slip` over the joints, and not to the total
+    /// one: the check takes that.
+    pub(crate) fn history_answer(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        state: &JointState,
+        last_slip: &DVector<f64>,
+        pairs: Vec<PairState>,
+    ) -> Answer {
+        let run =
+            Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point: Point::default() };
+        let mut size = Size { pairs: system.pairs.len(), lcp: rows(system).len(), ..Size::default() };
+        if let Geometry::Structure { main, .. } = &self.geometry {
+            (size.unknowns, size.free) = (Some(main.size().all), Some(main.size().free));
+        }
+        let mut answer = empty_answer(&run, 1.0, Rules::default().words(), size);
+        answer.pairs = pairs;
+        let equilibrium = self.recover(&mut answer, numbers, factors, state);
+        // λ afresh: the history keeps exact values where the laws give them.
+        let mut moved = JointState::at(system, numbers, state.z.clone(), 0.0);
+        for joint in system.pairs.iter().filter_map(|pair| pair.tangential) {
+            moved.z[joint] = last_slip[joint];
+        }
+        judge(&mut answer, check_contact(system, numbers, &moved, equilibrium));
+        answer
+    }
+}
