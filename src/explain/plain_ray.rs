@@ -86,11 +86,7 @@ impl PlainRay {
     /// As it stands in the result; `proof` says what is known of the answers.
     pub fn record(&self, verdict: Verdict, proof: &str) -> Ray {
         let reason = if self.reason.is_empty() { String::new() } else { format!("{} ", self.reason) };
-        let exact = match self.exact {
-            Some(true) => " (in exact arithmetic too)",
-            Some(false) => " (by rounding: in exact arithmetic this is no ray)",
-            None => "",
-        };
+        let exact = if self.exact == Some(true) { " (in exact arithmetic too)" } else { "" };
         Ray {
             class: RayClass::NoEquilibrium,
             verdict: Some(verdict),

@@ -118,7 +118,7 @@ impl Session {
                 .pairs_at(prepared, step)
                 .ok_or_else(|| CommandError::Refused(format!("plot: pivot {step} cannot be shown")))?
         };
-        Ok((crate::view::pivots::title(step), pairs))
+        Ok((format!("pivot {step}"), pairs))
     }
 
     fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {

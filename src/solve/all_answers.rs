@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::judge::EXACT_PAIRS;
+use super::ladder::{Deadline, EXACT_BUDGET};
 use super::numbers::{contact_numbers, factors};
 use super::plain_answers::{Effort, PlainCheck, check_plain_exactly, search_plain_answers};
 use super::prepared::{Geometry, Prepared};
@@ -302,11 +303,15 @@ impl Prepared {
         if !small || !near {
             return;
         }
+        let deadline = Deadline::after(EXACT_BUDGET, watch);
         let proved = matches!(
-            self.check_exactly(solved, watch),
+            self.check_exactly(solved, &deadline),
             Ok(Exactly::Contact(ExactCheck { finding: Finding::Proved { .. }, .. }))
         );
         if !proved {
+            if deadline.passed() {
+                solved.say(&format!(" Its exact check was given up after {} s.", EXACT_BUDGET.as_secs()));
+            }
             return;
         }
         let answer = &mut solved.answer;

@@ -8,8 +8,10 @@ use crate::answer::record::{Attempt, OutcomeKind, RayClass};
 use crate::model::rules::Engine;
 use crate::watch::Watch;
 
-/// An exact attempt that nobody asked for is given up after this time.
+/// An exact attempt that nobody asked for is given up after this time …
 pub(super) const EXACT_BUDGET: Duration = Duration::from_secs(30);
+/// … or after this one where the run in f64 has failed for certain and exact arithmetic is what is left.
+pub(super) const LAST_RESORT: Duration = Duration::from_secs(120);
 
 /// A first run without an answer, and the tries since.
 pub(super) struct Ladder {
@@ -52,13 +54,13 @@ impl Ladder {
     }
 
     /// Notes an exact try that ran out of its time.
-    pub(super) fn gave_up(&mut self, covering: &str, tie_break: &str) {
+    pub(super) fn gave_up(&mut self, covering: &str, tie_break: &str, engine: &str, budget: Duration) {
         self.tried.push(Attempt {
             covering: covering.to_owned(),
             tie_break: tie_break.to_owned(),
-            engine: Engine::Exact.to_string(),
+            engine: engine.to_owned(),
             outcome: OutcomeKind::PivotLimit,
-            why: Some(format!("given up after {} s of exact arithmetic", EXACT_BUDGET.as_secs())),
+            why: Some(format!("given up after {} s of exact arithmetic", budget.as_secs())),
         });
     }
 
@@ -130,9 +132,20 @@ impl Solved {
 }
 
 /// A watch that also stops when a time has passed.
-struct Deadline<'a> {
+pub(super) struct Deadline<'a> {
     watch: &'a dyn Watch,
     until: Instant,
+}
+
+impl<'a> Deadline<'a> {
+    pub(super) fn after(budget: Duration, watch: &'a dyn Watch) -> Deadline<'a> {
+        Deadline { watch, until: Instant::now() + budget }
+    }
+
+    /// Whether the time ran out, and nobody else stopped the work.
+    pub(super) fn passed(&self) -> bool {
+        !self.watch.stop() && Instant::now() >= self.until
+    }
 }
 
 impl Watch for Deadline<'_> {
@@ -154,22 +167,24 @@ pub(super) fn within<T>(
     watch: &dyn Watch,
     attempt: impl FnOnce(&dyn Watch) -> Result<T, SolveError>,
 ) -> Result<Option<T>, SolveError> {
-    match attempt(&Deadline { watch, until: Instant::now() + budget }) {
-        Err(SolveError::Interrupted) if !watch.stop() => Ok(None),
+    let deadline = Deadline::after(budget, watch);
+    match attempt(&deadline) {
+        Err(SolveError::Interrupted) if deadline.passed() => Ok(None),
         other => other.map(Some),
     }
 }
 
-/// Runs `attempt`, within [`EXACT_BUDGET`] where `engine` is exact arithmetic.
+/// Runs `attempt`, within `budget` where `engine` is exact arithmetic.
 ///
 /// # Errors
 /// As [`within`].
 pub(super) fn within_budget(
     engine: Engine,
+    budget: Duration,
     watch: &dyn Watch,
     attempt: impl FnOnce(&dyn Watch) -> Result<Solved, SolveError>,
 ) -> Result<Option<Solved>, SolveError> {
-    if engine == Engine::Exact { within(EXACT_BUDGET, watch, attempt) } else { attempt(watch).map(Some) }
+    if engine == Engine::Exact { within(budget, watch, attempt) } else { attempt(watch).map(Some) }
 }
 
 #[cfg(test)]

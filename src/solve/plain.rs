@@ -10,13 +10,13 @@ use rand_chacha::ChaCha8Rng;
 use super::all_answers::{others, plain_answer};
 use super::attempt::run_scheme;
 use super::judge::{EXACT_ROWS, run_exact_plain, run_tableau};
-use super::ladder::{Ladder, within_budget};
+use super::ladder::{Deadline, EXACT_BUDGET, LAST_RESORT, Ladder, within_budget};
 use super::plain_answers::{PlainAnswers, RayProof, all_plain_answers, prove_plain_ray};
 use super::settle::{ray_holds, settled};
 use super::solved::{SolveError, Solved, Trace, empty_answer, fail_check};
 use crate::answer::check::TOLERANCE;
 use crate::answer::check_plain::{ROUNDING, check_plain};
-use crate::answer::record::{PlainSolution, Size, Verdict};
+use crate::answer::record::{OutcomeKind, PlainSolution, Size, Verdict};
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::sentence;
 use crate::lcp::mirrored::MirroredLcp;
@@ -141,7 +141,7 @@ pub(super) fn attempt_plain(
     let marginal = run.outcome == Outcome::Normal { marginal: true };
     let basis = run.pivots.basis();
     if matches!(run.outcome, Outcome::Normal { .. }) && !basis.p && rules.engine != Engine::Exact {
-        run.point = settled(&lcp, &basis, &run.point, watch);
+        run.point = settled(&lcp, &basis, &run.point, &Deadline::after(EXACT_BUDGET, watch));
     }
     let seconds = start.elapsed().as_secs_f64();
     let words = [rules.covering.word(problem), rules.tie_break.to_string(), rules.engine.to_string()];
@@ -196,7 +196,8 @@ pub(super) fn solve_plain_judged(
         return Ok(first);
     }
     if let (Some(ray), Trace::Plain { lcp, pivots }) = (&mut first.plain_ray, &first.trace) {
-        ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, watch);
+        let deadline = Deadline::after(EXACT_BUDGET, watch);
+        ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, &deadline);
         first.answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
     }
     // Beyond a few rows a combination of them proves sooner than all bases that there is no answer.
@@ -223,18 +224,26 @@ pub(super) fn solve_plain_judged(
         first.answer.ray = Some(proof.record(ray, problem.names));
     }
     let rungs = rungs(problem, &first, own);
+    let by_rounding = first.plain_ray.as_ref().is_some_and(|ray| ray.exact == Some(false));
+    if by_rounding {
+        fail_ray(&mut first);
+    }
+    let budget = if by_rounding { LAST_RESORT } else { EXACT_BUDGET };
     let mut ladder = Ladder::new(first);
     for rules in rungs {
         if rules.tie_break != own.tie_break && ladder.would_repeat(&rules.covering.word(problem), rules.engine) {
             continue;
         }
-        match within_budget(rules.engine, watch, |watch| attempt_plain(problem, rules, watch))? {
+        match within_budget(rules.engine, budget, watch, |watch| attempt_plain(problem, rules, watch))? {
             Some(again) => {
                 if let Ok(answer) = ladder.add(again) {
                     return Ok(answer);
                 }
             }
-            None => ladder.gave_up(&rules.covering.word(problem), &rules.tie_break.to_string()),
+            None => {
+                let covering = rules.covering.word(problem);
+                ladder.gave_up(&covering, &rules.tie_break.to_string(), &rules.engine.to_string(), budget);
+            }
         }
     }
     if let Some(found) = found {
@@ -247,6 +256,19 @@ pub(super) fn solve_plain_judged(
         }
     }
     Ok(ladder.without_answer())
+}
+
+/// A ray that is none in exact arithmetic claims nothing: the run broke down.
+fn fail_ray(solved: &mut Solved) {
+    let answer = &mut solved.answer;
+    let why = "the run ended in a ray by rounding: in exact arithmetic it is none.";
+    answer.outcome = OutcomeKind::Breakdown;
+    answer.ray = None;
+    answer.failure = Some(why.to_owned());
+    if let Some(attempt) = answer.attempts.last_mut() {
+        attempt.outcome = OutcomeKind::Breakdown;
+        attempt.why = Some(why.to_owned());
+    }
 }
 
 /// What is tried after a first run without an answer, in order. Where rounding is to blame exact arithmetic comes first;

@@ -5,9 +5,9 @@
 //! an answer like any other: it passes the same fresh check. Rules that the user chose are run as chosen; the default
 //! rules are then run silently, to name them if they succeed.
 
-use super::all_answers::others;
+use super::all_answers::{ENUMERATION, others};
 use super::judge::EXACT_PAIRS;
-use super::ladder::{Ladder, within_budget};
+use super::ladder::{Deadline, EXACT_BUDGET, Ladder, within_budget};
 use super::numbers::{contact_numbers, factors};
 use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved};
@@ -131,29 +131,38 @@ impl Job<'_> {
         let m = self.system.pairs.len();
         let class = first.ray.as_ref().map(|report| report.class);
         // A proof that there is none saves all further attempts.
-        let found = all_answers(subject, self.watch);
+        let deadline = Deadline::after(EXACT_BUDGET, self.watch);
+        let found = all_answers(subject, &deadline);
+        let too_long = found.is_none() && deadline.passed();
         let none = found.as_ref().is_some_and(Enumeration::no_answer);
         if none && mark_proved(&mut first) {
             return Ok(first);
         }
         let try_rules = class != Some(RayClass::Mechanism) || m <= FEW_PAIRS;
         let mut ladder = Ladder::new(first);
+        if too_long {
+            let [covering, tie_break, _] = Rules::default().words();
+            ladder.gave_up(&covering, &tie_break, ENUMERATION, EXACT_BUDGET);
+        }
         let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact;
         for rules in if try_rules { retries(exact) } else { Vec::new() } {
             if rules.tie_break != self.rules.tie_break && ladder.would_repeat(&rules.covering.to_string(), rules.engine)
             {
                 continue;
             }
-            let again = match within_budget(rules.engine, self.watch, |watch| self.attempt_watched(rules, watch)) {
-                Ok(Some(again)) => again,
-                Ok(None) => {
-                    ladder.gave_up(&rules.covering.to_string(), &rules.tie_break.to_string());
-                    continue;
-                }
-                // A covering that does not fit the numbers (weight without friction) is no try.
-                Err(SolveError::Covering(_)) => continue,
-                Err(other) => return Err(other),
-            };
+            let again =
+                match within_budget(rules.engine, EXACT_BUDGET, self.watch, |watch| self.attempt_watched(rules, watch))
+                {
+                    Ok(Some(again)) => again,
+                    Ok(None) => {
+                        let [covering, tie_break, engine] = rules.words();
+                        ladder.gave_up(&covering, &tie_break, &engine, EXACT_BUDGET);
+                        continue;
+                    }
+                    // A covering that does not fit the numbers (weight without friction) is no try.
+                    Err(SolveError::Covering(_)) => continue,
+                    Err(other) => return Err(other),
+                };
             let mut again = match ladder.add(again) {
                 Ok(answer) => return Ok(answer),
                 Err(again) => again,
@@ -192,7 +201,7 @@ impl Job<'_> {
         let said = if other.answer.is_answer() {
             format!(" The default rules ({words}) find an answer in {} pivots.", other.pivot_count())
         } else {
-            match all_answers(subject, self.watch) {
+            match all_answers(subject, &Deadline::after(EXACT_BUDGET, self.watch)) {
                 Some(found) if found.no_answer() => {
                     mark_proved(solved);
                     String::new()
