@@ -169,8 +169,8 @@ fn game(k: usize, random: &mut ChaCha8Rng) -> (Vec<Vec<f64>>, Vec<f64>) {
 #[test]
 fn degenerate_games_do_not_cycle_under_the_lexicographic_rule() {
     let mut random = ChaCha8Rng::seed_from_u64(18);
-    for case in 0..60 {
-        let k = random.random_range(4..20);
+    for case in 0..100 {
+        let k = random.random_range(4..26);
         let (m, q) = game(k, &mut random);
         let run = solve(m.clone(), q.clone(), None);
         assert!(matches!(run.outcome, Outcome::Normal { .. }), "case {case}, k {k}: {:?}", run.outcome);

@@ -87,3 +87,54 @@ pub(crate) fn choose(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+
+    use super::*;
+
+    /// Entries of a row of B⁻¹ / pivot with their sizes, in the columns of w_0, w_1 …, and how surely the row falls.
+    struct Row(Vec<(f64, f64)>, f64);
+
+    impl TiedRow for Row {
+        fn entry(&self, row: usize) -> (f64, f64) {
+            self.0[row]
+        }
+        fn table_row(&self) -> usize {
+            0
+        }
+        fn certainty(&self) -> f64 {
+            self.1
+        }
+    }
+
+    fn chosen(rows: &[Row]) -> usize {
+        let names: Vec<Variable> = (0..rows.len()).map(Variable::W).collect();
+        let rule = TieRule::Lexicographic(vec![0, 1]);
+        choose(&rule, &mut ChaCha8Rng::seed_from_u64(0), &names, rows, false)
+    }
+
+    /// A row whose rate is noise has entries of any size after the division by it. They are uncertain by as much, but
+    /// those of the other rows are not: such a row made all of them tie, and the run cycle.
+    #[test]
+    fn one_uncertain_row_hides_no_difference_of_the_others() {
+        let first = || Row(vec![(0.5, 1.0), (0.0, 1.0)], 0.1);
+        let smallest = || Row(vec![(0.1, 1.0), (9.0, 1.0)], 0.1);
+        let noise = |entry| Row(vec![(entry, 1e13), (entry, 1e13)], 1e-13);
+        assert_eq!(chosen(&[first(), smallest()]), 1);
+        for entry in [-3e2, 0.0, 3e2, 3e4] {
+            assert_eq!(chosen(&[first(), smallest(), noise(entry)]), 1, "{entry}");
+            assert_eq!(chosen(&[noise(entry), first(), smallest()]), 2, "{entry}");
+        }
+        // Smaller for certain, it is the smallest.
+        assert_eq!(chosen(&[first(), smallest(), noise(-3e4)]), 2);
+    }
+
+    #[test]
+    fn equal_entries_are_told_apart_in_the_next_column() {
+        let row = |second| Row(vec![(0.5, 1.0), (second, 1.0)], 0.1);
+        assert_eq!(chosen(&[row(0.3), row(0.2), row(0.4)]), 1);
+        assert_eq!(chosen(&[row(-0.3), row(-0.2)]), 0);
+    }
+}
