@@ -225,7 +225,7 @@ pub(super) fn solve_plain_judged(
     }
     let rungs = rungs(problem, &first, own);
     let by_rounding = first.plain_ray.as_ref().is_some_and(|ray| ray.exact == Some(false));
-    if by_rounding {
+    if by_rounding && proof.is_none() {
         fail_ray(&mut first);
     }
     let budget = if by_rounding { LAST_RESORT } else { EXACT_BUDGET };
