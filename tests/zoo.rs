@@ -7,7 +7,8 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stickslip::answer::record::OutcomeKind;
+use stickslip::answer::record::{OutcomeKind, Verdict};
+use stickslip::explain::plain_ray::PlainRay;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::mirrored::MirroredLcp;
@@ -329,9 +330,18 @@ fn a_game_that_no_covering_solves_is_told_with_the_form_that_works() {
         }
     }
     let q = vec![-1.0; 2 * k];
-    let answer = solved(&matrix, &q, None).answer;
-    let ray = answer.ray.expect("a ray");
-    assert_eq!(answer.attempts.len(), 1, "no covering helps, so none is tried");
+    let lcp = MirroredLcp::plain(&Lcp {
+        scale: Scale::plain(&matrix),
+        matrix: matrix.clone(),
+        q: q.clone(),
+        covering: vec![1.0; 2 * k],
+    });
+    let run = solve(matrix.clone(), q, None);
+    let Outcome::Ray(direction) = &run.outcome else { panic!("{:?}", run.outcome) };
+    let names: Vec<String> = (1..=2 * k).map(|row| row.to_string()).collect();
+    let plain = PlainRay::new(&lcp, &names, &run.pivots, direction, run.point.p);
+    assert!(plain.whatever_the_covering);
+    let ray = plain.record(Verdict::Undecided, "");
     // The last row needs p first (lexicographically), so the last z enters.
     assert_eq!(ray.driver, "z[12]");
     let rates = ray.direction.variables();
