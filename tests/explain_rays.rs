@@ -225,6 +225,49 @@ fn transcript(script: &str) -> String {
 }
 
 #[test]
+fn why_says_what_a_pair_does_in_the_ray() {
+    let said = transcript("beam-ray\nwhy c1");
+    assert!(said.contains("in the ray: it slips +: z̄_n = 0, z̄_τ = 1 of the largest displacement"), "{said}");
+    let said = transcript("block\nset f 0.4\nset H 0.26\nwhy base[4]");
+    assert!(said.contains("in the ray: it does not move"), "{said}");
+}
+
+/// Within the scheme of the bar x_n does not depend on f nor on the pull, nor do the forces of the pairs that slip on the
+/// pull: those rates are 0, not rounding.
+#[test]
+fn rates_below_the_rounding_of_their_terms_are_zero() {
+    for name in ["beam", "frame", "frame-rotated", "plates-free", "greco"] {
+        let case = load(name);
+        let values = case.0.parameter_values();
+        let solved = solve(&case, &[], Rules::default());
+        let found = stickslip::path::sensitivity::sensitivity(&case.1, &case.0, &solved, &values).expect("rates");
+        for parameter in &found.parameters {
+            let largest = |read: fn(&stickslip::path::sensitivity::PairRate) -> f64| {
+                parameter.pairs.iter().map(|pair| read(pair).abs()).fold(0.0, f64::max)
+            };
+            let force = largest(|pair| pair.x_n).max(largest(|pair| pair.x_t));
+            for pair in &parameter.pairs {
+                for rate in [pair.x_n, pair.x_t] {
+                    assert!(
+                        rate == 0.0 || rate.abs() > 1e-12 * force,
+                        "{name} {} {}: {rate:e}",
+                        parameter.parameter,
+                        pair.pair
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// More weight never makes the bar slide: that path has one place, which draws nothing.
+#[test]
+fn a_limit_without_breakpoints_keeps_the_path_that_can_be_plotted() {
+    let said = transcript("beam\nset F2 20\ntrace pull to 200\nlimit weight\nplot path");
+    assert!(said.contains("slip z_τ over pull"), "{said}");
+}
+
+#[test]
 fn transcripts_of_the_questions() {
     for name in ["beam-ray", "beam-limit", "block", "klarbring", "cycling", "murty6"] {
         // On its limit a structure is proved or refuted by the last bits of R, which differ between processors.

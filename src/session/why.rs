@@ -61,7 +61,7 @@ impl Session {
         };
         let shown = self.shown_step();
         let margins = self.margins(id);
-        let moved = answer.ray.as_ref().filter(|_| shown.is_none()).and_then(|ray| {
+        let moved = answer.ray.as_ref().filter(|_| self.position.is_none()).and_then(|ray| {
             let direction = ray.direction.pairs().iter().find(|direction| direction.pair == id)?;
             Some((direction, view::ray::motion_words(direction)))
         });
