@@ -18,6 +18,7 @@ use crate::lcp::outcome::{Outcome, Point, RayDirection, Run};
 use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::tableau::Tableau;
+use crate::lcp::trace::PivotLog;
 use crate::lcp::variable::Variable;
 use crate::model::rules::Covering;
 use crate::watch::Watch;
@@ -91,7 +92,10 @@ pub fn run_exact_contact(
     watch: &dyn Watch,
 ) -> Run {
     let input = WholeInput { system, numbers, covering };
-    let problem = whole_lcp_of(&input, &exact_stiffness(system));
+    let Some(stiffness) = exact_stiffness(system, watch) else {
+        return Run { outcome: Outcome::Interrupted, pivots: PivotLog::default(), point: Point::default() };
+    };
+    let problem = whole_lcp_of(&input, &stiffness);
     rounded(run_exact(problem, rule, watch), contact.force_unit, contact.length_unit)
 }
 
@@ -103,14 +107,14 @@ fn rational(value: f64) -> BigRational {
     <BigRational as crate::lcp::scalar::Scalar>::from_f64(value)
 }
 
-/// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ.
-pub fn exact_stiffness(system: &ContactSystem) -> Vec<Vec<BigRational>> {
+/// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ; `None` if it was stopped.
+pub fn exact_stiffness(system: &ContactSystem, watch: &dyn Watch) -> Option<Vec<Vec<BigRational>>> {
     let k = system.joint_count();
     let r: Vec<Vec<BigRational>> =
         (0..k).map(|i| (0..k).map(|j| rational(system.stiffness[(i, j)])).collect()).collect();
     let free = system.kernel.ncols();
     if free == 0 {
-        return r;
+        return Some(r);
     }
     // Entries of Z that are rounding noise would only blur motions that are exactly simple.
     let z: Vec<Vec<BigRational>> =
@@ -124,47 +128,53 @@ pub fn exact_stiffness(system: &ContactSystem) -> Vec<Vec<BigRational>> {
     };
     let gram: Vec<Vec<BigRational>> =
         (0..free).map(|a| (0..free).map(|b| dot(&|i| z[i][a].clone(), &|i| z[i][b].clone())).collect()).collect();
-    let Some(inverse) = inverse(gram) else {
-        return r; // dependent columns: an orthonormal basis never is
+    let Some(inverse) = inverse(gram, watch)? else {
+        return Some(r); // dependent columns: an orthonormal basis never is
     };
+    let going_on = || (!watch.stop()).then_some(());
     // Q = Z (ZᵀZ)⁻¹, P = 1 − Q Zᵀ.
     let projector: Vec<Vec<BigRational>> = (0..k)
         .map(|i| {
+            going_on()?;
             let q: Vec<BigRational> = (0..free).map(|b| (0..free).map(|a| &z[i][a] * &inverse[a][b]).sum()).collect();
-            (0..k)
-                .map(|j| {
-                    let inside: BigRational = (0..free).map(|b| &q[b] * &z[j][b]).sum();
-                    if i == j { BigRational::one() - inside } else { -inside }
-                })
-                .collect()
+            let row = (0..k).map(|j| {
+                let inside: BigRational = (0..free).map(|b| &q[b] * &z[j][b]).sum();
+                if i == j { BigRational::one() - inside } else { -inside }
+            });
+            Some(row.collect())
         })
-        .collect();
-    let times = |a: &[Vec<BigRational>], b: &[Vec<BigRational>]| -> Vec<Vec<BigRational>> {
+        .collect::<Option<_>>()?;
+    let times = |a: &[Vec<BigRational>], b: &[Vec<BigRational>]| -> Option<Vec<Vec<BigRational>>> {
         a.iter()
             .map(|row| {
-                (0..k)
-                    .map(|j| {
-                        row.iter()
-                            .zip(b)
-                            .filter(|(x, row)| !x.is_zero() && !row[j].is_zero())
-                            .map(|(x, row)| x * &row[j])
-                            .sum()
-                    })
-                    .collect()
+                going_on()?;
+                let entry = |j: usize| -> BigRational {
+                    row.iter()
+                        .zip(b)
+                        .filter(|(x, row)| !x.is_zero() && !row[j].is_zero())
+                        .map(|(x, row)| x * &row[j])
+                        .sum()
+                };
+                Some((0..k).map(entry).collect())
             })
             .collect()
     };
-    times(&projector, &times(&r, &projector))
+    times(&projector, &times(&r, &projector)?)
 }
 
-/// Inverse by Gauss–Jordan; `None` where singular.
-fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
+/// Inverse by Gauss–Jordan; `None` if it was stopped, `Some(None)` where singular.
+fn inverse(mut a: Vec<Vec<BigRational>>, watch: &dyn Watch) -> Option<Option<Vec<Vec<BigRational>>>> {
     let n = a.len();
     for (i, row) in a.iter_mut().enumerate() {
         row.extend((0..n).map(|j| if i == j { BigRational::one() } else { BigRational::zero() }));
     }
     for c in 0..n {
-        let pivot = (c..n).find(|&r| !a[r][c].is_zero())?;
+        if watch.stop() {
+            return None;
+        }
+        let Some(pivot) = (c..n).find(|&r| !a[r][c].is_zero()) else {
+            return Some(None);
+        };
         a.swap(c, pivot);
         let factor = a[c][c].recip();
         a[c].iter_mut().for_each(|v| *v *= &factor);
@@ -178,7 +188,7 @@ fn inverse(mut a: Vec<Vec<BigRational>>) -> Option<Vec<Vec<BigRational>>> {
             }
         }
     }
-    Some(a.into_iter().map(|row| row[n..].to_vec()).collect())
+    Some(Some(a.into_iter().map(|row| row[n..].to_vec()).collect()))
 }
 
 /// An exact run in f64, forces divided by `force` and displacements by `length` (powers of two).
