@@ -5,8 +5,7 @@
 //! pairs not yet decided; deciding a pair eliminates its one or two displacements, and a sign that fails for all
 //! displacements of the others in their box ends the branch. The box: normals z_n ≥ 0 and, where R is positive
 //! definite, that around the ellipsoid zᵀR z ≤ −zᵀq that every answer lies in (zᵀλ ≤ 0 for every answer; q is RF −
-//! R·(g, 0)). Where balls cannot tell (singular partial schemes, no box, a scheme that is complete), the signs are a
-//! linear program in exact arithmetic ([`crate::lcp::polyhedron`]). Of a complete scheme it gives all answers, one or a
+//! R·(g, 0)). Where balls do not cut, the signs and the box are a linear program in exact arithmetic ([`crate::lcp::polyhedron`]). Of a complete scheme it gives all answers, one or a
 //! continuum with its corners and directions. Nothing is accepted or cut by a tolerance.
 
 use std::ops::ControlFlow;
@@ -28,8 +27,10 @@ use super::scheme_word::{PairScheme, Tangential};
 use super::system::ContactSystem;
 use super::whole::{fixed_bound, friction, tangential_joint};
 
-/// Without a box, pairs left from which on the exact linear program pays.
+/// Undecided pairs from which on the exact linear program pays: without a box, when balls cut little.
 const WORTH: usize = 3;
+/// The same with a box: measured, it costs as much as some hundred partial schemes in balls.
+const WORTH_BOXED: usize = 5;
 
 /// Displacements and forces of all joints, in the order of R.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,9 +142,10 @@ struct Search<'a> {
     offsets: Vec<usize>,
     /// Joint of R of every joint in the pair by pair order.
     joints: Vec<usize>,
-    /// Box of every displacement, and whether it is finite.
+    /// Box of every displacement.
     bounds: Vec<(f64, f64)>,
-    boxed: bool,
+    /// Undecided pairs from which on the exact linear program pays.
+    worth: usize,
     choices: Vec<Vec<PairScheme>>,
     root: Level,
     solutions: Solutions,
@@ -183,7 +185,7 @@ impl<'a> Search<'a> {
             .collect();
         let constants: Vec<f64> = exact.constants.iter().map(nearest).collect();
         let sides = ellipsoid(system, &joints, &constants);
-        let boxed = sides.is_some();
+        let worth = if sides.is_some() { WORTH_BOXED } else { WORTH };
         for (bound, (low, high)) in bounds.iter_mut().zip(sides.into_iter().flatten()) {
             *bound = (bound.0.max(low), bound.1.min(high));
         }
@@ -195,7 +197,7 @@ impl<'a> Search<'a> {
             offsets,
             joints,
             bounds,
-            boxed,
+            worth,
             choices: (0..m).map(|pair| choices(system, numbers, pair)).collect(),
             root: Level { first: 0, rows },
             solutions: Solutions::default(),
@@ -228,7 +230,7 @@ impl<'a> Search<'a> {
             let hopeless = next.as_ref().is_some_and(|next| self.hopeless(next, scheme));
             let result = if hopeless {
                 self.end(left, share)
-            } else if left == 0 || next.is_none() || (!self.boxed && left >= WORTH) {
+            } else if left == 0 || next.is_none() || left >= self.worth {
                 match self.program(above, scheme) {
                     ControlFlow::Break(()) => ControlFlow::Break(()),
                     ControlFlow::Continue(None) => self.end(left, share),
@@ -271,7 +273,8 @@ impl<'a> Search<'a> {
         let (mut polyhedron, mut state, decided) = match above {
             Some((polyhedron, decided)) => (polyhedron.clone(), State::Feasible, decided),
             None => {
-                let (polyhedron, state) = self.exact.polyhedron(&mut go_on);
+                let sides = self.joints.iter().zip(&self.bounds).map(|(joint, (low, high))| (*joint, *low, *high));
+                let (polyhedron, state) = self.exact.polyhedron(&sides.collect::<Vec<_>>(), &mut go_on);
                 (polyhedron, state, 0)
             }
         };

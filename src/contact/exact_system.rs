@@ -63,8 +63,9 @@ impl<'a> ExactSystem<'a> {
             .collect()
     }
 
-    /// What every answer obeys whatever its scheme: all signs but those of the slips.
-    pub fn polyhedron(&self, go_on: &mut GoOn) -> (Polyhedron, State) {
+    /// What every answer obeys whatever its scheme: all signs but those of the slips, and the `sides` (joint, lowest and
+    /// highest displacement) of a box that holds it.
+    pub fn polyhedron(&self, sides: &[(usize, f64, f64)], go_on: &mut GoOn) -> (Polyhedron, State) {
         let k = self.system.joint_count();
         let mut rows = WholeRows::default();
         for i in 0..self.system.pair_count() {
@@ -75,6 +76,16 @@ impl<'a> ExactSystem<'a> {
             if self.system.pairs[i].tangential.is_some() {
                 rows.push_rational(&self.form(i, Some(true)));
                 rows.push_rational(&self.form(i, Some(false)));
+            }
+        }
+        for &(joint, low, high) in sides {
+            let mut row = vec![0.0; k + 1];
+            for (sign, end) in [(1.0, -low), (-1.0, high)] {
+                (row[joint], row[k]) = (sign, end);
+                // A normal is ≥ 0 as it is.
+                if end.is_finite() && (joint >= self.system.pair_count() || sign < 0.0) {
+                    rows.push(&row);
+                }
             }
         }
         let slips: Vec<usize> = self.system.pairs.iter().filter_map(|pair| pair.tangential).collect();
