@@ -254,7 +254,7 @@ pub fn finish(ended: io::Result<u8>, errors: &Style) -> u8 {
 
 /// Runs what the arguments of the process ask for, up to the REPL.
 pub fn main() -> Next {
-    if let Err(error) = signals::survive_file_limit() {
+    if let Err(error) = signals::survive_limits() {
         return Next::Exit(finish(Err(error), &Style::default()));
     }
     let arguments = order::command_first(&Cli::command(), std::env::args_os().collect());

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGXFSZ};
+use signal_hook::consts::{SIGABRT, SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGXFSZ};
 use signal_hook::{flag, low_level};
 
 use crate::watch::Watch;
@@ -15,12 +15,19 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Between two lines of progress.
 const PACE: Duration = Duration::from_millis(200);
 
-/// A file that reaches the limit of its size is an error of the write, as a full disk is, not the end of the program.
+/// Exit status where the memory ended, after the message of the allocator: a limit was reached.
+const OUT_OF_MEMORY: i32 = 4;
+
+/// A limit of the system is an error like others. A file that reaches the limit of its size fails to be written, as on a
+/// full disk. Where the memory ends in spite of all estimates, the program ends with a message and a status, not with a
+/// core dump.
 ///
 /// # Errors
 /// The system refuses.
-pub fn survive_file_limit() -> io::Result<()> {
-    flag::register(SIGXFSZ, Arc::default()).map(|_| ())
+pub fn survive_limits() -> io::Result<()> {
+    flag::register(SIGXFSZ, Arc::default())?;
+    flag::register_conditional_shutdown(SIGABRT, OUT_OF_MEMORY, Arc::new(AtomicBool::new(true)))?;
+    Ok(())
 }
 
 /// What the user or the system asked for since it was looked at.

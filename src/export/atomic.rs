@@ -33,12 +33,29 @@ fn refusal(folder: &Path, error: &io::Error) -> io::Error {
     }
 }
 
+/// The file that a path stands for: the end of its links, also where nothing is there yet.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    // as many links as the system follows
+    const LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..LINKS {
+        match fs::symlink_metadata(&target) {
+            Ok(metadata) if metadata.is_symlink() => {
+                let next = fs::read_link(&target)?;
+                // a relative link starts from the folder it stands in
+                target = target.parent().unwrap_or(Path::new("")).join(next);
+            }
+            Ok(_) => return Ok(target),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(target),
+            Err(error) => return Err(error),
+        }
+    }
+    // the error that the system has for it
+    fs::canonicalize(path)
+}
+
 fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let target = match fs::canonicalize(path) {
-        Ok(target) => target,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
-        Err(error) => return Err(error),
-    };
+    let target = target(path)?;
     let before = match fs::metadata(&target) {
         Ok(metadata) if metadata.is_file() => Some(metadata.permissions()),
         // A device or a pipe cannot be replaced by a file: write into it.
@@ -112,6 +129,16 @@ mod tests {
         let mode = fs::metadata(&path).expect("there").permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
         assert!(fs::symlink_metadata(&link).expect("link").is_symlink());
+        // links to links, relative ones, and one to a file that is not there yet
+        let (inner, outer) = (folder.path().join("inner"), folder.path().join("outer"));
+        std::os::unix::fs::symlink("b.json", &inner).expect("link");
+        std::os::unix::fs::symlink("inner", &outer).expect("link");
+        write(&outer, |out| out.write_all(b"first")).expect("written");
+        assert_eq!(fs::read(folder.path().join("b.json")).expect("there"), b"first");
+        assert!([&inner, &outer].iter().all(|link| fs::symlink_metadata(link).expect("link").is_symlink()));
+        let round = folder.path().join("round");
+        std::os::unix::fs::symlink("round", &round).expect("link");
+        assert!(write(&round, |_| Ok(())).is_err());
     }
 
     #[test]

@@ -2,12 +2,15 @@
 
 use std::fs::read_to_string;
 
-/// Bytes this process can use: what the system calls available, or its control group's limit if that is less.
-/// `None` where the system does not tell (other than Linux).
+use crate::model::memory::address_space_left;
+
+/// Bytes this process can use: what the system calls available, or its control group's limit, or the address space that
+/// is left, if that is less. `None` where the system does not tell (other than Linux).
 pub fn available_memory() -> Option<u64> {
     let system = meminfo_available(&read_to_string("/proc/meminfo").ok()?)?;
     let limit = read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse::<u64>().ok());
-    Some(limit.map_or(system, |limit| limit.min(system)))
+    let space = address_space_left().map(|bytes| bytes as u64);
+    Some([limit, space].into_iter().flatten().fold(system, u64::min))
 }
 
 fn meminfo_available(text: &str) -> Option<u64> {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::decode;
 use super::embedded;
 use super::locate::position;
+use super::memory;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
@@ -34,6 +35,9 @@ fn load_bytes(
     help: &str,
 ) -> Result<Scenario, Problems> {
     let bytes = bytes.map_err(|error| Problems::of_file(name, format!("cannot read the file: {error}"), help))?;
+    if let Some(refusal) = memory::refusal(memory::for_text(bytes.len())) {
+        return Err(Problems::of_file(name, format!("the scenario {refusal}"), "use fewer entries, or more memory"));
+    }
     match String::from_utf8(bytes) {
         Ok(text) => load_text(name, &text, path),
         Err(error) => {

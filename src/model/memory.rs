@@ -3,14 +3,28 @@
 /// Bytes per node: mesh, assembled matrix and its sparse factor. Measured: 467 MB for 160 400 nodes.
 const BYTES_PER_NODE: f64 = 3000.0;
 
+/// Bytes per byte of a scenario file: its text, the tree of its values, and what is read from them. Measured: 0.9 GB for
+/// the 15 MB of a million nodes.
+const BYTES_PER_BYTE: f64 = 60.0;
+
+/// What threads and their pools take of a limited address space, for models that need more than [`SMALL`].
+const THREADS: f64 = 192.0 * MIB;
+const SMALL: f64 = 16.0 * MIB;
+
 /// Assumed where the size of the memory cannot be read.
 const ASSUMED_MEMORY: f64 = 64.0 * GIB;
 
-const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
+const MIB: f64 = 1024.0 * 1024.0;
+const GIB: f64 = 1024.0 * MIB;
 
 /// Bytes needed for a model of so many nodes.
 pub fn for_nodes(nodes: f64) -> f64 {
     BYTES_PER_NODE * nodes
+}
+
+/// Bytes needed to read a scenario of so many bytes.
+pub fn for_text(bytes: usize) -> f64 {
+    BYTES_PER_BYTE * bytes as f64
 }
 
 /// Bytes needed for so many contact joints: R, its copy without the kernel, and the dictionary of the pivots with
@@ -19,18 +33,43 @@ pub fn for_joints(joints: f64) -> f64 {
     4.0 * 8.0 * joints * joints
 }
 
-/// `needs about 2.8 TiB of memory, this machine has 15.6 GiB`, if that is too much for this machine.
+/// `needs about 2.8 TiB of memory, this machine has 15.6 GiB`, if that is too much for this machine, or for what this
+/// process may use of it.
 pub fn refusal(bytes: f64) -> Option<String> {
+    let needs = format!("needs about {} of memory", readable(bytes));
+    if let Some(left) = address_space_left()
+        && bytes > SMALL
+        && bytes + THREADS > left
+    {
+        return Some(format!(
+            "{needs}, this process may use {} more (`ulimit -v`)",
+            readable((left - THREADS).max(0.0))
+        ));
+    }
     let memory = physical_memory();
     // A fraction stays for everything else.
     if bytes <= 0.9 * memory.unwrap_or(ASSUMED_MEMORY) {
         return None;
     }
-    let needs = format!("needs about {} of memory", readable(bytes));
     Some(match memory {
         Some(memory) => format!("{needs}, this machine has {}", readable(memory)),
         None => format!("{needs}, more than the {} allowed", readable(ASSUMED_MEMORY)),
     })
+}
+
+/// Bytes of address space that are left, where they are limited.
+pub fn address_space_left() -> Option<f64> {
+    let limits = std::fs::read_to_string("/proc/self/limits").ok()?;
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    left(&limits, &status)
+}
+
+fn left(limits: &str, status: &str) -> Option<f64> {
+    let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: f64 = limit.split_whitespace().next()?.parse().ok()?; // or `unlimited`
+    let used = status.lines().find_map(|line| line.strip_prefix("VmSize:"))?;
+    let used: f64 = used.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some((limit - 1024.0 * used).max(0.0))
 }
 
 /// Bytes of physical memory, where the system tells.
@@ -42,9 +81,9 @@ fn physical_memory() -> Option<f64> {
 }
 
 fn readable(bytes: f64) -> String {
-    let units = [("GiB", 1.0), ("TiB", 1024.0), ("PiB", 1024.0 * 1024.0)];
+    let units = [("MiB", 1.0 / 1024.0), ("GiB", 1.0), ("TiB", 1024.0), ("PiB", 1024.0 * 1024.0)];
     let amount = bytes / GIB;
-    // The largest unit that gives at least 1; GiB for anything smaller.
+    // The largest unit that gives at least 1; MiB for anything smaller.
     let (unit, size) = units.into_iter().rev().find(|(_, size)| amount >= *size).unwrap_or(units[0]);
     let amount = amount / size;
     if amount < 1e4 { format!("{amount:.1} {unit}") } else { format!("{amount:.1e} {unit}") }
@@ -58,8 +97,18 @@ mod tests {
     fn sizes_are_readable() {
         assert_eq!(readable(1.5 * GIB), "1.5 GiB");
         assert_eq!(readable(2048.0 * GIB), "2.0 TiB");
-        assert_eq!(readable(0.5 * GIB), "0.5 GiB");
+        assert_eq!(readable(0.5 * GIB), "512.0 MiB");
+        assert_eq!(readable(0.0), "0.0 MiB");
         assert_eq!(readable(1e12 * GIB), "9.5e5 PiB");
+    }
+
+    #[test]
+    fn the_limit_of_the_address_space_is_read() {
+        let limits = |limit: &str| format!("Limit   Soft Limit\nMax address space  {limit}   unlimited   bytes\n");
+        let status = "Name: x\nVmSize:\t    2000 kB\n";
+        assert_eq!(left(&limits("unlimited"), status), None);
+        assert_eq!(left(&limits("4096000"), status), Some(2048000.0));
+        assert_eq!(left(&limits("1000"), status), Some(0.0));
     }
 
     #[test]

@@ -10,7 +10,7 @@ pub mod expression;
 pub mod jet;
 pub mod load;
 pub mod locate;
-mod memory;
+pub(crate) mod memory;
 pub mod mesh;
 pub mod pair;
 pub mod parameter;

@@ -79,7 +79,7 @@ impl From<WorkerError> for CommandError {
     fn from(error: WorkerError) -> Self {
         match error {
             WorkerError::Interrupted => CommandError::Interrupted,
-            panicked @ WorkerError::Panicked(_) => CommandError::Internal(panicked.to_string()),
+            other => CommandError::Internal(other.to_string()),
         }
     }
 }

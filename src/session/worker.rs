@@ -18,6 +18,9 @@ pub enum WorkerError {
     /// The user stopped it.
     #[error("interrupted: the session is as it was")]
     Interrupted,
+    /// The system has no thread for it, usually for want of memory.
+    #[error("nothing can be computed: the system gives no thread ({0}); free some memory, or raise the limit of it")]
+    NoThread(String),
     /// It panicked: an error of this program.
     #[error("internal error in the computation ({0}): the session is as it was; please report the scenario")]
     Panicked(String),
@@ -80,7 +83,7 @@ pub fn run_patiently<T: Send + 'static>(
             let _ = sender.send(result);
         });
     if let Err(error) = spawned {
-        return Err(WorkerError::Panicked(format!("no thread could be started: {error}")));
+        return Err(WorkerError::NoThread(error.to_string()));
     }
     let mut stopped: Option<Instant> = None;
     loop {

@@ -501,3 +501,31 @@ fn a_limit_of_the_file_size_is_an_error_like_a_full_disk() {
     assert_eq!(end(&mut child), 2, "{error}");
     assert!(error.contains("cannot write") && !Path::new(&file).exists(), "{error}");
 }
+
+/// Memory that does not suffice is a message and a status, wherever it ends.
+#[test]
+#[cfg(target_os = "linux")]
+fn tight_memory_ends_in_a_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let plates = stickslip::model::embedded::text("plates-free").unwrap();
+    let fine = at(folder.path(), "fine.json");
+    fs::write(&fine, plates.replace("[16, 8]", "[480, 240]")).unwrap();
+    let bars = at(folder.path(), "bars.json");
+    let text = r#"{ "format": "stickslip/1", "title": "t", "nodes": { "A": [0, 0], "B": [2, 0] },
+        "materials": { "s": { "E": 1, "nu": 0 } }, "sections": { "b": { "area": 1, "inertia": 1 } },
+        "bars": [{ "id": "AB", "nodes": ["A", "B"], "material": "s", "section": "b", "divisions": 4000000 }],
+        "supports": [{ "at": "A", "fixed": ["x", "y", "r"] }] }"#;
+    fs::write(&bars, text).unwrap();
+    let program = env!("CARGO_BIN_EXE_stickslip");
+    for (kilobytes, file, estimated) in
+        [(40_000, "beam", false), (250_000, &*fine, true), (250_000, &bars, true), (600_000, &bars, true)]
+    {
+        let limited = format!("ulimit -v {kilobytes}; exec {program} solve {file}");
+        let output = Command::new("sh").args(["-c", &limited]).output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        // an exit, not a signal
+        let status = output.status.code().unwrap_or_else(|| panic!("{file} {kilobytes}: {:?} {error}", output.status));
+        assert!([2, 4].contains(&status) && error.contains("memory"), "{file} {kilobytes}: {status} {error}");
+        assert_eq!(error.contains("ulimit -v"), estimated, "{file} {kilobytes}: {error}");
+    }
+}
