@@ -5,6 +5,8 @@
 //! an answer like any other: it passes the same fresh check. Rules that the user chose are run as chosen; the default
 //! rules are then run silently, to name them if they succeed.
 
+use std::time::Duration;
+
 use super::all_answers::{ENUMERATION, others};
 use super::judge::EXACT_PAIRS;
 use super::ladder::{Deadline, EXACT_BUDGET, Ladder, within_budget};
@@ -20,6 +22,9 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 use crate::watch::Watch;
 
+/// An exact attempt after a ray that is a mechanism is given up after this time: such a ray is seldom rounding, and the
+/// rationals of an R with a large kernel have thousands of digits.
+const MECHANISM_BUDGET: Duration = Duration::from_secs(3);
 /// Contact pairs up to which an uncertified collapse is looked at under other rules, too.
 const FEW_PAIRS: usize = 300;
 
@@ -145,18 +150,18 @@ impl Job<'_> {
             ladder.gave_up(&covering, &tie_break, ENUMERATION, EXACT_BUDGET);
         }
         let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact;
+        let budget = if class == Some(RayClass::Mechanism) { MECHANISM_BUDGET } else { EXACT_BUDGET };
         for rules in if try_rules { retries(exact) } else { Vec::new() } {
             if rules.tie_break != self.rules.tie_break && ladder.would_repeat(&rules.covering.to_string(), rules.engine)
             {
                 continue;
             }
             let again =
-                match within_budget(rules.engine, EXACT_BUDGET, self.watch, |watch| self.attempt_watched(rules, watch))
-                {
+                match within_budget(rules.engine, budget, self.watch, |watch| self.attempt_watched(rules, watch)) {
                     Ok(Some(again)) => again,
                     Ok(None) => {
                         let [covering, tie_break, engine] = rules.words();
-                        ladder.gave_up(&covering, &tie_break, &engine, EXACT_BUDGET);
+                        ladder.gave_up(&covering, &tie_break, &engine, budget);
                         continue;
                     }
                     // A covering that does not fit the numbers (weight without friction) is no try.
