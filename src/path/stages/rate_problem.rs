@@ -234,11 +234,12 @@ impl<'a> RateProblem<'a> {
         joints.dedup();
         let stiffness = condensed(self.laws, released, &joints);
         let place = |joint: usize| joints.binary_search(&joint).unwrap_or_default();
+        let rows: Vec<Vec<(usize, f64)>> =
+            moving.iter().map(|row| terms(self.laws, *row, standing.is_open(row.pair))).collect();
         let matrix = DMatrix::from_fn(moving.len(), moving.len(), |a, b| {
             let (joint, sign) = moved(self.laws, moving[b]);
-            let open = standing.is_open(moving[a].pair);
             let entry = |(row, by): &(usize, f64)| by * stiffness[(place(*row), place(joint))];
-            sign * terms(self.laws, moving[a], open).iter().map(entry).sum::<f64>()
+            sign * rows[a].iter().map(entry).sum::<f64>()
         });
         Some(matrix.lu())
     }
@@ -340,9 +341,10 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
     let stiffness_unit = power_of_two(system.stiffness.diagonal().amax());
     let force_unit = power_of_two(largest);
     q /= force_unit;
+    let rows: Vec<Vec<(usize, f64)>> = primary.iter().map(stored).collect();
     let base = DMatrix::from_fn(count, count, |i, j| {
         let (joint, sign) = moved(laws, meaning_of(&primary[j]));
-        sign * sum(&stored(&primary[i]), &|row| stiffness[(place(row), place(joint))]) / stiffness_unit
+        sign * sum(&rows[i], &|row| stiffness[(place(row), place(joint))]) / stiffness_unit
     });
     let scales = joint_scales(system) / stiffness_unit.sqrt();
     let mut rows: Vec<RowMeaning> = primary.iter().map(meaning_of).collect();

@@ -11,8 +11,7 @@ pub struct Moment {
     pub t: f64,
     /// Factor of each load case.
     pub factors: Vec<f64>,
-    /// The pairs; z_t is the total slip. A pair that slips here, or has come back to the limit at which it slipped last,
-    /// is shown as slipping; one that rests at its limit sticks.
+    /// The pairs; z_t is the total slip, states are what they did on the way here.
     pub pairs: Vec<PairState>,
     /// The pairs that change their motion here.
     pub changes: Vec<Change>,
@@ -39,7 +38,7 @@ pub struct StageResult {
     pub dissipated: f64,
     /// Work of the loads and change of the strain energy; structures only.
     pub energy: Option<Energy>,
-    /// The state at its end as an answer; a ray, with the state at which it was met, where the history ended in a limit.
+    /// The state at its end as an answer, where a pair on the limit at which it slipped last is shown as slipping; a ray, with the state at which it was met, where the history ended in a limit.
     /// The last stage's has the attempts and pivots of the last rate problem, whose forces are rates per whole stage.
     pub end: Answer,
 }

@@ -131,8 +131,6 @@ pub(super) struct Standing {
     pub(super) tangential: Vec<Tangential>,
     /// In which sense each pair slipped last.
     pub(super) last_slip: Vec<Option<Sense>>,
-    /// Which pairs stood at a limit all the way here without slipping.
-    pub(super) resting: Vec<bool>,
     /// Largest sizes met so far of the terms that the forces sum: slips carry the rounding of all that went before.
     force_sizes: DVector<f64>,
     length_sizes: DVector<f64>,
@@ -154,7 +152,6 @@ impl Standing {
             normal: vec![Normal::Grazing; pairs],
             tangential: vec![Tangential::Absent; pairs],
             last_slip: vec![None; pairs],
-            resting: vec![false; pairs],
             force_sizes: DVector::zeros(joints),
             length_sizes: DVector::zeros(joints),
             scale: joint_scales(laws.system),
@@ -235,8 +232,7 @@ impl Standing {
         }
     }
 
-    /// The pairs as they stand. A pair that slips here, or has come back to the limit at which it slipped last, is shown
-    /// as slipping; one that rests at its limit sticks.
+    /// The pairs as they stand: one that is on the limit at which it slipped last is shown as slipping.
     pub(super) fn pair_states(&self, laws: Laws<'_>) -> Vec<PairState> {
         let (system, drop) = (laws.system, |value: f64, noise: f64| if value.abs() <= noise { 0.0 } else { value });
         system
@@ -254,7 +250,7 @@ impl Standing {
                     (Tangential::Limit(sense), _) => 0.0 - sense.sign() * bound,
                     _ => 0.0,
                 };
-                let slips = self.last_slip[i].filter(|&sense| self.at_limit(i, sense) && !self.resting[i]);
+                let slips = self.last_slip[i].filter(|&sense| self.at_limit(i, sense));
                 let slips = slips.map_or(State::Stick, Sense::state);
                 let (state, held) = scheme_of(self.is_open(i), pair.tangential.is_some(), slips, bound);
                 PairState {

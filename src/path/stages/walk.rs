@@ -237,9 +237,6 @@ impl<'a> Walk<'a> {
         let mut force = laws.force(&z, &load);
         problem.settle(standing, &rates.moving, &mut force, |pair| laws.constant(pair));
         self.way = self.way_of(rates);
-        for i in 0..system.pair_count() {
-            self.standing.resting[i] = Sense::BOTH.iter().any(|&sense| self.standing.at_limit(i, sense));
-        }
         for meaning in &rates.moving {
             let sense = match meaning.couple {
                 Couple::Normal => continue,
@@ -247,7 +244,6 @@ impl<'a> Walk<'a> {
                 Couple::Minus => Sense::Minus,
             };
             self.standing.last_slip[meaning.pair] = Some(sense);
-            self.standing.resting[meaning.pair] = false;
         }
         self.standing.z = z;
         self.standing.force = force;
@@ -322,10 +318,14 @@ impl<'a> Walk<'a> {
     }
 
     pub(super) fn moment(&self, t: f64, jump: bool) -> Moment {
+        let mut pairs = self.states();
+        for (pair, way) in pairs.iter_mut().zip(&self.way) {
+            (pair.state, pair.held) = *way;
+        }
         Moment {
             t,
             factors: self.factors.clone(),
-            pairs: self.states(),
+            pairs,
             changes: Vec::new(),
             sentence: String::new(),
             jump,
