@@ -155,7 +155,7 @@ fn judge(case: &common::Case, answer: &stickslip::answer::record::Answer, what: 
         let gap = given.laws[i].numbers().into_iter().find(|(key, _)| *key == "gap");
         pair.z_n - gap.map_or(0.0, |(_, gap)| gap.value(&values))
     });
-    let r = DMatrix::from_fn(2 * m, 2 * m, |i, j| given.stiffness[i][j]);
+    let r = DMatrix::from_fn(2 * m, 2 * m, |i, j| given.matrix.rows()[i][j]);
     let force = &r * &z + DVector::from_column_slice(&given.loads[0].vector);
     let reported = DVector::from_fn(2 * m, |i, _| {
         let pair = &answer.pairs[i % m];

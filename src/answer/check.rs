@@ -5,11 +5,12 @@ use super::record::Check;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::sums::{Sum, displacement_share, pair_sums};
 use crate::contact::system::ContactSystem;
+use crate::lcp::problem::NOISE;
 
 /// Largest relative violation that an answer may have where sizes are those of a whole problem.
 pub const TOLERANCE: f64 = 1e-9;
 /// Largest share of the terms of its own row by which a law may be violated: what rounding leaves of a sum.
-pub const ROUNDING: f64 = TOLERANCE;
+pub const ROUNDING: f64 = 4.0 * NOISE;
 
 /// Checks an answer over the joints, row by row: forces and reserves as shares of the terms they are summed from (loads,
 /// gaps closed by force, R z), displacements as the share of those forces that hangs on them, products of the two shares.
@@ -30,7 +31,7 @@ pub fn check_contact(
         check.complementarity = check.complementarity.max(product);
     };
     for (i, pair) in system.pairs.iter().enumerate() {
-        let sums = pair_sums(system, numbers, &forces, i);
+        let sums = pair_sums(system, numbers, &forces, (i, state.z[i] > 0.0));
         if let Some(normal) = sums.normal {
             couple(normal, state.z[i], share(i));
         }
@@ -39,6 +40,9 @@ pub fn check_contact(
             couple(plus, slip.max(0.0), share);
             couple(minus, (-slip).max(0.0), share);
         }
+    }
+    for left in &state.left {
+        check.complementarity = check.complementarity.max(left.share().abs());
     }
     check.passed = accepted(&check, ROUNDING);
     check

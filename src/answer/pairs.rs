@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::record::{PairState, State};
 use crate::contact::complementarity::ContactLcp;
 use crate::contact::numbers::ContactNumbers;
-use crate::contact::sums::{Sum, is_still, joint_forces};
+use crate::contact::sums::{StateForces, Sum, is_still, state_forces};
 use crate::contact::system::ContactSystem;
 use crate::contact::whole::{fixed_bound, friction};
 use crate::lcp::outcome::Point;
@@ -20,6 +20,10 @@ pub struct JointState {
     pub force: DVector<f64>,
     /// Sum of the magnitudes of the terms of each λ.
     pub terms: DVector<f64>,
+    /// What the equations of a file leave over; see [`StateForces`].
+    pub left: Vec<Sum>,
+    /// z_τ of the frictionless pairs, where the file tells it.
+    pub slips: Option<DVector<f64>>,
     /// p.
     pub p: f64,
 }
@@ -27,15 +31,16 @@ pub struct JointState {
 impl JointState {
     /// The state of displacements z, those that are rounding set to 0.
     pub fn at(system: &ContactSystem, numbers: &ContactNumbers, mut z: DVector<f64>, p: f64) -> JointState {
-        let mut forces = joint_forces(system, numbers, &z);
+        let mut forces = state_forces(system, numbers, &z);
         let still: Vec<usize> =
-            (0..z.len()).filter(|&joint| z[joint] != 0.0 && is_still(system, &z, &forces, joint)).collect();
+            (0..z.len()).filter(|&joint| z[joint] != 0.0 && is_still(system, &z, &forces.joints, joint)).collect();
         if !still.is_empty() {
             still.iter().for_each(|&joint| z[joint] = 0.0);
-            forces = joint_forces(system, numbers, &z);
+            forces = state_forces(system, numbers, &z);
         }
-        let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(forces.len(), forces.iter().map(pick));
-        JointState { z, force: read(|sum| sum.value), terms: read(|sum| sum.magnitude), p }
+        let StateForces { joints, left, slips } = forces;
+        let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(joints.len(), joints.iter().map(pick));
+        JointState { z, force: read(|sum| sum.value), terms: read(|sum| sum.magnitude), left, slips, p }
     }
 
     /// λ of a joint with the magnitudes of its terms.
@@ -83,24 +88,27 @@ fn pair_state(
     let z_t = tangential.map_or(0.0, |joint| state.z[joint]);
     let open = z_n > 0.0;
     // A released joint carries exactly nothing; what is left of λ there is rounding.
-    let x_n = if open { Sum::default() } else { state.sum(i).plus(d_n, Sum::exactly(state.p)) };
+    let mut x_n = if open { Sum::default() } else { state.sum(i).plus(d_n, Sum::exactly(state.p)) };
     let (bound, x_t) = match tangential {
         None => (0.0, 0.0),
         Some(joint) => {
             let f = friction(system, numbers, i);
             let fixed = Sum::exactly(fixed_bound(system, numbers, i));
             let cover = Sum { value: d_t - f * d_n, magnitude: d_t.max(f * d_n) }.cleaned();
+            let (raw, constant) = (state.sum(joint), fixed.value + cover * state.p);
             let sum = fixed.plus(f, x_n).plus(cover, Sum::exactly(state.p));
-            let raw = state.sum(joint);
-            let bound = fixed.value + f * x_n.cleaned() + cover * state.p;
-            let x_t = if z_t > 0.0 || (z_t == 0.0 && sum.plus(1.0, raw).is_zero()) {
-                0.0 - bound
-            } else if z_t < 0.0 || sum.plus(-1.0, raw).is_zero() {
-                bound
-            } else {
-                raw.cleaned()
-            };
-            (bound, x_t)
+            let used_up = |side: f64| side * z_t > 0.0 || (z_t == 0.0 && sum.plus(side, raw).is_zero());
+            let at_limit = if used_up(1.0) { -1.0 } else { f64::from(u8::from(used_up(-1.0))) };
+            if at_limit != 0.0 && f > 0.0 && f * x_n.magnitude > raw.magnitude {
+                // At the limit x_n and x_τ tell each other: the one that is known worse follows.
+                let follows = (at_limit * raw.value - constant) / f;
+                let change = Sum { value: follows - x_n.value, magnitude: x_n.magnitude };
+                if follows >= 0.0 && change.is_zero() {
+                    x_n = Sum::exactly(follows);
+                }
+            }
+            let bound = constant + f * x_n.cleaned();
+            (bound, if at_limit == 0.0 { raw.cleaned() } else { 0.0 + at_limit * bound })
         }
     };
     let slip = if z_t > 0.0 {

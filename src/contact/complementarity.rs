@@ -12,6 +12,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::numbers::ContactNumbers;
+use super::sums::joint_forces;
 use super::system::ContactSystem;
 use super::whole::{joint_constants, rows};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
@@ -130,7 +131,9 @@ pub fn contact_lcp_like(
     numbers: &ContactNumbers,
     covering: Covering,
 ) -> Result<ContactLcp, CoveringError> {
-    let load = load_with_gaps(system, numbers);
+    let constants = joint_forces(system, numbers, &DVector::zeros(system.joint_count()));
+    // What cancels to rounding is no load.
+    let load: Vec<f64> = constants.iter().map(|sum| sum.cleaned()).collect();
     let pairs = &system.pairs;
     let normals: Vec<usize> = (0..pairs.len()).filter(|&i| !matches!(pairs[i].law, Law::Bound { .. })).collect();
     let tangentials: Vec<(usize, usize)> =
@@ -174,9 +177,10 @@ pub fn contact_lcp_like(
     let base = earlier.map_or_else(
         || {
             let joints: Vec<usize> = (0..count).map(joint_of).collect();
+            let stiffness = system.pivot_stiffness();
             let mut entries = Vec::with_capacity(count * count);
             for &joint in &joints {
-                let column = system.stiffness.column(joint);
+                let column = stiffness.column(joint);
                 entries.extend(joints.iter().map(|&row| column[row] / stiffness_unit));
             }
             Arc::new(DMatrix::from_vec(count, count, entries))

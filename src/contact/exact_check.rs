@@ -1,12 +1,14 @@
 //! A working scheme proved or refuted in exact arithmetic.
 //!
-//! The f64 data R, RF, f, c, g are rationals. The linear equations of the scheme (x_n = 0 where open, x^± = 0 where
+//! The f64 data R, RF, f, c, g are rationals; of a contact system from a file they are those of the file, the released
+//! tangential joints of its frictionless pairs among them. The linear equations of the scheme (x_n = 0 where open, x^± = 0 where
 //! slipping) are solved exactly and the sign of every other quantity is told exactly. The check judges the data as
 //! they are stored: a structure whose loads are exactly at a limit on paper need not be so after rounding to f64.
 
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
+use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
@@ -17,7 +19,7 @@ use crate::model::pair::Law;
 use super::numbers::ContactNumbers;
 use super::scheme_word::{PairScheme, Tangential};
 use super::system::ContactSystem;
-use super::whole::{fixed_bound, friction, joint_constants, tangential_joint};
+use super::whole::{fixed_bound, friction, tangential_joint};
 
 /// A quantity of a pair that must not be negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -112,23 +114,65 @@ struct Form {
 struct Forms<'a> {
     system: &'a ContactSystem,
     numbers: &'a ContactNumbers,
+    data: Data<'a>,
+    /// Columns of the matrix whose displacement is unknown.
+    unknown: Vec<usize>,
+}
+
+/// λ = matrix · (z − (g, 0)) + load over all joints of the data.
+struct Data<'a> {
+    matrix: &'a DMatrix<f64>,
+    /// load − matrix · (g, 0).
     constants: Vec<BigRational>,
+    /// Row of each joint.
+    row: Vec<usize>,
+    /// Rows that carry nothing and whose displacement is unknown whatever the scheme.
     released: Vec<usize>,
 }
 
+impl<'a> Data<'a> {
+    fn of(system: &'a ContactSystem, numbers: &'a ContactNumbers) -> Data<'a> {
+        match (&system.file, &numbers.file_load) {
+            (Some(file), Some(load)) if !file.compliance => Data {
+                matrix: &file.matrix,
+                constants: constants(&file.matrix, &load.vector, numbers),
+                row: file.kept.clone(),
+                // Those that follow from others stay at rest: nothing tells where they are.
+                released: file.factor.independent().iter().map(|&row| file.released[row]).collect(),
+            },
+            _ => Data {
+                matrix: &system.stiffness,
+                constants: constants(&system.stiffness, &numbers.load, numbers),
+                row: (0..system.joint_count()).collect(),
+                released: Vec::new(),
+            },
+        }
+    }
+}
+
+/// load − matrix · (g, 0); the normal joint of pair i is row i.
+fn constants(matrix: &DMatrix<f64>, load: &DVector<f64>, numbers: &ContactNumbers) -> Vec<BigRational> {
+    let exact = <BigRational as Scalar>::from_f64;
+    let gaps: Vec<(usize, BigRational)> =
+        numbers.gap.iter().enumerate().filter(|(_, gap)| **gap != 0.0).map(|(k, gap)| (k, exact(*gap))).collect();
+    (0..matrix.nrows())
+        .map(|i| gaps.iter().fold(exact(load[i]), |sum, (k, gap)| sum - exact(matrix[(i, *k)]) * gap))
+        .collect()
+}
+
 impl Forms<'_> {
-    /// Σ factor·λ_joint + fixed.
+    /// Σ factor·λ_row + fixed.
     fn form(&self, terms: &[(usize, f64)], fixed: f64) -> Form {
         let exact = <BigRational as Scalar>::from_f64;
-        let mut row: Vec<BigRational> = vec![Zero::zero(); self.released.len() + 1];
+        let mut row: Vec<BigRational> = vec![Zero::zero(); self.unknown.len() + 1];
         for (joint, factor) in terms {
             let factor = exact(*factor);
-            for (entry, k) in row.iter_mut().zip(&self.released) {
-                *entry += &factor * exact(self.system.stiffness[(*joint, *k)]);
+            for (entry, k) in row.iter_mut().zip(&self.unknown) {
+                *entry += &factor * exact(self.data.matrix[(*joint, *k)]);
             }
-            row[self.released.len()] += &factor * &self.constants[*joint];
+            row[self.unknown.len()] += &factor * &self.data.constants[*joint];
         }
-        row[self.released.len()] += exact(fixed);
+        row[self.unknown.len()] += exact(fixed);
         let (mut coefficients, scale) = clear_denominators(&row);
         // The row has at least its constant.
         let constant = coefficients.pop().unwrap_or_default();
@@ -136,14 +180,14 @@ impl Forms<'_> {
     }
 
     fn normal(&self, pair: usize) -> Form {
-        self.form(&[(pair, 1.0)], 0.0)
+        self.form(&[(self.data.row[pair], 1.0)], 0.0)
     }
 
     /// x⁺ (side 1) or x⁻ (side −1).
     fn reserve(&self, pair: usize, side: f64) -> Form {
         let f = friction(self.system, self.numbers, pair);
-        let tangential = tangential_joint(self.system, pair);
-        self.form(&[(tangential, side), (pair, f)], fixed_bound(self.system, self.numbers, pair))
+        let tangential = self.data.row[tangential_joint(self.system, pair)];
+        self.form(&[(tangential, side), (self.data.row[pair], f)], fixed_bound(self.system, self.numbers, pair))
     }
 }
 
@@ -163,17 +207,16 @@ pub fn exact_check(
     let m = system.pair_count();
     let normals = (0..m).filter(|pair| opens(*pair));
     let tangentials = (0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| tangential_joint(system, pair));
-    let forms = Forms {
-        system,
-        numbers,
-        constants: joint_constants(system, numbers),
-        released: normals.chain(tangentials).collect(),
-    };
-    let released = forms.released.len();
+    let data = Data::of(system, numbers);
+    let unknown: Vec<usize> = normals.chain(tangentials).map(|joint| data.row[joint]).collect();
+    let released = unknown.len();
+    let unknown = unknown.into_iter().chain(data.released.iter().copied()).collect();
+    let forms = Forms { system, numbers, data, unknown };
     let equations: Vec<Form> = (0..m)
         .filter(|pair| opens(*pair))
         .map(|pair| forms.normal(pair))
         .chain((0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| forms.reserve(pair, slip(pair))))
+        .chain(forms.data.released.iter().map(|&row| forms.form(&[(row, 1.0)], 0.0)))
         .collect();
     let rhs: Vec<BigInt> = equations.iter().map(|form| -&form.constant).collect();
     let matrix: Vec<Vec<BigInt>> = equations.into_iter().map(|form| form.coefficients).collect();
@@ -240,7 +283,7 @@ impl Signs<'_> {
 
     /// Displacement of a released joint.
     fn displacement(&self, joint: usize) -> (BigInt, BigInt) {
-        let index = self.forms.released.iter().position(|j| *j == joint);
+        let index = self.forms.unknown.iter().position(|column| *column == self.forms.data.row[joint]);
         // Asked for released joints only.
         let numerator = index.map_or_else(BigInt::zero, |i| self.solution.numerators[i].clone());
         (numerator, self.solution.denominator.clone())

@@ -1,39 +1,41 @@
-//! A contact system read from a file → joints: tangential joints of frictionless pairs condensed out, kernel exact.
+//! A contact system read from a file → joints: tangential joints of frictionless pairs released, kernel exact.
+
+use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use super::file_data::FileData;
+use super::pivoted::{NullSpace, PivotedCholesky, is_null};
 use super::system::{ContactPair, ContactSystem, JointLoad};
+use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
-use crate::model::scenario::GivenContactSystem;
+use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
 
-/// Eigenvalues below this multiple of the largest belong to the kernel (theory, "Numerics that matter").
-const KERNEL: f64 = 1e-10;
-/// An eigenvalue below −this multiple of the largest makes R unusable.
+/// An eigenvalue below −this makes a matrix unusable, after scaling to unit diagonal.
 const NEGATIVE: f64 = 1e-9;
-/// A motion given as kernel may stretch the structure by this relative energy at most.
-const GIVEN_KERNEL: f64 = 1e-8;
 
-/// Why a given contact system cannot be used; each names the key of the file.
+/// Why a given contact system cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GivenError {
-    /// CSM with a negative eigenvalue.
+    /// A matrix with a negative eigenvalue.
     #[error(
-        "the contact stiffness matrix is not positive semidefinite: its smallest eigenvalue is {smallest:.3e}, its \
-         largest {largest:.3e}"
+        "the {} matrix is not positive semidefinite: scaled to unit diagonal, its smallest eigenvalue is \
+         {smallest:.3e}", if *key == "stiffness" { "contact stiffness" } else { "compliance" }
     )]
     Indefinite {
+        /// Key of the file.
+        key: &'static str,
         /// Smallest eigenvalue.
         smallest: f64,
-        /// Largest eigenvalue.
-        largest: f64,
     },
-    /// A kernel vector that is none.
-    #[error("kernel[{index}] is no motion without force: R z is {residual:.3e} of the largest stiffness times |z|")]
-    NoKernel {
-        /// Which one.
-        index: usize,
-        /// ‖R z‖ / (max R ‖z‖).
-        residual: f64,
+    /// W that cannot be inverted.
+    #[error(
+        "the compliance matrix is singular: forces {forces} move nothing, so there is no contact stiffness matrix; give \
+         `stiffness` (with its `kernel`) instead, or leave out the joints that cannot move"
+    )]
+    Singular {
+        /// Joints and their forces in words.
+        forces: String,
     },
     /// A load acts on a tangential motion of frictionless pairs that nothing resists.
     #[error("load case {case} pushes frictionless pair {pair} along a tangential motion that nothing resists")]
@@ -45,127 +47,273 @@ pub enum GivenError {
     },
 }
 
-/// What gives back z_τ of the frictionless pairs: z_τ = flexibility · (coupling · z + Σ factor · RF_τ), negated.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ReleasedTangentials {
-    /// Pair of each released joint.
-    pub pairs: Vec<usize>,
-    /// −(pseudo)inverse of R_ττ.
-    flexibility: DMatrix<f64>,
-    /// R_τj over the joints that are kept.
-    coupling: DMatrix<f64>,
-    /// RF_τ per load case.
-    loads: Vec<DVector<f64>>,
-    /// Rows of the whole that are kept.
-    kept: Vec<usize>,
-    /// Basis of the released motions that nothing resists.
-    free: DMatrix<f64>,
-}
-
-impl ReleasedTangentials {
-    /// The load vectors of the joints that are kept, those of the released ones taken along.
-    ///
-    /// # Errors
-    /// A load along a motion that nothing resists.
-    pub fn take_loads(&mut self, given: &GivenContactSystem) -> Result<Vec<JointLoad>, GivenError> {
-        let m = given.pairs.len();
-        let mut loads = Vec::new();
-        self.loads.clear();
-        for load in &given.loads {
-            let tangential = DVector::from_fn(self.pairs.len(), |a, _| load.vector[m + self.pairs[a]]);
-            let size = load.vector.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-            let unheld = self.free.transpose() * &tangential;
-            if unheld.amax() > 1e-9 * size {
-                let worst = tangential.iamax();
-                let pair = given.pairs[self.pairs[worst]].clone();
-                return Err(GivenError::Unheld { case: load.name.clone(), pair });
-            }
-            let vector = DVector::from_fn(self.kept.len(), |a, _| load.vector[self.kept[a]])
-                + self.coupling.transpose() * (&self.flexibility * &tangential);
-            loads.push(JointLoad::exactly(load.name.clone(), vector));
-            self.loads.push(tangential);
-        }
-        Ok(loads)
-    }
-
-    /// z_τ of each released joint under joint displacements z (with the gap already taken off z_n) and factors.
-    pub fn displacements(&self, z: &DVector<f64>, factors: &[f64]) -> DVector<f64> {
-        let mut force = &self.coupling * z;
-        for (load, factor) in self.loads.iter().zip(factors) {
-            force += *factor * load;
-        }
-        &self.flexibility * force
-    }
-}
-
-/// Builds the contact system of a file.
+/// Builds the contact system of a file; the remarks are for the user.
 ///
 /// # Errors
 /// See [`GivenError`].
-pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, ReleasedTangentials), GivenError> {
-    let m = given.pairs.len();
-    let read = |i: usize, j: usize| 0.5 * (given.stiffness[i][j] + given.stiffness[j][i]);
-    let full = DMatrix::from_fn(2 * m, 2 * m, read);
-    let largest_entry = full.amax();
-    let eigen = eigen(full.clone());
-    let (smallest, largest) =
-        eigen.eigenvalues.iter().fold((0f64, 0f64), |(a, b), &value| (a.min(value), b.max(value)));
-    if smallest < -NEGATIVE * largest {
-        return Err(GivenError::Indefinite { smallest, largest });
+pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Vec<String>), GivenError> {
+    match &given.matrix {
+        GivenMatrix::Stiffness(rows) => from_stiffness(given, &symmetric(rows)),
+        GivenMatrix::Compliance(rows) => from_compliance(given, symmetric(rows)),
     }
-    let motions: Vec<DVector<f64>> = match &given.kernel {
-        Some(kernel) => {
-            for (index, motion) in kernel.iter().enumerate() {
-                let z = DVector::from_column_slice(motion);
-                let force = (&full * &z).amax();
-                // A stiffness of zero resists nothing: 0 / 0 is no residual.
-                let residual = if force == 0.0 && z.amax() > 0.0 { 0.0 } else { force / (largest_entry * z.amax()) };
-                if residual.is_nan() || residual > GIVEN_KERNEL {
-                    return Err(GivenError::NoKernel { index, residual });
-                }
-            }
-            kernel.iter().map(|motion| DVector::from_column_slice(motion)).collect()
+}
+
+fn symmetric(rows: &[Vec<f64>]) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), rows.len(), |i, j| 0.5 * (rows[i][j] + rows[j][i]))
+}
+
+/// The null space of a matrix, refused where it is indefinite.
+fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(PivotedCholesky, NullSpace), GivenError> {
+    let factor = PivotedCholesky::new(matrix);
+    let null = factor.null_space(matrix);
+    if null.least < -NEGATIVE {
+        let scale = &factor.scale;
+        let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, j| matrix[(i, j)] / scale[i] / scale[j]);
+        return Err(GivenError::Indefinite { key, smallest: SymmetricEigen::new(scaled).eigenvalues.min() });
+    }
+    Ok((factor, null))
+}
+
+/// Which rows are kept as joints and which are released, and the frictionless pairs of the released ones.
+struct Rows {
+    kept: Vec<usize>,
+    released: Vec<usize>,
+    pairs: Vec<usize>,
+}
+
+impl Rows {
+    fn of(given: &GivenContactSystem) -> Rows {
+        let m = given.pairs.len();
+        let pairs: Vec<usize> = (0..m).filter(|&i| matches!(given.laws[i], Law::Frictionless { .. })).collect();
+        Rows {
+            kept: (0..m).chain((0..m).filter(|i| !pairs.contains(i)).map(|i| m + i)).collect(),
+            released: pairs.iter().map(|i| m + i).collect(),
+            pairs,
         }
-        None => (0..2 * m)
-            .filter(|&k| eigen.eigenvalues[k] <= KERNEL * largest)
-            .map(|k| eigen.eigenvectors.column(k).into_owned())
-            .collect(),
+    }
+
+    fn block(matrix: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), columns.len(), |a, b| matrix[(rows[a], columns[b])])
+    }
+
+    fn data(
+        self,
+        matrix: DMatrix<f64>,
+        compliance: bool,
+        given: &GivenContactSystem,
+        factor: PivotedCholesky,
+    ) -> FileData {
+        FileData {
+            matrix,
+            compliance,
+            loads: given.loads.iter().map(|load| DVector::from_column_slice(&load.vector)).collect(),
+            kept: self.kept,
+            released: self.released,
+            released_pairs: self.pairs,
+            factor,
+        }
+    }
+}
+
+fn from_stiffness(
+    given: &GivenContactSystem,
+    matrix: &DMatrix<f64>,
+) -> Result<(ContactSystem, Vec<String>), GivenError> {
+    let (_, null) = null_space("stiffness", matrix)?;
+    let mut remarks = Vec::new();
+    // What the author knows to be a kernel is one, to the last digit, whatever the digits of the matrix.
+    let (motions, data) = match &given.kernel {
+        Some(kernel) => {
+            let motions: Vec<DVector<f64>> = kernel.iter().map(|z| DVector::from_column_slice(z)).collect();
+            let exact = motions.iter().all(|z| is_null(matrix, z));
+            let data = if exact { matrix.clone() } else { without_kernel(matrix, &motions) };
+            (motions, data)
+        }
+        None => {
+            remarks.extend(null.near.iter().map(|z| nearly_singular(given, z)));
+            (null.exact, matrix.clone())
+        }
     };
-    let full = project(&full, &orthonormal(&motions, 2 * m));
-
-    let released: Vec<usize> = (0..m).filter(|&i| matches!(given.laws[i], Law::Frictionless { .. })).collect();
-    let kept: Vec<usize> = (0..m).chain((0..m).filter(|i| !released.contains(i)).map(|i| m + i)).collect();
-    let own = DMatrix::from_fn(released.len(), released.len(), |a, b| full[(m + released[a], m + released[b])]);
-    let coupling = DMatrix::from_fn(released.len(), kept.len(), |a, b| full[(m + released[a], kept[b])]);
-    let (inverse, free) = pseudo_inverse(&own, largest);
-    let mut stiffness = DMatrix::from_fn(kept.len(), kept.len(), |a, b| full[(kept[a], kept[b])]);
-    stiffness -= coupling.transpose() * &inverse * &coupling;
-    let stiffness = 0.5 * (&stiffness + stiffness.transpose());
-
+    let rows = Rows::of(given);
+    let factor = PivotedCholesky::new(&Rows::block(&data, &rows.released, &rows.released));
+    let stiffness = condensed(&data, &rows, &factor);
     // Motions of the kept joints alone that cost nothing: those of the whole, restricted.
     let restricted: Vec<DVector<f64>> =
-        motions.iter().map(|motion| DVector::from_fn(kept.len(), |a, _| motion[kept[a]])).collect();
-    let kernel = orthonormal(&restricted, kept.len());
-    let stiffness = project(&stiffness, &kernel);
-    let mut next = m;
-    let pairs = (0..m)
-        .map(|i| {
-            let tangential = (!released.contains(&i)).then(|| {
+        motions.iter().map(|z| DVector::from_fn(rows.kept.len(), |a, _| z[rows.kept[a]])).collect();
+    let kernel = orthonormal(&restricted, rows.kept.len());
+    let corrected = (kernel.ncols() > 0).then(|| without_kernel(&stiffness, &restricted));
+    let file = (!rows.released.is_empty()).then(|| Arc::new(rows.data(data, false, given, factor)));
+    let loads = joint_loads(given, &stiffness, file.as_deref())?;
+    let rounded = file.is_some();
+    let system = ContactSystem { pairs: pairs(given), stiffness, loads, rounded, kernel, corrected, file };
+    Ok((system, remarks))
+}
+
+/// R with the released joints condensed out: R_kk − R_kr R_rr⁻¹ R_rk. What cancels to rounding is zero.
+fn condensed(data: &DMatrix<f64>, rows: &Rows, factor: &PivotedCholesky) -> DMatrix<f64> {
+    let coupling = Rows::block(data, &rows.released, &rows.kept);
+    let mut response = coupling.clone();
+    for (mut column, right) in response.column_iter_mut().zip(coupling.column_iter()) {
+        column.copy_from(&factor.solve(&right.into_owned()));
+    }
+    let mut stiffness = Rows::block(data, &rows.kept, &rows.kept);
+    if rows.released.is_empty() {
+        return stiffness;
+    }
+    for i in 0..stiffness.nrows() {
+        for j in 0..=i {
+            let entry = cleaned(stiffness[(i, j)], &coupling.column(i).component_mul(&response.column(j))).0;
+            stiffness[(i, j)] = entry;
+            stiffness[(j, i)] = entry;
+        }
+    }
+    // A joint without stiffness of its own has none towards others.
+    for i in 0..stiffness.nrows() {
+        if stiffness[(i, i)] <= 0.0 {
+            stiffness.row_mut(i).fill(0.0);
+            stiffness.column_mut(i).fill(0.0);
+        }
+    }
+    stiffness
+}
+
+/// RF of every load case over the joints that are kept; `file` where some are released or the matrix is a compliance.
+fn joint_loads(
+    given: &GivenContactSystem,
+    stiffness: &DMatrix<f64>,
+    file: Option<&FileData>,
+) -> Result<Vec<JointLoad>, GivenError> {
+    let Some(file) = file else {
+        let exact = |load: &GivenLoad| JointLoad::exactly(load.name.clone(), DVector::from_column_slice(&load.vector));
+        return Ok(given.loads.iter().map(exact).collect());
+    };
+    let own = Rows::block(&file.matrix, &file.released, &file.released);
+    let free = if file.compliance { Vec::new() } else { file.factor.null_space(&own).exact };
+    (given.loads.iter())
+        .map(|load| {
+            let of = |rows: &[usize]| DVector::from_iterator(rows.len(), rows.iter().map(|&row| load.vector[row]));
+            let (kept, released) = (of(&file.kept), of(&file.released));
+            for z in &free {
+                let work = z.component_mul(&released);
+                if work.sum().abs() > NOISE * work.abs().sum() {
+                    let pair = given.pairs[file.released_pairs[work.iamax()]].clone();
+                    return Err(GivenError::Unheld { case: load.name.clone(), pair });
+                }
+            }
+            let response = if file.compliance { released } else { file.factor.solve(&released) };
+            let entry = |i: usize| -> (f64, f64) {
+                if file.compliance {
+                    return cleaned(0.0, &stiffness.column(i).component_mul(&kept));
+                }
+                let coupling = file.released.iter().map(|&row| file.matrix[(row, file.kept[i])]);
+                cleaned(kept[i], &DVector::from_iterator(response.len(), coupling).component_mul(&response))
+            };
+            let entries: Vec<(f64, f64)> = (0..kept.len()).map(entry).collect();
+            let read = |pick: fn(&(f64, f64)) -> f64| DVector::from_iterator(entries.len(), entries.iter().map(pick));
+            Ok(JointLoad { name: load.name.clone(), vector: read(|entry| entry.0), terms: read(|entry| entry.1) })
+        })
+        .collect()
+}
+
+/// The same system under the load vectors of `given`, which has the same matrix and laws.
+///
+/// # Errors
+/// A load along a motion that nothing resists.
+pub fn with_loads(system: &ContactSystem, given: &GivenContactSystem) -> Result<ContactSystem, GivenError> {
+    let file = system.file.as_ref().map(|file| {
+        let loads = given.loads.iter().map(|load| DVector::from_column_slice(&load.vector)).collect();
+        Arc::new(FileData { loads, ..FileData::clone(file) })
+    });
+    let loads = joint_loads(given, &system.stiffness, file.as_deref())?;
+    Ok(ContactSystem { loads, file, ..system.clone() })
+}
+
+/// start − Σ terms, 0 where rounding alone can have made it, and the sum of all magnitudes.
+fn cleaned(start: f64, terms: &DVector<f64>) -> (f64, f64) {
+    let (value, size) =
+        terms.iter().fold((start, start.abs()), |(value, size), term| (value - term, size + term.abs()));
+    (if value.abs() <= NOISE * size { 0.0 } else { value }, size)
+}
+
+fn from_compliance(
+    given: &GivenContactSystem,
+    matrix: DMatrix<f64>,
+) -> Result<(ContactSystem, Vec<String>), GivenError> {
+    null_space("compliance", &matrix)?;
+    // Joints that carry no force are left out of W as they are: their motion follows.
+    let rows = Rows::of(given);
+    let own = Rows::block(&matrix, &rows.kept, &rows.kept);
+    let factor = PivotedCholesky::new(&own);
+    if factor.rank < rows.kept.len() {
+        let null = factor.null_space(&own);
+        let forces = null.exact.iter().chain(&null.near).next();
+        let mut all = DVector::zeros(matrix.nrows());
+        for (i, &row) in rows.kept.iter().enumerate() {
+            all[row] = forces.map_or(0.0, |forces| forces[i]);
+        }
+        return Err(GivenError::Singular { forces: joints_in_words(given, &all, ["along n", "along t"]) });
+    }
+    let k = rows.kept.len();
+    let inverse = DMatrix::from_columns(
+        &(0..k).map(|j| factor.solve(&DVector::from_fn(k, |i, _| f64::from(i == j)))).collect::<Vec<_>>(),
+    );
+    let stiffness = 0.5 * (&inverse + inverse.transpose());
+    let file = rows.data(matrix, true, given, factor);
+    let loads = joint_loads(given, &stiffness, Some(&file))?;
+    let system = ContactSystem {
+        pairs: pairs(given),
+        stiffness,
+        loads,
+        rounded: true,
+        kernel: DMatrix::zeros(k, 0),
+        corrected: None,
+        file: Some(Arc::new(file)),
+    };
+    Ok((system, Vec::new()))
+}
+
+fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
+    let mut next = given.pairs.len();
+    (given.pairs.iter().enumerate())
+        .map(|(i, id)| {
+            let tangential = (!matches!(given.laws[i], Law::Frictionless { .. })).then(|| {
                 next += 1;
                 next - 1
             });
             ContactPair {
-                id: given.pairs[i].clone(),
+                id: id.clone(),
                 law: given.laws[i].clone(),
                 position: given.positions.as_ref().map(|s| [s[i], 0.0]),
                 tangential,
             }
         })
+        .collect()
+}
+
+fn nearly_singular(given: &GivenContactSystem, z: &DVector<f64>) -> String {
+    format!(
+        "the contact stiffness matrix is nearly singular: it resists the motion {} with less than 1e-10 of what its \
+         entries would let expect, and yet its digits say that it does; if that motion costs nothing, say so: `kernel`",
+        joints_in_words(given, z, ["z_n", "z_t"])
+    )
+}
+
+/// `1 z_n of c1, -0.5 z_t of c2`: the entries of a vector over all 2m joints, largest 1, small ones left out.
+fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, words: [&str; 2]) -> String {
+    let m = given.pairs.len();
+    let largest = z.amax();
+    let named: Vec<String> = (z.iter().enumerate())
+        .filter(|(_, z)| z.abs() > 1e-6 * largest)
+        .map(|(i, z)| {
+            let share = format!("{:.4}", z / largest);
+            let share = share.trim_end_matches('0').trim_end_matches('.');
+            format!("{share} {} of {}", words[usize::from(i >= m)], given.pairs[i % m])
+        })
         .collect();
-    let mut recovery =
-        ReleasedTangentials { pairs: released, flexibility: -inverse, coupling, loads: Vec::new(), kept, free };
-    let loads = recovery.take_loads(given)?;
-    Ok((ContactSystem { pairs, stiffness, loads, rounded: false, kernel }, recovery))
+    match named.len() {
+        0..=6 => named.join(", "),
+        more => format!("{}, … ({more} joints)", named[..5].join(", ")),
+    }
 }
 
 /// Orthonormal basis of the span of some vectors of length n; nearly dependent ones count once.
@@ -190,38 +338,19 @@ pub fn orthonormal(vectors: &[DVector<f64>], n: usize) -> DMatrix<f64> {
     if basis.is_empty() { DMatrix::zeros(n, 0) } else { DMatrix::from_columns(&basis) }
 }
 
-/// (I − ZZᵀ) R (I − ZZᵀ), exactly symmetric.
-pub fn project(stiffness: &DMatrix<f64>, kernel: &DMatrix<f64>) -> DMatrix<f64> {
-    if kernel.ncols() == 0 {
-        return stiffness.clone();
+/// R with the motions exactly in its kernel: (I − Q Qᵀ) S (I − Q Qᵀ) scaled back, where S is R scaled to unit diagonal (by
+/// powers of two) and Q spans the scaled motions. Without the scaling the rounding of the stiffest joint would cover the
+/// softest ones.
+fn without_kernel(stiffness: &DMatrix<f64>, motions: &[DVector<f64>]) -> DMatrix<f64> {
+    let n = stiffness.nrows();
+    let scale = super::pivoted::scales(stiffness);
+    let scaled = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] / scale[i] / scale[j]);
+    let motions: Vec<DVector<f64>> = motions.iter().map(|z| DVector::from_fn(n, |i, _| z[i] * scale[i])).collect();
+    let q = orthonormal(&motions, n);
+    if q.ncols() == n {
+        return DMatrix::zeros(n, n);
     }
-    let left = stiffness - kernel * (kernel.transpose() * stiffness);
-    let both = &left - (&left * kernel) * kernel.transpose();
-    0.5 * (&both + both.transpose())
-}
-
-/// Eigenvalues and eigenvectors; an empty matrix has none.
-fn eigen(matrix: DMatrix<f64>) -> SymmetricEigen<f64, nalgebra::Dyn> {
-    if matrix.is_empty() {
-        return SymmetricEigen { eigenvalues: DVector::zeros(0), eigenvectors: matrix };
-    }
-    SymmetricEigen::new(matrix)
-}
-
-/// Inverse on the range, and a basis of the null space.
-fn pseudo_inverse(matrix: &DMatrix<f64>, largest: f64) -> (DMatrix<f64>, DMatrix<f64>) {
-    let n = matrix.nrows();
-    let eigen = eigen(matrix.clone());
-    let mut inverse = DMatrix::zeros(n, n);
-    let mut free = Vec::new();
-    for k in 0..n {
-        let vector = eigen.eigenvectors.column(k);
-        if eigen.eigenvalues[k] > KERNEL * largest {
-            inverse += vector * vector.transpose() / eigen.eigenvalues[k];
-        } else {
-            free.push(vector.into_owned());
-        }
-    }
-    let free = if free.is_empty() { DMatrix::zeros(n, 0) } else { DMatrix::from_columns(&free) };
-    (inverse, free)
+    let left = &scaled - &q * (q.transpose() * &scaled);
+    let both = &left - (&left * &q) * q.transpose();
+    DMatrix::from_fn(n, n, |i, j| 0.5 * (both[(i, j)] + both[(j, i)]) * scale[i] * scale[j])
 }

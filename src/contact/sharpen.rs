@@ -15,7 +15,7 @@ use crate::lcp::vertex::{Basis, corrected};
 /// w of all rows at a point, dimensionless, from forces whose kernel part is exact.
 fn balanced_rows(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: &Point) -> Vec<f64> {
     let z: DVector<f64> = contact.joint_displacements(system, &point.z) * contact.length_unit;
-    let mut force = &system.stiffness * z + load_with_gaps(system, numbers);
+    let mut force = system.pivot_stiffness() * z + load_with_gaps(system, numbers);
     // Twice: the first step leaves rounding of the size it removed.
     for _ in 0..2 {
         let missing = system.kernel.transpose() * (&numbers.load - &force);

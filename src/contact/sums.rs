@@ -57,6 +57,36 @@ fn root(system: &ContactSystem, joint: usize) -> f64 {
 /// λ = R (z − (g, 0)) + RF over the joints. Where R is [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik|
 /// in the magnitudes.
 pub fn joint_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<Sum> {
+    state_forces(system, numbers, z).joints
+}
+
+/// The forces of a state of the joints, from the file where there is one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateForces {
+    /// λ.
+    pub joints: Vec<Sum>,
+    /// What the equations of a file leave over: each is zero in a state that obeys them.
+    pub left: Vec<Sum>,
+    /// z_τ of the frictionless pairs of a file.
+    pub slips: Option<DVector<f64>>,
+}
+
+/// [`joint_forces`] with what else a file says.
+pub fn state_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> StateForces {
+    let mut forces = StateForces { joints: condensed_forces(system, numbers, z), left: Vec::new(), slips: None };
+    if let (Some(file), Some(load)) = (&system.file, &numbers.file_load) {
+        let mut moved = z.clone();
+        moved.iter_mut().zip(&numbers.gap).for_each(|(z, gap)| *z -= gap);
+        let given = file.forces(&moved, load);
+        for (force, given) in forces.joints.iter_mut().zip(given.joints) {
+            *force = Sum { value: given.value, magnitude: force.magnitude.max(given.magnitude) };
+        }
+        (forces.left, forces.slips) = (given.left, Some(given.slips));
+    }
+    forces
+}
+
+fn condensed_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<Sum> {
     let mut forces: Vec<Sum> = (numbers.load.iter())
         .zip(&numbers.load_terms)
         .map(|(value, magnitude)| Sum { value: *value, magnitude: *magnitude })
@@ -95,12 +125,18 @@ pub struct PairSums {
     pub reserves: Option<[Sum; 2]>,
 }
 
-/// x_n and the reserves of a pair under joint forces.
-pub fn pair_sums(system: &ContactSystem, numbers: &ContactNumbers, forces: &[Sum], pair: usize) -> PairSums {
+/// x_n and the reserves of a pair under joint forces. An open pair has x_n = 0, not the rounding of a stiff joint's λ, in
+/// its bound.
+pub fn pair_sums(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    forces: &[Sum],
+    (pair, is_open): (usize, bool),
+) -> PairSums {
     let normal = (!matches!(system.pairs[pair].law, Law::Bound { .. })).then(|| forces[pair]);
     let reserves = system.pairs[pair].tangential.map(|joint| {
-        let bound =
-            Sum::exactly(fixed_bound(system, numbers, pair)).plus(friction(system, numbers, pair), forces[pair]);
+        let fixed = Sum::exactly(fixed_bound(system, numbers, pair));
+        let bound = if is_open { fixed } else { fixed.plus(friction(system, numbers, pair), forces[pair]) };
         [bound.plus(1.0, forces[joint]), bound.plus(-1.0, forces[joint])]
     });
     PairSums { normal, reserves }

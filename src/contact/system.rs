@@ -1,6 +1,10 @@
 //! The structure condensed to its contact joints: CSM, CLV per load case, and what is known of the pairs.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
+
+use super::file_data::FileData;
 
 use crate::model::pair::Law;
 
@@ -43,7 +47,8 @@ impl JointLoad {
 pub struct ContactSystem {
     /// The m pairs.
     pub pairs: Vec<ContactPair>,
-    /// R, k × k, symmetric, positive semidefinite, its kernel exact (theory, "Numerics that matter").
+    /// R, k × k, symmetric, positive semidefinite: what answers are checked against. Of a structure its kernel is exact
+    /// (theory, "Numerics that matter"); of a file it stands as given.
     pub stiffness: DMatrix<f64>,
     /// RF per load case.
     pub loads: Vec<JointLoad>,
@@ -52,6 +57,10 @@ pub struct ContactSystem {
     pub rounded: bool,
     /// Orthonormal basis Z of the kernel of R, k × r (r = 0 when the structure stands without its contacts).
     pub kernel: DMatrix<f64>,
+    /// R with the kernel exact, where that differs from `stiffness`: what the pivots work on.
+    pub corrected: Option<DMatrix<f64>>,
+    /// The data of a file that R and RF were made from; `None` where they are the data, and for a structure.
+    pub file: Option<Arc<FileData>>,
 }
 
 impl ContactSystem {
@@ -63,6 +72,11 @@ impl ContactSystem {
     /// Number k of joints.
     pub fn joint_count(&self) -> usize {
         self.stiffness.nrows()
+    }
+
+    /// R with its kernel exact: what the LCP is written from.
+    pub fn pivot_stiffness(&self) -> &DMatrix<f64> {
+        self.corrected.as_ref().unwrap_or(&self.stiffness)
     }
 
     /// Makes joints that carry no elastic force at all exactly such: a joint whose unit dislocation lies in the kernel

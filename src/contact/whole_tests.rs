@@ -29,6 +29,8 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
             .collect(),
         kernel: DMatrix::zeros(2 * m, 0),
         rounded: false,
+        corrected: None,
+        file: None,
         loads: Vec::new(),
         stiffness,
     }
@@ -44,6 +46,7 @@ pub(crate) fn plain(f: f64, load: &[f64]) -> ContactNumbers {
         bound: vec![0.0; m],
         load: DVector::from_row_slice(load),
         load_terms: DVector::from_row_slice(load).abs(),
+        file_load: None,
     }
 }
 
@@ -137,6 +140,7 @@ fn laws_mix() {
         bound: vec![0.0, 3.0, 0.0],
         load: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
         load_terms: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
+        file_load: None,
     };
     let lcp = whole_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
     let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();

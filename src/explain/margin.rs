@@ -121,6 +121,7 @@ pub fn load_margin(
         bound: vec![0.0; m],
         load: unit.clone(),
         load_terms: unit.abs(),
+        file_load: None,
     };
     // Only M and q of this LCP are used: any covering that can be written will do.
     let change = contact_lcp(scheme.system, &rate, Covering::Ones).ok()?;

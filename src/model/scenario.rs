@@ -29,14 +29,33 @@ pub struct GivenContactSystem {
     pub pairs: Vec<String>,
     /// Coordinate of each pair along the contact zone, for plots.
     pub positions: Option<Vec<f64>>,
-    /// CSM, 2m × 2m row by row: all normals, then all tangentials. Symmetric up to 1e-8 of its largest entry.
-    pub stiffness: Vec<Vec<f64>>,
+    /// What relates forces and displacements, 2m × 2m row by row: all normals, then all tangentials. Symmetric up to 1e-8
+    /// after scaling to unit diagonal.
+    pub matrix: GivenMatrix,
     /// Load cases: name, factor, CLV (2m).
     pub loads: Vec<GivenLoad>,
     /// Law of each pair.
     pub laws: Vec<Law>,
     /// Motions z with R z = 0 known to the author, each 2m long.
     pub kernel: Option<Vec<Vec<f64>>>,
+}
+
+/// The matrix of a given contact system.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GivenMatrix {
+    /// CSM: λ = R (z − (g, 0)) + RF; the load vectors are forces.
+    Stiffness(Vec<Vec<f64>>),
+    /// W: z = W λ + Σ factor·vector + (g, 0); the load vectors are mutual displacements without contact forces.
+    Compliance(Vec<Vec<f64>>),
+}
+
+impl GivenMatrix {
+    /// Its rows.
+    pub fn rows(&self) -> &[Vec<f64>] {
+        match self {
+            GivenMatrix::Stiffness(rows) | GivenMatrix::Compliance(rows) => rows,
+        }
+    }
 }
 
 /// A load case of a given contact system.
@@ -46,7 +65,7 @@ pub struct GivenLoad {
     pub name: String,
     /// Factor, may be a parameter.
     pub factor: Number,
-    /// Contact load vector, 2m.
+    /// Contact load vector (with a compliance: displacements), 2m.
     pub vector: Vec<f64>,
 }
 

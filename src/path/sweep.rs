@@ -132,7 +132,7 @@ impl Sweep<'_> {
         let mut hash = Hash::of(&self.scenario.text);
         if let Source::ContactSystem(given) = &self.scenario.source {
             // The matrix may stand in a file of its own.
-            for entry in given.stiffness.iter().flatten() {
+            for entry in given.matrix.rows().iter().flatten() {
                 hash = hash.and(&entry.to_bits().to_le_bytes());
             }
         }

@@ -121,17 +121,17 @@ fn keep_file_references(object: &CstObject, scenario: &Scenario, path: &Path) {
     if from == to {
         return;
     }
-    let file = object
-        .object_value("contact_system")
-        .and_then(|system| system.object_value("stiffness"))
-        .and_then(|stiffness| stiffness.get("file"));
-    if let Some(property) = file
-        && let Some(name) = property.value().and_then(|value| value.as_string_lit())
-        && let Ok(name) = name.decoded_value()
-        && Path::new(&name).is_relative()
-    {
-        let full = from.join(name).display().to_string();
-        property.set_value(CstInputValue::String(full));
+    let system = object.object_value("contact_system");
+    let matrix = |key: &str| system.as_ref().and_then(|system| system.object_value(key));
+    let files = ["stiffness", "compliance"].into_iter().filter_map(|key| matrix(key)?.get("file"));
+    for property in files {
+        if let Some(name) = property.value().and_then(|value| value.as_string_lit())
+            && let Ok(name) = name.decoded_value()
+            && Path::new(&name).is_relative()
+        {
+            let full = from.join(name).display().to_string();
+            property.set_value(CstInputValue::String(full));
+        }
     }
 }
 

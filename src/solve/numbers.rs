@@ -28,6 +28,7 @@ pub(crate) fn numbers_by(system: &ContactSystem, factors: &[f64], value: &dyn Fn
         bound: vec![0.0; m],
         load: DVector::zeros(system.joint_count()),
         load_terms: DVector::zeros(system.joint_count()),
+        file_load: None,
     };
     for (i, pair) in system.pairs.iter().enumerate() {
         match &pair.law {
@@ -43,5 +44,6 @@ pub(crate) fn numbers_by(system: &ContactSystem, factors: &[f64], value: &dyn Fn
     for (load, factor) in system.loads.iter().zip(factors) {
         numbers.add_load(*factor, &load.vector, &load.terms);
     }
+    numbers.file_load = system.file.as_ref().map(|file| file.load(factors));
     numbers
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::contact::given::{GivenError, ReleasedTangentials, given_system};
+use crate::contact::given::{GivenError, given_system, with_loads};
 use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
 use crate::fem::{MainSystem, MainSystemError};
 use crate::lcp::mirrored::MirroredLcp;
@@ -35,8 +35,8 @@ pub enum Geometry {
     Contact {
         /// Condensed to its joints.
         system: ContactSystem,
-        /// Gives z_τ of the frictionless pairs.
-        released: ReleasedTangentials,
+        /// What the user should know of the matrix of the file.
+        remarks: Vec<String>,
     },
     /// A bare LCP; q is filled in at solve time.
     Plain {
@@ -112,10 +112,9 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
     let mut prepared = match &scenario.source {
         Source::Structure(structure) => prepare_structure(scenario, structure, watch)?,
         Source::ContactSystem(given) => {
-            let (mut system, released) = given_system(given).map_err(|error| given_problem(scenario, error))?;
-            system.settle();
+            let (system, remarks) = given_system(given).map_err(|error| given_problem(scenario, error))?;
             Prepared {
-                geometry: Geometry::Contact { system, released },
+                geometry: Geometry::Contact { system, remarks },
                 values: ParameterValues::new(),
                 cases: given.loads.iter().map(|load| (load.name.clone(), load.factor.clone())).collect(),
                 factor_seconds: 0.0,
@@ -133,8 +132,8 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
 /// Gives an error of a given contact system its place in the file.
 fn given_problem(scenario: &Scenario, error: GivenError) -> PrepareError {
     let path = match &error {
-        GivenError::Indefinite { .. } => "contact_system.stiffness".to_owned(),
-        GivenError::NoKernel { index, .. } => format!("contact_system.kernel[{index}]"),
+        GivenError::Indefinite { key, .. } => format!("contact_system.{key}"),
+        GivenError::Singular { .. } => "contact_system.compliance".to_owned(),
         GivenError::Unheld { case, .. } => format!("contact_system.loads.{case}"),
     };
     PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
@@ -237,6 +236,8 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         loads,
         rounded: true,
         kernel: main.kernel().clone(),
+        corrected: None,
+        file: None,
     };
     system.settle();
     let seconds = main.timings();
@@ -285,10 +286,9 @@ impl Prepared {
                 let system = ContactSystem { loads: joint_loads(structure, &main), ..system.clone() };
                 Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }
             }
-            (Geometry::Contact { system, released }, Source::ContactSystem(given)) => {
-                let mut released = released.clone();
-                let loads = released.take_loads(given).map_err(|error| given_problem(scenario, error))?;
-                Geometry::Contact { system: ContactSystem { loads, ..system.clone() }, released }
+            (Geometry::Contact { system, remarks }, Source::ContactSystem(given)) => {
+                let system = with_loads(system, given).map_err(|error| given_problem(scenario, error))?;
+                Geometry::Contact { system, remarks: remarks.clone() }
             }
             _ => return Ok(None),
         };

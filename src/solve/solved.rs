@@ -19,6 +19,7 @@ use crate::answer::record::{
 };
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::refine::refined;
 use crate::contact::sharpen::sharpen;
 use crate::contact::system::ContactSystem;
 use crate::explain::plain_ray::PlainRay;
@@ -181,6 +182,9 @@ impl Prepared {
                 self.solve_contact_judged(system, values, rules, brief, watch)?
             }
         };
+        if let Geometry::Contact { remarks, .. } = &self.geometry {
+            solved.answer.notes.extend(remarks.iter().cloned());
+        }
         if !scenario.stages.is_empty() {
             solved.answer.notes.push(
                 "every load case acts at once with its factor: the load history of the scenario was not followed \
@@ -234,6 +238,10 @@ impl Prepared {
             let point = std::mem::take(&mut run.point);
             run.point = sharpen(system, numbers, &contact, &basis, point);
         }
+        if matches!(run.outcome, Outcome::Normal { .. }) {
+            let point = std::mem::take(&mut run.point);
+            run.point = refined(system, numbers, &contact, point);
+        }
         let seconds = start.elapsed().as_secs_f64();
         let words = rules.words();
         let mut answer = empty_answer(&run, contact.force_unit, words, self.size(system, &contact));
@@ -285,6 +293,7 @@ impl Prepared {
         point: Point,
         words: [String; 3],
     ) -> Solved {
+        let point = refined(system, numbers, &contact, point);
         let state = joint_state(system, numbers, &contact, &point);
         let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
         let mut answer = empty_answer(&run, contact.force_unit, words, self.size(system, &contact));
@@ -397,9 +406,12 @@ impl Prepared {
                     }
                 }
             }
-            Geometry::Contact { released, .. } => {
-                let slips = released.displacements(&dislocation(numbers, z), factors);
-                for (&pair, slip) in released.pairs.iter().zip(slips.iter()) {
+            Geometry::Contact { system, .. } => {
+                let Some(file) = &system.file else {
+                    return;
+                };
+                let slips = file.forces(&dislocation(numbers, z), &file.load(factors)).slips;
+                for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
                     pairs[pair].z_t = *slip;
                 }
             }

@@ -71,7 +71,11 @@ pub fn denoised(value: f64, scale: f64) -> f64 {
 /// A number of a table whose quantity has the largest value `scale`: noise is `0`, and all numbers not much smaller
 /// than the largest one have its power of ten, so that a glance tells large from small.
 pub fn in_column(value: f64, scale: f64) -> String {
-    let value = denoised(value, scale);
+    aligned(denoised(value, scale), scale)
+}
+
+/// The same of a value that has been freed of its rounding already: beside a bound of 1e15 a force of 1 is no noise.
+pub fn aligned(value: f64, scale: f64) -> String {
     let (Some((figures, exponent)), Some((_, largest))) = (figures(value), figures(scale)) else {
         return engineering(value);
     };

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest};
+use super::number::{aligned, largest};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, length_unit};
@@ -42,8 +42,8 @@ pub fn write(out: &mut dyn Write, pairs: &[PairState], units: &Units, style: &St
     }
     let forces = largest(pairs.iter().flat_map(|p| [p.x_n, p.x_t, p.bound]));
     let lengths = largest(pairs.iter().flat_map(|p| [p.z_n, p.z_t]));
-    let f = |value: f64| Cell::from(in_column(value, forces));
-    let d = |value: f64| Cell::from(in_column(value, lengths));
+    let f = |value: f64| Cell::from(aligned(value, forces));
+    let d = |value: f64| Cell::from(aligned(value, lengths));
     let mut table = Table::new(columns);
     for pair in pairs {
         let mut cells = vec![

@@ -20,12 +20,15 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> (C
         bound: vec![0.0; m],
         load: load.clone(),
         load_terms: load.abs(),
+        file_load: None,
     };
     let system = ContactSystem {
         pairs,
         stiffness,
         loads: vec![JointLoad::exactly("load".into(), load)],
         rounded: false,
+        corrected: None,
+        file: None,
         kernel: DMatrix::zeros(2 * m, 0),
     };
     (system, numbers)

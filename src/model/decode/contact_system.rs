@@ -13,13 +13,13 @@ use super::words::{counted, is_id, quoted};
 use crate::model::memory;
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
-use crate::model::scenario::{GivenContactSystem, GivenLoad};
+use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
 use crate::model::uses::Region;
 
-/// R may differ from its transpose by this much of its largest entry.
+/// R may differ from its transpose by this much after scaling to unit diagonal.
 const SYMMETRY: f64 = 1e-8;
 
-/// R z of a kernel vector may be this much of the largest entry of R times that of z.
+/// R z of a kernel vector may be this much of Σ √R_ii √R_kk |z_k|.
 const KERNEL: f64 = 1e-8;
 
 /// Reads a contact system; `path` is the scenario file, for the file of the matrix.
@@ -28,6 +28,7 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
         "pairs",
         "positions",
         "stiffness",
+        "compliance",
         "loads",
         "law",
         "friction",
@@ -37,7 +38,7 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
         "kernel",
     ])?;
     let pairs = fields.required("pairs").and_then(pair_ids);
-    let stiffness = fields.required("stiffness");
+    let matrix = matrix_of(&fields);
     let loads = fields.required("loads");
     // Everything else is measured by the number of pairs.
     let pairs = pairs?;
@@ -47,13 +48,36 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
         None => None,
     };
     let laws = laws(&fields, count);
-    let stiffness = stiffness.and_then(|cursor| csm(cursor, count, path));
+    let matrix = matrix.and_then(|(cursor, is_compliance)| {
+        let rows = symmetric_matrix(cursor, count, is_compliance, path)?;
+        Some(if is_compliance { GivenMatrix::Compliance(rows) } else { GivenMatrix::Stiffness(rows) })
+    });
     let loads = loads.and_then(|cursor| load_cases(cursor, count));
-    let kernel = match (fields.optional("kernel"), &stiffness) {
-        (Some(cursor), Some(stiffness)) => Some(kernel(cursor, count, stiffness)?),
+    let kernel = match (fields.optional("kernel"), &matrix) {
+        (Some(cursor), Some(GivenMatrix::Stiffness(rows))) => Some(kernel(cursor, count, rows)?),
+        (Some(cursor), Some(GivenMatrix::Compliance(_))) => {
+            cursor.problem(
+                "`kernel` belongs to `stiffness`",
+                "a compliance matrix exists only where every motion is resisted: remove `kernel`, or give `stiffness`",
+            );
+            return None;
+        }
         _ => None,
     };
-    Some(GivenContactSystem { pairs, positions, stiffness: stiffness?, loads: loads?, laws: laws?, kernel })
+    Some(GivenContactSystem { pairs, positions, matrix: matrix?, loads: loads?, laws: laws?, kernel })
+}
+
+/// The matrix and whether it is a compliance; a problem where there is none or two.
+fn matrix_of<'d>(fields: &Fields<'d>) -> Option<(Cursor<'d>, bool)> {
+    match (fields.optional("stiffness"), fields.optional("compliance")) {
+        (Some(_), Some(compliance)) => {
+            compliance.problem("both `stiffness` and `compliance` are given", "give one of them: W = R⁻¹");
+            None
+        }
+        (None, Some(compliance)) => Some((compliance, true)),
+        // Without either the usual one is asked for.
+        _ => fields.required("stiffness").map(|stiffness| (stiffness, false)),
+    }
 }
 
 fn pair_ids(cursor: Cursor<'_>) -> Option<Vec<String>> {
@@ -92,7 +116,12 @@ fn is_pair_id(text: &str) -> bool {
     }
 }
 
-fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<f64>>> {
+fn symmetric_matrix(
+    cursor: Cursor<'_>,
+    pairs: usize,
+    is_compliance: bool,
+    path: Option<&Path>,
+) -> Option<Vec<Vec<f64>>> {
     let size = 2 * pairs;
     if let Some(refusal) = memory::refusal(memory::for_joints(size as f64)) {
         cursor.problem(format!("the contact system is too large: with {pairs} pairs it {refusal}"), "use fewer pairs");
@@ -116,11 +145,11 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
         }
         (square(cursor)?, None)
     };
-    let largest = largest(&matrix);
+    let roots = diagonal_roots(&matrix);
     for (i, row) in matrix.iter().enumerate() {
         for (j, &a) in row.iter().enumerate().take(i) {
             let b = matrix[j][i];
-            if (a - b).abs() > SYMMETRY * largest {
+            if (a - b).abs() > SYMMETRY * roots[i] * roots[j] {
                 at.unwrap_or(cursor).problem(
                     format!(
                         "the matrix is not symmetric: row {}, column {} is {a}, row {}, column {} is {b}",
@@ -129,7 +158,7 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
                         j + 1,
                         i + 1
                     ),
-                    "a contact stiffness matrix is symmetric: correct one of the two",
+                    format!("a {} matrix is symmetric: correct one of the two", matrix_word(is_compliance)),
                 );
                 return None;
             }
@@ -138,8 +167,18 @@ fn csm(cursor: Cursor<'_>, pairs: usize, path: Option<&Path>) -> Option<Vec<Vec<
     Some(matrix)
 }
 
-fn largest(matrix: &[Vec<f64>]) -> f64 {
-    matrix.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()))
+fn matrix_word(is_compliance: bool) -> &'static str {
+    if is_compliance { "compliance" } else { "contact stiffness" }
+}
+
+/// √a_ii of every row, what scales the matrix to unit diagonal; of a row without a diagonal the smallest of the others,
+/// 1 where there is none.
+fn diagonal_roots(matrix: &[Vec<f64>]) -> Vec<f64> {
+    let diagonal = || matrix.iter().enumerate().map(|(i, row)| row[i].abs()).filter(|entry| *entry > 0.0);
+    let least = diagonal().fold(f64::INFINITY, f64::min);
+    let least = if least.is_finite() { least } else { 1.0 };
+    let root = |(i, row): (usize, &Vec<f64>)| if row[i] == 0.0 { least.sqrt() } else { row[i].abs().sqrt() };
+    matrix.iter().enumerate().map(root).collect()
 }
 
 fn load_cases(cursor: Cursor<'_>, pairs: usize) -> Option<Vec<GivenLoad>> {
@@ -165,7 +204,7 @@ fn load_cases(cursor: Cursor<'_>, pairs: usize) -> Option<Vec<GivenLoad>> {
 const TWO_EACH: &str = "all normals, then all tangentials";
 
 fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    let scale = largest(stiffness);
+    let roots = diagonal_roots(stiffness);
     let mut motions = Vec::new();
     let mut is_right = true;
     for entry in cursor.list()? {
@@ -179,16 +218,14 @@ fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Ve
             is_right = false;
             continue;
         }
-        let force = stiffness
-            .iter()
-            .map(|row| row.iter().zip(&motion).map(|(r, z)| r * (z / size)).sum::<f64>())
-            .fold(0.0_f64, |force, row| force.max(row.abs()));
-        if force > KERNEL * scale {
+        // |(R z)_i| / (√R_ii Σ √R_kk |z_k|), the worst of all rows.
+        let terms: f64 = roots.iter().zip(&motion).map(|(root, z)| root * (z / size).abs()).sum();
+        let force = (stiffness.iter().zip(&roots))
+            .map(|(row, root)| row.iter().zip(&motion).map(|(r, z)| r * (z / size)).sum::<f64>().abs() / (root * terms))
+            .fold(0.0_f64, f64::max);
+        if force > KERNEL {
             entry.problem(
-                format!(
-                    "this motion is not in the kernel: R z reaches {:.3e} of the largest entry of R",
-                    force / scale
-                ),
+                format!("this motion is not in the kernel: R z reaches {force:.3e} of the terms it is summed from"),
                 "`kernel` holds motions with R z = 0: correct it, or remove it",
             );
             is_right = false;

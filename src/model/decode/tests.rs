@@ -262,7 +262,7 @@ fn the_matrix_may_stand_in_a_file_beside_the_scenario() {
     .unwrap();
     let scenario = load_text("scenario.json", text, Some(&path)).unwrap();
     let Source::ContactSystem(system) = &scenario.source else { panic!() };
-    assert_eq!(system.stiffness, [[1.0, -1.0], [-1.0, 1.5]]);
+    assert_eq!(system.matrix.rows(), [[1.0, -1.0], [-1.0, 1.5]]);
     let problems = load_text("inline", text, None).unwrap_err();
     assert!(problems.to_string().contains("without a file of its own"));
 }

@@ -268,13 +268,16 @@ struct Contact {
 /// Contact stiffness matrix and contact load vectors
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["stiffness"] }, { "required": ["compliance"] }]))]
 struct ContactSystem {
     /// Ids of the m pairs
     pairs: Vec<String>,
     /// Places of the pairs, for plots
     positions: Option<Vec<Number>>,
-    /// Symmetric, 2m × 2m: all normals, then all tangentials
-    stiffness: Matrix,
+    /// CSM, 2m × 2m: all normals, then all tangentials; this or `compliance` is required
+    stiffness: Option<Matrix>,
+    /// Its inverse W in the place of `stiffness`: z = W λ + Σ factor·vector + (g, 0)
+    compliance: Option<Matrix>,
     /// Load cases by name
     loads: BTreeMap<String, JointLoad>,
     /// Law of each pair; coulomb if left out

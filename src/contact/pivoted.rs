@@ -1,0 +1,221 @@
+//! A symmetric positive semidefinite matrix factored with pivoting after scaling to unit diagonal, and its null space by
+//! the matrix's own digits.
+//!
+//! ```text
+//!   S = D⁻¹ A D⁻¹ (D powers of two near √A_ii, so that S has the digits of A),   P S Pᵀ = L Lᵀ + [0 0; 0 Σ]
+//! ```
+//! A vector z counts as null only if every |(A z)_i| ≤ 64 ε Σ_k |A_ik||z_k|: what the digits of A cannot tell from 0. A
+//! ratio to the largest eigenvalue says nothing: diag(1e9, 1e-3) is regular (theory §4, "The kernel of R is known").
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::doubled::dot;
+
+/// A row of A z below this share of its terms is zero by the digits of A.
+const DIGITS: f64 = 64.0 * f64::EPSILON;
+/// A remaining pivot (of 1) up to this is looked at.
+const NEARLY: f64 = 1e-10;
+
+/// See the module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PivotedCholesky {
+    /// Powers of two near √A_ii; 1 where that is not positive.
+    pub scale: Vec<f64>,
+    /// Row of A of each row of L.
+    pub order: Vec<usize>,
+    /// Number of pivots above 1e-10.
+    pub rank: usize,
+    /// L in its lower triangle.
+    l: DMatrix<f64>,
+}
+
+/// Vectors that A takes to zero, or nearly so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NullSpace {
+    /// By the digits of A.
+    pub exact: Vec<DVector<f64>>,
+    /// Small pivots, and yet not zero by the digits.
+    pub near: Vec<DVector<f64>>,
+    /// Smallest zᵀS z / zᵀz seen among them; 0 without any. Below zero A is indefinite.
+    pub least: f64,
+}
+
+impl PivotedCholesky {
+    /// Factors A.
+    pub fn new(matrix: &DMatrix<f64>) -> PivotedCholesky {
+        let n = matrix.nrows();
+        let scale = scales(matrix);
+        let mut l = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / scale[i] / scale[j]);
+        let mut order: Vec<usize> = (0..n).collect();
+        let mut rank = n;
+        for k in 0..n {
+            let largest = (k..n).max_by(|&i, &j| l[(i, i)].total_cmp(&l[(j, j)]).then(j.cmp(&i))).unwrap_or(k);
+            if l[(largest, largest)] <= NEARLY {
+                rank = k;
+                break;
+            }
+            swap(&mut l, k, largest);
+            order.swap(k, largest);
+            let root = l[(k, k)].sqrt();
+            l.view_mut((k, k), (n - k, 1)).iter_mut().for_each(|entry| *entry /= root);
+            l[(k, k)] = root;
+            let (done, rest) = l.as_mut_slice().split_at_mut((k + 1) * n);
+            let column = &done[k * n..];
+            for (j, other) in (k + 1..n).zip(rest.chunks_exact_mut(n)) {
+                let factor = column[j];
+                if factor != 0.0 {
+                    other[j..].iter_mut().zip(&column[j..]).for_each(|(a, b)| *a -= factor * b);
+                }
+            }
+        }
+        PivotedCholesky { scale, order, rank, l }
+    }
+
+    /// Rows of A that are independent.
+    pub fn independent(&self) -> &[usize] {
+        &self.order[..self.rank]
+    }
+
+    /// x with A x = b in the independent rows, 0 in the others.
+    pub fn solve(&self, b: &DVector<f64>) -> DVector<f64> {
+        let (rank, l) = (self.rank, self.l.view((0, 0), (self.rank, self.rank)));
+        let mut y = DVector::from_fn(rank, |i, _| b[self.order[i]] / self.scale[self.order[i]]);
+        l.solve_lower_triangular_mut(&mut y);
+        l.tr_solve_lower_triangular_mut(&mut y);
+        let mut x = DVector::zeros(b.len());
+        for (i, y) in y.iter().enumerate() {
+            x[self.order[i]] = y / self.scale[self.order[i]];
+        }
+        x
+    }
+
+    /// The null space of A, which this is the factor of.
+    pub fn null_space(&self, matrix: &DMatrix<f64>) -> NullSpace {
+        let (n, rank) = (self.order.len(), self.rank);
+        let rest = &self.order[rank..];
+        let mut null = NullSpace { exact: Vec::new(), near: Vec::new(), least: 0.0 };
+        if rest.is_empty() {
+            return null;
+        }
+        let candidates: Vec<DVector<f64>> = rest.iter().map(|&k| self.candidate(matrix, k)).collect();
+        let size = rest.len();
+        let sigma = DMatrix::from_fn(size, size, |i, j| {
+            let row = rest[i];
+            dot(0.0, matrix.column(row).iter().zip(candidates[j].iter())) / self.scale[row]
+        });
+        let eigen = SymmetricEigen::new(0.5 * (&sigma + sigma.transpose()));
+        for (value, weights) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            let z: DVector<f64> = candidates.iter().zip(weights.iter()).map(|(z, weight)| z * *weight).sum();
+            let length: f64 = (0..n).map(|i| (z[i] * self.scale[i]).powi(2)).sum();
+            null.least = null.least.min(value / length);
+            if is_null(matrix, &z) { null.exact.push(z) } else { null.near.push(z) }
+        }
+        // As they were found where all of them are null: simple motions stay simple.
+        if null.near.is_empty() && candidates.iter().all(|z| is_null(matrix, z)) {
+            null.exact = candidates;
+        }
+        null
+    }
+
+    /// The vector with 1 / scale at `k`, 0 at the other dependent rows, that A takes to zero in all independent rows.
+    fn candidate(&self, matrix: &DMatrix<f64>, k: usize) -> DVector<f64> {
+        let own = 1.0 / self.scale[k];
+        let mut z = DVector::zeros(self.order.len());
+        z[k] = own;
+        // The first step solves, the others refine.
+        for _ in 0..3 {
+            let mut residual = DVector::zeros(z.len());
+            for &row in self.independent() {
+                residual[row] = dot(0.0, matrix.column(row).iter().zip(z.iter()));
+            }
+            z -= self.solve(&residual);
+        }
+        z
+    }
+}
+
+/// Powers of two near √A_ii, 1 where that is not positive: what scales A to unit diagonal and keeps its digits.
+pub fn scales(matrix: &DMatrix<f64>) -> Vec<f64> {
+    let power = |d: &f64| if *d > 0.0 { 2f64.powi((0.5 * d.log2()).round() as i32) } else { 1.0 };
+    matrix.diagonal().iter().map(power).collect()
+}
+
+/// Swaps rows and columns of a symmetric matrix of which only the lower triangle is kept, k ≤ p.
+fn swap(a: &mut DMatrix<f64>, k: usize, p: usize) {
+    if k == p {
+        return;
+    }
+    for j in 0..k {
+        a.swap((k, j), (p, j));
+    }
+    a.swap((k, k), (p, p));
+    for i in k + 1..p {
+        a.swap((i, k), (p, i));
+    }
+    for i in p + 1..a.nrows() {
+        a.swap((i, k), (i, p));
+    }
+}
+
+/// Whether A z = 0 by the digits of A, row by row.
+pub fn is_null(matrix: &DMatrix<f64>, z: &DVector<f64>) -> bool {
+    matrix.column_iter().all(|row| {
+        let terms: f64 = row.iter().zip(z.iter()).map(|(a, z)| (a * z).abs()).sum();
+        dot(0.0, row.iter().zip(z.iter())).abs() <= DIGITS * terms
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contrast_of_stiffness_is_no_null_space() {
+        let matrix = DMatrix::from_diagonal(&DVector::from_row_slice(&[1e9, 1e-3, 1e9, 1e-3]));
+        let factor = PivotedCholesky::new(&matrix);
+        assert_eq!(factor.rank, 4);
+        assert_eq!(factor.null_space(&matrix).exact.len(), 0);
+    }
+
+    #[test]
+    fn solves_in_any_order_of_pivots() {
+        // A = B Bᵀ with scales 1e±3; x from A x.
+        let b = DMatrix::from_fn(5, 5, |i, j| f64::from(((i * 7 + j * 3) % 5) as u8) - 1.5);
+        let scale = [1e3, 1e-3, 1.0, 10.0, 1e-2];
+        let a = &b * b.transpose() + DMatrix::identity(5, 5);
+        let a = DMatrix::from_fn(5, 5, |i, j| scale[i] * a[(i, j)] * scale[j]);
+        let x = DVector::from_fn(5, |i, _| (1.0 + i as f64) / scale[i]);
+        let found = PivotedCholesky::new(&a).solve(&(&a * &x));
+        for i in 0..5 {
+            assert!((found[i] / x[i] - 1.0).abs() < 1e-10, "{i}: {} {}", found[i], x[i]);
+        }
+    }
+
+    #[test]
+    fn the_null_space_is_found_at_any_scale() {
+        // A = D (I − n nᵀ) D in integers: n = (1, 2, 2)/3, 9 (I − n nᵀ) is integer; null vector D⁻¹ n.
+        let integer = [[8.0, -2.0, -2.0], [-2.0, 5.0, -4.0], [-2.0, -4.0, 5.0]];
+        let d = [1.0, 1024.0, 1.0 / 1024.0];
+        let a = DMatrix::from_fn(3, 3, |i, j| d[i] * integer[i][j] * d[j]);
+        let factor = PivotedCholesky::new(&a);
+        assert_eq!(factor.rank, 2);
+        let null = factor.null_space(&a);
+        assert_eq!((null.exact.len(), null.near.len()), (1, 0));
+        let z = &null.exact[0];
+        for i in 0..3 {
+            let expected = [1.0, 2.0, 2.0][i] / d[i];
+            assert!((z[i] / z[0] - expected).abs() <= 1e-14 * expected, "{z}");
+        }
+        // A change in the twelfth digit is nearly singular, not singular.
+        let mut rounded = a.clone();
+        rounded[(0, 0)] *= 1.0 + 1e-12;
+        let null = PivotedCholesky::new(&rounded).null_space(&rounded);
+        assert_eq!((null.exact.len(), null.near.len()), (0, 1));
+    }
+
+    #[test]
+    fn an_indefinite_matrix_shows_itself() {
+        let a = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0]);
+        assert!(PivotedCholesky::new(&a).null_space(&a).least < -0.1);
+    }
+}
