@@ -107,7 +107,10 @@ fn the_kernel_is_found_by_the_digits_at_any_scale() {
 #[test]
 fn indefinite_and_asymmetric_are_told_after_scaling() {
     let text = refusal(json!({ "pairs": ["a"], "stiffness": [[1e9, 0], [0, -1e-3]], "loads": {} }));
-    assert!(text.contains("contact_system.stiffness: the contact stiffness matrix is not positive semidefinite"), "{text}");
+    assert!(
+        text.contains("contact_system.stiffness: the contact stiffness matrix is not positive semidefinite"),
+        "{text}"
+    );
     // Beside 1e9 an entry of 1e-6 is nothing; of two joints of 1e-3 it is a thousandth.
     let rows = json!([[1e9, 0, 0, 0], [0, 1e-3, 0, 1e-6], [0, 0, 1e9, 0], [0, 0, 0, 1e-3]]);
     let text = scenario_text(system(json!({ "pairs": ["a", "b"], "stiffness": rows, "loads": {} })));
@@ -201,7 +204,8 @@ fn the_exact_check_has_the_data_of_the_file() {
         let load = DVector::from_fn(2 * m, |i, _| rng.random_range(-1.0..1.0) * r[(i, i)].sqrt());
         let law: Vec<&str> = (0..m).map(|i| if i == 0 { "frictionless" } else { "coulomb" }).collect();
         let friction: Vec<f64> = law.iter().map(|law| if *law == "coulomb" { 0.5 } else { 0.0 }).collect();
-        let case = Case::json(system(json!({ "pairs": (0..m).map(|i| format!("c{i}")).collect::<Vec<_>>(), "law": law,
+        let case =
+            Case::json(system(json!({ "pairs": (0..m).map(|i| format!("c{i}")).collect::<Vec<_>>(), "law": law,
             "friction": friction, "stiffness": rows(&r), "loads": { "w": { "vector": load.as_slice() } } })));
         let solved = case.solved(&[], case.scenario.rules);
         is_answer(&solved.answer);

@@ -119,7 +119,7 @@ fn from_stiffness(
     given: &GivenContactSystem,
     matrix: &DMatrix<f64>,
 ) -> Result<(ContactSystem, Vec<String>), GivenError> {
-    let (_, null) = null_space("stiffness", matrix)?;
+    let (whole, null) = null_space("stiffness", matrix)?;
     let mut remarks = Vec::new();
     // What the author knows to be a kernel is one, to the last digit, whatever the digits of the matrix.
     let (motions, data) = match &given.kernel {
@@ -130,7 +130,7 @@ fn from_stiffness(
             (motions, data)
         }
         None => {
-            remarks.extend(null.near.iter().map(|z| nearly_singular(given, z)));
+            remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &whole.scale)));
             (null.exact, matrix.clone())
         }
     };
@@ -239,7 +239,7 @@ fn from_compliance(
     given: &GivenContactSystem,
     matrix: DMatrix<f64>,
 ) -> Result<(ContactSystem, Vec<String>), GivenError> {
-    null_space("compliance", &matrix)?;
+    let (whole, _) = null_space("compliance", &matrix)?;
     // Joints that carry no force are left out of W as they are: their motion follows.
     let rows = Rows::of(given);
     let own = Rows::block(&matrix, &rows.kept, &rows.kept);
@@ -251,7 +251,9 @@ fn from_compliance(
         for (i, &row) in rows.kept.iter().enumerate() {
             all[row] = forces.map_or(0.0, |forces| forces[i]);
         }
-        return Err(GivenError::Singular { forces: joints_in_words(given, &all, ["along n", "along t"]) });
+        return Err(GivenError::Singular {
+            forces: joints_in_words(given, &all, &whole.scale, ["along n", "along t"]),
+        });
     }
     let k = rows.kept.len();
     let inverse = DMatrix::from_columns(
@@ -290,29 +292,33 @@ fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
         .collect()
 }
 
-fn nearly_singular(given: &GivenContactSystem, z: &DVector<f64>) -> String {
+fn nearly_singular(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) -> String {
     format!(
         "the contact stiffness matrix is nearly singular: it resists the motion {} with less than 1e-10 of what its \
          entries would let expect, and yet its digits say that it does; if that motion costs nothing, say so: `kernel`",
-        joints_in_words(given, z, ["z_n", "z_t"])
+        joints_in_words(given, z, scale, ["z_n", "z_t"])
     )
 }
 
-/// `1 z_n of c1, -0.5 z_t of c2`: the entries of a vector over all 2m joints, largest 1, small ones left out.
-fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, words: [&str; 2]) -> String {
+/// `1 z_n of c1, -0.5 z_t of c2`: the entries of a vector over all 2m joints, largest 1; what is small after scaling to
+/// unit diagonal is left out.
+fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64], words: [&str; 2]) -> String {
     let m = given.pairs.len();
-    let largest = z.amax();
-    let named: Vec<String> = (z.iter().enumerate())
-        .filter(|(_, z)| z.abs() > 1e-6 * largest)
-        .map(|(i, z)| {
-            let share = format!("{:.4}", z / largest);
-            let share = share.trim_end_matches('0').trim_end_matches('.');
-            format!("{share} {} of {}", words[usize::from(i >= m)], given.pairs[i % m])
-        })
-        .collect();
+    let sizes: Vec<f64> = z.iter().zip(scale).map(|(z, scale)| (z * scale).abs()).collect();
+    let largest = sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
+    let named: Vec<usize> = (0..z.len()).filter(|&i| sizes[i] > 1e-6 * largest).collect();
+    let one = |&i: &usize| {
+        let share = z[i] / z.amax();
+        let share = if share.abs() < 1e-3 {
+            format!("{share:.3e}")
+        } else {
+            format!("{share:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
+        };
+        format!("{share} {} of {}", words[usize::from(i >= m)], given.pairs[i % m])
+    };
     match named.len() {
-        0..=6 => named.join(", "),
-        more => format!("{}, … ({more} joints)", named[..5].join(", ")),
+        0..=6 => named.iter().map(one).collect::<Vec<_>>().join(", "),
+        more => format!("{}, … ({more} joints)", named[..5].iter().map(one).collect::<Vec<_>>().join(", ")),
     }
 }
 
