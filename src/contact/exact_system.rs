@@ -12,7 +12,7 @@ use crate::model::pair::Law;
 use super::numbers::ContactNumbers;
 use super::scheme_word::{PairScheme, Tangential};
 use super::system::ContactSystem;
-use super::whole::{constants_with, fixed_bound, friction};
+use super::whole::{fixed_bound, friction};
 
 /// Entries of the kernel this close to a whole number are that number: they come out of f64 linear algebra.
 const WHOLE: f64 = 64.0 * f64::EPSILON;
@@ -39,8 +39,13 @@ pub(crate) struct PairVariables {
 
 impl<'a> ExactSystem<'a> {
     pub fn new(system: &'a ContactSystem, numbers: &'a ContactNumbers) -> Self {
-        let stiffness = with_exact_kernel(system);
-        let constants = constants_with(system, numbers, &|i, j| stiffness[i][j].clone());
+        let (stored, mut constants) = stored(system, numbers);
+        let stiffness = with_exact_kernel(system, stored);
+        let gaps = numbers.gap.iter().enumerate().filter(|(_, gap)| **gap != 0.0);
+        for (k, gap) in gaps {
+            let gap = rational(*gap);
+            constants.iter_mut().zip(&stiffness).for_each(|(constant, row)| *constant -= &row[k] * &gap);
+        }
         Self { system, numbers, stiffness, constants }
     }
 
@@ -169,14 +174,45 @@ impl PairVariables {
     }
 }
 
+/// R and RF as they are stored; of a file with frictionless pairs from its own entries, the released tangential joints
+/// condensed out exactly.
+fn stored(system: &ContactSystem, numbers: &ContactNumbers) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
+    let all = |matrix: &DMatrix<f64>| -> Vec<Vec<BigRational>> {
+        matrix.row_iter().map(|row| row.iter().map(|entry| rational(*entry)).collect()).collect()
+    };
+    let (Some(file), Some(load)) = (&system.file, &numbers.file_load) else {
+        return (all(&system.stiffness), numbers.load.iter().map(|entry| rational(*entry)).collect());
+    };
+    if file.compliance {
+        return (all(&system.stiffness), numbers.load.iter().map(|entry| rational(*entry)).collect());
+    }
+    let mut rows = all(&file.matrix);
+    rows.iter_mut().zip(load.vector.iter()).for_each(|(row, load)| row.push(rational(*load)));
+    for released in file.factor.independent().iter().map(|&row| file.released[row]) {
+        let pivot = rows[released].clone();
+        if pivot[released].is_zero() {
+            continue;
+        }
+        for row in &mut rows {
+            if row[released].is_zero() {
+                continue;
+            }
+            let factor = &row[released] / &pivot[released];
+            row.iter_mut().zip(&pivot).for_each(|(entry, pivot)| *entry -= &factor * pivot);
+        }
+    }
+    let last = file.matrix.ncols();
+    let row_of = |&i: &usize| file.kept.iter().map(|&j| rows[i][j].clone()).collect();
+    (file.kept.iter().map(row_of).collect(), file.kept.iter().map(|&i| rows[i][last].clone()).collect())
+}
+
 /// R with Z exactly in its kernel. Some joints P as many as there are motions, chosen so that their displacements tell
 /// the motion: Z = [G; 1] over the others N and P. Then only R_NN is taken from R, and R = Tᵀ R_NN T with
 /// T = [1, −G], which differs from what is stored by its rounding.
-fn with_exact_kernel(system: &ContactSystem) -> Vec<Vec<BigRational>> {
+fn with_exact_kernel(system: &ContactSystem, stored: Vec<Vec<BigRational>>) -> Vec<Vec<BigRational>> {
     let k = system.joint_count();
-    let stored = |i: usize, j: usize| rational(system.stiffness[(i, j)]);
     let Some((telling, motion)) = telling_joints(&system.kernel) else {
-        return (0..k).map(|i| (0..k).map(|j| stored(i, j)).collect()).collect();
+        return stored;
     };
     let others: Vec<usize> = (0..k).filter(|j| !telling.contains(j)).collect();
     // T over all joints, one row for each of N.
@@ -200,7 +236,8 @@ fn with_exact_kernel(system: &ContactSystem) -> Vec<Vec<BigRational>> {
             })
             .sum()
     };
-    let inner: Vec<Vec<BigRational>> = others.iter().map(|&i| others.iter().map(|&j| stored(i, j)).collect()).collect();
+    let inner: Vec<Vec<BigRational>> =
+        others.iter().map(|&i| others.iter().map(|&j| stored[i][j].clone()).collect()).collect();
     let half: Vec<Vec<BigRational>> =
         (0..others.len()).map(|i| (0..k).map(|j| product(&inner, i, j, false)).collect()).collect();
     (0..k).map(|i| (0..k).map(|j| product(&half, i, j, true)).collect()).collect()

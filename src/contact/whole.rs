@@ -102,7 +102,7 @@ pub fn joint_constants<T: Scalar>(system: &ContactSystem, numbers: &ContactNumbe
 }
 
 /// [`joint_constants`] with the entries of R from `stiffness`.
-pub(crate) fn constants_with<T: Scalar>(
+fn constants_with<T: Scalar>(
     system: &ContactSystem,
     numbers: &ContactNumbers,
     stiffness: &dyn Fn(usize, usize) -> T,
