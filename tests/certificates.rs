@@ -28,6 +28,7 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> (ContactSystem, ContactNumber
         bound: vec![0.0; m],
         load: DVector::zeros(0),
         load_terms: DVector::zeros(0),
+        file_load: None,
     };
     for i in 0..m {
         let law = match rng.random_range(0..6) {
@@ -68,7 +69,7 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> (ContactSystem, ContactNumber
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
     numbers.set_load(DVector::from_fn(k, |i, _| f64::from(rng.random_range(if i < m { -1..=3 } else { -2..=2 }))));
     let loads = vec![JointLoad::exactly("load".into(), numbers.load.clone())];
-    (ContactSystem { pairs, stiffness, loads, rounded: true, kernel }, numbers)
+    (ContactSystem { pairs, stiffness, loads, rounded: true, kernel, corrected: None, file: None }, numbers)
 }
 
 #[test]

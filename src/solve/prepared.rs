@@ -21,6 +21,7 @@ use crate::model::uses::Redone;
 use crate::watch::Watch;
 
 /// What kind of thing is solved.
+#[expect(clippy::large_enum_variant, reason = "one for each prepared scenario, never in lists")]
 pub enum Geometry {
     /// A structure with its main system.
     Structure {

@@ -137,15 +137,13 @@ impl Problem {
         let mut a: Vec<Vec<Exact>> = self.r.iter().map(|row| row.iter().map(|v| exact(*v)).collect()).collect();
         (0..n).for_each(|k| a[k][k] *= exact(1.0 - 1e-12));
         for k in 0..n {
-            if !a[k][k].is_positive() {
+            let line = a[k].clone();
+            if !line[k].is_positive() {
                 return false;
             }
-            for i in k + 1..n {
-                let factor = &a[i][k] / &a[k][k];
-                for j in k..n {
-                    let step = &factor * &a[k][j];
-                    a[i][j] -= step;
-                }
+            for other in a.iter_mut().skip(k + 1) {
+                let factor = &other[k] / &line[k];
+                other.iter_mut().zip(&line).for_each(|(entry, pivot)| *entry -= &factor * pivot);
             }
         }
         true

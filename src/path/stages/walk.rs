@@ -306,7 +306,7 @@ impl<'a> Walk<'a> {
 
     fn state(&self) -> JointState {
         let (z, force, terms) = (&self.standing.z, &self.standing.force, self.standing.force_sizes());
-        JointState { z: z.clone(), force: force.clone(), terms: terms.clone(), p: 0.0 }
+        JointState { z: z.clone(), force: force.clone(), terms: terms.clone(), left: Vec::new(), slips: None, p: 0.0 }
     }
 
     /// The pairs where it stands.
