@@ -7,13 +7,14 @@ use super::energy;
 use super::event::next_event;
 use super::rate_problem::{Ended, RateProblem, Rates};
 use super::record::{History, HistoryEnd, Moment, StageResult};
-use super::standing::{Laws, Normal, Reached, Sense, Standing, scheme_of};
+use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales, scheme_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{OutcomeKind, PairState, Ray, State};
 use crate::contact::complementarity::{ContactLcp, Couple, RowMeaning};
 use crate::contact::numbers::ContactNumbers;
 use crate::explain::sentence::pivot_records;
 use crate::lcp::outcome::Run;
+use crate::lcp::problem::NOISE;
 use crate::path::change::{between, sentence};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
@@ -255,6 +256,9 @@ impl<'a> Walk<'a> {
     /// What every pair does at these rates.
     fn way_of(&self, rates: &Rates) -> Vec<(State, Option<State>)> {
         let moves = |pair: usize, couple: Couple| rates.moving.contains(&RowMeaning { pair, couple });
+        // A pair that may slip but whose rate is rounding rests at its limit.
+        let noise = self.laws.length_sizes(&joint_scales(self.laws.system), &rates.z) * NOISE;
+        let slides = |joint: Option<usize>| joint.is_some_and(|joint| rates.z[joint].abs() > noise[joint]);
         let pairs = self.laws.system.pairs.iter().enumerate();
         pairs
             .map(|(i, pair)| {
@@ -264,6 +268,7 @@ impl<'a> Walk<'a> {
                     Normal::Closed | Normal::Bilateral => false,
                 };
                 let slips = match (moves(i, Couple::Plus), moves(i, Couple::Minus)) {
+                    _ if !slides(pair.tangential) => State::Stick,
                     (true, _) => State::SlipPlus,
                     (_, true) => State::SlipMinus,
                     _ => State::Stick,
