@@ -195,6 +195,9 @@ struct SweepArguments {
     /// CSV, or JSON lines; otherwise by the ending of FILE, or CSV
     #[arg(long, value_enum)]
     format: Option<Rows>,
+    /// Quantities with columns of their own, separated by commas: "x_n c1, max u"
+    #[arg(long, value_name = "QUANTITIES")]
+    columns: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -415,7 +418,7 @@ fn solve(arguments: &Solve, style: &Style, out: &mut dyn Write) -> Result<u8, Fa
     };
     match arguments.format {
         Form::Json => {
-            let result = json_export::result(answer, &session.scenario().name, session.values(), arguments.timings);
+            let result = session.result(arguments.timings).unwrap_or_default();
             writeln!(out, "{}", json_export::pretty(&result)?)?;
         }
         Form::Text => write_answer(&session, answer, arguments.timings, style, out)?,
@@ -437,7 +440,8 @@ fn write_history(
     let answer = history.answer().ok_or_else(nothing)?;
     if arguments.format == Form::Json {
         let result = history_json::result(history, &scenario.name, session.values(), arguments.timings);
-        let text = serde_json::to_string_pretty(&result.ok_or_else(nothing)?).map_err(io::Error::other)?;
+        let text = serde_json::to_string_pretty(&session.with_probes(result.ok_or_else(nothing)?))
+            .map_err(io::Error::other)?;
         writeln!(out, "{text}")?;
     } else {
         let note = "the load history was followed, this is its end (`--at-once`: all load cases at once)";
@@ -484,6 +488,7 @@ fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Resu
         }),
         out: arguments.out.as_deref(),
         resume: arguments.resume,
+        columns: arguments.columns.as_deref(),
     };
     let done = session.sweep_into(&request, out, &watch);
     watch.clear();

@@ -15,6 +15,7 @@ pub mod mesh;
 pub mod pair;
 pub mod parameter;
 pub mod problem;
+pub mod quantity;
 pub mod rules;
 pub mod scenario;
 pub mod schema;

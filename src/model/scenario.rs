@@ -9,6 +9,7 @@ use super::locate::Document;
 use super::pair::Law;
 use super::parameter::{Formulas, Number, Parameter, ParameterValues};
 use super::problem::{Problem, Problems};
+use super::quantity::Quantity;
 use super::rules::Rules;
 use super::structure::Structure;
 use super::uses::Uses;
@@ -141,6 +142,10 @@ pub struct Scenario {
     pub source: Source,
     /// Load history; empty without one.
     pub stages: Vec<Stage>,
+    /// Load combinations by name: multipliers of the cases' factors; cases not named count 0.
+    pub combinations: Vec<(String, Stage)>,
+    /// Names for quantities, in the order of the file.
+    pub probes: Vec<(String, Quantity)>,
     /// Covering, tie-break and engine the file asks for.
     pub rules: Rules,
     /// Where its parts stand in `text`.

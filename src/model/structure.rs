@@ -219,6 +219,15 @@ pub struct LoadCase {
     pub loads: Vec<Load>,
 }
 
+/// The edge behind the pairs `joint[0]`, `joint[1]` …
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeContact {
+    /// `joint`.
+    pub id: String,
+    /// Nodes of the edge in order, those of skipped pairs included: pair k is at node k.
+    pub nodes: Vec<usize>,
+}
+
 /// A structure with its contact pairs and load cases, ready for the finite elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Structure {
@@ -240,6 +249,8 @@ pub struct Structure {
     pub springs: Vec<Spring>,
     /// Contact pairs in the order of the file.
     pub pairs: Vec<Pair>,
+    /// The contacts of edges among them.
+    pub edge_contacts: Vec<EdgeContact>,
     /// Load cases in the order of the file.
     pub load_cases: Vec<LoadCase>,
 }

@@ -6,6 +6,7 @@ pub mod grid;
 pub mod limit;
 pub mod load;
 pub mod merge;
+pub mod quantity;
 pub(crate) mod rate;
 pub mod record;
 pub mod sensitivity;

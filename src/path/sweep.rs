@@ -9,11 +9,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::grid::{Grid, Shard};
+use super::quantity::Facts;
 use crate::answer::record::{Answer, OutcomeKind, State};
 use crate::model::parameter::ParameterValues;
+use crate::model::quantity::Quantity;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
-use crate::solve::{PrepareError, Prepared, Solved};
+use crate::solve::{PrepareError, Prepared};
 use crate::text::hash::Hash;
 use crate::text::printable;
 use crate::watch::Watch;
@@ -47,6 +49,8 @@ pub struct Sweep<'a> {
     pub shard: Shard,
     /// How rows are written.
     pub format: Format,
+    /// Columns after the usual ones.
+    pub quantities: &'a [Quantity],
 }
 
 /// First line of a file: what it holds, and whether two files belong together.
@@ -66,6 +70,9 @@ pub struct Header {
     pub points: usize,
     /// Part of them in this file.
     pub shard: Shard,
+    /// Quantities with columns of their own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<String>,
 }
 
 /// What was done.
@@ -152,6 +159,7 @@ impl Sweep<'_> {
             grid: self.grid.axes.iter().map(|axis| axis.range.clone()).collect(),
             points: self.grid.len(),
             shard: self.shard,
+            quantities: self.quantities.iter().map(ToString::to_string).collect(),
         }
     }
 
@@ -223,15 +231,20 @@ impl Sweep<'_> {
     }
 
     /// The answer at one point; a refusal in words, or `None` where `watch` asked to stop.
-    fn solve_at(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<Solved, Option<String>> {
+    fn solve_at(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<(Vec<Value>, bool), Option<String>> {
         let renewed = self.prepared.renewed(self.scenario, values, watch).map_err(|error| match error {
             PrepareError::Interrupted => None,
             PrepareError::Problems(problems) => Some(problems.to_string()),
         })?;
         let prepared = renewed.as_ref().map_or(self.prepared, |(prepared, _)| prepared);
-        prepared
+        let solved = prepared
             .solve_briefly(self.scenario, values, self.rules, watch)
-            .map_err(|error| (!error.is_interrupted()).then(|| error.to_string()))
+            .map_err(|error| (!error.is_interrupted()).then(|| error.to_string()))?;
+        let mut fields = fields(&solved.answer);
+        let facts = Facts::of_answer(self.scenario, prepared, values, &solved, watch);
+        let quantities = self.quantities.iter();
+        fields.extend(quantities.map(|quantity| facts.value(quantity).map_or(Value::Null, |value| value.json())));
+        if watch.stop() { Err(None) } else { Ok((fields, solved.answer.is_answer())) }
     }
 
     /// `None` where `watch` asked to stop.
@@ -242,7 +255,7 @@ impl Sweep<'_> {
             values.insert(axis.name.clone(), *value);
         }
         let (fields, is_answer) = match self.solve_at(&values, &StopOnly(watch)) {
-            Ok(solved) => (fields(&solved.answer), solved.answer.is_answer()),
+            Ok(found) => found,
             Err(None) => return None,
             Err(Some(refusal)) => {
                 let mut fields = vec![Value::Null; COLUMNS.len()];
@@ -250,6 +263,7 @@ impl Sweep<'_> {
                 if let Some(failure) = fields.last_mut() {
                     *failure = json!(refusal);
                 }
+                fields.resize(COLUMNS.len() + self.quantities.len(), Value::Null);
                 (fields, false)
             }
         };
@@ -259,7 +273,9 @@ impl Sweep<'_> {
                 format!("{}{}", self.key(index), cells.join(","))
             }
             Format::Json => {
-                let object: Map<String, Value> = COLUMNS.map(str::to_owned).into_iter().zip(fields).collect();
+                let names = COLUMNS.map(str::to_owned).into_iter();
+                let names = names.chain(self.quantities.iter().map(ToString::to_string));
+                let object: Map<String, Value> = names.zip(fields).collect();
                 let text = printable::json(Value::Object(object).to_string());
                 let fields = text.strip_prefix('{').and_then(|text| text.strip_suffix('}')).unwrap_or_default();
                 format!("{}{fields}", self.key(index))
@@ -274,7 +290,10 @@ impl Header {
     /// Names of the columns.
     pub fn columns(&self) -> Vec<String> {
         let axes = self.grid.iter().map(|range| range.split('=').next().unwrap_or_default().to_owned());
-        axes.chain(COLUMNS.map(str::to_owned)).chain(["checksum".to_owned()]).collect()
+        axes.chain(COLUMNS.map(str::to_owned))
+            .chain(self.quantities.iter().cloned())
+            .chain(["checksum".to_owned()])
+            .collect()
     }
 
     /// Whether `line` is the row of this point, character by character as it was written.
@@ -317,6 +336,7 @@ pub(super) fn header_line(header: &Header, format: Format) -> String {
 
 /// The line of column names of a CSV.
 pub(super) fn columns_line(columns: &[String]) -> String {
+    let columns: Vec<String> = columns.iter().map(|column| cell(&Value::String(column.clone()))).collect();
     format!("{}\n", columns.join(","))
 }
 

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use crate::answer::record::Start;
 use crate::model::embedded;
 use crate::model::load::at_values;
+use crate::model::quantity::Quantity;
 use crate::model::uses::Redone;
 use crate::solve::Prepared;
 use crate::solve::resume::same_answer;
@@ -17,7 +18,7 @@ use crate::view::status;
 use crate::view::style::Role;
 
 use super::command::{Command, Export};
-use super::expect::{self, Facts};
+use super::expect;
 use super::journal::Record;
 use super::values::{self, Setting};
 use super::{Change, CommandError, Format, Next, Output, Session, Setup, help, import, load, save, script};
@@ -44,6 +45,10 @@ impl Session {
             Command::Displacements { nodes } => self.report_displacements(&nodes, io)?,
             Command::Members { bar } => self.report_members(bar.as_deref(), io)?,
             Command::Reactions => self.report_reactions(io)?,
+            Command::Show { words } => self.show(&words, io)?,
+            Command::Summary => self.summary(io)?,
+            Command::Combine { name } => self.combine(name.as_deref(), io)?,
+            Command::Envelope { words } => self.envelope(&words, io)?,
             Command::Check { how: None } => self.report_check(io)?,
             Command::Check { how: Some(_) } => self.check_exactly(io)?,
             Command::Pivots { range } => self.report_pivots(range.as_deref(), io)?,
@@ -60,7 +65,9 @@ impl Session {
             Command::Limit { name } => self.limit(&name, io)?,
             Command::Sensitivity { parameter } => self.sensitivity(parameter.as_deref(), io)?,
             Command::Stages { stage } => self.stages(stage, io)?,
-            Command::Sweep { words, out, resume, shard } => self.sweep(&words, out.as_deref(), resume, shard, io)?,
+            Command::Sweep { words, out, resume, shard, columns } => {
+                self.sweep(&words, out.as_deref(), resume, shard, columns.as_deref(), io)?;
+            }
             Command::Source { file } => return script::source(self, &file, io),
             Command::Record { file } => self.record(&file, io)?,
             Command::Expect { words } => self.expect(&words, io)?,
@@ -396,38 +403,10 @@ impl Session {
     }
 
     fn expect(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let (stage, words_of_it) = expect::stage(words)?;
-        let expectation = expect::read(words_of_it)?;
-        let error = self.last_error.as_deref();
-        let history = match stage {
-            Some(stage) => Some(self.stage_answer(stage)?),
-            None => self.followed.as_ref().and_then(|history| history.answer()),
-        };
-        let (pairs, displacements);
-        let facts = match history {
-            Some(answer) => Facts {
-                answer: Some(answer),
-                pairs: &answer.pairs,
-                p: Some(answer.p),
-                displacements: answer.displacements.as_deref(),
-                error,
-            },
-            None => {
-                pairs = self.pairs();
-                displacements = match expectation {
-                    expect::Expectation::Node { .. } => self.displacements(),
-                    _ => None,
-                };
-                let displacements = displacements.as_deref();
-                Facts { answer: self.answer(), pairs: &pairs, p: self.p(), displacements, error }
-            }
-        };
-        expectation.test(&facts).map_err(|failed| match failed {
-            Ok(unmet) => CommandError::Unmet(unmet),
-            Err(unknown) => CommandError::Refused(unknown),
-        })?;
+        let expectation = expect::read(words, &self.names())?;
+        self.with_facts(io.watch, |facts| expectation.test(facts, self.last_error.as_deref()))?;
         match expectation {
-            expect::Expectation::Outcome(_) => self.trouble = None,
+            expect::Expectation::Word { quantity: Quantity::Plain("outcome"), .. } => self.trouble = None,
             expect::Expectation::Error(_) => self.last_error = None,
             _ => {}
         }

@@ -106,6 +106,36 @@ pub enum Command {
     /// stand under the pairs.
     #[command(after_help = "Example:\n  reactions")]
     Reactions,
+    /// Show quantities of the answer: forces, slips, displacements, stresses, limits
+    ///
+    /// Commas may separate several. Without a quantity the probes of the scenario are shown. The same words stand in
+    /// `expect`, in probes, in `envelope`, `sweep --columns`, `trace … of` and `plot path`.
+    #[command(after_help = "Example:\n  show x_n c1, z_t c6\n  show sum x_n *, count stick")]
+    Show {
+        /// The quantities
+        #[arg(value_name = "QUANTITY", allow_negative_numbers = true)]
+        words: Vec<String>,
+    },
+    /// Show the answer on one screen: resultants, extremes, reactions, safety of each load case
+    #[command(after_help = "Example:\n  summary")]
+    Summary,
+    /// Solve the load combinations of the scenario
+    ///
+    /// Each multiplies the factors of the load cases it names; cases it does not name count 0. With NAME its answer is
+    /// the one that the other commands show, until the next change or `solve`.
+    #[command(after_help = "Example:\n  combine\n  combine ULS1")]
+    Combine {
+        /// The combination; all of them if none is named
+        #[arg(value_name = "COMBINATION")]
+        name: Option<String>,
+    },
+    /// Show the least and the largest value of quantities over the load combinations, with the one that governs
+    #[command(after_help = "Example:\n  envelope\n  envelope x_n c1, max u over combinations")]
+    Envelope {
+        /// The quantities, the probes if none is named; and then `over combinations`
+        #[arg(value_name = "QUANTITY", allow_negative_numbers = true)]
+        words: Vec<String>,
+    },
     /// Show the numbers of the fresh check of the answer; `check exact` proves or refutes it
     ///
     /// `check exact` solves the final working scheme in exact arithmetic from the f64 data and tells every sign.
@@ -178,13 +208,15 @@ pub enum Command {
     /// NAME is a load case, the parameter of one, or a friction parameter. A load is followed from its present factor
     /// upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction up to the
     /// target, or else to the end of the slider. `plot path` and `export path` show the way afterwards.
-    #[command(after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through")]
+    #[command(
+        after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through\n  trace pull to 260 of x_t c6, max z_t"
+    )]
     Trace {
         /// What to follow
         #[arg(value_name = "TRACED")]
         name: String,
-        /// `to` and the value to reach
-        #[arg(value_name = "to VALUE", num_args = 0..=2, allow_negative_numbers = true)]
+        /// `to` and the value to reach; `of` and quantities to show on the way
+        #[arg(value_name = "to VALUE", num_args = 0.., allow_negative_numbers = true)]
         to: Vec<String>,
         /// Follow the path through turning points, where the load has to fall
         #[arg(long)]
@@ -233,11 +265,15 @@ pub enum Command {
         /// Only part K of N
         #[arg(long, value_name = "K/N")]
         shard: Option<Shard>,
+        /// Quantities with columns of their own, separated by commas: "x_n c1, max u"
+        #[arg(long, value_name = "QUANTITIES")]
+        columns: Option<String>,
     },
 
     /// Draw a picture of the present state, or of the last path
     ///
-    /// `plot path [slip|force|gap|pressure] [PAIRS]` draws what the last `trace` or `stages` followed.
+    /// `plot path [slip|force|gap|pressure] [PAIRS]`, or `plot path QUANTITY`, draws what the last `trace` or `stages`
+    /// followed.
     #[command(after_help = "Example:\n  plot slip\n  plot force\n  plot structure\n  trace F2; plot path force c6 c5")]
     Plot {
         /// What to draw
@@ -282,7 +318,8 @@ pub enum Command {
     /// Test the answer: the script fails where it is not as expected
     ///
     /// Forms, with OP one of = != < <= > >= and `± TOLERANCE` (or `+- TOLERANCE`) after `=`:
-    ///   expect outcome trivial|normal|ray|pivot-limit|breakdown|check-failed
+    ///   expect QUANTITY OP NUMBER               (`help show` lists the quantities)
+    ///   expect outcome answer|trivial|normal|ray|pivot-limit|breakdown|check-failed
     ///   expect state PAIR open|stick|slip+|slip-|closed
     ///   expect x_n|x_t|z_n|z_t|bound|reserve_plus|reserve_minus PAIR OP NUMBER
     ///   expect ux|uy|rz NODE OP NUMBER
@@ -369,6 +406,7 @@ impl Command {
     pub(super) fn needs_pivots(&self) -> bool {
         match self {
             Command::Check { how } => how.is_some(),
+            Command::Show { words } => words.iter().any(|word| word == "pivots"),
             Command::Plot { picture, at, .. } => {
                 matches!(picture, Picture::P | Picture::Path | Picture::Mode) || !at.is_empty()
             }
@@ -522,6 +560,10 @@ pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) ->
 pub fn grammar() -> clap::Command {
     let mut grammar = Line::command();
     // Without building, clap's `mut_subcommands` loses nothing we need; each command keeps its own `--help`.
+    grammar = grammar.mut_subcommand("show", |command| {
+        let example = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        command.after_long_help(format!("{}\n\n{example}", super::quantities::help()))
+    });
     grammar = grammar.mut_subcommands(|command| {
         command
             .help_template("{about-with-newline}\nUsage: {usage}\n\n{all-args}{after-help}\n")
@@ -529,6 +571,9 @@ pub fn grammar() -> clap::Command {
     });
     grammar
 }
+
+/// Commands that were not there in 0.1.
+const SINCE_0_2: &[&str] = &["show", "summary", "combine", "envelope", "import"];
 
 /// The full name of a command: itself, an alias, or a prefix that only one command has.
 ///
@@ -545,6 +590,11 @@ pub fn resolve(word: &str) -> Result<String, GrammarError> {
         if !word.is_empty() && name.starts_with(word) {
             candidates.push(name.to_owned());
         }
+    }
+    // A prefix that was unique in 0.1 keeps its meaning.
+    let first: Vec<&String> = candidates.iter().filter(|name| !SINCE_0_2.contains(&name.as_str())).collect();
+    if let ([one], true) = (&first[..], candidates.len() > 1) {
+        return Ok((*one).clone());
     }
     match candidates.len() {
         1 => Ok(candidates.remove(0)),
@@ -608,6 +658,9 @@ mod tests {
     fn prefixes_and_typos() {
         assert_eq!(parse("piv").unwrap(), Some(Command::Pivots { range: None }));
         assert_eq!(parse("exit").unwrap(), Some(Command::Quit));
+        assert_eq!(parse("com").unwrap(), Some(Command::Compare));
+        assert_eq!(parse("comb").unwrap(), Some(Command::Combine { name: None }));
+        assert_eq!(parse("en").unwrap(), Some(Command::Enumerate { answer: None }));
         let ambiguous = parse("p").unwrap_err().to_string();
         assert!(ambiguous.contains("pairs, pivots, plot") || ambiguous.contains("params"), "{ambiguous}");
         let typo = parse("piars").unwrap_err().to_string();

@@ -12,7 +12,7 @@ use crate::model::scenario::Source;
 use super::command;
 use super::expect;
 use super::selection::SORT_KEYS;
-use super::{Session, words};
+use super::{Session, quantities, words};
 
 /// Never more candidates than this are offered.
 const MOST: usize = 500;
@@ -30,6 +30,12 @@ pub struct Vocabulary {
     pub bars: Vec<String>,
     /// Load cases.
     pub cases: Vec<String>,
+    /// Edge contacts.
+    pub joints: Vec<String>,
+    /// Probes.
+    pub probes: Vec<String>,
+    /// Load combinations.
+    pub combinations: Vec<String>,
 }
 
 /// One way to go on.
@@ -65,7 +71,11 @@ impl Session {
             Source::ContactSystem(system) => system.pairs.clone(),
             Source::Lcp(_) => Vec::new(),
         };
+        let scenario = self.scenario();
         Vocabulary {
+            joints: self.names().joints().into_iter().map(str::to_owned).collect(),
+            probes: scenario.probes.iter().map(|(name, _)| name.clone()).collect(),
+            combinations: scenario.combinations.iter().map(|(name, _)| name.clone()).collect(),
             parameters: self.values().free().map(|(name, value)| (name.clone(), value)).collect(),
             pairs,
             nodes,
@@ -313,7 +323,10 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             all
         }
         "to VALUE" => match given {
-            [_] => fixed(&["to"]),
+            [_] => fixed(&["to", "of"]),
+            [_, to, _] if to == "to" => fixed(&["of"]),
+            [_, to, _, of, rest @ ..] if to == "to" && of == "of" => plain(&quantities::next_names(rest, vocabulary)),
+            [_, of, rest @ ..] if of == "of" => plain(&quantities::next_names(rest, vocabulary)),
             _ => Vec::new(),
         },
         "NAME" | "SWEPT" => parameters(),
@@ -346,14 +359,22 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             .get_subcommands()
             .map(|command| candidate(command.get_name(), about(command.get_about())))
             .collect(),
-        "EXPECTATION" => match expect::stage(given).map_or(given, |(_, rest)| rest) {
-            [] => expect::subjects().map(|word| candidate(word, "")).collect(),
-            [subject] if expect::takes_pair(subject) => plain(&vocabulary.pairs),
-            [subject] if expect::takes_node(subject) => plain(&vocabulary.nodes),
-            [subject] => fixed(expect::choices(subject)),
-            [subject, _] if subject == "state" => fixed(expect::choices("state")),
-            _ => Vec::new(),
+        "EXPECTATION" => match given {
+            [] => {
+                let mut all: Vec<Candidate> = expect::subjects().map(|word| candidate(word, "")).collect();
+                all.extend(quantities::next_names(given, vocabulary).into_iter().map(|name| candidate(name, "")));
+                all
+            }
+            [subject] if subject != "state" && !expect::choices(subject).is_empty() => fixed(expect::choices(subject)),
+            [.., subject, _] if subject == "state" => fixed(expect::choices("state")),
+            given => quantities::next_names(given, vocabulary).into_iter().map(|name| candidate(name, "")).collect(),
         },
+        "QUANTITY" => {
+            let mut all = plain(&quantities::next_names(given, vocabulary));
+            all.extend(fixed(&["over"]).into_iter().filter(|_| !given.is_empty()));
+            all
+        }
+        "COMBINATION" => plain(&vocabulary.combinations),
         _ => Vec::new(),
     }
 }
@@ -396,6 +417,9 @@ mod tests {
             nodes: vec!["A".into(), "B".into()],
             bars: vec!["AB".into()],
             cases: vec!["pull".into()],
+            joints: vec!["joint".into()],
+            probes: vec!["nozzle moment".into()],
+            combinations: vec!["ULS1".into()],
         }
     }
 

@@ -4,8 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::answer::record::{NodeDisplacement, PairState};
-use crate::view::status::{class_word, outcome_word, verdict_word};
+use crate::model::quantity::{self, Names, Quantity, STATES, WORDS};
+use crate::path::quantity::{Facts, Value};
 
 use super::command::did_you_mean;
 use super::values::number;
@@ -35,70 +35,27 @@ pub struct Bound {
     tolerance: f64,
 }
 
-/// A quantity of a pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PairQuantity {
-    /// Compressive force.
-    XN,
-    /// Tangential force.
-    XT,
-    /// Distance open.
-    ZN,
-    /// Slip.
-    ZT,
-    /// Friction bound.
-    Bound,
-    /// x⁺.
-    ReservePlus,
-    /// x⁻.
-    ReserveMinus,
-}
-
 /// What is expected.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expectation {
-    /// How the run ended.
-    Outcome(String),
-    /// State of a pair.
-    State {
-        /// Pair id.
-        pair: String,
-        /// State word.
-        state: String,
-    },
-    /// A number of a pair.
-    Pair {
+    /// A quantity that is a word.
+    Word {
         /// Which.
-        quantity: PairQuantity,
-        /// Pair id.
-        pair: String,
-        /// Compared with.
-        bound: Bound,
+        quantity: Quantity,
+        /// The word.
+        word: String,
+        /// Whether it is this one, or any other.
+        equal: bool,
     },
-    /// A displacement.
-    Node {
-        /// `ux`, `uy` or `rz`.
-        component: String,
-        /// Node id.
-        node: String,
-        /// Compared with.
-        bound: Bound,
-    },
-    /// p.
-    P(Bound),
-    /// The number of pivots.
-    Pivots(Bound),
-    /// A size of the problem.
-    Size {
-        /// `unknowns`, `free` or `lcp`.
-        what: String,
+    /// A quantity that is a number.
+    Number {
+        /// Which.
+        quantity: Quantity,
         /// Compared with.
         bound: Bound,
     },
     /// Class of the ray.
     Ray(String),
-    /// Verdict on the ray.
-    Verdict(String),
     /// Part of the message of the command before.
     Error(String),
 }
@@ -120,137 +77,83 @@ pub struct Unmet {
     pub found: String,
 }
 
-/// What expectations are compared with.
-pub struct Facts<'a> {
-    /// Outcome, ray, pivots.
-    pub answer: Option<&'a crate::answer::record::Answer>,
-    /// The pairs at the present pivot.
-    pub pairs: &'a [PairState],
-    /// p at the present pivot.
-    pub p: Option<f64>,
-    /// The displacements at the present pivot.
-    pub displacements: Option<&'a [NodeDisplacement]>,
-    /// Message of the command before, if it failed.
-    pub error: Option<&'a str>,
-}
-
-const OUTCOMES: &[&str] = &["trivial", "normal", "ray", "pivot-limit", "breakdown", "check-failed"];
-const STATES: &[&str] = &["open", "stick", "slip+", "slip-", "closed"];
+const OUTCOMES: &[&str] = &["trivial", "normal", "answer", "ray", "pivot-limit", "breakdown", "check-failed"];
 const CLASSES: &[&str] = &["mechanism", "artefact", "fault", "no-equilibrium"];
 const VERDICTS: &[&str] = &["certified", "proved", "undecided"];
-const QUANTITIES: &[(&str, PairQuantity)] = &[
-    ("x_n", PairQuantity::XN),
-    ("x_t", PairQuantity::XT),
-    ("z_n", PairQuantity::ZN),
-    ("z_t", PairQuantity::ZT),
-    ("bound", PairQuantity::Bound),
-    ("reserve_plus", PairQuantity::ReservePlus),
-    ("reserve_minus", PairQuantity::ReserveMinus),
-];
-const COMPONENTS: &[&str] = &["ux", "uy", "rz"];
-const SIZES: &[&str] = &["unknowns", "free", "lcp"];
-const OTHERS: &[&str] = &["outcome", "state", "p", "pivots", "ray", "verdict", "error"];
+/// Besides the quantities.
+const OTHERS: &[&str] = &["ray", "error"];
 
-/// What asks for the end of a stage of the history.
-pub const STAGE: &str = "stage";
-
-/// The words that may follow `expect`, or `expect stage S`.
+/// The words that may follow `expect`, besides the probes.
 pub fn subjects() -> impl Iterator<Item = &'static str> {
-    OTHERS
-        .iter()
-        .copied()
-        .chain(QUANTITIES.iter().map(|(word, _)| *word))
-        .chain(COMPONENTS.iter().copied())
-        .chain(SIZES.iter().copied())
+    OTHERS.iter().copied().chain(WORDS.iter().map(|entry| entry.word))
 }
 
 /// The words that may follow a subject, where it has a closed list.
 pub fn choices(subject: &str) -> &'static [&'static str] {
     match subject {
         "outcome" => OUTCOMES,
-        "ray" => CLASSES,
+        "ray" | "class" => CLASSES,
         "verdict" => VERDICTS,
         "state" => STATES,
         _ => &[],
     }
 }
 
-/// Whether a subject is followed by a pair.
-pub fn takes_pair(subject: &str) -> bool {
-    subject == "state" || QUANTITIES.iter().any(|(word, _)| *word == subject)
-}
-
-/// Whether a subject is followed by a node.
-pub fn takes_node(subject: &str) -> bool {
-    COMPONENTS.contains(&subject)
-}
-
-/// The stage of `stage S …`, counted from 1, and the words after it.
-///
-/// # Errors
-/// [`ExpectationSyntax`].
-pub fn stage(words: &[String]) -> Result<(Option<usize>, &[String]), ExpectationSyntax> {
-    match words {
-        [word, rest @ ..] if word == STAGE => match rest.split_first().map(|(number, rest)| (number.parse(), rest)) {
-            Some((Ok(number), rest)) if !rest.is_empty() => Ok((Some(number), rest)),
-            _ => Err(ExpectationSyntax {
-                what: "`stage` takes the number of a stage, counted from 1, and what is expected at its end".into(),
-            }),
-        },
-        _ => Ok((None, words)),
+/// The subject whose words a quantity takes.
+fn subject(quantity: &Quantity) -> &'static str {
+    match quantity {
+        Quantity::Plain(word) | Quantity::Pair(word, _) => word,
+        Quantity::Stage(_, inner) | Quantity::Probe(_, inner) => subject(inner),
+        _ => "",
     }
 }
 
-/// Reads the words after `expect`, or after `expect stage S`.
+/// Reads the words after `expect`.
 ///
 /// # Errors
 /// [`ExpectationSyntax`].
-pub fn read(words: &[String]) -> Result<Expectation, ExpectationSyntax> {
+pub fn read(words: &[String], names: &Names<'_>) -> Result<Expectation, ExpectationSyntax> {
     let bad = |what: String| ExpectationSyntax { what };
-    let Some((subject, rest)) = words.split_first() else {
+    let Some((first, rest)) = words.split_first() else {
         return Err(bad("what is expected?".into()));
     };
-    let one_of = |allowed: &[&str]| match rest {
-        [word] if allowed.contains(&word.as_str()) => Ok(word.clone()),
-        [word] => Err(bad(format!(
-            "`{word}` is no {subject}{}: expected {}",
-            did_you_mean(word, allowed.iter().copied()),
-            allowed.join(", ")
-        ))),
-        _ => Err(bad(format!("`{subject}` takes one of {}", allowed.join(", ")))),
+    let one_of = |subject: &str, rest: &[String]| {
+        let allowed = choices(subject);
+        match rest {
+            [word] if allowed.contains(&word.as_str()) => Ok(word.clone()),
+            [word] => Err(bad(format!(
+                "`{word}` is no {subject}{}: expected {}",
+                did_you_mean(word, allowed.iter().copied()),
+                allowed.join(", ")
+            ))),
+            _ => Err(bad(format!("`{subject}` takes one of {}", allowed.join(", ")))),
+        }
     };
-    let named = |what: &str| rest.split_first().ok_or_else(|| bad(format!("`{subject}` of which {what}?")));
-    match subject.as_str() {
-        "outcome" => Ok(Expectation::Outcome(one_of(OUTCOMES)?)),
-        "ray" => Ok(Expectation::Ray(one_of(CLASSES)?)),
-        "verdict" => Ok(Expectation::Verdict(one_of(VERDICTS)?)),
-        "error" if rest.is_empty() => Err(bad("`error` takes a part of the message".into())),
-        "error" => Ok(Expectation::Error(rest.join(" "))),
-        "p" => Ok(Expectation::P(bound(rest)?)),
-        "pivots" => Ok(Expectation::Pivots(bound(rest)?)),
-        size if SIZES.contains(&size) => Ok(Expectation::Size { what: size.to_owned(), bound: bound(rest)? }),
-        "state" => match rest {
-            [pair, state] if STATES.contains(&state.as_str()) => {
-                Ok(Expectation::State { pair: pair.clone(), state: state.clone() })
-            }
-            _ => Err(bad(format!("`state` takes a pair and one of {}", STATES.join(", ")))),
-        },
-        component if COMPONENTS.contains(&component) => {
-            let (node, rest) = named("node")?;
-            Ok(Expectation::Node { component: component.to_owned(), node: node.clone(), bound: bound(rest)? })
-        }
-        word => {
-            let Some((_, quantity)) = QUANTITIES.iter().find(|(name, _)| *name == word) else {
-                return Err(bad(format!(
-                    "unknown `{word}`{}: expected one of {}",
-                    did_you_mean(word, subjects()),
-                    subjects().collect::<Vec<_>>().join(", ")
-                )));
-            };
-            let (pair, rest) = named("pair")?;
-            Ok(Expectation::Pair { quantity: *quantity, pair: pair.clone(), bound: bound(rest)? })
-        }
+    match first.as_str() {
+        "ray" => return Ok(Expectation::Ray(one_of("ray", rest)?)),
+        "error" if rest.is_empty() => return Err(bad("`error` takes a part of the message".into())),
+        "error" => return Ok(Expectation::Error(rest.join(" "))),
+        _ => {}
     }
+    // `ray` is the older word for the class.
+    let mut words = words.to_vec();
+    if let [stage, _, word, ..] = &mut words[..]
+        && stage == "stage"
+        && word == "ray"
+    {
+        *word = "class".to_owned();
+    }
+    let (quantity, rest) = quantity::read(&words, names).map_err(|error| bad(error.to_string()))?;
+    if !quantity.is_word() {
+        return Ok(Expectation::Number { quantity, bound: bound(rest)? });
+    }
+    let (equal, rest) = match rest {
+        [sign, rest @ ..] if sign == "=" || sign == "==" => (true, rest),
+        [sign, rest @ ..] if sign == "!=" => (false, rest),
+        rest => (true, rest),
+    };
+    let word = one_of(subject(&quantity), rest)?;
+    Ok(Expectation::Word { quantity, word, equal })
 }
 
 /// `= 100 ± 1e-6`, `<=20`, with or without blanks.
@@ -329,101 +232,52 @@ fn shown(value: f64) -> String {
 }
 
 impl Expectation {
-    /// Compares with the facts.
+    /// Compares with the facts; `error` is the message of the command before, if it failed.
     ///
     /// # Errors
-    /// `Err(Ok(unmet))` if it does not hold; `Err(Err(what))` if it asks for a pair or node that does not exist.
-    pub fn test(&self, facts: &Facts<'_>) -> Result<(), Result<Unmet, String>> {
-        let words = |expected: String, found: String| {
-            if expected == found { Ok(()) } else { Err(Ok(Unmet { expected, found })) }
-        };
-        let compare = |what: String, bound: &Bound, found: Option<f64>| match found {
-            Some(found) if bound.holds(found) => Ok(()),
-            found => Err(Ok(Unmet {
-                expected: format!("{what} {bound}"),
-                found: found.map_or("no answer".to_owned(), shown),
-            })),
-        };
-        let pair_named = |id: &str| {
-            facts.pairs.iter().find(|pair| pair.id == id).ok_or_else(|| {
-                Err(super::selection::no_such("pair", id, facts.pairs.iter().map(|pair| pair.id.as_str())))
-            })
-        };
-        let ray = facts.answer.and_then(|answer| answer.ray.as_ref());
-        let outcome = || match facts.answer {
-            Some(answer) => format!("outcome {}", outcome_word(answer.outcome)),
-            None => "no answer".to_owned(),
-        };
+    /// If it does not hold.
+    pub fn test(&self, facts: &Facts<'_>, error: Option<&str>) -> Result<(), Unmet> {
         match self {
-            Expectation::Outcome(word) => words(format!("outcome {word}"), outcome()),
-            Expectation::Ray(word) => {
-                words(format!("ray {word}"), ray.map_or_else(outcome, |ray| format!("ray {}", class_word(ray.class))))
-            }
-            Expectation::Verdict(word) => words(
-                format!("verdict {word}"),
-                ray.map_or_else(outcome, |ray| match ray.verdict {
-                    Some(verdict) => format!("verdict {}", verdict_word(verdict)),
-                    None => "no verdict".to_owned(),
-                }),
-            ),
-            Expectation::State { pair, state } => {
-                let found = pair_named(pair)?;
-                words(format!("state {pair} {state}"), format!("state {pair} {}", found.state.word()))
-            }
-            Expectation::Pair { quantity, pair, bound } => {
-                let found = quantity.of(pair_named(pair)?);
-                let name = QUANTITIES.iter().find(|(_, q)| q == quantity).map_or("", |(name, _)| name);
-                compare(format!("{name} {pair}"), bound, Some(found))
-            }
-            Expectation::Node { component, node, bound } => {
-                let Some(displacements) = facts.displacements else {
-                    return compare(format!("{component} {node}"), bound, None);
+            Expectation::Word { quantity, word, equal } => {
+                let found = match facts.value(quantity) {
+                    Ok(Value::Word(found)) => found,
+                    Ok(Value::Number(found)) => shown(found),
+                    Err(reason) => {
+                        return Err(Unmet { expected: format!("{quantity} {word}"), found: reason.0 });
+                    }
                 };
-                let found = displacements.iter().find(|d| d.node == *node).ok_or_else(|| {
-                    Err(super::selection::no_such("node", node, displacements.iter().map(|d| d.node.as_str())))
-                })?;
-                let value = match component.as_str() {
-                    "ux" => found.ux,
-                    "uy" => found.uy,
-                    _ => found.rz,
+                let holds = found == *word || word == "answer" && matches!(found.as_str(), "trivial" | "normal");
+                if holds == *equal {
+                    return Ok(());
+                }
+                let not = if *equal { "" } else { "!= " };
+                Err(Unmet { expected: format!("{quantity} {not}{word}"), found: format!("{quantity} {found}") })
+            }
+            Expectation::Number { quantity, bound } => {
+                let found = match facts.value(quantity) {
+                    Ok(Value::Number(found)) if bound.holds(found) => return Ok(()),
+                    Ok(Value::Number(found)) => shown(found),
+                    Ok(Value::Word(word)) => word,
+                    Err(reason) => reason.0,
                 };
-                compare(format!("{component} {node}"), bound, Some(value))
+                Err(Unmet { expected: format!("{quantity} {bound}"), found })
             }
-            Expectation::P(bound) => compare("p".into(), bound, facts.p),
-            Expectation::Pivots(bound) => {
-                compare("pivots".into(), bound, facts.answer.map(|answer| answer.pivot_count as f64))
-            }
-            Expectation::Size { what, bound } => {
-                let size = facts.answer.map(|answer| &answer.size);
-                let found = size.and_then(|size| match what.as_str() {
-                    "unknowns" => size.unknowns,
-                    "free" => size.free,
-                    _ => Some(size.lcp),
-                });
-                compare(what.clone(), bound, found.map(|found| found as f64))
-            }
-            Expectation::Error(part) => match facts.error {
+            Expectation::Ray(class) => match facts.value(&Quantity::Plain("class")) {
+                Ok(Value::Word(found)) if found == *class => Ok(()),
+                Ok(Value::Word(found)) => {
+                    Err(Unmet { expected: format!("ray {class}"), found: format!("ray {found}") })
+                }
+                Ok(Value::Number(found)) => Err(Unmet { expected: format!("ray {class}"), found: shown(found) }),
+                Err(reason) => Err(Unmet { expected: format!("ray {class}"), found: reason.0 }),
+            },
+            Expectation::Error(part) => match error {
                 Some(message) if message.contains(part.as_str()) => Ok(()),
-                Some(message) => Err(Ok(Unmet {
+                Some(message) => Err(Unmet {
                     expected: format!("an error with \"{part}\""),
                     found: format!("the error \"{message}\""),
-                })),
-                None => Err(Ok(Unmet { expected: format!("an error with \"{part}\""), found: "no error".to_owned() })),
+                }),
+                None => Err(Unmet { expected: format!("an error with \"{part}\""), found: "no error".to_owned() }),
             },
-        }
-    }
-}
-
-impl PairQuantity {
-    fn of(self, pair: &PairState) -> f64 {
-        match self {
-            PairQuantity::XN => pair.x_n,
-            PairQuantity::XT => pair.x_t,
-            PairQuantity::ZN => pair.z_n,
-            PairQuantity::ZT => pair.z_t,
-            PairQuantity::Bound => pair.bound,
-            PairQuantity::ReservePlus => pair.reserve_plus,
-            PairQuantity::ReserveMinus => pair.reserve_minus,
         }
     }
 }
@@ -432,8 +286,9 @@ impl PairQuantity {
 mod tests {
     use super::*;
 
-    fn words(text: &str) -> Vec<String> {
-        super::super::words::split(text).unwrap()
+    fn read(text: &str) -> Result<Expectation, ExpectationSyntax> {
+        let scenario = crate::model::embedded::load("beam").unwrap();
+        super::read(&super::super::words::split(text).unwrap(), &Names::of(&scenario))
     }
 
     #[test]
@@ -450,35 +305,35 @@ mod tests {
             ("p != 20", 20.0, false),
             ("p = 20", 20.0, true),
         ] {
-            let Ok(Expectation::P(bound)) = read(&words(text)) else {
+            let Ok(Expectation::Number { bound, .. }) = read(text) else {
                 panic!("{text}");
             };
             assert_eq!(bound.holds(found), holds, "{text}");
         }
         for text in ["p", "p 3", "p = ", "p = x", "p < 1 ± 2", "p = 1 ± -2", "p = inf"] {
-            assert!(read(&words(text)).is_err(), "{text}");
+            assert!(read(text).is_err(), "{text}");
         }
     }
 
     #[test]
     fn sizes_are_compared_like_numbers() {
-        let read = read(&words("lcp <= 48")).unwrap();
-        let Expectation::Size { what, bound } = &read else { panic!("{read:?}") };
-        assert_eq!((what.as_str(), bound.to_string().as_str()), ("lcp", "<= 48"));
+        let read = read("lcp <= 48").unwrap();
+        let Expectation::Number { quantity, bound } = &read else { panic!("{read:?}") };
+        assert_eq!((quantity.to_string().as_str(), bound.to_string().as_str()), ("lcp", "<= 48"));
         assert!(bound.holds(48.0) && !bound.holds(49.0));
     }
 
     #[test]
     fn not_a_number_fulfils_nothing() {
-        let Ok(Expectation::P(bound)) = read(&words("p = 1 ± 1")) else { panic!() };
+        let Ok(Expectation::Number { bound, .. }) = read("p = 1 ± 1") else { panic!() };
         assert!(!bound.holds(f64::NAN));
     }
 
     #[test]
     fn unknown_words_are_refused_with_what_is_known() {
-        let error = read(&words("outcome norml")).unwrap_err().to_string();
+        let error = read("outcome norml").unwrap_err().to_string();
         assert!(error.contains("did you mean `normal`"), "{error}");
-        let error = read(&words("xn c1 = 3")).unwrap_err().to_string();
+        let error = read("xn c1 = 3").unwrap_err().to_string();
         assert!(error.contains("x_n"), "{error}");
     }
 }

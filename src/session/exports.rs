@@ -51,9 +51,7 @@ impl Session {
             (Export::Displacements, "json") => as_json(json_export::displacements(&shown)),
             (Export::Members, "json") => as_json(json_export::members(&shown)),
             (Export::Reactions, "json") => as_json(json_export::reactions(&shown)),
-            (Export::Result, "json") => {
-                as_json(json_export::result(answer, &self.now.scenario.name, &self.now.values, false))
-            }
+            (Export::Result, "json") => as_json(self.result(false).unwrap_or_default()),
             (Export::Result, _) => {
                 return Err(CommandError::Refused(format!(
                     "the whole result is written as JSON: {} must end in .json",

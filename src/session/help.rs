@@ -7,7 +7,22 @@ use super::command::{GrammarError, grammar, resolve};
 /// The groups of `help`, each with its commands in the order shown; every command stands in one of them.
 pub const GROUPS: &[(&str, &[&str])] = &[
     ("scenario", &["load", "scenarios", "save", "params", "set", "reset", "undo", "redo", "diff", "import"]),
-    ("answer", &["solve", "status", "pairs", "displacements", "members", "reactions", "check"]),
+    (
+        "answer",
+        &[
+            "solve",
+            "status",
+            "pairs",
+            "displacements",
+            "members",
+            "reactions",
+            "show",
+            "summary",
+            "combine",
+            "envelope",
+            "check",
+        ],
+    ),
     ("pivots", &["pivots", "step", "why", "ties", "tableau"]),
     ("trouble", &["ray", "compare", "enumerate", "critical"]),
     ("paths", &["sweep", "trace", "limit", "sensitivity", "stages"]),

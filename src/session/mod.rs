@@ -4,6 +4,7 @@
 //! `words` → `command` (the grammar) → `apply` (changes) or `reports` (read-only) → [`Output`].
 
 mod apply;
+mod combinations;
 pub mod command;
 pub mod complete;
 mod error;
@@ -17,6 +18,7 @@ pub mod load;
 mod output;
 pub mod paths;
 mod plots;
+mod quantities;
 mod questions;
 mod record;
 mod reports;
@@ -25,6 +27,7 @@ pub mod save;
 pub mod script;
 mod selection;
 mod side;
+mod summary;
 pub mod values;
 mod why;
 pub mod words;
@@ -139,6 +142,8 @@ pub struct Session {
     remedies: Option<(Arc<Solved>, Arc<Remedies>)>,
     /// The load history that quantities mean, until the next change or `solve`.
     followed: Option<Arc<History>>,
+    /// The combination whose answer is shown; `None` for the scenario's own factors.
+    combination: Option<combinations::Combination>,
 }
 
 impl Session {
@@ -193,6 +198,7 @@ impl Session {
             path: None,
             remedies: None,
             followed: None,
+            combination: None,
         };
         session.take_answer(Some(solved));
         Ok(session)
@@ -500,6 +506,7 @@ impl Session {
         self.solved = solved;
         self.position = None;
         self.followed = None;
+        self.combination = None;
     }
 }
 

@@ -7,20 +7,23 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use crate::export::{atomic, path as path_export};
+use crate::model::quantity::{self, Quantity};
 use crate::path::friction::{self, is_friction};
 use crate::path::grid::{Axis, Grid, GridError, POINTS};
 use crate::path::limit;
 use crate::path::load::{self, LoadReach};
 use crate::path::merge::Shards;
+use crate::path::quantity::{Facts, OnPath};
 use crate::path::rate::fixed_place;
-use crate::path::record::PathRecord;
+use crate::path::record::{Followed, PathPlace, PathRecord};
 use crate::path::sensitivity::sensitivity;
 use crate::path::start::PathError;
 use crate::path::sweep::Sweep;
 use crate::path::sweep_file::{SweepFileError, run_to_file};
+use crate::solve::numbers::factors;
 use crate::solve::{Prepared, Solved};
 use crate::view;
-use crate::view::plot::zone::Quantity;
+use crate::view::plot::zone::Quantity as Zone;
 use crate::watch::Watch;
 
 use super::command::did_you_mean;
@@ -86,21 +89,28 @@ impl Session {
         prepared.cases.iter().map(|(name, _)| name.clone()).collect()
     }
 
-    /// `trace NAME [to V] [--through]`.
+    /// `trace NAME [to V] [of QUANTITY …] [--through]`.
     pub(super) fn trace(
         &mut self,
         name: &str,
-        to: &[String],
+        words: &[String],
         through: bool,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let to = match to {
-            [] => None,
-            [word, value] if word == "to" => Some(
-                value.parse::<f64>().map_err(|_| CommandError::Refused(format!("trace: `{value}` is no number")))?,
-            ),
+        let (to, words) = match words {
+            [word, value, rest @ ..] if word == "to" => {
+                let to = value.parse::<f64>();
+                (Some(to.map_err(|_| CommandError::Refused(format!("trace: `{value}` is no number")))?), rest)
+            }
+            words => (None, words),
+        };
+        let quantities = match words {
+            [] => Vec::new(),
+            [word, rest @ ..] if word == "of" && !rest.is_empty() => self.quantities(rest)?,
             _ => {
-                return Err(CommandError::Refused("trace: expected `trace NAME` or `trace NAME to VALUE`".into()));
+                return Err(CommandError::Refused(
+                    "trace: expected `trace NAME`, `trace NAME to VALUE`, and then `of QUANTITY`".into(),
+                ));
             }
         };
         let ground = self.ground(io.watch)?;
@@ -119,9 +129,11 @@ impl Session {
                 friction::trace(&prepared, &scenario, &values, Some(&solved), &what, to, watch)
             })??;
             let record = PathRecord::of_friction(&path);
+            let along = self.report_along(&ground.prepared, &record, &quantities, io.watch)?;
             io.report(
                 || {
                     json!({
+                        "along": along_json(&record, &along),
                         "parameter": path.name,
                         "intervals": path.intervals.iter().map(|interval| json!({
                             "from": interval.from,
@@ -135,7 +147,10 @@ impl Session {
                         "end": record.end,
                     })
                 },
-                |out, style| view::path::write_friction(out, &path, &units, style),
+                |out, style| {
+                    view::path::write_friction(out, &path, &units, style)?;
+                    view::quantities::write_along(out, &record, &along, &units, style)
+                },
             )?;
             self.path = Some(Arc::new(record));
             return Ok(());
@@ -146,9 +161,11 @@ impl Session {
             load::trace(&prepared, &scenario, &values, Some(&solved), &what, reach, watch)
         })??;
         let record = PathRecord::of_load(&path, &Self::case_names(&geometry));
+        let along = self.report_along(&geometry, &record, &quantities, io.watch)?;
         io.report(
             || {
                 json!({
+                    "along": along_json(&record, &along),
                     "load": path.parameter.name,
                     "start": path.start,
                     "from_zero": path.from_zero,
@@ -161,7 +178,10 @@ impl Session {
                     "end": record.end,
                 })
             },
-            |out, style| view::path::write_load(out, &path, &units, style),
+            |out, style| {
+                view::path::write_load(out, &path, &units, style)?;
+                view::quantities::write_along(out, &record, &along, &units, style)
+            },
         )?;
         self.path = Some(Arc::new(record));
         Ok(())
@@ -219,6 +239,48 @@ impl Session {
         Ok(())
     }
 
+    /// The quantities of `--columns`.
+    fn columns(&self, text: Option<&str>) -> Result<Vec<Quantity>, CommandError> {
+        let found = text.map_or(Ok(Vec::new()), |text| quantity::read_text(text, &self.names()));
+        found.map_err(|error| CommandError::Refused(format!("sweep: {error}")))
+    }
+
+    /// The values of a quantity at the places of a path; `None` where it has none.
+    fn along(
+        &self,
+        prepared: &Prepared,
+        path: &PathRecord,
+        quantity: &Quantity,
+        watch: &dyn Watch,
+    ) -> Vec<Option<f64>> {
+        let value = |place: &PathPlace| {
+            let mut values = self.now.values.clone();
+            if path.followed != Followed::Stages && values.contains_key(&path.name) {
+                values.insert(path.name.clone(), place.value);
+            }
+            let factors = if place.factors.is_empty() { factors(prepared, &values) } else { place.factors.clone() };
+            let facts = Facts::of_state(&self.now.scenario, prepared, &values, factors, &place.pairs, watch);
+            facts.value(quantity).ok()?.number()
+        };
+        path.places.iter().map(value).collect()
+    }
+
+    /// The table of `trace … of`: as JSON and as rows.
+    fn report_along(
+        &self,
+        prepared: &Prepared,
+        path: &PathRecord,
+        quantities: &[Quantity],
+        watch: &dyn Watch,
+    ) -> Result<Vec<OnPath>, CommandError> {
+        let all = quantities.iter().map(|quantity| (quantity.clone(), self.along(prepared, path, quantity, watch)));
+        let all: Vec<_> = all.collect();
+        match all.iter().find(|(_, values)| values.iter().all(Option::is_none)) {
+            Some((quantity, _)) => Err(CommandError::Refused(format!("{quantity} has no value on this path"))),
+            None => Ok(all),
+        }
+    }
+
     /// `sweep P A..B [N] … [--out FILE [--resume]] [--shard K/N]`.
     pub(super) fn sweep(
         &mut self,
@@ -226,10 +288,12 @@ impl Session {
         out: Option<&Path>,
         resume: bool,
         shard: Option<Shard>,
+        columns: Option<&str>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let axes = axes(words)?;
         let grid = Grid::new(&self.now.scenario, axes)?;
+        let quantities = self.columns(columns)?;
         let ground = self.ground(io.watch)?;
         let sweep = Sweep {
             prepared: &ground.prepared,
@@ -242,6 +306,7 @@ impl Session {
                 Some(path) => format_of(path)?,
                 None => Format::Json,
             },
+            quantities: &quantities,
         };
         if let Some(path) = out {
             let done = run_to_file(&sweep, path, resume, io.watch)?;
@@ -281,11 +346,14 @@ impl Session {
     pub(super) fn plot_path(&self, of: &[String], height: usize, io: &mut Output<'_>) -> Result<(), CommandError> {
         let path = self.need_path()?;
         let (quantity, names) = match of.split_first() {
-            Some((word, rest)) if word == "slip" => (Quantity::Slip, rest),
-            Some((word, rest)) if word == "force" => (Quantity::Force, rest),
-            Some((word, rest)) if word == "gap" => (Quantity::Gap, rest),
-            Some((word, rest)) if word == "pressure" => (Quantity::Pressure, rest),
-            _ => (Quantity::Slip, of),
+            Some((word, rest)) if word == "slip" => (Zone::Slip, rest),
+            Some((word, rest)) if word == "force" => (Zone::Force, rest),
+            Some((word, rest)) if word == "gap" => (Zone::Gap, rest),
+            Some((word, rest)) if word == "pressure" => (Zone::Pressure, rest),
+            Some((word, _)) if !path.places.iter().any(|place| place.pairs.iter().any(|pair| pair.id == *word)) => {
+                return self.plot_along(path, of, height, io);
+            }
+            _ => (Zone::Slip, of),
         };
         let ids: Vec<&str> = path
             .places
@@ -306,6 +374,27 @@ impl Session {
         io.report(
             || json!(path),
             |out, style| view::plot::path::write(out, path, quantity, &pairs, units, height, style),
+        )?;
+        Ok(())
+    }
+
+    /// `plot path QUANTITY`.
+    fn plot_along(
+        &self,
+        path: &PathRecord,
+        words: &[String],
+        height: usize,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let quantities = self.quantities(words)?;
+        let Some(prepared) = &self.now.prepared else {
+            return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
+        };
+        let along = self.report_along(prepared, path, &quantities, io.watch)?;
+        let units = &self.now.scenario.units;
+        io.report(
+            || along_json(path, &along),
+            |out, style| view::plot::path::write_along(out, path, &along, units, height, style),
         )?;
         Ok(())
     }
@@ -345,6 +434,8 @@ pub struct SweepRequest<'a> {
     pub out: Option<&'a Path>,
     /// Continue the file.
     pub resume: bool,
+    /// Quantities with columns of their own, separated by commas.
+    pub columns: Option<&'a str>,
 }
 
 impl Session {
@@ -367,6 +458,7 @@ impl Session {
         let prepared = setup
             .prepared
             .ok_or_else(|| CommandError::Internal("a solved scenario has no prepared geometry".to_owned()))?;
+        let quantities = self.columns(request.columns)?;
         let sweep = Sweep {
             prepared: &prepared,
             scenario: &self.now.scenario,
@@ -379,6 +471,7 @@ impl Session {
                 (None, Some(path)) => format_of(path)?,
                 (None, None) => Format::Csv,
             },
+            quantities: &quantities,
         };
         match request.out {
             Some(path) => Ok(run_to_file(&sweep, path, request.resume, watch)?),
@@ -418,6 +511,16 @@ pub fn merge(
     result?;
     written.map_err(|error| CommandError::Refused(error.to_string()))?;
     Ok(shards.rows())
+}
+
+/// The values of quantities on a path.
+fn along_json(path: &PathRecord, along: &[OnPath]) -> Value {
+    json!({
+        "values": path.abscissas(None),
+        "quantities": along.iter().map(|(quantity, values)| json!({
+            "quantity": quantity.to_string(), "values": values,
+        })).collect::<Vec<_>>(),
+    })
 }
 
 /// The pairs that slip most on a path, at most four: what a plot shows if none is named.

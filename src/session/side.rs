@@ -49,7 +49,7 @@ impl Session {
         let solved = self.solved.as_ref()?;
         let ray = solved.answer.ray.as_ref()?;
         let prepared = self.now.prepared.as_ref()?;
-        let Geometry::Structure { system, main, structure } = &prepared.geometry else {
+        let Geometry::Structure { system, main, structure } = &*prepared.geometry else {
             return None;
         };
         let mut z = DVector::zeros(system.joint_count());

@@ -117,7 +117,7 @@ impl Session {
         let (Some(solved), Some(prepared), Some(solution)) = (&self.solved, &self.now.prepared, self.solution()) else {
             return Err(CommandError::Refused("not solved yet: `solve`".into()));
         };
-        let (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) = (&solved.trace, &prepared.geometry) else {
+        let (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) = (&solved.trace, &*prepared.geometry) else {
             return Err(CommandError::Refused(format!("no pair `{variable}`")));
         };
         let done = self.position.map_or(solved.answer.pivots.len(), |step| step + 1);

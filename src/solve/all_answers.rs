@@ -128,7 +128,7 @@ impl Prepared {
     /// # Errors
     /// Too many pairs or rows; a covering that does not fit the numbers. Stopped, what was found until then is returned as incomplete.
     pub fn all_answers(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
-        let system = match &self.geometry {
+        let system = match &*self.geometry {
             Geometry::Plain { lcp, q, .. } => {
                 let mut lcp = lcp.clone();
                 for (entry, number) in lcp.q.iter_mut().zip(q) {

@@ -57,15 +57,15 @@ impl Prepared {
     /// Stopped from outside.
     pub fn compare(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<Comparison, SolveError> {
         let factors = factors(self, values);
-        let pairs = match &self.geometry {
+        let pairs = match &*self.geometry {
             Geometry::Plain { lcp, .. } => lcp.size().div_ceil(3),
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => system.pairs.len(),
         };
-        let coverings: &[Covering] = match &self.geometry {
+        let coverings: &[Covering] = match &*self.geometry {
             Geometry::Plain { .. } => &[Covering::Cohesive],
             _ => &Covering::ALL,
         };
-        let ties: &[TieBreak] = match &self.geometry {
+        let ties: &[TieBreak] = match &*self.geometry {
             // The natural order of a bare LCP is its lexicographic one.
             Geometry::Plain { .. } => &[TieBreak::Lexicographic, TieBreak::FirstRow, TieBreak::Random(1)],
             _ => &[TieBreak::Lexicographic, TieBreak::Natural, TieBreak::FirstRow, TieBreak::Random(1)],
@@ -100,7 +100,7 @@ impl Prepared {
         rules: Rules,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        match &self.geometry {
+        match &*self.geometry {
             Geometry::Plain { lcp, q, names, covering_given } => {
                 let mut lcp = lcp.clone();
                 for (entry, number) in lcp.q.iter_mut().zip(q) {

@@ -26,7 +26,7 @@ pub const REMEDY_TIME: Duration = Duration::from_secs(10);
 
 impl Solved {
     fn naming<'a>(&'a self, prepared: &'a Prepared) -> Option<Naming<'a>> {
-        match (&self.trace, &prepared.geometry) {
+        match (&self.trace, &*prepared.geometry) {
             (Trace::Contact { contact, .. }, _) => Some(Naming::Contact(contact, prepared.system()?)),
             (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) => Some(Naming::Plain(lcp, names)),
             (Trace::Plain { .. }, _) => None,
@@ -143,7 +143,7 @@ impl Prepared {
 
     /// Parts that only contact holds, each with its motions in words.
     pub fn loose_parts(&self) -> Vec<LoosePart> {
-        match &self.geometry {
+        match &*self.geometry {
             Geometry::Structure { main, structure, .. } => loose_parts(structure, main),
             _ => Vec::new(),
         }
@@ -151,7 +151,7 @@ impl Prepared {
 
     /// The same in sentences; for a contact system without a structure its motions pair by pair.
     pub fn loose_sentences(&self) -> Vec<String> {
-        match &self.geometry {
+        match &*self.geometry {
             Geometry::Contact { system, .. } => loose_pairs(system),
             _ => self.loose_parts().iter().map(LoosePart::sentence).collect(),
         }

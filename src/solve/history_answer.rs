@@ -31,7 +31,7 @@ impl Prepared {
         let run =
             Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point: Point::default() };
         let mut size = Size { pairs: system.pairs.len(), lcp: rows(system).len(), ..Size::default() };
-        if let Geometry::Structure { main, .. } = &self.geometry {
+        if let Geometry::Structure { main, .. } = &*self.geometry {
             (size.unknowns, size.free) = (Some(main.size().all), Some(main.size().free));
         }
         let mut answer = empty_answer(&run, 1.0, Rules::default().words(), size);

@@ -55,7 +55,7 @@ pub enum Geometry {
 /// A scenario made ready to be solved for any values of its parameters.
 pub struct Prepared {
     /// What is solved.
-    pub geometry: Geometry,
+    pub geometry: Arc<Geometry>,
     /// The parameter values under which its plain numbers were read.
     values: ParameterValues,
     /// Name and factor of each load case.
@@ -115,7 +115,7 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
         Source::ContactSystem(given) => {
             let (system, remarks) = given_system(given).map_err(|error| given_problem(scenario, error))?;
             Prepared {
-                geometry: Geometry::Contact { system, remarks },
+                geometry: Arc::new(Geometry::Contact { system, remarks }),
                 values: ParameterValues::new(),
                 cases: given.loads.iter().map(|load| (load.name.clone(), load.factor.clone())).collect(),
                 factor_seconds: 0.0,
@@ -152,12 +152,12 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
         whole_size: n,
     };
     Prepared {
-        geometry: Geometry::Plain {
+        geometry: Arc::new(Geometry::Plain {
             lcp,
             q: given.q.clone(),
             names: given.names.clone(),
             covering_given: given.covering.is_some(),
-        },
+        }),
         values: ParameterValues::new(),
         cases: Vec::new(),
         factor_seconds: 0.0,
@@ -243,7 +243,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     system.settle();
     let seconds = main.timings();
     Ok(Prepared {
-        geometry: Geometry::Structure { system, main: Box::new(main), structure: structure.clone() },
+        geometry: Arc::new(Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }),
         values: ParameterValues::new(),
         cases: structure.load_cases.iter().map(|case| (case.name.clone(), case.factor.clone())).collect(),
         factor_seconds: seconds.factor,
@@ -280,7 +280,7 @@ impl Prepared {
     /// RF anew with the kept factorization; `scenario` was read under `values`. `None` where the sources do not match.
     fn with_loads(&self, scenario: &Scenario, values: &ParameterValues) -> Result<Option<Prepared>, PrepareError> {
         let start = Instant::now();
-        let geometry = match (&self.geometry, &scenario.source) {
+        let geometry = match (&*self.geometry, &scenario.source) {
             (Geometry::Structure { system, main, .. }, Source::Structure(structure)) => {
                 let main =
                     main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
@@ -294,7 +294,7 @@ impl Prepared {
             _ => return Ok(None),
         };
         Ok(Some(Prepared {
-            geometry,
+            geometry: Arc::new(geometry),
             values: values.clone(),
             cases: self.cases.clone(),
             factor_seconds: 0.0,
@@ -303,9 +303,22 @@ impl Prepared {
         }))
     }
 
+    /// The same with other factors of the load cases, fixed ones.
+    pub fn with_factors(&self, factors: &[f64]) -> Prepared {
+        let cases = self.cases.iter().zip(factors).map(|((name, _), factor)| (name.clone(), Number::Value(*factor)));
+        Prepared {
+            geometry: Arc::clone(&self.geometry),
+            values: self.values.clone(),
+            cases: cases.collect(),
+            factor_seconds: self.factor_seconds,
+            condense_seconds: self.condense_seconds,
+            seconds: self.seconds,
+        }
+    }
+
     /// The structure under its parameter values, if this is one.
     pub fn structure(&self) -> Option<&Structure> {
-        match &self.geometry {
+        match &*self.geometry {
             Geometry::Structure { structure, .. } => Some(structure),
             Geometry::Contact { .. } | Geometry::Plain { .. } => None,
         }
@@ -313,7 +326,7 @@ impl Prepared {
 
     /// The contact system, unless this is a bare LCP.
     pub fn system(&self) -> Option<&ContactSystem> {
-        match &self.geometry {
+        match &*self.geometry {
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => Some(system),
             Geometry::Plain { .. } => None,
         }

@@ -62,7 +62,7 @@ impl Prepared {
             system,
             numbers,
             cases,
-            structure: match &self.geometry {
+            structure: match &*self.geometry {
                 Geometry::Structure { main, structure, .. } => Some((structure, main)),
                 _ => None,
             },

@@ -163,7 +163,7 @@ impl Prepared {
             return Err(SolveError::Value(refusal));
         }
         let start = Instant::now();
-        let mut solved = match &self.geometry {
+        let mut solved = match &*self.geometry {
             Geometry::Plain { lcp, q, names, covering_given } => {
                 if rules.covering != Covering::default() {
                     return Err(SolveError::CoveringOfPlain(rules.covering));
@@ -182,7 +182,7 @@ impl Prepared {
                 self.solve_contact_judged(system, values, rules, brief, watch)?
             }
         };
-        if let Geometry::Contact { remarks, .. } = &self.geometry {
+        if let Geometry::Contact { remarks, .. } = &*self.geometry {
             solved.answer.notes.extend(remarks.iter().cloned());
         }
         if !scenario.stages.is_empty() {
@@ -318,7 +318,7 @@ impl Prepared {
     }
 
     pub(super) fn size(&self, system: &ContactSystem, contact: &ContactLcp) -> Size {
-        let unknowns = match &self.geometry {
+        let unknowns = match &*self.geometry {
             Geometry::Structure { main, .. } => Some(main.size()),
             _ => None,
         };
@@ -328,6 +328,35 @@ impl Prepared {
             pairs: system.pairs.len(),
             lcp: contact.rows.len(),
         }
+    }
+
+    /// Internal forces of the bars under the displacements u; `None` without a structure.
+    pub(crate) fn members(&self, u: &Displacements, factors: &[f64]) -> Option<Vec<MemberForces>> {
+        let Geometry::Structure { main, structure, .. } = &*self.geometry else {
+            return None;
+        };
+        let members = main.member_forces(structure, u, factors).into_iter().map(|member| MemberForces {
+            bar: structure.bars[member.bar].id.clone(),
+            element: member.element,
+            start: end_forces(member.start),
+            end: end_forces(member.end),
+            pieces: member.pieces,
+        });
+        Some(members.collect())
+    }
+
+    /// Forces of the supports under the displacements u and the joint forces; `None` without a structure.
+    pub(crate) fn reactions(&self, u: &Displacements, force: &DVector<f64>, factors: &[f64]) -> Option<Vec<Reaction>> {
+        let Geometry::Structure { main, structure, .. } = &*self.geometry else {
+            return None;
+        };
+        let reactions = main.reactions(structure, u, force, factors).into_iter().map(|reaction| Reaction {
+            node: structure.nodes[reaction.node].id.clone(),
+            fx: reaction.force[0],
+            fy: reaction.force[1],
+            m: reaction.moment,
+        });
+        Some(reactions.collect())
     }
 
     /// Displacements, members, reactions and the fresh check of an answer.
@@ -352,32 +381,11 @@ impl Prepared {
         state: &JointState,
     ) -> Option<f64> {
         let mut equilibrium = None;
-        if let Geometry::Structure { main, structure, .. } = &self.geometry {
+        if let Geometry::Structure { main, structure, .. } = &*self.geometry {
             let u = main.displacements(factors, &dislocation(numbers, &state.z));
             equilibrium = Some(main.equilibrium_residual(structure, &u, &state.force, factors));
-            answer.members = Some(
-                main.member_forces(structure, &u, factors)
-                    .into_iter()
-                    .map(|member| MemberForces {
-                        bar: structure.bars[member.bar].id.clone(),
-                        element: member.element,
-                        start: end_forces(member.start),
-                        end: end_forces(member.end),
-                        pieces: member.pieces,
-                    })
-                    .collect(),
-            );
-            answer.reactions = Some(
-                main.reactions(structure, &u, &state.force, factors)
-                    .into_iter()
-                    .map(|reaction| Reaction {
-                        node: structure.nodes[reaction.node].id.clone(),
-                        fx: reaction.force[0],
-                        fy: reaction.force[1],
-                        m: reaction.moment,
-                    })
-                    .collect(),
-            );
+            answer.members = self.members(&u, factors);
+            answer.reactions = self.reactions(&u, &state.force, factors);
             answer.displacements = Some(named(structure, &u));
         }
         equilibrium
@@ -392,7 +400,7 @@ impl Prepared {
         factors: &[f64],
         z: &DVector<f64>,
     ) {
-        match &self.geometry {
+        match &*self.geometry {
             Geometry::Structure { main, structure, .. } => {
                 if !structure.pairs.iter().any(|pair| matches!(pair.law, Law::Frictionless { .. })) {
                     return;
@@ -558,7 +566,7 @@ impl Solved {
     /// The displacements after pivot `step`; structures only.
     pub fn displacements_at(&self, prepared: &Prepared, step: usize) -> Option<Vec<NodeDisplacement>> {
         let (Trace::Contact { numbers, factors, .. }, Geometry::Structure { main, structure, .. }) =
-            (&self.trace, &prepared.geometry)
+            (&self.trace, &*prepared.geometry)
         else {
             return None;
         };

@@ -12,7 +12,7 @@ impl Prepared {
     /// The LCP in the scenario's units (forces w, q; displacements z) and the names of its rows. The covering of a bare
     /// LCP is its own.
     pub fn written_lcp(&self, values: &ParameterValues, covering: Covering) -> (Lcp<f64>, Vec<String>) {
-        match &self.geometry {
+        match &*self.geometry {
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
                 let numbers = contact_numbers(system, &factors(self, values), values);
                 let lcp = whole_lcp(&WholeInput { system, numbers: &numbers, covering });

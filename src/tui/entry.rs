@@ -172,6 +172,7 @@ mod tests {
             nodes: Vec::new(),
             bars: Vec::new(),
             cases: Vec::new(),
+            ..Vocabulary::default()
         }
     }
 

@@ -2,6 +2,7 @@
 //! characters come in as a [`style::Style`].
 
 pub mod check;
+pub mod combinations;
 pub mod compare;
 pub mod critical;
 pub mod difference;
@@ -16,12 +17,14 @@ pub mod parameters;
 pub mod path;
 pub mod pivots;
 pub mod plot;
+pub mod quantities;
 pub mod ray;
 pub mod reactions;
 pub mod sensitivity;
 pub mod stages;
 pub mod status;
 pub mod style;
+pub mod summary;
 pub mod sweep;
 pub mod table;
 pub mod tableau;

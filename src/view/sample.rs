@@ -172,6 +172,7 @@ pub fn beam_structure() -> Structure {
             })
             .collect(),
         bars: vec![Bar { id: "AF".into(), elements: 0..SUPPORTS - 1 }],
+        edge_contacts: Vec::new(),
         pairs: (0..SUPPORTS).map(|i| ground_pair(&format!("c{}", i + 1), i)).collect(),
         load_cases: vec![
             LoadCase {
@@ -319,6 +320,8 @@ pub fn scenario() -> Scenario {
         uses: crate::model::uses::Uses::default(),
         source: Source::Structure(beam_structure()),
         stages: Vec::new(),
+        combinations: Vec::new(),
+        probes: Vec::new(),
         places: Places::default(),
         rules: Rules::default(),
     }

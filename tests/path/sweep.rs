@@ -42,6 +42,7 @@ impl Case {
             grid: &self.grid,
             shard: shard.parse::<Shard>().expect("a shard"),
             format,
+            quantities: &[],
         }
     }
 

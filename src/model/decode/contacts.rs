@@ -12,6 +12,7 @@ use crate::model::edge::Edge;
 use crate::model::memory;
 use crate::model::pair::{JointDirection, Pair, joints};
 use crate::model::parameter::Number;
+use crate::model::structure::EdgeContact;
 
 /// The word for the ground in `against`.
 const GROUND: &str = "ground";
@@ -96,7 +97,12 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
         },
     );
-    Some(pairs.collect())
+    let pairs = pairs.collect();
+    if is_edge {
+        let nodes = sides.pairs.iter().map(|(node, _)| *node).collect();
+        builder.structure.edge_contacts.push(EdgeContact { id: id.to_owned(), nodes });
+    }
+    Some(pairs)
 }
 
 fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {

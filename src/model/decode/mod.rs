@@ -28,6 +28,7 @@ use std::sync::Arc;
 use super::locate::{Document, position};
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
+use super::quantity::{self, Names, Quantity};
 use super::rules::{Covering, Engine, Rules, TieBreak, UnknownChoice};
 use super::scenario::{Places, Scenario, Source, Units};
 use super::uses::Uses;
@@ -37,7 +38,8 @@ use reader::{Cursor, Entry, Fields, Reading};
 const FORMAT: &str = "stickslip/1";
 
 /// Keys of any scenario.
-const COMMON: [&str; 8] = ["$schema", "format", "title", "description", "units", "parameters", "stages", "solver"];
+const COMMON: [&str; 10] =
+    ["$schema", "format", "title", "description", "units", "parameters", "stages", "combinations", "probes", "solver"];
 
 /// Keys of the source *structure*.
 const STRUCTURE: [&str; 13] = [
@@ -141,22 +143,14 @@ fn read(
             Source::Lcp(lcp::read(cursor, path.as_deref())?)
         }
     };
-    let stages = match (fields.entry("stages"), &source) {
-        (None, _) => Some(Vec::new()),
-        (Some(entry), Source::Lcp(_)) => {
-            entry.key_problem("an lcp has no `stages`: it has no load cases", "remove `stages`");
-            None
-        }
-        (Some(entry), Source::Structure(structure)) => {
-            let cases: Vec<&str> = structure.load_cases.iter().map(|case| case.name.as_str()).collect();
-            stages::read(entry, &cases)
-        }
-        (Some(entry), Source::ContactSystem(system)) => {
-            let cases: Vec<&str> = system.loads.iter().map(|load| load.name.as_str()).collect();
-            stages::read(entry, &cases)
-        }
+    let cases: Option<Vec<&str>> = match &source {
+        Source::Structure(structure) => Some(structure.load_cases.iter().map(|case| case.name.as_str()).collect()),
+        Source::ContactSystem(system) => Some(system.loads.iter().map(|load| load.name.as_str()).collect()),
+        Source::Lcp(_) => None,
     };
-    Some(Scenario {
+    let stages = with_cases(&fields, "stages", cases.as_deref(), stages::read);
+    let combinations = with_cases(&fields, "combinations", cases.as_deref(), stages::combinations);
+    let mut scenario = Scenario {
         name: name.to_string(),
         path,
         text: text.to_string(),
@@ -166,11 +160,69 @@ fn read(
         parameters: root.parameters().complete()?,
         source,
         stages: stages?,
+        combinations: combinations?,
+        probes: Vec::new(),
         rules,
         places,
         formulas: Arc::new(root.parameters().formulas().clone()),
         uses: Uses::default(),
-    })
+    };
+    scenario.probes = match fields.optional("probes") {
+        Some(cursor) => probes(cursor, &scenario)?,
+        None => Vec::new(),
+    };
+    Some(scenario)
+}
+
+/// What a key says of the load cases; empty without the key. An lcp has none.
+fn with_cases<'d, T>(
+    fields: &Fields<'d>,
+    key: &str,
+    cases: Option<&[&str]>,
+    read: impl Fn(Entry<'d>, &[&str]) -> Option<Vec<T>>,
+) -> Option<Vec<T>> {
+    match (fields.entry(key), cases) {
+        (None, _) => Some(Vec::new()),
+        (Some(entry), Some(cases)) => read(entry, cases),
+        (Some(entry), None) => {
+            entry.key_problem(format!("an lcp has no `{key}`: it has no load cases"), format!("remove `{key}`"));
+            None
+        }
+    }
+}
+
+/// Names for quantities.
+fn probes(cursor: Cursor<'_>, scenario: &Scenario) -> Option<Vec<(String, Quantity)>> {
+    let names = Names::of(scenario);
+    let mut probes = Vec::new();
+    let mut is_right = true;
+    for entry in cursor.entries()? {
+        let name = entry.name();
+        let plain =
+            !name.trim().is_empty() && name.trim() == name && !name.contains(|c: char| c.is_control() || c == '"');
+        if quantity::entry(name).is_some() || !plain {
+            let why = if plain { "is a quantity itself" } else { "cannot be a name" };
+            entry.key_problem(format!("a probe cannot be named {}: it {why}", quoted(name)), "choose another name");
+            is_right = false;
+        }
+        let Some(text) = entry.value().string() else {
+            is_right = false;
+            continue;
+        };
+        match quantity::read_text(text, &names).map(<[Quantity; 1]>::try_from) {
+            Ok(Ok([quantity])) => probes.push((name.to_owned(), quantity)),
+            Ok(Err(found)) => {
+                let message = format!("a probe is one quantity, found {} in {}", found.len(), quoted(text));
+                entry.value().problem(message, "write e.g. \"M AB start\" or \"z_n c1\"");
+                is_right = false;
+            }
+            Err(error) => {
+                entry.value().problem(error.to_string(), "quantities are listed by `help show`");
+                is_right = false;
+            }
+        }
+    }
+    is_right.then_some(probes)
 }
 
 fn format(fields: &Fields<'_>) {

@@ -1,7 +1,7 @@
-//! `stages`: a load history, each stage a multiplier of some load cases.
+//! `stages`, a load history, and `combinations`: each a multiplier of some load cases.
 
 use super::reader::{Cursor, Entry};
-use super::words::{did_you_mean, listed, quoted};
+use super::words::{ID_RULE, did_you_mean, is_id, listed, quoted};
 use crate::model::scenario::Stage;
 use crate::model::uses::Region;
 
@@ -23,6 +23,28 @@ pub fn read(entry: Entry<'_>, cases: &[&str]) -> Option<Vec<Stage>> {
         return None;
     }
     is_right.then_some(stages)
+}
+
+/// Reads `combinations`: each named, otherwise as a stage.
+pub fn combinations(entry: Entry<'_>, cases: &[&str]) -> Option<Vec<(String, Stage)>> {
+    let mut combinations = Vec::new();
+    let mut is_right = true;
+    for entry in entry.value().entries()? {
+        if !is_id(entry.name()) {
+            entry.key_problem(format!("{} cannot name a combination", quoted(entry.name())), ID_RULE);
+            is_right = false;
+        }
+        match stage(entry.value(), cases) {
+            Some(stage) if !stage.multipliers.is_empty() => combinations.push((entry.name().to_owned(), stage)),
+            Some(_) => {
+                entry
+                    .key_problem("the combination names no load case", format!("the load cases are {}", listed(cases)));
+                is_right = false;
+            }
+            None => is_right = false,
+        }
+    }
+    is_right.then_some(combinations)
 }
 
 fn stage(cursor: Cursor<'_>, cases: &[&str]) -> Option<Stage> {

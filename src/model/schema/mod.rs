@@ -23,7 +23,7 @@ use loads::LoadCase;
 #[schemars(deny_unknown_fields, title = "stickslip/1")]
 #[schemars(extend("oneOf" = [
     { "required": ["contact_system"] },
-    { "required": ["lcp"], "not": { "required": ["stages"] } },
+    { "required": ["lcp"], "not": { "anyOf": [{ "required": ["stages"] }, { "required": ["combinations"] }] } },
     { "anyOf": [
         { "required": ["materials"] }, { "required": ["sections"] }, { "required": ["nodes"] },
         { "required": ["bars"] }, { "required": ["plates"] }, { "required": ["quads"] },
@@ -50,6 +50,10 @@ struct Scenario {
     parameters: Option<BTreeMap<String, Parameter>>,
     /// Load history: for each stage what multiplies the factors of the load cases; cases not named count 0
     stages: Option<Vec<BTreeMap<String, Number>>>,
+    /// Load combinations by name: what multiplies the factors of the load cases; cases not named count 0
+    combinations: Option<BTreeMap<String, BTreeMap<String, Number>>>,
+    /// Names for quantities, like "lift": "z_n base[0]"
+    probes: Option<BTreeMap<String, String>>,
     /// Rules of the solver
     solver: Option<Solver>,
     /// Materials by id

@@ -23,7 +23,7 @@ pub(super) fn dissipated(system: &ContactSystem, moments: &[Moment]) -> f64 {
 
 /// W = Σ ½ (F_a + F_b)·Δu and ΔU of every stage, and what is left of W − ΔU − D beside the largest energy met.
 pub(super) fn balance(prepared: &Prepared, numbers: &ContactNumbers, history: &mut History) {
-    let Geometry::Structure { main, .. } = &prepared.geometry else {
+    let Geometry::Structure { main, .. } = &*prepared.geometry else {
         return;
     };
     let displacements = |moment: &Moment| main.displacements(&moment.factors, &dislocation(numbers, &moment.state.z));

@@ -7,6 +7,7 @@ use super::chart::{Chart, Curve, Line};
 use super::zone::Quantity;
 use crate::answer::record::PairState;
 use crate::model::scenario::Units;
+use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
 use crate::view::number::{denoised, largest};
 use crate::view::style::Style;
@@ -79,6 +80,48 @@ pub fn write(
     let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
     Chart {
         title: format!("{what} over {over}, breakpoints marked{unit}"),
+        curves,
+        values: true,
+        abscissa: over,
+        height,
+        ..Chart::default()
+    }
+    .write(out, style)
+}
+
+/// Draws quantities over what was followed, breakpoints marked.
+pub fn write_along(
+    out: &mut dyn Write,
+    path: &PathRecord,
+    along: &[OnPath],
+    units: &Units,
+    height: usize,
+    style: &Style,
+) -> io::Result<()> {
+    let case = match path.followed {
+        Followed::Stages => path.widest_case(),
+        _ => None,
+    };
+    let over = match case {
+        Some(case) => format!("the factor of {}", path.cases[case]),
+        None => path.name.clone(),
+    };
+    let abscissas = path.abscissas(case);
+    let mut curves = Vec::new();
+    for (number, (quantity, values)) in along.iter().enumerate() {
+        let points = || abscissas.iter().zip(values).zip(&path.places).filter_map(|((x, y), at)| Some((*x, (*y)?, at)));
+        let label = quantity.to_string();
+        let curve = Series { label: String::new(), points: points().map(|(x, y, _)| (x, y)).collect() };
+        let marked = points().filter(|(_, _, at)| !at.change.is_empty()).map(|(x, y, _)| (x, y)).collect();
+        curves.push(Curve { series: curve, number, line: Line::Plain });
+        curves.push(Curve { series: Series { label, points: marked }, number, line: Line::Points });
+    }
+    let unit = along.first().and_then(|(quantity, _)| quantity.unit(units));
+    let unit = unit.filter(|unit| along.iter().all(|(quantity, _)| quantity.unit(units).as_ref() == Some(unit)));
+    let names: Vec<String> = along.iter().map(|(quantity, _)| quantity.to_string()).collect();
+    let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+    Chart {
+        title: format!("{} over {over}, breakpoints marked{unit}", names.join(", ")),
         curves,
         values: true,
         abscissa: over,

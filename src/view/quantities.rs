@@ -1,0 +1,67 @@
+//! Values of quantities in a table.
+
+use std::io::{self, Write};
+
+use super::number::{in_column, largest, short, with_unit};
+use super::path::exact;
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::model::quantity::Quantity;
+use crate::model::scenario::Units;
+use crate::path::quantity::{NoValue, OnPath, Value};
+use crate::path::record::PathRecord;
+
+/// A value with its unit, or why there is none.
+pub fn shown(quantity: &Quantity, value: &Result<Value, NoValue>, units: &Units) -> (String, Role) {
+    match value {
+        Ok(Value::Number(value)) => (with_unit(&short(*value), quantity.unit(units).as_deref()), Role::Plain),
+        Ok(Value::Word(word)) => (word.clone(), Role::Plain),
+        Err(reason) => (reason.0.clone(), Role::Muted),
+    }
+}
+
+/// Quantities at the places of a path, a column each; nothing where none is asked for.
+pub fn write_along(
+    out: &mut dyn Write,
+    path: &PathRecord,
+    along: &[OnPath],
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    if along.is_empty() {
+        return Ok(());
+    }
+    let mut columns = vec![Column::numbers(&path.name, None)];
+    for (quantity, _) in along {
+        columns.push(Column::numbers(&quantity.to_string(), quantity.unit(units)));
+    }
+    let mut table = Table::new(columns);
+    let sizes: Vec<f64> = along.iter().map(|(_, values)| largest(values.iter().flatten().copied())).collect();
+    for (k, place) in path.places.iter().enumerate() {
+        let mut cells = vec![Cell::from(exact(place.value))];
+        for ((_, values), size) in along.iter().zip(&sizes) {
+            let value = values.get(k).copied().flatten();
+            cells.push(Cell::from(value.map_or(String::new(), |value| in_column(value, *size))));
+        }
+        table.rows.push(Row::new(cells));
+    }
+    table.write(out, style)
+}
+
+/// One line for each quantity; numbers with ten digits.
+pub fn write(
+    out: &mut dyn Write,
+    values: &[(Quantity, Result<Value, NoValue>)],
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let mut table = Table::new(vec![Column::words("quantity"), Column::words("value")]);
+    for (quantity, value) in values {
+        let (text, role) = match value {
+            Ok(Value::Number(value)) => (with_unit(&exact(*value), quantity.unit(units).as_deref()), Role::Plain),
+            value => shown(quantity, value, units),
+        };
+        table.rows.push(Row::new(vec![Cell::from(quantity.to_string()), Cell::new(text, role)]));
+    }
+    table.write(out, style)
+}
