@@ -5,7 +5,8 @@
 use nalgebra::DMatrix;
 
 use super::dof::Dofs;
-use super::element::{ROWS, slots, spring, stiffness};
+use super::doubled::Real;
+use super::element::{ROWS, slots, spring_stiffness, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
@@ -18,11 +19,11 @@ const ELEMENTS_PER_LOOK: usize = 4096;
 ///
 /// # Errors
 /// An element without stiffness because of its shape; interrupted.
-pub fn assemble(
+pub fn assemble<T: Real>(
     structure: &Structure,
     dofs: &Dofs,
     stop: &dyn Fn() -> bool,
-) -> Result<SymmetricSparse, MainSystemError> {
+) -> Result<SymmetricSparse<T>, MainSystemError> {
     let element_dofs = |index: usize, visit: &mut dyn FnMut(&[Option<usize>])| {
         let slots = slots(&structure.elements[index]);
         let mut at = [None; ROWS];
@@ -58,7 +59,7 @@ pub fn assemble(
             }
         },
         |push| {
-            (0..dofs.count()).for_each(|dof| push(dof, dof, 0.0));
+            (0..dofs.count()).for_each(|dof| push(dof, dof, T::zero()));
             for index in 0..structure.elements.len() {
                 if index % ELEMENTS_PER_LOOK == 0 && stop() {
                     return Err(MainSystemError::Interrupted);
@@ -69,7 +70,7 @@ pub fn assemble(
                 });
             }
             for element in &structure.springs {
-                let k = spring::stiffness(element);
+                let k = spring_stiffness(structure, element)?;
                 lower(&spring_dofs(element.node), &mut |row, column, i, j| {
                     push(row, column, k[(i, j)]);
                 });
@@ -154,22 +155,22 @@ pub fn main_matrices(k: &SymmetricSparse, elimination: &Elimination) -> MainMatr
 }
 
 /// Tᵀ f.
-pub fn on_masters(elimination: &Elimination, f: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; elimination.masters()];
-    for (dof, &value) in f.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+pub fn on_masters<T: Real>(elimination: &Elimination, f: &[T]) -> Vec<T> {
+    let mut out = vec![T::zero(); elimination.masters()];
+    for (dof, &value) in f.iter().enumerate().filter(|(_, value)| !value.is_zero()) {
         for (v, t) in elimination.free_terms(dof) {
-            out[v] += t * value;
+            out[v] += T::from(t) * value;
         }
     }
     out
 }
 
 /// Gᵀ f.
-pub fn on_joints(elimination: &Elimination, f: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; elimination.joints()];
-    for (dof, &value) in f.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+pub fn on_joints<T: Real>(elimination: &Elimination, f: &[T]) -> Vec<T> {
+    let mut out = vec![T::zero(); elimination.joints()];
+    for (dof, &value) in f.iter().enumerate().filter(|(_, value)| !value.is_zero()) {
         for (joint, g) in elimination.joint_terms(dof) {
-            out[joint] += g * value;
+            out[joint] += T::from(g) * value;
         }
     }
     out

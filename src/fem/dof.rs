@@ -1,5 +1,6 @@
 //! Numbering of the displacement components.
 
+use super::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, ElementKind, Structure};
 
@@ -64,19 +65,19 @@ impl Dofs {
     }
 
     /// Displacements [u_x, u_y, θ] per node from base dofs; θ = 0 where there is none.
-    pub fn scatter(&self, u: &[f64]) -> Vec<[f64; 3]> {
+    pub fn scatter<T: Real>(&self, u: &[T]) -> Vec<[T; 3]> {
         std::iter::zip(&self.first, &self.has_rotation)
             .map(|(&first, &rotation)| {
                 let first = first as usize;
-                let theta = if rotation { u[first + 2] } else { 0.0 };
+                let theta = if rotation { u[first + 2] } else { T::zero() };
                 [u[first], u[first + 1], theta]
             })
             .collect()
     }
 
     /// Base dofs from displacements per node.
-    pub fn gather(&self, u: &[[f64; 3]]) -> Vec<f64> {
-        let mut base = vec![0.0; self.count];
+    pub fn gather<T: Real>(&self, u: &[[T; 3]]) -> Vec<T> {
+        let mut base = vec![T::zero(); self.count];
         for (node, values) in u.iter().enumerate() {
             for (component, value) in COMPONENTS.into_iter().zip(values) {
                 if let Some(dof) = self.of(node, component) {

@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::dof::{Dofs, root};
+use super::doubled::Real;
 use super::error::DependentJoint;
 use super::joint_rows::{JointReduction, JointRow, holders};
 use crate::model::pair::Joint;
@@ -160,11 +161,12 @@ impl Elimination {
     }
 
     /// u = T v + G z on the base dofs.
-    pub fn expand(&self, v: &[f64], z: &[f64]) -> Vec<f64> {
+    pub fn expand<T: Real>(&self, v: &[T], z: &[f64]) -> Vec<T> {
+        let sum = |sum: T, term: T| sum + term;
         (0..self.rows.len())
             .map(|dof| {
-                self.free_terms(dof).map(|(i, a)| a * v[i]).sum::<f64>()
-                    + self.joint_terms(dof).map(|(j, a)| a * z[j]).sum::<f64>()
+                let own = self.free_terms(dof).map(|(i, a)| T::from(a) * v[i]).fold(T::zero(), sum);
+                self.joint_terms(dof).map(|(j, a)| T::from(a) * T::from(z[j])).fold(own, sum)
             })
             .collect()
     }

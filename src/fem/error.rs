@@ -26,6 +26,24 @@ pub enum MainSystemError {
         /// How it moves.
         direction: FreeDirection,
     },
+    /// The structure stands, but by so little of its stiffest part that not even doubled precision can solve it.
+    #[error(
+        "the stiffnesses differ too much to be solved: {stiffest} is {contrast:.0e} times as stiff as {softest}; \
+         make the stiff part rigid by supports or ties, or bring the two closer together"
+    )]
+    Contrast {
+        /// A node of the stiffest element.
+        node: usize,
+        /// The stiffest element, in words.
+        stiffest: String,
+        /// The softest element, in words.
+        softest: String,
+        /// How many times as stiff.
+        contrast: f64,
+    },
+    /// The factorization met numbers that are none.
+    #[error("the stiffness matrix is not finite: check the sizes, materials and stiffnesses of the model")]
+    NotFinite,
     /// A moment on a node that has no rotation: no frame bar is rigidly attached to it.
     #[error(
         "load case {case} has a moment at node {node_id}, where no frame bar is rigidly attached: \

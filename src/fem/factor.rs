@@ -29,30 +29,24 @@ use super::supernodes::Supernodes;
 use super::watch::check_stop;
 use crate::watch::Watch;
 
+/// Added to the unit diagonal where K_m itself has no factor in f64, and multiplied by [`SHIFT_STEP`] until it has one.
+const FIRST_SHIFT: f64 = 1e-15;
+const SHIFT_STEP: f64 = 32.0;
+
+/// A squared pivot below this share of the unit diagonal points to a motion that may cost nothing.
+const SUSPECT_PIVOT: f64 = 1e-9;
+
 /// L, L_C, P and S of K_m.
 #[derive(Debug)]
 pub struct Factor {
     supernodes: Supernodes,
+    /// What was added to the diagonal of S K_m S: 0 unless rounding made a pivot fail.
+    shift: f64,
     /// Diagonal of S.
     scale: Vec<f64>,
     /// Position in P of each row of K_m.
     position: Vec<u32>,
     joints: usize,
-}
-
-/// Why there is no factor.
-#[derive(Debug)]
-pub enum FactorError {
-    /// K_m is not positive definite to working precision; the vector is nearly in its kernel.
-    Singular(Vec<f64>),
-    /// Anything else.
-    Other(MainSystemError),
-}
-
-impl From<MainSystemError> for FactorError {
-    fn from(error: MainSystemError) -> FactorError {
-        FactorError::Other(error)
-    }
 }
 
 fn out_of_memory(doing: &'static str) -> MainSystemError {
@@ -63,15 +57,18 @@ impl Factor {
     /// Orders and factorizes K_m (scaled in place) with the terms (row, joint, value) of C for `joints` joints;
     /// the rows that have to come last are ordered behind all others.
     ///
+    /// Where rounding makes a pivot fail, the factor is that of a slightly shifted K_m ([`Factor::is_shifted`]): good
+    /// for refinement, but neither for R nor for a verdict on the structure.
+    ///
     /// # Errors
-    /// Singular; too large; out of memory; interrupted.
+    /// Too large; out of memory; interrupted.
     pub fn new(
         k_m: &mut SymmetricSparse,
         c: &[(u32, u32, f64)],
         places: Places,
         joints: usize,
         watch: &dyn Watch,
-    ) -> Result<Factor, FactorError> {
+    ) -> Result<Factor, MainSystemError> {
         if k_m.order() == 0 {
             // Everything is held. One idle unknown spares all that follows the empty case.
             *k_m = SymmetricSparse { column_start: vec![0, 1], rows: vec![0], values: vec![1.0] };
@@ -120,18 +117,26 @@ impl Factor {
         begin.push(order as u32);
         let supernodes = Supernodes::new(n, begin, |s| structure.supernode(s).pattern());
         drop(symbolic);
-        let mut factor = Factor { supernodes, scale, position, joints };
+        let mut factor = Factor { supernodes, shift: 0.0, scale, position, joints };
         let needed = factor.bytes_needed();
         if available_memory().is_some_and(|available| needed > available) {
-            return Err(too_large(needed).into());
+            return Err(too_large(needed));
         }
         check_stop(watch)?;
-        let positive = factor.supernodes.factorize(&matrix, 0.0, watch)?;
-        check_stop(watch)?;
-        match factor.null_vector(k_m, &matrix, positive, watch)? {
-            Some(null_vector) => Err(FactorError::Singular(null_vector)),
-            None => Ok(factor),
+        while !factor.supernodes.factorize(&matrix, factor.shift, watch)? {
+            check_stop(watch)?;
+            factor.shift = if factor.shift == 0.0 { FIRST_SHIFT } else { factor.shift * SHIFT_STEP };
+            if factor.shift > 1.0 {
+                // A positive semidefinite matrix of unit diagonal is long positive definite by then.
+                return Err(MainSystemError::NotFinite);
+            }
         }
+        Ok(factor)
+    }
+
+    /// Whether this is the factor of a shifted matrix.
+    pub fn is_shifted(&self) -> bool {
+        self.shift > 0.0
     }
 
     /// Order of K_m.
@@ -149,34 +154,19 @@ impl Factor {
         8 * (self.stored() as u64 + 4 * (self.joints as u64).pow(2))
     }
 
-    /// A vector v with K_m v = 0 to rounding, if there is one (K_m as scaled, v in the unscaled unknowns).
+    /// A vector v, in the unscaled unknowns, that is nearly in the kernel of K_m, if a pivot points to one.
     ///
-    /// A small pivot alone proves nothing: a sound beam of a thousand elements has pivots of 1e-10. So the vector
-    /// that a suspect pivot points to is sharpened by inverse iteration, and its residual decides: rounding
-    /// level for a mechanism, the smallest eigenvalue otherwise.
-    fn null_vector(
-        &mut self,
-        k_m: &SymmetricSparse,
-        matrix: &SymmetricSparse,
-        positive: bool,
-        watch: &dyn Watch,
-    ) -> Result<Option<Vec<f64>>, MainSystemError> {
-        const SUSPECT_PIVOT: f64 = 1e-9;
-        const RESIDUAL: f64 = 1e-13;
+    /// It proves nothing: a sound beam of a thousand elements has pivots of 1e-10. What K v is decides.
+    pub fn suspect(&self) -> Option<Vec<f64>> {
         let n = self.order();
         let mut start = vec![0.0; n];
-        if positive {
+        if self.shift == 0.0 {
             let (at, pivot) = self.supernodes.smallest_pivot();
             if pivot > SUSPECT_PIVOT {
-                return Ok(None);
+                return None;
             }
             start[at] = 1.0;
         } else {
-            let mut shift = 1e-13;
-            while !self.supernodes.factorize(matrix, shift, watch)? {
-                // Gershgorin: the scaled matrix is bounded by its row sums, so this ends.
-                shift *= 100.0;
-            }
             // Any vector that is not orthogonal to the kernel will do; this one has no symmetry.
             let mut state = 0.5;
             for x in &mut start {
@@ -194,11 +184,7 @@ impl Factor {
             }
             (0..n).for_each(|i| x[(i, 0)] /= largest);
         }
-        let v: Vec<f64> = self.position.iter().map(|&at| x[(at as usize, 0)]).collect();
-        let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let residual = norm(&k_m.times(&v));
-        let is_null = !positive || residual <= RESIDUAL * norm(&k_m.times_absolute(&v));
-        Ok(is_null.then(|| std::iter::zip(&v, &self.scale).map(|(v, s)| v * s).collect()))
+        Some(self.position.iter().zip(&self.scale).map(|(&at, s)| x[(at as usize, 0)] * s).collect())
     }
 
     /// D − Cᵀ K_m⁻¹ C, exactly symmetric.

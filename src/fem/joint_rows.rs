@@ -49,9 +49,15 @@ impl JointRow {
         }
     }
 
+    /// Coefficients come from sines and cosines: what is 0 or ±1 but for a few roundings is just that, so that two
+    /// sides that move as one are not strained by it.
     fn drop_rounding(&mut self) {
-        self.terms.retain(|_, a| a.abs() > 1e-14);
-        self.joints.retain(|_, a| a.abs() > 1e-14);
+        for coefficients in [&mut self.terms, &mut self.joints] {
+            coefficients.retain(|_, a| a.abs() > 1e-14);
+            for a in coefficients.values_mut().filter(|a| (a.abs() - 1.0).abs() < 1e-14) {
+                *a = a.signum();
+            }
+        }
     }
 }
 
@@ -98,6 +104,7 @@ impl JointReduction {
         for value in row.terms.values_mut().chain(row.joints.values_mut()) {
             *value /= a;
         }
+        row.drop_rounding();
         // Take the new slave out of the rows that use it.
         for user in self.users.remove(&pivot).unwrap_or_default() {
             let Some(other) = self.slaves.get_mut(&user) else {

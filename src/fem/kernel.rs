@@ -18,8 +18,8 @@ pub const ZERO_EIGENVALUE: f64 = 1e-10;
 /// eigenvalue is known within less than a factor of 4.
 const SURELY_POSITIVE: f64 = 4.0 * ZERO_EIGENVALUE;
 
-/// Singular values below this share of the largest: motions that no joint feels.
-const UNFELT: f64 = 1e-10;
+/// Singular values below this share of the largest: motions that no joint feels. Rounding of a small decomposition.
+const UNFELT: f64 = 1024.0 * f64::EPSILON;
 
 /// Rigid motions and their trace on the joints.
 #[derive(Clone)]
@@ -81,22 +81,24 @@ fn add_scaled(sum: &mut [[f64; 3]], factor: f64, u: &[[f64; 3]]) {
 
 /// The error that names the node that moves most.
 pub fn mechanism(structure: &Structure, u: &[[f64; 3]]) -> MainSystemError {
-    let shift = |u: &[f64; 3]| u[0].hypot(u[1]);
+    let node = most_moved(u);
+    MainSystemError::Mechanism {
+        node,
+        node_id: structure.nodes[node].id.clone(),
+        direction: FreeDirection::of(u[node]),
+    }
+}
+
+/// The node with the largest translation, or rotation where nothing translates.
+pub fn most_moved(u: &[[f64; 3]]) -> usize {
     let most = |size: &dyn Fn(&[f64; 3]) -> f64| {
         let largest = u.iter().map(size).fold(0.0, f64::max);
         // The first of those that are equal to rounding.
         let node = u.iter().position(|u| size(u) >= largest * (1.0 - 1e-6));
         (largest, node.unwrap_or(0))
     };
-    let (translation, mut node) = most(&shift);
-    if translation == 0.0 {
-        node = most(&|u| u[2].abs()).1;
-    }
-    MainSystemError::Mechanism {
-        node,
-        node_id: structure.nodes[node].id.clone(),
-        direction: FreeDirection::of(u[node]),
-    }
+    let (translation, node) = most(&|u| u[0].hypot(u[1]));
+    if translation == 0.0 { most(&|u| u[2].abs()).1 } else { node }
 }
 
 /// R ← (1 − Z Zᵀ) R (1 − Z Zᵀ), exactly symmetric.
@@ -123,26 +125,44 @@ pub fn project(r: &mut DMatrix<f64>, z: &DMatrix<f64>) {
 }
 
 /// Eigenvectors of R outside Z that look like zero-energy motions: to be checked against K.
+pub struct Suspects {
+    /// How many there are: the first columns of `vectors`.
+    pub count: usize,
+    /// All eigenvectors.
+    pub vectors: DMatrix<f64>,
+    values: Vec<f64>,
+}
+
+impl Suspects {
+    /// The dislocation outside the suspects that gives the joint forces `force`.
+    pub fn resisting(&self, force: &DVector<f64>) -> DVector<f64> {
+        let mut z = DVector::zeros(force.len());
+        for (column, value) in std::iter::zip(self.vectors.column_iter(), &self.values).skip(self.count) {
+            z.axpy(column.dot(force) / value, &column, 1.0);
+        }
+        z
+    }
+}
+
+/// The suspects, if there are any.
 ///
 /// # Errors
 /// The decomposition did not converge.
-pub fn suspects(r: &DMatrix<f64>, z: &DMatrix<f64>) -> Result<Vec<DVector<f64>>, MainSystemError> {
+pub fn suspects(r: &DMatrix<f64>, z: &DMatrix<f64>) -> Result<Option<Suspects>, MainSystemError> {
     if r.nrows() == z.ncols() {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let largest = largest_eigenvalue(r);
     let mut lifted = r.clone();
     // Z gets the largest eigenvalue: what is small now is new.
     lifted.gemm(largest, z, &z.transpose(), 1.0);
     if is_above(&lifted, SURELY_POSITIVE * largest) {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let (values, vectors) = symmetric_eigen(&lifted).ok_or(MainSystemError::NoConvergence)?;
     let largest = values.last().copied().unwrap_or(0.0);
-    Ok(std::iter::zip(&values, vectors.column_iter())
-        .filter(|(value, _)| **value < ZERO_EIGENVALUE * largest)
-        .map(|(_, vector)| vector.into_owned())
-        .collect())
+    let count = values.iter().filter(|value| **value < ZERO_EIGENVALUE * largest).count();
+    Ok((count > 0).then_some(Suspects { count, vectors, values }))
 }
 
 /// Z with one more direction, orthonormal; `None` if it is in the span already.

@@ -15,8 +15,9 @@ use super::dense::svd;
 use super::dof::{Dofs, root};
 use crate::model::structure::{Component, ElementKind, Structure};
 
-/// Singular values below this share of the largest belong to the null space.
-const NULL: f64 = 1e-10;
+/// Singular values below this share of the largest belong to the null space, times the rounding of the coordinates
+/// beside the size of the cluster.
+const NULL: f64 = 1024.0 * f64::EPSILON;
 
 /// Clusters with more motion parameters than this are taken apart into whole groups only.
 const MANY: usize = 240;
@@ -296,7 +297,8 @@ impl Cluster {
             }
         }
 
-        let basis = null_basis(&rows, columns)?;
+        let largest = self.nodes.iter().flat_map(|&n| place(n)).fold(0.0_f64, |m, x| m.max(x.abs()));
+        let basis = null_basis(&rows, columns, NULL * (1.0 + largest / size))?;
         let motions = basis.column_iter().map(|q| {
             let mut u = vec![[0.0; 3]; structure.nodes.len()];
             for &node in &self.nodes {
@@ -313,7 +315,8 @@ impl Cluster {
 }
 
 /// Basis of the null space of sparse rows, in echelon form: each vector has a leading one where the others are 0.
-fn null_basis(rows: &[Vec<(usize, f64)>], columns: usize) -> Option<DMatrix<f64>> {
+/// Singular values below the share `null` of the largest count as zero.
+fn null_basis(rows: &[Vec<(usize, f64)>], columns: usize, null: f64) -> Option<DMatrix<f64>> {
     let mut a = DMatrix::zeros(rows.len(), columns);
     for (i, row) in rows.iter().enumerate() {
         for &(j, value) in row {
@@ -323,7 +326,7 @@ fn null_basis(rows: &[Vec<(usize, f64)>], columns: usize) -> Option<DMatrix<f64>
     let svd = svd(&a)?;
     let largest = svd.sigma.first().copied().unwrap_or(0.0);
     let mut basis: Vec<DVector<f64>> = std::iter::zip(&svd.sigma, svd.v.column_iter())
-        .filter(|(sigma, _)| **sigma <= NULL * largest)
+        .filter(|(sigma, _)| **sigma <= null * largest)
         .map(|(_, vector)| vector.into_owned())
         .collect();
     // Gauss–Jordan on the vectors, pivots from the left.

@@ -13,30 +13,52 @@ use std::time::Instant;
 use nalgebra::{DMatrix, DVector};
 
 use super::assembly::{assemble, main_matrices, on_joints, on_masters};
+use super::contrast;
 use super::dof::Dofs;
+use super::doubled::{Doubled, Real};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
-use super::factor::{Factor, FactorError};
+use super::factor::Factor;
 use super::kernel::{self, RigidKernel};
 use super::loads::load_vectors;
 use super::loose::{Motion, loose_motions};
 use super::order::Places;
+use super::refinement::{Refinement, Verdict};
 use super::sparse::SymmetricSparse;
 use crate::model::pair::Joint;
-use crate::model::structure::{Component, Structure};
-use crate::watch::Watch;
+use crate::model::structure::Structure;
+use crate::watch::{Quiet, Watch};
 
-/// An eigenvector of R is a mechanism if its u has ‖K u‖ below this share of the terms it sums, both in equations
-/// scaled to a unit diagonal (so that a soft part is no mechanism beside a stiff one).
-const NO_FORCE: f64 = 1e-12;
+/// R and RF are taken from the f64 factor where rounding costs them no more than this share; see
+/// [`MainSystem::loss`].
+const MOST_LOSS: f64 = 1e-12;
 
-/// The residual of equilibrium is measured against at least this share of the terms that K u sums: forces that are
-/// still smaller are lost in the rounding of u itself.
-const LOST_IN_ROUNDING: f64 = 1e-4;
-
-/// Displacements per node: [u_x, u_y, θ], θ counter-clockwise and 0 at nodes without one.
+/// Displacements per node: [u_x, u_y, θ], θ counter-clockwise and 0 at nodes without one; and, where the main system
+/// is solved in doubled precision, what f64 leaves of them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Displacements(pub Vec<[f64; 3]>);
+pub struct Displacements(pub Vec<[f64; 3]>, pub(super) Option<Tail>);
+
+/// The second half of displacements in doubled precision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tail {
+    /// Per node.
+    values: Vec<[f64; 3]>,
+    /// What is left of the energy of their error, as the solver sees it.
+    pub(super) error: f64,
+}
+
+impl Displacements {
+    /// In doubled precision.
+    pub(super) fn doubled(&self) -> Vec<[Doubled; 3]> {
+        (0..self.0.len()).map(|node| self.doubled_at(node)).collect()
+    }
+
+    /// The same of one node.
+    pub(super) fn doubled_at(&self, node: usize) -> [Doubled; 3] {
+        let tail = self.1.as_ref().map_or([0.0; 3], |tail| tail.values[node]);
+        std::array::from_fn(|c| Doubled::sum(self.0[node][c], tail[c]))
+    }
+}
 
 /// Size of the problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,11 +90,15 @@ pub struct MainSystem {
     pub(super) k: Arc<SymmetricSparse>,
     /// F per load case on the base dofs.
     pub(super) f: Vec<Vec<f64>>,
+    /// K in doubled precision, where f64 loses too much of the structure's stiffness.
+    pub(super) doubled: Option<Arc<SymmetricSparse<Doubled>>>,
+    /// Σ|u||K||u| over uᵀ K u, the largest that was met: how much R and RF lose to rounding.
+    pub(super) amplification: f64,
     factor: Arc<Factor>,
     c: Vec<(u32, u32, f64)>,
-    r: DMatrix<f64>,
-    rf: Vec<DVector<f64>>,
-    z: DMatrix<f64>,
+    pub(super) r: DMatrix<f64>,
+    pub(super) rf: Vec<DVector<f64>>,
+    pub(super) z: DMatrix<f64>,
     /// Of the first of the motions; internal ones follow.
     rigid: RigidKernel,
     /// Column j of `z` is B applied to Σ_i coefficients[(i, j)] · motion i; r × r.
@@ -107,7 +133,7 @@ impl MainSystem {
         let motions = loose_motions(structure, &dofs);
         let rigid = kernel::rigid_kernel(structure, joints, &motions)?;
         let mut main = main_matrices(&k, &elimination);
-        let mut seconds = Seconds { assemble: clock.elapsed().as_secs_f64(), ..Seconds::default() };
+        let seconds = Seconds { assemble: clock.elapsed().as_secs_f64(), ..Seconds::default() };
 
         let clock = Instant::now();
         let mut last = vec![false; elimination.masters()];
@@ -126,29 +152,19 @@ impl MainSystem {
         }
         let coordinates: Vec<[f64; 2]> = structure.nodes.iter().map(|node| node.position).collect();
         let places = Places { node: &node, coordinates: &coordinates, last: &last };
-        let factor = Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch).map_err(|error| match error {
-            FactorError::Other(error) => error,
-            FactorError::Singular(v) => {
-                let u = elimination.expand(&v, &vec![0.0; joints.len()]);
-                kernel::mechanism(structure, &dofs.scatter(&u))
-            }
-        })?;
+        let factor = Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch)?;
         drop(main.k_m);
-        seconds.factor = clock.elapsed().as_secs_f64();
-
-        let clock = Instant::now();
-        watch.progress(&format!("condensing to {} joints", joints.len()), 0.0);
-        let mut r = factor.schur(std::mem::take(&mut main.d));
-        kernel::project(&mut r, &rigid.z);
         let mut system = MainSystem {
             dofs,
             elimination,
             joints: joints.to_vec(),
             k: Arc::new(k),
-            f: Vec::new(),
+            f,
+            doubled: None,
+            amplification: 0.0,
             factor: Arc::new(factor),
             c: main.c,
-            r,
+            r: DMatrix::zeros(0, 0),
             rf: Vec::new(),
             z: rigid.z.clone(),
             coefficients: rigid.coefficients.clone(),
@@ -156,8 +172,13 @@ impl MainSystem {
             motions,
             seconds,
         };
-        system.take_loads(f);
-        system.add_internal_mechanisms()?;
+        system.refuse_mechanisms(structure, watch)?;
+        system.seconds.factor = clock.elapsed().as_secs_f64();
+
+        let clock = Instant::now();
+        watch.progress(&format!("condensing to {} joints", joints.len()), 0.0);
+        system.condense(structure, main.d, watch)?;
+        system.add_internal_mechanisms(structure, watch)?;
         system.seconds.condense = clock.elapsed().as_secs_f64();
         watch.progress(&format!("condensing to {} joints", joints.len()), 1.0);
         Ok(system)
@@ -166,27 +187,126 @@ impl MainSystem {
     /// The same structure under other loads: F and RF anew, with the factorization kept.
     ///
     /// # Errors
-    /// A moment where nothing turns.
+    /// A moment where nothing turns; loads under which the structure cannot be solved.
     pub fn with_loads(&self, structure: &Structure) -> Result<MainSystem, MainSystemError> {
         let clock = Instant::now();
         let mut system = self.clone();
-        system.take_loads(load_vectors(structure, &self.dofs)?);
+        system.f = load_vectors(structure, &self.dofs)?;
+        if system.doubled.is_some() {
+            system.take_loads_doubled(structure, &Quiet)?;
+        } else {
+            system.take_loads();
+            system.refine_if_lost(structure, &Quiet)?;
+        }
         system.seconds = Seconds { condense: clock.elapsed().as_secs_f64(), ..Seconds::default() };
         Ok(system)
     }
 
-    /// F per load case, and RF from it.
-    fn take_loads(&mut self, f: Vec<Vec<f64>>) {
-        let loads: Vec<Vec<f64>> = f.iter().map(|f| on_masters(&self.elimination, f)).collect();
+    /// The tools of doubled precision; K is assembled anew the first time.
+    fn refinement(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<Refinement<'_>, MainSystemError> {
+        let k = match self.doubled.take() {
+            Some(k) => k,
+            None => Arc::new(assemble(structure, &self.dofs, &|| watch.stop())?),
+        };
+        let k = self.doubled.insert(k);
+        Ok(Refinement { dofs: &self.dofs, k, elimination: &self.elimination, factor: &self.factor })
+    }
+
+    /// Looks into the motion that a small or failed pivot points to.
+    ///
+    /// # Errors
+    /// It costs nothing, or too little to be computed with.
+    fn refuse_mechanisms(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        let Some(mut v) = self.factor.suspect() else {
+            return Ok(());
+        };
+        let verdict = self.refinement(structure, watch)?.judge(structure, &mut v);
+        let u = || self.dofs.scatter(&self.elimination.expand(&v, &vec![0.0; self.joints.len()]));
+        match verdict {
+            Verdict::Resisted => Ok(()),
+            Verdict::Mechanism => Err(kernel::mechanism(structure, &u())),
+            Verdict::Unsolvable => Err(contrast::refusal(structure)),
+        }
+    }
+
+    /// R, RF and their kernel, from the f64 factor if its rounding costs little, otherwise in doubled precision.
+    fn condense(&mut self, structure: &Structure, d: DMatrix<f64>, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        if self.factor.is_shifted() {
+            return self.condense_doubled(structure, watch);
+        }
+        self.doubled = None;
+        self.r = self.factor.schur(d);
+        kernel::project(&mut self.r, &self.z);
+        self.take_loads();
+        self.refine_if_lost(structure, watch)
+    }
+
+    /// R and RF in doubled precision where rounding takes too much of them.
+    fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        self.amplification = self.worst_amplification();
+        // Each term of uᵀ K u is off by ε at random, and there are as many as unknowns.
+        let loss = f64::EPSILON * self.amplification / (self.elimination.masters().max(1) as f64).sqrt();
+        if loss > MOST_LOSS { self.condense_doubled(structure, watch) } else { Ok(()) }
+    }
+
+    fn condense_doubled(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        let r = self.refinement(structure, watch)?.stiffness(watch)?;
+        self.r = r.ok_or_else(|| contrast::refusal(structure))?;
+        kernel::project(&mut self.r, &self.z);
+        self.amplification = 1.0;
+        self.take_loads_doubled(structure, watch)
+    }
+
+    /// RF from F by the f64 factor.
+    fn take_loads(&mut self) {
+        let loads: Vec<Vec<f64>> = self.f.iter().map(|f| on_masters(&self.elimination, f)).collect();
         let condensed = self.factor.project(&loads);
-        let motions = &self.motions[..self.rigid.coefficients.nrows()];
-        let rf = f.iter().zip(condensed.column_iter()).map(|(f, column)| {
-            let mut rf = column - DVector::from_vec(on_joints(&self.elimination, f));
-            balance(&mut rf, &self.rigid, motions, f, &self.dofs);
-            rf
-        });
-        self.rf = rf.collect();
+        let rf = std::iter::zip(&self.f, condensed.column_iter());
+        self.rf = rf.map(|(f, column)| column - DVector::from_vec(on_joints(&self.elimination, f))).collect();
+        self.balance_loads();
+    }
+
+    /// RF from F in doubled precision.
+    fn take_loads_doubled(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        let f = std::mem::take(&mut self.f);
+        let rf = self.refinement(structure, watch)?.loads(&f, watch);
         self.f = f;
+        self.rf = rf?.ok_or_else(|| contrast::refusal(structure))?;
+        self.balance_loads();
+        Ok(())
+    }
+
+    fn balance_loads(&mut self) {
+        let motions = &self.motions[..self.rigid.coefficients.nrows()];
+        for (rf, f) in std::iter::zip(&mut self.rf, &self.f) {
+            balance(rf, &self.rigid, motions, f, &self.dofs);
+        }
+    }
+
+    /// Σ|u||K||u| over uᵀ K u, the largest of a random dislocation that is no motion of the kernel and of the load
+    /// cases on the main system.
+    fn worst_amplification(&self) -> f64 {
+        let k = self.joints.len();
+        let mut state = 0.37;
+        let mut z = DVector::from_fn(k, |i, _| {
+            state = (state * 997.0_f64).fract() + 1e-3;
+            let size = self.r[(i, i)];
+            if size > 0.0 { (state - 0.5).signum() / size.sqrt() } else { 0.0 }
+        });
+        z -= &self.z * (self.z.transpose() * &z);
+        let none = vec![0.0; self.f.len()];
+        let mut fields = vec![self.plain_displacements(&none, &z)];
+        for case in 0..self.f.len() {
+            let mut factors = none.clone();
+            factors[case] = 1.0;
+            fields.push(self.plain_displacements(&factors, &DVector::zeros(k)));
+        }
+        let amplification = |u: &Vec<f64>| {
+            let terms = dot(&self.k.times_absolute(u), &u.iter().map(|u| u.abs()).collect::<Vec<_>>());
+            let energy = dot(&self.k.times(u), u).max(f64::EPSILON * terms);
+            if terms > 0.0 { terms / energy } else { 0.0 }
+        };
+        fields.iter().map(amplification).fold(0.0, f64::max)
     }
 
     /// K_m, for measuring other solvers on the same matrix.
@@ -200,50 +320,63 @@ impl MainSystem {
     ) -> Result<SymmetricSparse, MainSystemError> {
         let dofs = Dofs::new(structure);
         let elimination = Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
-        let k = assemble(structure, &dofs, &|| watch.stop())?;
+        let k: SymmetricSparse = assemble(structure, &dofs, &|| watch.stop())?;
         Ok(main_matrices(&k, &elimination).k_m)
     }
 
     /// Adds eigenvectors of R that cost no energy in K to the kernel.
-    fn add_internal_mechanisms(&mut self) -> Result<(), MainSystemError> {
-        let suspects = kernel::suspects(&self.r, &self.z)?;
-        if suspects.is_empty() {
+    fn add_internal_mechanisms(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        let Some(suspects) = kernel::suspects(&self.r, &self.z)? else {
             return Ok(());
-        }
-        let scale: Vec<f64> =
-            self.k.diagonal().into_iter().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 }).collect();
-        let norm = |v: Vec<f64>| {
-            let scaled = std::iter::zip(v, &scale).map(|(v, s)| (v * s).powi(2));
-            scaled.sum::<f64>().sqrt()
         };
-        for z in suspects {
-            let u = self.base_displacements(&vec![0.0; self.f.len()], &z);
-            let force = norm(self.unheld_forces(self.k.times(&u)));
-            let terms = norm(self.k.times_absolute(&u));
-            if force > NO_FORCE * terms {
-                continue;
-            }
-            if let Some(extended) = kernel::extend(&self.z, &z) {
-                let mut u = self.dofs.scatter(&u);
-                let mut largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
-                if largest == 0.0 {
-                    largest = 1.0;
+        let refined = self.doubled.is_some();
+        let idle = vec![0.0; self.dofs.count()];
+        for suspect in 0..suspects.count {
+            let mut z = suspects.vectors.column(suspect).into_owned();
+            let mut free = None;
+            // The eigenvector of a rounded R; what the structure resists is taken out of it twice.
+            for _ in 0..3 {
+                let refinement = self.refinement(structure, watch)?;
+                let Some((u, _)) = refinement.displacements(&idle, z.as_slice(), watch)? else { break };
+                if let Verdict::Mechanism = refinement.cost(structure, &u) {
+                    free = Some(u);
+                    break;
                 }
-                u.iter_mut().flatten().for_each(|u| *u /= largest);
-                self.motions.push(Motion { u, internal: true });
-                // The new column is (z − Z Zᵀ z) / norm, and z is B applied to largest · the new motion.
-                let at = self.z.ncols();
-                let norm = extended.column(at).dot(&z);
-                let inside = &self.coefficients * (self.z.transpose() * &z);
-                let mut coefficients = self.coefficients.clone().resize(at + 1, at + 1, 0.0);
-                coefficients.view_mut((0, at), (at, 1)).copy_from(&(-inside / norm));
-                coefficients[(at, at)] = largest / norm;
-                self.coefficients = coefficients;
-                self.z = extended;
+                let force = on_joints(refinement.elimination, &refinement.k.times(&u));
+                z -= suspects.resisting(&DVector::from_iterator(force.len(), force.into_iter().map(Real::to_f64)));
             }
+            if let Some(u) = free {
+                let u: Vec<f64> = u.into_iter().map(Real::to_f64).collect();
+                self.add_motion(&z, self.dofs.scatter(&u));
+            }
+        }
+        if !refined {
+            self.doubled = None;
         }
         kernel::project(&mut self.r, &self.z);
         Ok(())
+    }
+
+    /// Adds a motion `u` without energy and its dislocations `z` to the kernel, unless it is in there.
+    fn add_motion(&mut self, z: &DVector<f64>, mut u: Vec<[f64; 3]>) {
+        let Some(extended) = kernel::extend(&self.z, z) else {
+            return;
+        };
+        let mut largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+        if largest == 0.0 {
+            largest = 1.0;
+        }
+        u.iter_mut().flatten().for_each(|u| *u /= largest);
+        self.motions.push(Motion { u, internal: true });
+        // The new column is (z − Z Zᵀ z) / norm, and z is B applied to largest · the new motion.
+        let at = self.z.ncols();
+        let norm = extended.column(at).dot(z);
+        let inside = &self.coefficients * (self.z.transpose() * z);
+        let mut coefficients = self.coefficients.clone().resize(at + 1, at + 1, 0.0);
+        coefficients.view_mut((0, at), (at, 1)).copy_from(&(-inside / norm));
+        coefficients[(at, at)] = largest / norm;
+        self.coefficients = coefficients;
+        self.z = extended;
     }
 
     /// R, k × k: rows and columns in the order of the joints; exactly symmetric, R Z = 0 to rounding.
@@ -289,105 +422,55 @@ impl MainSystem {
     /// # Panics
     /// If there are not as many factors as load cases and as many z as joints.
     pub fn displacements(&self, factors: &[f64], z: &DVector<f64>) -> Displacements {
-        Displacements(self.dofs.scatter(&self.base_displacements(factors, z)))
+        if let Some(k) = &self.doubled {
+            let refinement = Refinement { dofs: &self.dofs, k, elimination: &self.elimination, factor: &self.factor };
+            let f = self.load(factors);
+            // R and RF came from the same equations, so these converge too.
+            if let Ok(Some((u, error))) = refinement.displacements(&f, z.as_slice(), &Quiet) {
+                let part = |part: fn(Doubled) -> f64| {
+                    let u: Vec<f64> = u.iter().map(|&u| part(u)).collect();
+                    self.dofs.scatter(&u)
+                };
+                return Displacements(part(Real::to_f64), Some(Tail { values: part(Doubled::tail), error }));
+            }
+        }
+        Displacements(self.dofs.scatter(&self.plain_displacements(factors, z)), None)
     }
 
-    fn base_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
+    /// Σ factor·F on the base dofs.
+    fn load(&self, factors: &[f64]) -> Vec<f64> {
         assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
-        assert_eq!(z.len(), self.joints.len(), "a z for every joint");
-        // K_m v = Tᵀ F − C z.
-        let mut f = vec![0.0; self.dofs.count()];
+        let mut sum = vec![0.0; self.dofs.count()];
         for (case, factor) in std::iter::zip(&self.f, factors) {
-            for (sum, f) in std::iter::zip(&mut f, case) {
+            for (sum, f) in std::iter::zip(&mut sum, case) {
                 *sum += factor * f;
             }
         }
+        sum
+    }
+
+    /// The base dofs from the f64 factor, with one step of refinement: then the error of each equation is a few ε of
+    /// the terms of that equation (Skeel 1980), not of the largest of all.
+    fn plain_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
+        assert_eq!(z.len(), self.joints.len(), "a z for every joint");
+        // K_m v = Tᵀ F − C z.
+        let f = self.load(factors);
         let mut v = on_masters(&self.elimination, &f);
         for &(row, joint, value) in &self.c {
             v[row as usize] -= value * z[joint as usize];
         }
         self.factor.solve(&mut v);
+        let u = self.elimination.expand(&v, z.as_slice());
+        let mut rest = self.k.times(&u);
+        for (rest, f) in std::iter::zip(&mut rest, &f) {
+            *rest = f - *rest;
+        }
+        let mut correction = on_masters(&self.elimination, &rest);
+        self.factor.solve(&mut correction);
+        for (v, correction) in std::iter::zip(&mut v, correction) {
+            *v += correction;
+        }
         self.elimination.expand(&v, z.as_slice())
-    }
-
-    /// Nodal forces K u − F − Bᵀ λ on the base dofs: what supports and ties have to give.
-    pub(super) fn unbalanced(&self, u: &Displacements, lambda: &DVector<f64>, factors: &[f64]) -> Vec<f64> {
-        let mut forces = self.k.times(&self.dofs.gather(&u.0));
-        for (f, factor) in std::iter::zip(&self.f, factors) {
-            for (force, f) in std::iter::zip(&mut forces, f) {
-                *force -= factor * f;
-            }
-        }
-        for (force, joint) in std::iter::zip(&mut forces, self.joint_forces(lambda)) {
-            *force -= joint;
-        }
-        forces
-    }
-
-    /// Bᵀ λ on the base dofs.
-    fn joint_forces(&self, lambda: &DVector<f64>) -> Vec<f64> {
-        let mut forces = vec![0.0; self.dofs.count()];
-        for (joint, lambda) in std::iter::zip(&self.joints, lambda.iter()) {
-            for (node, a) in &joint.terms {
-                for (component, a) in std::iter::zip([Component::X, Component::Y], a) {
-                    if let Some(dof) = self.dofs.of(*node, component) {
-                        forces[dof] += a * lambda;
-                    }
-                }
-            }
-        }
-        forces
-    }
-
-    /// Sums over ties, then zero where a support holds.
-    fn unheld_forces(&self, mut forces: Vec<f64>) -> Vec<f64> {
-        for dof in 0..forces.len() {
-            let class = self.elimination.class(dof);
-            if class != dof {
-                forces[class] += std::mem::take(&mut forces[dof]);
-            }
-        }
-        for (dof, force) in forces.iter_mut().enumerate() {
-            if self.elimination.is_held(dof) {
-                *force = 0.0;
-            }
-        }
-        forces
-    }
-
-    /// Largest |K u − F − Bᵀ λ| on the components that no support holds (ties summed), relative to the largest
-    /// force: load, joint force or support reaction; moments relative to the largest moment, or to the largest
-    /// force times the mean length of a frame element. From K itself, not from anything condensed.
-    pub fn equilibrium_residual(
-        &self,
-        structure: &Structure,
-        u: &Displacements,
-        lambda: &DVector<f64>,
-        factors: &[f64],
-    ) -> f64 {
-        let unbalanced = self.unbalanced(u, lambda, factors);
-        let joint_forces = self.joint_forces(lambda);
-        let terms = self.k.times_absolute(&self.dofs.gather(&u.0));
-        let rotation = self.dofs.is_rotation();
-        // Index 0: forces, 1: moments.
-        let mut scale = [0.0_f64; 2];
-        for dof in 0..self.dofs.count() {
-            let load: f64 = std::iter::zip(&self.f, factors).map(|(f, factor)| f[dof] * factor).sum();
-            let reaction = if self.elimination.is_held(dof) { unbalanced[dof] } else { 0.0 };
-            let largest = [load, joint_forces[dof], reaction, LOST_IN_ROUNDING * terms[dof]]
-                .into_iter()
-                .fold(0.0, |m: f64, x| m.max(x.abs()));
-            let kind = usize::from(rotation[dof]);
-            scale[kind] = scale[kind].max(largest);
-        }
-        scale[1] = scale[1].max(scale[0] * super::recovery::mean_frame_length(structure));
-        let residual = self.unheld_forces(unbalanced);
-        residual
-            .iter()
-            .zip(&rotation)
-            .filter(|(r, _)| **r != 0.0)
-            .map(|(r, &rotation)| r.abs() / scale[usize::from(rotation)])
-            .fold(0.0, f64::max)
     }
 
     /// Numbers of unknowns.
@@ -406,18 +489,17 @@ impl MainSystem {
     }
 }
 
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    std::iter::zip(a, b).map(|(a, b)| a * b).sum()
+}
+
 /// On the motions of loose parts RF is known exactly: uᵀ (Bᵀ RF + F) = 0. Puts that right to the last digit.
 fn balance(rf: &mut DVector<f64>, rigid: &RigidKernel, motions: &[Motion], f: &[f64], dofs: &Dofs) {
     if motions.is_empty() {
         return;
     }
-    let work = DVector::from_iterator(
-        motions.len(),
-        motions.iter().map(|motion| {
-            let u = dofs.gather(&motion.u);
-            -std::iter::zip(u, f).map(|(u, f)| u * f).sum::<f64>()
-        }),
-    );
+    let work = motions.iter().map(|motion| -dot(&dofs.gather(&motion.u), f));
+    let work = DVector::from_iterator(motions.len(), work);
     let error = rigid.coefficients.transpose() * work - rigid.z.transpose() * &*rf;
     *rf += &rigid.z * error;
 }

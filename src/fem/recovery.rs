@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::doubled::{Doubled, Real};
 use super::element::bar_load::{BarLoad, Piece};
 use super::element::shape::Shape;
 use super::element::{Axis, BarElement, slots, spring, with_membrane};
@@ -92,7 +93,7 @@ impl MainSystem {
         let free = free_strains(structure, factors);
         let stresses = (0..structure.elements.len()).filter_map(|element| {
             let strain = free.get(&element).copied().unwrap_or(0.0);
-            let u = membrane_displacements(structure, element, u);
+            let u = own_displacements(structure, element, u);
             let stress = with_membrane(structure, element, |m| m.stress(m.shape.centre(), &u, strain))?;
             Some(MembraneStress { element, stress })
         });
@@ -109,7 +110,7 @@ impl MainSystem {
                 continue;
             };
             let strain = free.get(&index).copied().unwrap_or(0.0);
-            let u = membrane_displacements(structure, index, u);
+            let u = own_displacements(structure, index, u);
             for (&node, &at) in element.nodes.iter().zip(shape.nodes()) {
                 let stress = with_membrane(structure, index, |m| m.stress(at, &u, strain)).unwrap_or_default();
                 let (sum, count) = &mut sums[node];
@@ -191,31 +192,30 @@ impl MainSystem {
 /// (N, Q, M) at the start and end of a bar element; zeros for anything else.
 fn bar_end_forces(structure: &Structure, index: usize, u: &Displacements, load: &BarLoad) -> [[f64; 3]; 2] {
     let Some(bar) = BarElement::of(structure, index) else { return [[0.0; 3]; 2] };
-    let values: Vec<f64> = slots(&structure.elements[index])
-        .iter()
-        .map(|slot| match slot {
-            Some((node, Component::X)) => u.0[*node][0],
-            Some((node, Component::Y)) => u.0[*node][1],
-            Some((node, Component::R)) => u.0[*node][2],
-            None => 0.0,
-        })
-        .collect();
-    bar.end_forces(&values, load)
+    bar.end_forces(&own_displacements(structure, index, u), load)
 }
 
-/// u_x, u_y of the nodes of an element in turn.
-fn membrane_displacements(structure: &Structure, index: usize, u: &Displacements) -> Vec<f64> {
-    structure.elements[index].nodes.iter().flat_map(|&node| [u.0[node][0], u.0[node][1]]).collect()
-}
-
-/// Mean length of the frame elements; 1 if there are none.
-pub(super) fn mean_frame_length(structure: &Structure) -> f64 {
-    let lengths: Vec<f64> = structure
-        .elements
-        .iter()
-        .filter(|element| matches!(element.kind, ElementKind::Frame { .. }))
-        .filter_map(|element| Axis::of(structure, element))
-        .map(|axis| axis.length)
-        .collect();
-    if lengths.is_empty() { 1.0 } else { lengths.iter().sum::<f64>() / lengths.len() as f64 }
+/// Displacements of the rows of an element without the motion of its first node (translation, and rotation where it
+/// turns): that costs no force, and what is left has lost nothing beside it.
+pub(super) fn own_displacements(structure: &Structure, index: usize, u: &Displacements) -> Vec<f64> {
+    let element = &structure.elements[index];
+    let first = element.nodes[0];
+    let slots = slots(element);
+    let [x0, y0, turn] = u.doubled_at(first);
+    let turns = slots.contains(&Some((first, Component::R)));
+    let turn = if turns { turn } else { Doubled::default() };
+    let arm = |node: usize, c: usize| {
+        Doubled::difference(structure.nodes[node].position[c], structure.nodes[first].position[c])
+    };
+    let own = slots.iter().map(|slot| {
+        let Some((node, component)) = *slot else { return 0.0 };
+        let value = u.doubled_at(node)[component as usize];
+        let moved = match component {
+            Component::X => x0 - turn * arm(node, 1),
+            Component::Y => y0 + turn * arm(node, 0),
+            Component::R => turn,
+        };
+        (value - moved).to_f64()
+    });
+    own.collect()
 }

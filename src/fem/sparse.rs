@@ -3,32 +3,34 @@
 #[cfg(test)]
 use nalgebra::DMatrix;
 
+use super::doubled::Real;
+
 /// Lower triangle (with diagonal) by columns; rows ascending, none twice.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SymmetricSparse {
+pub struct SymmetricSparse<T = f64> {
     /// Start of each column, length n + 1.
     pub column_start: Vec<u32>,
     /// Row of each entry, ≥ its column.
     pub rows: Vec<u32>,
     /// Value of each entry.
-    pub values: Vec<f64>,
+    pub values: Vec<T>,
 }
 
-impl SymmetricSparse {
+impl<T: Real> SymmetricSparse<T> {
     /// Sums terms (row, column, value), row ≥ column. `columns` tells the column of every term beforehand, in any
     /// order; `terms` then gives the terms themselves, as many for each column.
     pub fn from_terms<E>(
         n: usize,
         mut columns: impl FnMut(&mut dyn FnMut(usize)),
-        mut terms: impl FnMut(&mut dyn FnMut(usize, usize, f64)) -> Result<(), E>,
-    ) -> Result<SymmetricSparse, E> {
+        mut terms: impl FnMut(&mut dyn FnMut(usize, usize, T)) -> Result<(), E>,
+    ) -> Result<SymmetricSparse<T>, E> {
         let mut start = vec![0_usize; n + 1];
         columns(&mut |column| start[column + 1] += 1);
         for column in 0..n {
             start[column + 1] += start[column];
         }
         let mut next = start.clone();
-        let mut entries: Vec<(u32, f64)> = vec![(0, 0.0); start[n]];
+        let mut entries: Vec<(u32, T)> = vec![(0, T::zero()); start[n]];
         terms(&mut |row, column, value| {
             debug_assert!(row >= column);
             entries[next[column]] = (row as u32, value);
@@ -45,7 +47,8 @@ impl SymmetricSparse {
             let mut last = 0;
             for i in 1..entries.len() {
                 if entries[i].0 == entries[last].0 {
-                    entries[last].1 += entries[i].1;
+                    let value = entries[i].1;
+                    entries[last].1 += value;
                 } else {
                     last += 1;
                     entries[last] = entries[i];
@@ -73,11 +76,44 @@ impl SymmetricSparse {
     }
 
     /// Entries (row, value) of a column, row ≥ column.
-    pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, T)> + '_ {
         let range = self.column_start[column] as usize..self.column_start[column + 1] as usize;
         std::iter::zip(&self.rows[range.clone()], &self.values[range]).map(|(&row, &value)| (row as usize, value))
     }
 
+    /// A x.
+    pub fn times(&self, x: &[T]) -> Vec<T> {
+        let mut y = vec![T::zero(); self.order()];
+        for column in 0..self.order() {
+            let mut sum = T::zero();
+            for (row, value) in self.column(column) {
+                sum += value * x[row];
+                if row != column {
+                    y[row] += value * x[column];
+                }
+            }
+            y[column] += sum;
+        }
+        y
+    }
+
+    /// |A| |x|: the size of the terms that are summed in A x.
+    pub fn times_absolute(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.order()];
+        for column in 0..self.order() {
+            for (row, value) in self.column(column) {
+                let value = value.to_f64().abs();
+                y[column] += value * x[row].abs();
+                if row != column {
+                    y[row] += value * x[column].abs();
+                }
+            }
+        }
+        y
+    }
+}
+
+impl SymmetricSparse {
     /// The diagonal; zero where there is no entry.
     pub fn diagonal(&self) -> Vec<f64> {
         (0..self.order())
@@ -99,31 +135,6 @@ impl SymmetricSparse {
             }
         }
         scale
-    }
-
-    /// A x.
-    pub fn times(&self, x: &[f64]) -> Vec<f64> {
-        self.products(x, |a, b| a * b)
-    }
-
-    /// |A| |x|: the size of the terms that are summed in A x.
-    pub fn times_absolute(&self, x: &[f64]) -> Vec<f64> {
-        self.products(x, |a, b| (a * b).abs())
-    }
-
-    fn products(&self, x: &[f64], product: impl Fn(f64, f64) -> f64) -> Vec<f64> {
-        let mut y = vec![0.0; self.order()];
-        for column in 0..self.order() {
-            let mut sum = 0.0;
-            for (row, value) in self.column(column) {
-                sum += product(value, x[row]);
-                if row != column {
-                    y[row] += product(value, x[column]);
-                }
-            }
-            y[column] += sum;
-        }
-        y
     }
 
     /// The full matrix.

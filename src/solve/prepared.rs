@@ -187,7 +187,7 @@ fn main_system_problem(scenario: &Scenario, structure: &Structure, error: MainSy
                 all.unwrap_or_else(|| scenario.problem_at("contacts", error.to_string(), "")),
             );
         }
-        MainSystemError::Mechanism { node: free, .. } => node(*free),
+        MainSystemError::Mechanism { node: at, .. } | MainSystemError::Contrast { node: at, .. } => node(*at),
         MainSystemError::MomentWithoutRotation { case, .. } => format!("loads.{case}"),
         MainSystemError::Element { nodes, .. } => structure
             .nodes

@@ -20,15 +20,16 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Axis;
 use super::bar_load::{BarLoad, Internal};
+use crate::fem::doubled::Real;
 
-type Matrix6 = SMatrix<f64, 6, 6>;
+type Matrix6<T = f64> = SMatrix<T, 6, 6>;
 type Vector6 = SVector<f64, 6>;
 
 /// A frame element.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct Frame<T = f64> {
     /// Length and direction.
-    pub axis: Axis,
+    pub axis: Axis<T>,
     /// EA.
     pub axial: f64,
     /// EI.
@@ -39,60 +40,63 @@ pub struct Frame {
     pub hinges: [bool; 2],
 }
 
-impl Frame {
+impl<T: Real> Frame<T> {
     /// Stiffness in global axes, rows u_x, u_y, θ of the start, then of the end.
-    pub fn stiffness(&self) -> Matrix6 {
+    pub fn stiffness(&self) -> Matrix6<T> {
         let k = self.local_stiffness();
         let t = rotation(&self.axis);
         let k = t.transpose() * k * t;
-        (k + k.transpose()) * 0.5
+        (k + k.transpose()) * T::from(0.5)
     }
 
     /// Φ = 12EI/(G A_s L²).
-    fn shear_number(&self) -> f64 {
-        self.shear.map_or(0.0, |shear| 12.0 * self.bending / (shear * self.axis.length.powi(2)))
+    fn shear_number(&self) -> T {
+        let length = self.axis.length;
+        self.shear.map_or(T::zero(), |shear| T::from(12.0 * self.bending / shear) / (length * length))
     }
 
     /// Stiffness in bar axes without hinges.
-    fn rigid_ended(&self) -> Matrix6 {
+    fn rigid_ended(&self) -> Matrix6<T> {
         let (length, phi) = (self.axis.length, self.shear_number());
-        let ea = self.axial / length;
-        let ei = self.bending / (1.0 + phi);
-        let a = 12.0 * ei / length.powi(3);
-        let b = 6.0 * ei / length.powi(2);
-        let c = (4.0 + phi) * ei / length;
-        let d = (2.0 - phi) * ei / length;
+        let (o, number) = (T::zero(), T::from);
+        let ea = number(self.axial) / length;
+        let c1 = number(self.bending) / (T::one() + phi) / length;
+        let b1 = c1 / length;
+        let a = number(12.0) * b1 / length;
+        let b = number(6.0) * b1;
+        let c = (number(4.0) + phi) * c1;
+        let d = (number(2.0) - phi) * c1;
         #[rustfmt::skip]
         let full = Matrix6::from_row_slice(&[
-             ea, 0.0, 0.0, -ea, 0.0, 0.0,
-            0.0,   a,   b, 0.0,  -a,   b,
-            0.0,   b,   c, 0.0,  -b,   d,
-            -ea, 0.0, 0.0,  ea, 0.0, 0.0,
-            0.0,  -a,  -b, 0.0,   a,  -b,
-            0.0,   b,   d, 0.0,  -b,   c,
+             ea,  o,  o, -ea,  o,  o,
+              o,  a,  b,   o, -a,  b,
+              o,  b,  c,   o, -b,  d,
+            -ea,  o,  o,  ea,  o,  o,
+              o, -a, -b,   o,  a, -b,
+              o,  b,  d,   o, -b,  c,
         ]);
         full
     }
 
     /// Stiffness in bar axes.
-    fn local_stiffness(&self) -> Matrix6 {
+    fn local_stiffness(&self) -> Matrix6<T> {
         let length = self.axis.length;
-        let ea = self.axial / length;
+        let ea = T::from(self.axial) / length;
         // The closed forms of the condensed matrices, so that zeros are exact zeros.
-        let ei = 3.0 * self.bending / (1.0 + 0.25 * self.shear_number());
-        let a3 = ei / length.powi(3);
-        let b3 = ei / length.powi(2);
-        let c3 = ei / length;
-        let bending: Option<[(usize, f64); 4]> = match self.hinges {
+        let c3 = T::from(3.0 * self.bending) / (T::one() + T::from(0.25) * self.shear_number()) / length;
+        let b3 = c3 / length;
+        let a3 = b3 / length;
+        let o = T::zero();
+        let bending: Option<[(usize, T); 4]> = match self.hinges {
             [false, false] => return self.rigid_ended(),
             // M = c3·(θ − chord rotation) at the end that is not released.
-            [true, false] => Some([(1, a3), (2, 0.0), (4, -a3), (5, b3)]),
-            [false, true] => Some([(1, a3), (2, b3), (4, -a3), (5, 0.0)]),
+            [true, false] => Some([(1, a3), (2, o), (4, -a3), (5, b3)]),
+            [false, true] => Some([(1, a3), (2, b3), (4, -a3), (5, o)]),
             [true, true] => None,
         };
         let mut k = Matrix6::zeros();
-        for (i, j, sign) in [(0, 0, 1.0), (3, 3, 1.0), (0, 3, -1.0), (3, 0, -1.0)] {
-            k[(i, j)] = sign * ea;
+        for (i, j, value) in [(0, 0, ea), (3, 3, ea), (0, 3, -ea), (3, 0, -ea)] {
+            k[(i, j)] = value;
         }
         if let Some(shear) = bending {
             // Row v1 is `shear`; row v2 its negative; the rotation that is left: b3·(v1 − v2) + c3·θ.
@@ -107,7 +111,9 @@ impl Frame {
         }
         k
     }
+}
 
+impl Frame {
     /// Displacements (along x, along y, rotation of the section) at a distance from the start when row `row` of the
     /// element without hinges is displaced by 1 and nothing acts between its nodes.
     fn shape(&self, row: usize, s: f64) -> [f64; 3] {
@@ -162,14 +168,14 @@ impl Frame {
 }
 
 /// Global to bar axes.
-fn rotation(axis: &Axis) -> Matrix6 {
+fn rotation<T: Real>(axis: &Axis<T>) -> Matrix6<T> {
     let mut t = Matrix6::zeros();
     for o in [0, 3] {
         t[(o, o)] = axis.cos;
         t[(o, o + 1)] = axis.sin;
         t[(o + 1, o)] = -axis.sin;
         t[(o + 1, o + 1)] = axis.cos;
-        t[(o + 2, o + 2)] = 1.0;
+        t[(o + 2, o + 2)] = T::one();
     }
     t
 }

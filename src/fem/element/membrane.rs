@@ -11,6 +11,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Stiffness;
 use super::shape::{MOST, Shape};
+use crate::fem::doubled::Real;
 use crate::model::structure::{Material, Plane};
 
 type Matrix3 = SMatrix<f64, 3, 3>;
@@ -49,20 +50,20 @@ pub fn elasticity(material: &Material, plane: Plane) -> Matrix3 {
 impl Membrane<'_> {
     /// Stiffness, rows u_x, u_y of each node in turn; `None` if det J ≤ 0 at a node or an integration point (not
     /// convex, clockwise, or a middle node too far from its middle).
-    pub fn stiffness(&self) -> Option<Stiffness> {
-        if self.shape.nodes().iter().any(|&at| self.gradients(at).1 <= 0.0) {
+    pub fn stiffness<T: Real>(&self) -> Option<Stiffness<T>> {
+        if self.shape.nodes().iter().any(|&at| self.gradients::<f64>(at).1 <= 0.0) {
             return None;
         }
         let d = elasticity(self.material, self.plane);
-        let (d11, d12, d22, d33) = (d[(0, 0)], d[(0, 1)], d[(1, 1)], d[(2, 2)]);
+        let [d11, d12, d22, d33] = [d[(0, 0)], d[(0, 1)], d[(1, 1)], d[(2, 2)]].map(T::from);
         let count = self.nodes.len();
         let mut k = Stiffness::zeros();
         for (at, w) in self.shape.points() {
-            let (dn, det) = self.gradients(at);
-            if det <= 0.0 {
+            let (dn, det) = self.gradients::<T>(at);
+            if det.to_f64() <= 0.0 {
                 return None;
             }
-            let weight = self.thickness * det * w;
+            let weight = T::from(self.thickness * w) * det;
             // Bᵀ D B block by block: D has only four entries that are not zero.
             for i in 0..count {
                 let [xi, yi] = dn[i];
@@ -83,7 +84,7 @@ impl Membrane<'_> {
     pub fn body_force(&self, b: [f64; 2]) -> Vec<f64> {
         let mut f = vec![0.0; 2 * self.nodes.len()];
         for (at, w) in self.shape.points() {
-            let weight = self.thickness * self.gradients(at).1 * w;
+            let weight = self.thickness * self.gradients::<f64>(at).1 * w;
             for (i, n) in self.shape.values(at)[..self.nodes.len()].iter().enumerate() {
                 f[2 * i] += weight * n * b[0];
                 f[2 * i + 1] += weight * n * b[1];
@@ -97,7 +98,7 @@ impl Membrane<'_> {
         let stress = elasticity(self.material, self.plane) * self.initial_strain(strain);
         let mut f = vec![0.0; 2 * self.nodes.len()];
         for (at, w) in self.shape.points() {
-            let (dn, det) = self.gradients(at);
+            let (dn, det) = self.gradients::<f64>(at);
             let weight = self.thickness * det * w;
             for (i, [x, y]) in dn[..self.nodes.len()].iter().enumerate() {
                 f[2 * i] += weight * (x * stress[0] + y * stress[2]);
@@ -110,7 +111,7 @@ impl Membrane<'_> {
     /// Area × thickness.
     #[cfg(test)]
     fn volume(&self) -> f64 {
-        self.shape.points().into_iter().map(|(at, w)| self.thickness * self.gradients(at).1 * w).sum()
+        self.shape.points().into_iter().map(|(at, w)| self.thickness * self.gradients::<f64>(at).1 * w).sum()
     }
 
     /// Stress at (ξ, η) for the displacements `u` (rows as in [`stiffness`](Self::stiffness)) and the free expansion
@@ -127,7 +128,7 @@ impl Membrane<'_> {
 
     /// D (B u − ε₀) at (ξ, η), with σ_zz.
     fn stress_at_point(&self, at: [f64; 2], u: &[f64], strain: f64) -> Stress {
-        let (dn, _) = self.gradients(at);
+        let (dn, _) = self.gradients::<f64>(at);
         let mut total = SVector::<f64, 3>::zeros();
         for (i, [x, y]) in dn[..self.nodes.len()].iter().enumerate() {
             total[0] += x * u[2 * i];
@@ -154,18 +155,19 @@ impl Membrane<'_> {
     }
 
     /// (∂N_i/∂x, ∂N_i/∂y) and det J at (ξ, η).
-    fn gradients(&self, at: [f64; 2]) -> ([[f64; 2]; MOST], f64) {
-        let natural = self.shape.gradients(at);
-        let mut j = [[0.0; 2]; 2];
+    fn gradients<T: Real>(&self, at: [f64; 2]) -> ([[T; 2]; MOST], T) {
+        let natural = self.shape.gradients::<T>(at);
+        // Coordinates from the first node: the place in the plane costs no digits.
+        let mut j = [[T::zero(); 2]; 2];
         for (n, node) in natural.iter().zip(self.nodes) {
             for a in 0..2 {
                 for b in 0..2 {
-                    j[a][b] += n[a] * node[b];
+                    j[a][b] += n[a] * T::difference(node[b], self.nodes[0][b]);
                 }
             }
         }
         let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        let inverse = 1.0 / det;
+        let inverse = T::one() / det;
         let gradients = natural
             .map(|[xi, eta]| [(j[1][1] * xi - j[0][1] * eta) * inverse, (j[0][0] * eta - j[1][0] * xi) * inverse]);
         (gradients, det)
@@ -209,7 +211,7 @@ mod tests {
         let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let element =
             Membrane { shape: Shape::Quad4, nodes: &nodes, material: &material, plane: Plane::Strain, thickness: 1.0 };
-        let k = element.stiffness().unwrap();
+        let k = element.stiffness::<f64>().unwrap();
         // ∫N1x N2x = −1/3, ∫N1y N2y = 1/6; ∫N1x N1y = 1/4.
         assert!((k[(0, 0)] - 0.5).abs() < 1e-15);
         assert!((k[(0, 2)] - (-1.0 / 3.0 + 0.5 / 6.0)).abs() < 1e-15);
@@ -235,7 +237,7 @@ mod tests {
                             assert!((stress[i] - exact[i]).abs() < 1e-13, "{} nodes", nodes.len());
                         }
                     }
-                    let k = element.stiffness().unwrap();
+                    let k = element.stiffness::<f64>().unwrap();
                     let count = u.len();
                     let energy: f64 =
                         (0..count).map(|i| (0..count).map(|j| u[i] * k[(i, j)] * u[j]).sum::<f64>()).sum();
@@ -260,7 +262,7 @@ mod tests {
                     for (found, right) in stress.into_iter().zip([0.0, 0.0, 0.0, across]) {
                         assert!((found - right).abs() < 1e-14, "{} nodes: {stress:?}", nodes.len());
                     }
-                    let (k, f) = (element.stiffness().unwrap(), element.expansion_force(heat));
+                    let (k, f) = (element.stiffness::<f64>().unwrap(), element.expansion_force(heat));
                     for i in 0..u.len() {
                         let force: f64 = (0..u.len()).map(|j| k[(i, j)] * u[j]).sum();
                         assert!((force - f[i]).abs() < 1e-14, "{} nodes", nodes.len());
@@ -302,7 +304,7 @@ mod tests {
         // The middle of the first side beyond a quarter of it: det J < 0 at its end.
         let far = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.8, 0.0], [0.5, 0.5], [0.0, 0.5]];
         for nodes in [&clockwise[..], &dart, &flat, &far] {
-            assert!(with(nodes, Plane::Stress, |element| element.stiffness().is_none()));
+            assert!(with(nodes, Plane::Stress, |element| element.stiffness::<f64>().is_none()));
         }
     }
 }

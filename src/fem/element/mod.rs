@@ -9,14 +9,15 @@ pub mod shape;
 pub mod spring;
 pub mod truss;
 
-use nalgebra::SMatrix;
+use nalgebra::{Matrix2, SMatrix};
 
 use self::bar_load::{BarLoad, Internal};
 use self::frame::Frame;
 use self::membrane::Membrane;
 use self::shape::{MOST, Shape};
+use super::doubled::Real;
 use super::error::MainSystemError;
-use crate::model::structure::{Component, Element, ElementKind, Structure};
+use crate::model::structure::{Component, Element, ElementKind, Spring, Structure};
 
 /// Most rows of an element's stiffness.
 pub const ROWS: usize = 2 * MOST;
@@ -58,22 +59,33 @@ pub fn slots(element: &Element) -> Slots {
 }
 
 /// Stiffness of an element, in the upper left corner of an array that holds the largest.
-pub type Stiffness = SMatrix<f64, ROWS, ROWS>;
+pub type Stiffness<T = f64> = SMatrix<T, ROWS, ROWS>;
+
+/// What a stiffness may be as a number: beyond, products of it lose digits to underflow, or overflow.
+const STIFFNESSES: std::ops::Range<f64> = 1e-200..1e200;
+
+/// What the size of an element may be: its third power is a number like any other.
+const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 
 /// Stiffness of element number `index` in global axes, rows as in [`slots`]; forces per displacement.
 ///
 /// # Errors
-/// A bar without length or a membrane that is turned inside out somewhere.
-pub fn stiffness(structure: &Structure, index: usize) -> Result<Stiffness, MainSystemError> {
+/// A bar without length, a membrane that is turned inside out somewhere, a stiffness too large or small for numbers.
+pub fn stiffness<T: Real>(structure: &Structure, index: usize) -> Result<Stiffness<T>, MainSystemError> {
     let element = &structure.elements[index];
-    let refuse = |what: &str| MainSystemError::Element {
+    let refuse = |what: String| MainSystemError::Element {
         nodes: element.nodes.iter().map(|&node| structure.nodes[node].id.clone()).collect(),
-        what: what.to_owned(),
+        what,
     };
+    let size = extent(structure, element);
+    if size != 0.0 && !SIZES.contains(&size) {
+        return Err(refuse(beyond("size", size, &SIZES, "use another unit of length")));
+    }
     let mut stiffness = Stiffness::zeros();
     match element.kind {
         ElementKind::Frame { .. } | ElementKind::Truss { .. } => {
-            match BarElement::of(structure, index).ok_or_else(|| refuse("its two nodes are at the same place"))? {
+            let bar = BarElement::<T>::of(structure, index);
+            match bar.ok_or_else(|| refuse("its two nodes are at the same place".to_owned()))? {
                 BarElement::Frame(frame) => {
                     stiffness.fixed_view_mut::<6, 6>(0, 0).copy_from(&frame.stiffness());
                 }
@@ -85,23 +97,56 @@ pub fn stiffness(structure: &Structure, index: usize) -> Result<Stiffness, MainS
         ElementKind::Membrane { .. } => {
             stiffness = with_membrane(structure, index, |membrane| membrane.stiffness())
                 .flatten()
-                .ok_or_else(|| refuse("it is not convex, or its nodes do not go round counter-clockwise"))?;
+                .ok_or_else(|| refuse("it is not convex, or its nodes do not go round counter-clockwise".to_owned()))?;
         }
+    }
+    // A row of zeros is a released or an idle one.
+    let unusable = |k: &f64| *k != 0.0 && !STIFFNESSES.contains(k);
+    if let Some(k) = stiffness.diagonal().iter().map(|k| k.to_f64()).find(unusable) {
+        let advice = "check its material, section and thickness, or use other units";
+        return Err(refuse(beyond("stiffness", k, &STIFFNESSES, advice)));
     }
     Ok(stiffness)
 }
 
-/// A frame or truss element with its stiffnesses.
-pub enum BarElement {
-    /// Bends.
-    Frame(Frame),
-    /// Axial force only: EA.
-    Truss(Axis, f64),
+/// Stiffness of a spring on u_x, u_y of its node.
+///
+/// # Errors
+/// A stiffness too large or small for numbers.
+pub fn spring_stiffness<T: Real>(structure: &Structure, spring: &Spring) -> Result<Matrix2<T>, MainSystemError> {
+    if spring.stiffness != 0.0 && !STIFFNESSES.contains(&spring.stiffness) {
+        return Err(MainSystemError::Element {
+            nodes: vec![structure.nodes[spring.node].id.clone()],
+            what: beyond("stiffness", spring.stiffness, &STIFFNESSES, "use other units"),
+        });
+    }
+    Ok(spring::stiffness(spring))
 }
 
-impl BarElement {
+fn beyond(what: &str, value: f64, range: &std::ops::Range<f64>, advice: &str) -> String {
+    let std::ops::Range { start, end } = range;
+    format!("its {what} is {value:.1e}, and numbers from {start:.0e} to {end:.0e} can be computed with: {advice}")
+}
+
+/// Largest difference of a coordinate between two nodes of an element.
+fn extent(structure: &Structure, element: &Element) -> f64 {
+    let place = |node: usize, c: usize| structure.nodes[node].position[c];
+    let first = element.nodes[0];
+    let differences = element.nodes.iter().flat_map(|&node| [0, 1].map(|c| (place(node, c) - place(first, c)).abs()));
+    differences.fold(0.0, f64::max)
+}
+
+/// A frame or truss element with its stiffnesses.
+pub enum BarElement<T = f64> {
+    /// Bends.
+    Frame(Frame<T>),
+    /// Axial force only: EA.
+    Truss(Axis<T>, f64),
+}
+
+impl<T: Real> BarElement<T> {
     /// Element number `index`; `None` for a membrane or a bar without length.
-    pub fn of(structure: &Structure, index: usize) -> Option<BarElement> {
+    pub fn of(structure: &Structure, index: usize) -> Option<BarElement<T>> {
         let element = &structure.elements[index];
         let material = &structure.materials[element.material];
         let e = material.youngs_modulus;
@@ -117,7 +162,9 @@ impl BarElement {
             ElementKind::Membrane { .. } => None,
         }
     }
+}
 
+impl BarElement {
     /// Length and direction.
     pub fn axis(&self) -> &Axis {
         match self {
@@ -158,24 +205,32 @@ pub fn with_membrane<T>(structure: &Structure, index: usize, run: impl FnOnce(&M
 
 /// Length and direction of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub struct Axis<T = f64> {
     /// Length L.
-    pub length: f64,
+    pub length: T,
     /// cos of the angle from global x to local x.
-    pub cos: f64,
+    pub cos: T,
     /// sin of it.
-    pub sin: f64,
+    pub sin: T,
+}
+
+impl<T: Real> Axis<T> {
+    /// From the start node to the end node; `None` if they coincide.
+    pub fn of(structure: &Structure, element: &Element) -> Option<Axis<T>> {
+        let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+        let size = (b[0] - a[0]).hypot(b[1] - a[1]);
+        if size == 0.0 {
+            return None;
+        }
+        // A power of two, so that no square is too small or too large for a number.
+        let unit = size.log2().round().exp2();
+        let [dx, dy] = [0, 1].map(|c| T::difference(b[c], a[c]) / T::from(unit));
+        let length = (dx * dx + dy * dy).sqrt();
+        Some(Axis { length: length * T::from(unit), cos: dx / length, sin: dy / length })
+    }
 }
 
 impl Axis {
-    /// From the start node to the end node; `None` if they coincide.
-    pub fn of(structure: &Structure, element: &Element) -> Option<Axis> {
-        let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
-        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-        let length = dx.hypot(dy);
-        (length > 0.0).then(|| Axis { length, cos: dx / length, sin: dy / length })
-    }
-
     /// Components in bar axes (x from start to end, y = x turned +90°) of a global vector.
     pub fn to_local(self, v: [f64; 2]) -> [f64; 2] {
         [self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0]]

@@ -8,6 +8,8 @@
 //! ```
 //! Hughes, *The Finite Element Method*, 1987, §3.2, §3.7, §3.8 and appendix 3.I.
 
+use crate::fem::doubled::Real;
+
 /// Most nodes of a plane element.
 pub const MOST: usize = 8;
 
@@ -124,33 +126,38 @@ impl Shape {
     }
 
     /// (∂N_i/∂ξ, ∂N_i/∂η) at (ξ, η); entries beyond the number of nodes are zero.
-    pub fn gradients(self, [x, y]: [f64; 2]) -> [[f64; 2]; MOST] {
-        let mut n = [[0.0; 2]; MOST];
+    pub fn gradients<T: Real>(self, [x, y]: [f64; 2]) -> [[T; 2]; MOST] {
+        let number = T::from;
+        let (x, y, one, half, quarter) = (number(x), number(y), T::one(), number(0.5), number(0.25));
+        let mut n = [[T::zero(); 2]; MOST];
         match self {
-            Shape::Triangle3 => n[..3].copy_from_slice(&[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]),
+            Shape::Triangle3 => n[..3].copy_from_slice(&[[-one, -one], [one, T::zero()], [T::zero(), one]]),
             Shape::Triangle6 => {
-                let l = [1.0 - x - y, x, y];
-                let dl = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
+                let l = [one - x - y, x, y];
+                let dl = [[-one, -one], [one, T::zero()], [T::zero(), one]];
+                let four = number(4.0);
                 for i in 0..3 {
                     let j = (i + 1) % 3;
                     for a in 0..2 {
-                        n[i][a] = (4.0 * l[i] - 1.0) * dl[i][a];
-                        n[3 + i][a] = 4.0 * (dl[i][a] * l[j] + l[i] * dl[j][a]);
+                        n[i][a] = (four * l[i] - one) * dl[i][a];
+                        n[3 + i][a] = four * (dl[i][a] * l[j] + l[i] * dl[j][a]);
                     }
                 }
             }
             Shape::Quad4 => {
                 for (n, c) in n.iter_mut().zip(&QUAD_CORNERS[..4]) {
-                    *n = [0.25 * c[0] * (1.0 + c[1] * y), 0.25 * c[1] * (1.0 + c[0] * x)];
+                    let [cx, cy] = c.map(number);
+                    *n = [quarter * cx * (one + cy * y), quarter * cy * (one + cx * x)];
                 }
             }
             Shape::Quad8 => {
                 for (i, c) in QUAD_CORNERS.iter().enumerate() {
-                    let (a, b) = (c[0] * x, c[1] * y);
+                    let [cx, cy] = c.map(number);
+                    let (a, b, two) = (cx * x, cy * y, number(2.0));
                     n[i] = match i {
-                        0..4 => [0.25 * c[0] * (1.0 + b) * (2.0 * a + b), 0.25 * c[1] * (1.0 + a) * (a + 2.0 * b)],
-                        4 | 6 => [-x * (1.0 + b), 0.5 * (1.0 - x * x) * c[1]],
-                        _ => [0.5 * c[0] * (1.0 - y * y), -y * (1.0 + a)],
+                        0..4 => [quarter * cx * (one + b) * (two * a + b), quarter * cy * (one + a) * (a + two * b)],
+                        4 | 6 => [-x * (one + b), half * (one - x * x) * cy],
+                        _ => [half * cx * (one - y * y), -y * (one + a)],
                     };
                 }
             }
@@ -206,7 +213,7 @@ mod tests {
     fn gradients_are_derivatives_and_sum_to_zero() {
         let (at, h) = ([0.23, 0.31], 1e-4);
         for shape in ALL {
-            let exact = shape.gradients(at);
+            let exact = shape.gradients::<f64>(at);
             for a in 0..2 {
                 let shifted = |sign: f64| {
                     let mut at = at;

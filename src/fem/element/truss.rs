@@ -6,14 +6,15 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Axis;
 use super::bar_load::{BarLoad, Internal};
+use crate::fem::doubled::Real;
 
-type Matrix4 = SMatrix<f64, 4, 4>;
-type Vector4 = SVector<f64, 4>;
+type Matrix4<T = f64> = SMatrix<T, 4, 4>;
+type Vector4<T = f64> = SVector<T, 4>;
 
 /// Stiffness in global axes for EA, rows u_x, u_y of the start, then of the end.
-pub fn stiffness(axis: &Axis, axial: f64) -> Matrix4 {
+pub fn stiffness<T: Real>(axis: &Axis<T>, axial: f64) -> Matrix4<T> {
     let d = Vector4::from([-axis.cos, -axis.sin, axis.cos, axis.sin]);
-    d * d.transpose() * (axial / axis.length)
+    d * d.transpose() * (T::from(axial) / axis.length)
 }
 
 /// Nodal forces in global axes that stand for the load between the nodes. A couple becomes two opposite forces.

@@ -2,6 +2,7 @@
 
 mod builder;
 mod closed_forms;
+mod ill_conditioned;
 mod kernel;
 mod large;
 mod ordering;

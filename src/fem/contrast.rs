@@ -1,0 +1,38 @@
+//! Which parts of a structure are the stiffest and the softest, for the words of a refusal.
+
+use super::element::stiffness;
+use super::error::MainSystemError;
+use crate::model::structure::Structure;
+
+/// The refusal of a structure whose stiffness is lost beside that of its stiffest part.
+pub fn refusal(structure: &Structure) -> MainSystemError {
+    let id = |node: usize| structure.nodes[node].id.as_str();
+    // (stiffness against translation of its first node, that node, name)
+    let mut parts: Vec<(f64, usize, String)> = Vec::new();
+    for (index, element) in structure.elements.iter().enumerate() {
+        if let Ok(k) = stiffness::<f64>(structure, index) {
+            let name = match structure.bars.iter().find(|bar| bar.elements.contains(&index)) {
+                Some(bar) => format!("bar {}", bar.id),
+                None => {
+                    let nodes: Vec<&str> = element.nodes.iter().map(|&node| id(node)).collect();
+                    format!("the element with the nodes {}", nodes.join(", "))
+                }
+            };
+            parts.push((k[(0, 0)].max(k[(1, 1)]), element.nodes[0], name));
+        }
+    }
+    for spring in &structure.springs {
+        parts.push((spring.stiffness, spring.node, format!("the spring at {}", id(spring.node))));
+    }
+    parts.retain(|(k, ..)| *k > 0.0);
+    parts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (Some((soft, _, softest)), Some((stiff, node, stiffest))) = (parts.first(), parts.last()) else {
+        return MainSystemError::NotFinite;
+    };
+    MainSystemError::Contrast {
+        node: *node,
+        contrast: stiff / soft,
+        stiffest: stiffest.clone(),
+        softest: softest.clone(),
+    }
+}

@@ -1,0 +1,225 @@
+//! Arithmetic in doubled precision, and the numbers that an element may be computed in.
+//!
+//! A [`Doubled`] is the unevaluated sum of two f64, some 32 digits, by error-free transformations (Dekker 1971;
+//! Hida, Li, Bailey, *Algorithms for quad-double precision floating point arithmetic*, 2001). Residuals of equations
+//! that cancel are computed in it, and the stiffnesses they need: an f64 stiffness of a bar in thousands of elements has
+//! lost the bar's own stiffness in the rounding of its entries.
+
+use std::fmt;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
+use num_traits::{One, Zero};
+
+/// A number that elements are computed in: f64, or [`Doubled`] where f64 loses too much.
+pub trait Real:
+    Scalar
+    + Copy
+    + Zero
+    + One
+    + From<f64>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+    + Neg<Output = Self>
+{
+    /// Square root; of a number ≥ 0.
+    fn sqrt(self) -> Self;
+    /// The nearest f64.
+    fn to_f64(self) -> f64;
+    /// a − b without rounding first.
+    fn difference(a: f64, b: f64) -> Self;
+}
+
+impl Real for f64 {
+    fn sqrt(self) -> f64 {
+        self.sqrt()
+    }
+
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    fn difference(a: f64, b: f64) -> f64 {
+        a - b
+    }
+}
+
+/// hi + lo, |lo| ≤ ½ ulp(hi).
+#[derive(Clone, Copy, Default, PartialEq)]
+pub struct Doubled {
+    hi: f64,
+    lo: f64,
+}
+
+impl Doubled {
+    /// a·b exactly.
+    pub fn product(a: f64, b: f64) -> Doubled {
+        let hi = a * b;
+        Doubled { hi, lo: a.mul_add(b, -hi) }
+    }
+
+    /// What the nearest f64 leaves.
+    pub fn tail(self) -> f64 {
+        self.lo
+    }
+
+    /// hi + lo of any two numbers.
+    pub fn sum(a: f64, b: f64) -> Doubled {
+        let hi = a + b;
+        let part = hi - a;
+        Doubled { hi, lo: (a - (hi - part)) + (b - part) }
+    }
+
+    /// As [`Doubled::sum`], for |a| ≥ |b|.
+    fn ordered_sum(a: f64, b: f64) -> Doubled {
+        let hi = a + b;
+        Doubled { hi, lo: b - (hi - a) }
+    }
+}
+
+impl Real for Doubled {
+    fn sqrt(self) -> Doubled {
+        if self.hi <= 0.0 {
+            return Doubled::default();
+        }
+        // One step of Newton's method from the f64 root doubles its digits.
+        let root = self.hi.sqrt();
+        let rest = self - Doubled::product(root, root);
+        Doubled::ordered_sum(root, rest.hi / (2.0 * root))
+    }
+
+    fn to_f64(self) -> f64 {
+        self.hi
+    }
+
+    fn difference(a: f64, b: f64) -> Doubled {
+        Doubled::sum(a, -b)
+    }
+}
+
+impl fmt::Debug for Doubled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:e} + {:e}", self.hi, self.lo)
+    }
+}
+
+impl From<f64> for Doubled {
+    fn from(value: f64) -> Doubled {
+        Doubled { hi: value, lo: 0.0 }
+    }
+}
+
+impl Neg for Doubled {
+    type Output = Doubled;
+
+    fn neg(self) -> Doubled {
+        Doubled { hi: -self.hi, lo: -self.lo }
+    }
+}
+
+impl Add for Doubled {
+    type Output = Doubled;
+
+    fn add(self, other: Doubled) -> Doubled {
+        let high = Doubled::sum(self.hi, other.hi);
+        let low = Doubled::sum(self.lo, other.lo);
+        let sum = Doubled::ordered_sum(high.hi, high.lo + low.hi);
+        Doubled::ordered_sum(sum.hi, sum.lo + low.lo)
+    }
+}
+
+impl Sub for Doubled {
+    type Output = Doubled;
+
+    fn sub(self, other: Doubled) -> Doubled {
+        self + -other
+    }
+}
+
+impl Mul for Doubled {
+    type Output = Doubled;
+
+    fn mul(self, other: Doubled) -> Doubled {
+        let product = Doubled::product(self.hi, other.hi);
+        Doubled::ordered_sum(product.hi, product.lo + (self.hi * other.lo + self.lo * other.hi))
+    }
+}
+
+impl Div for Doubled {
+    type Output = Doubled;
+
+    fn div(self, other: Doubled) -> Doubled {
+        let first = self.hi / other.hi;
+        let rest = self - other * Doubled::from(first);
+        let second = rest.hi / other.hi;
+        let rest = rest - other * Doubled::from(second);
+        Doubled::ordered_sum(first, second) + Doubled::from(rest.hi / other.hi)
+    }
+}
+
+macro_rules! assign {
+    ($($trait:ident $method:ident $operator:tt),*) => {$(
+        impl $trait for Doubled {
+            fn $method(&mut self, other: Doubled) {
+                *self = *self $operator other;
+            }
+        }
+    )*};
+}
+
+assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
+
+impl Zero for Doubled {
+    fn zero() -> Doubled {
+        Doubled::default()
+    }
+
+    fn is_zero(&self) -> bool {
+        self.hi == 0.0
+    }
+}
+
+impl One for Doubled {
+    fn one() -> Doubled {
+        Doubled::from(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn exact(x: Doubled) -> BigRational {
+        BigRational::from_float(x.hi).unwrap() + BigRational::from_float(x.lo).unwrap()
+    }
+
+    fn number() -> impl Strategy<Value = Doubled> {
+        (-1.0_f64..1.0, -1.0_f64..1.0, -30_i32..30)
+            .prop_map(|(hi, lo, scale)| Doubled::sum(hi, lo * 1e-17) * Doubled::from(f64::from(scale).exp2()))
+    }
+
+    proptest! {
+        /// The four operations and the root against rationals: 2⁻¹⁰² of the terms.
+        #[test]
+        fn operations_have_twice_the_digits(a in number(), b in number()) {
+            prop_assume!(a.hi != 0.0 && b.hi != 0.0);
+            let close = |found: Doubled, right: BigRational, terms: f64| {
+                let error = exact(found) - right;
+                let bound = BigRational::from_float(terms.abs() * (-102_f64).exp2()).unwrap();
+                error <= bound && error >= -bound
+            };
+            let (x, y) = (exact(a), exact(b));
+            prop_assert!(close(a + b, &x + &y, a.hi.abs() + b.hi.abs()));
+            prop_assert!(close(a - b, &x - &y, a.hi.abs() + b.hi.abs()));
+            prop_assert!(close(a * b, &x * &y, a.hi * b.hi));
+            prop_assert!(close(a / b, &x / &y, a.hi / b.hi));
+            let root = (a * a).sqrt();
+            prop_assert!(close(root * root, exact(a * a), a.hi * a.hi));
+        }
+    }
+}

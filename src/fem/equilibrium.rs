@@ -1,0 +1,195 @@
+//! Equilibrium of an answer, node by node, from K itself and nothing condensed.
+//!
+//! ```text
+//!     r = K u − F − Bᵀ λ on every component that no support holds (ties summed)
+//!     |r_i| ≤ TOL · s_i + ρ_i
+//!     s_i   the forces that meet there: of each element, of the loads, of the joints
+//!     ρ_i   what rounding leaves: 4 ε Σ_k |K_ik||u_k|, with ε² where K and u are in doubled precision;
+//!           where conjugate gradients ended; and the rounding of λ = R z + RF where a joint acts
+//! ```
+
+use nalgebra::DVector;
+
+use super::doubled::Real;
+use super::element::{slots, spring, stiffness};
+use super::kernel::mutual_displacements;
+use super::main_system::{Displacements, MainSystem};
+use super::recovery::own_displacements;
+use crate::model::pair::Joint;
+use crate::model::structure::{Component, Structure};
+
+/// The share of the forces at a node that an answer may leave unbalanced.
+const TOLERANCE: f64 = 1e-9;
+
+/// Roundings in the sum of a row of K u: of the stiffness, of u, of the product and of the sum.
+const ROW: f64 = 4.0 * f64::EPSILON;
+
+/// The same in doubled precision.
+const DOUBLED_ROW: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
+
+/// The same of a row of R z with z from an LCP (theory, "Zero test").
+const JOINT_ROW: f64 = 64.0 * f64::EPSILON;
+
+impl MainSystem {
+    /// Nodal forces K u − F − Bᵀ λ on the base dofs: what supports and ties have to give.
+    pub(super) fn unbalanced(&self, u: &Displacements, lambda: &DVector<f64>, factors: &[f64]) -> Vec<f64> {
+        match &self.doubled {
+            None => self.minus_loads(self.k.times(&self.dofs.gather(&u.0)), lambda, factors),
+            Some(k) => self.minus_loads(k.times(&self.dofs.gather(&u.doubled())), lambda, factors),
+        }
+    }
+
+    /// forces − Σ factor·F − Bᵀ λ.
+    fn minus_loads<T: Real>(&self, mut forces: Vec<T>, lambda: &DVector<f64>, factors: &[f64]) -> Vec<f64> {
+        for (f, factor) in std::iter::zip(&self.f, factors) {
+            for (force, f) in std::iter::zip(&mut forces, f) {
+                *force -= T::from(*factor) * T::from(*f);
+            }
+        }
+        for (joint, lambda) in std::iter::zip(&self.joints, lambda.iter()) {
+            self.each_term(joint, |dof, a| forces[dof] -= T::from(a) * T::from(*lambda));
+        }
+        forces.into_iter().map(Real::to_f64).collect()
+    }
+
+    /// Calls `visit(dof, a)` with the terms of a row of B.
+    fn each_term(&self, joint: &Joint, mut visit: impl FnMut(usize, f64)) {
+        for (node, a) in &joint.terms {
+            for (component, a) in std::iter::zip([Component::X, Component::Y], a) {
+                if let Some(dof) = self.dofs.of(*node, component) {
+                    visit(dof, *a);
+                }
+            }
+        }
+    }
+
+    /// Sums over ties, then zero where a support holds.
+    fn unheld(&self, mut values: Vec<f64>) -> Vec<f64> {
+        for dof in 0..values.len() {
+            let class = self.elimination.class(dof);
+            if class != dof {
+                values[class] += std::mem::take(&mut values[dof]);
+            }
+        }
+        for (dof, value) in values.iter_mut().enumerate() {
+            if self.elimination.is_held(dof) {
+                *value = 0.0;
+            }
+        }
+        values
+    }
+
+    /// Largest |K u − F − Bᵀ λ| of a component that no support holds beside the forces that meet there, in the sense
+    /// of this module: at most 1e-9 if every node is balanced.
+    pub fn equilibrium_residual(
+        &self,
+        structure: &Structure,
+        u: &Displacements,
+        lambda: &DVector<f64>,
+        factors: &[f64],
+    ) -> f64 {
+        let residual = self.unheld(self.unbalanced(u, lambda, factors));
+        let scale = self.unheld(self.meeting_forces(structure, u, lambda, factors));
+        let rounding = self.unheld(self.rounding(u, factors));
+        let shares = residual.iter().zip(scale.iter().zip(&rounding)).map(|(r, (scale, rounding))| {
+            let size = scale + rounding / TOLERANCE;
+            // A force where none can be is infinitely wrong; NaN stays NaN.
+            if *r == 0.0 { 0.0 } else { r.abs() / size }
+        });
+        shares.fold(0.0, |largest: f64, share| if share.is_nan() { f64::NAN } else { largest.max(share) })
+    }
+
+    /// Σ |force| that elements, springs, loads and joints bring to each component: of translations the lengths of the
+    /// forces, of rotations the moments and the forces with the element as their lever.
+    fn meeting_forces(
+        &self,
+        structure: &Structure,
+        u: &Displacements,
+        lambda: &DVector<f64>,
+        factors: &[f64],
+    ) -> Vec<f64> {
+        let mut sums = vec![0.0; self.dofs.count()];
+        for index in 0..structure.elements.len() {
+            self.add_element(structure, index, &element_forces(structure, index, u), &mut sums);
+        }
+        for spring in &structure.springs {
+            let [x, y] = spring::force(spring, [u.0[spring.node][0], u.0[spring.node][1]]);
+            for component in [Component::X, Component::Y] {
+                if let Some(dof) = self.dofs.of(spring.node, component) {
+                    sums[dof] += x.hypot(y);
+                }
+            }
+        }
+        for (f, factor) in std::iter::zip(&self.f, factors) {
+            for (sum, f) in std::iter::zip(&mut sums, f) {
+                *sum += (factor * f).abs();
+            }
+        }
+        for (joint, lambda) in std::iter::zip(&self.joints, lambda.iter()) {
+            self.each_term(joint, |dof, a| sums[dof] += (a * lambda).abs());
+        }
+        sums
+    }
+
+    /// Adds the nodal forces of one element to the sums of magnitudes.
+    fn add_element(&self, structure: &Structure, index: usize, forces: &[f64], sums: &mut [f64]) {
+        let element = &structure.elements[index];
+        let slots = slots(element);
+        let place = |node: usize| structure.nodes[node].position;
+        let [a, b] = [place(element.nodes[0]), place(element.nodes[1])];
+        let lever = (b[0] - a[0]).hypot(b[1] - a[1]);
+        for &node in &element.nodes {
+            let of = |wanted: Component| {
+                let found = slots.iter().position(|slot| *slot == Some((node, wanted)));
+                found.map_or(0.0, |at| forces[at])
+            };
+            let force = of(Component::X).hypot(of(Component::Y));
+            let amounts =
+                [(Component::X, force), (Component::Y, force), (Component::R, of(Component::R).abs() + force * lever)];
+            for (component, amount) in amounts {
+                if let Some(dof) = self.dofs.of(node, component) {
+                    sums[dof] += amount;
+                }
+            }
+        }
+    }
+
+    /// What rounding may leave of each row.
+    fn rounding(&self, u: &Displacements, factors: &[f64]) -> Vec<f64> {
+        let base = self.dofs.gather(&u.0);
+        let terms = self.k.times_absolute(&base);
+        // λ is as good as R and RF, and R and RF as good as the energies they come from.
+        let z = mutual_displacements(&self.joints, &u.0);
+        let root = |joint: usize| self.r[(joint, joint)].max(0.0).sqrt();
+        let dislocation: f64 = z.iter().enumerate().map(|(joint, z)| root(joint) * z.abs()).sum();
+        let row = if self.doubled.is_some() { DOUBLED_ROW } else { ROW };
+        // r_i² ≤ K_ii · rᵀ K⁻¹ r: what is left of the energy of the error tells what is left of each row.
+        let unsolved = u.1.as_ref().map_or(0.0, |tail| 2.0 * tail.error.sqrt());
+        let diagonal = self.k.diagonal();
+        let mut rows: Vec<f64> =
+            std::iter::zip(&terms, &diagonal).map(|(terms, k)| row * terms + unsolved * k.sqrt()).collect();
+        let field = std::iter::zip(&terms, &base).map(|(terms, u)| terms * u.abs()).sum::<f64>().sqrt();
+        // Balancing RF on the motions of the kernel spreads its rounding over all joints that feel them.
+        let loads: Vec<f64> = (0..self.joints.len())
+            .map(|joint| std::iter::zip(&self.rf, factors).map(|(rf, factor)| (rf[joint] * factor).abs()).sum())
+            .collect();
+        let spread: Vec<f64> =
+            self.z.column_iter().map(|z| z.iter().zip(&loads).map(|(z, load)| z.abs() * load).sum()).collect();
+        for (index, joint) in self.joints.iter().enumerate() {
+            let balanced: f64 = self.z.row(index).iter().zip(&spread).map(|(z, spread)| z.abs() * spread).sum();
+            let rounded = JOINT_ROW * (root(index) * dislocation + loads[index] + balanced)
+                + row * self.amplification.sqrt() * root(index) * field;
+            self.each_term(joint, |dof, a| rows[dof] += a.abs() * rounded);
+        }
+        rows
+    }
+}
+
+/// k u of one element, rows as in [`slots`]; zeros if it has no stiffness.
+fn element_forces(structure: &Structure, index: usize, u: &Displacements) -> Vec<f64> {
+    let own = own_displacements(structure, index, u);
+    let Ok(k) = stiffness::<f64>(structure, index) else {
+        return vec![0.0; own.len()];
+    };
+    (0..own.len()).map(|i| own.iter().enumerate().map(|(j, u)| k[(i, j)] * u).sum()).collect()
+}
