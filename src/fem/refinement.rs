@@ -96,7 +96,7 @@ impl Refinement<'_> {
         let mut best = (rz, v.clone());
         let mut idle = 0;
         for _ in 0..MOST_STEPS {
-            if !(rz > CONVERGED * first) || idle > PATIENCE {
+            if rz.is_nan() || rz <= CONVERGED * first || idle > PATIENCE {
                 break;
             }
             check_stop(watch)?;
@@ -218,7 +218,7 @@ impl Refinement<'_> {
         let size = [largest(&[0, 1]), largest(&[0, 1]), largest(&[2])];
         let allowed = ROUNDING_STRAIN * ROUNDING_STRAIN;
         let mut strained = false;
-        each_stiffness(structure, &mut |slots, k| {
+        each_stiffness(structure, |slots, k| {
             let own: Vec<Doubled> =
                 slots.iter().map(|s| s.map_or(Doubled::zero(), |(n, c)| nodal[n][c as usize])).collect();
             let scale: Vec<f64> = slots.iter().map(|slot| slot.map_or(0.0, |(_, c)| size[c as usize])).collect();
@@ -242,7 +242,7 @@ impl Refinement<'_> {
 }
 
 /// Calls `visit(slots, k)` with every element and spring; those without stiffness were refused before.
-fn each_stiffness(structure: &Structure, visit: &mut dyn FnMut(&[Slot], &dyn Fn(usize, usize) -> Doubled)) {
+fn each_stiffness(structure: &Structure, mut visit: impl FnMut(&[Slot], &dyn Fn(usize, usize) -> Doubled)) {
     for (index, element) in structure.elements.iter().enumerate() {
         if let Ok(k) = stiffness::<Doubled>(structure, index) {
             visit(&slots(element), &|i, j| k[(i, j)]);

@@ -185,7 +185,7 @@ proptest! {
     /// a mechanism, and balanced; with the clamp of one of them released: always a mechanism.
     #[test]
     fn random_contrasts(
-        bars in prop::collection::vec((-8.0_f64..8.0, 0.1_f64..3.0, 0.0_f64..6.28), 1..6),
+        bars in prop::collection::vec((-8.0_f64..8.0, 0.1_f64..3.0, 0.0_f64..6.0), 1..6),
         released in any::<bool>(),
     ) {
         let mut model = Model::default();
