@@ -341,6 +341,7 @@ mod tests {
             y: GridLines::Uniform { size: 2.0, divisions: 3 },
             thickness: 1.0,
             plane: Plane::Stress,
+            incompatible: false,
             material: 0,
         };
         let (mut nodes, mut elements) = (Vec::new(), Vec::new());

@@ -54,6 +54,8 @@ pub struct PlateGrid {
     pub thickness: f64,
     /// Stress state.
     pub plane: Plane,
+    /// Whether its elements have incompatible modes.
+    pub incompatible: bool,
     /// Index of the material.
     pub material: usize,
 }
@@ -88,7 +90,11 @@ impl PlateGrid {
                 elements.push(Element {
                     nodes: vec![lower[0], lower[1], upper[1], upper[0]],
                     material: self.material,
-                    kind: ElementKind::Membrane { thickness: self.thickness, plane: self.plane },
+                    kind: ElementKind::Membrane {
+                        thickness: self.thickness,
+                        plane: self.plane,
+                        incompatible: self.incompatible,
+                    },
                 });
             }
         }
@@ -127,6 +133,7 @@ mod tests {
             y,
             thickness: 0.1,
             plane: Plane::Strain,
+            incompatible: false,
             material: 0,
         };
         let (mut nodes, mut elements) = (Vec::new(), Vec::new());

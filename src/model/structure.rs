@@ -73,6 +73,8 @@ pub enum ElementKind {
         thickness: f64,
         /// Stress state.
         plane: Plane,
+        /// Whether a membrane of four nodes has modes of its own beside those of its nodes, so that it bends freely.
+        incompatible: bool,
     },
 }
 

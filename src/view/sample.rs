@@ -208,7 +208,7 @@ pub fn plates() -> Structure {
                 structure.elements.push(Element {
                     nodes: vec![index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)],
                     material: 0,
-                    kind: ElementKind::Membrane { thickness: 0.1, plane: Plane::Strain },
+                    kind: ElementKind::Membrane { thickness: 0.1, plane: Plane::Strain, incompatible: false },
                 });
             }
         }

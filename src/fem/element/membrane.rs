@@ -10,6 +10,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Stiffness;
+use super::incompatible;
 use super::shape::{MOST, Shape};
 use crate::fem::doubled::Real;
 use crate::model::structure::{Material, Plane};
@@ -28,6 +29,8 @@ pub struct Membrane<'a> {
     pub plane: Plane,
     /// Thickness out of the plane.
     pub thickness: f64,
+    /// Whether four nodes have incompatible modes beside their functions.
+    pub incompatible: bool,
 }
 
 /// σ_xx, σ_yy, σ_xy and σ_zz, tension positive.
@@ -51,12 +54,23 @@ impl Membrane<'_> {
     /// Stiffness, rows u_x, u_y of each node in turn; `None` if det J ≤ 0 at a node or an integration point (not
     /// convex, clockwise, or a middle node too far from its middle).
     pub fn stiffness<T: Real>(&self) -> Option<Stiffness<T>> {
+        let mut k = self.stiffness_of_all()?;
+        for row in 2 * self.nodes.len()..2 * self.functions() {
+            k.row_mut(row).fill(T::zero());
+            k.column_mut(row).fill(T::zero());
+        }
+        Some(k)
+    }
+
+    /// The same with the rows of the incompatible modes behind those of the nodes, each as it was when it was
+    /// eliminated (the last one first).
+    fn stiffness_of_all<T: Real>(&self) -> Option<Stiffness<T>> {
         if self.shape.nodes().iter().any(|&at| self.gradients::<f64>(at).1 <= 0.0) {
             return None;
         }
         let d = elasticity(self.material, self.plane);
         let [d11, d12, d22, d33] = [d[(0, 0)], d[(0, 1)], d[(1, 1)], d[(2, 2)]].map(T::from);
-        let count = self.nodes.len();
+        let count = self.functions();
         let mut k = Stiffness::zeros();
         for (at, w) in self.shape.points() {
             let (dn, det) = self.gradients::<T>(at);
@@ -77,7 +91,13 @@ impl Membrane<'_> {
             }
         }
         k.fill_lower_triangle_with_upper_triangle();
+        incompatible::eliminate(&mut k, 2 * self.nodes.len()..2 * count);
         Some(k)
+    }
+
+    /// Functions that displacements are made of: of the nodes, then the incompatible modes.
+    fn functions(&self) -> usize {
+        self.nodes.len() + if self.incompatible { incompatible::MODES } else { 0 }
     }
 
     /// Nodal forces ∫ N b t dA of the uniform force `b` per volume, rows as in [`stiffness`](Self::stiffness).
@@ -117,6 +137,13 @@ impl Membrane<'_> {
     /// Stress at (ξ, η) for the displacements `u` (rows as in [`stiffness`](Self::stiffness)) and the free expansion
     /// `strain` = α ΔT: extrapolated from the points where the element's stresses are best.
     pub fn stress(&self, at: [f64; 2], u: &[f64], strain: f64) -> Stress {
+        let mut u = u.to_vec();
+        if self.incompatible
+            && let Some(k) = self.stiffness_of_all::<f64>()
+        {
+            incompatible::complete(&k, &mut u, 2 * self.functions());
+        }
+        let u = &u[..];
         let mut sum = [0.0; 4];
         for (point, weight) in self.shape.stress_points().into_iter().zip(self.shape.extrapolation(at)) {
             for (sum, value) in sum.iter_mut().zip(self.stress_at_point(point, u, strain)) {
@@ -130,7 +157,7 @@ impl Membrane<'_> {
     fn stress_at_point(&self, at: [f64; 2], u: &[f64], strain: f64) -> Stress {
         let (dn, _) = self.gradients::<f64>(at);
         let mut total = SVector::<f64, 3>::zeros();
-        for (i, [x, y]) in dn[..self.nodes.len()].iter().enumerate() {
+        for (i, [x, y]) in dn[..u.len() / 2].iter().enumerate() {
             total[0] += x * u[2 * i];
             total[1] += y * u[2 * i + 1];
             total[2] += y * u[2 * i] + x * u[2 * i + 1];
@@ -154,24 +181,43 @@ impl Membrane<'_> {
         SVector::<f64, 3>::new(in_plane, in_plane, 0.0)
     }
 
-    /// (∂N_i/∂x, ∂N_i/∂y) and det J at (ξ, η).
+    /// (∂N_i/∂x, ∂N_i/∂y) of all functions and det J at (ξ, η).
     fn gradients<T: Real>(&self, at: [f64; 2]) -> ([[T; 2]; MOST], T) {
-        let natural = self.shape.gradients::<T>(at);
+        let j = self.jacobian::<T>(at);
+        let det = determinant(&j);
+        let mut gradients = self.shape.gradients(at).map(|natural| in_plane(&j, det, natural));
+        if self.incompatible {
+            let centre = self.jacobian::<T>(self.shape.centre());
+            let modes = incompatible::gradients(at, &centre, determinant(&centre) / det);
+            gradients[self.nodes.len()..self.functions()].copy_from_slice(&modes);
+        }
+        (gradients, det)
+    }
+
+    /// J: (∂x/∂ξ, ∂y/∂ξ), (∂x/∂η, ∂y/∂η) at (ξ, η).
+    fn jacobian<T: Real>(&self, at: [f64; 2]) -> [[T; 2]; 2] {
         // Coordinates from the first node: the place in the plane costs no digits.
         let mut j = [[T::zero(); 2]; 2];
-        for (n, node) in natural.iter().zip(self.nodes) {
+        for (n, node) in self.shape.gradients::<T>(at).iter().zip(self.nodes) {
             for a in 0..2 {
                 for b in 0..2 {
                     j[a][b] += n[a] * T::difference(node[b], self.nodes[0][b]);
                 }
             }
         }
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        let inverse = T::one() / det;
-        let gradients = natural
-            .map(|[xi, eta]| [(j[1][1] * xi - j[0][1] * eta) * inverse, (j[0][0] * eta - j[1][0] * xi) * inverse]);
-        (gradients, det)
+        j
     }
+}
+
+/// det J.
+pub(super) fn determinant<T: Real>(j: &[[T; 2]; 2]) -> T {
+    j[0][0] * j[1][1] - j[0][1] * j[1][0]
+}
+
+/// J⁻¹ applied to (∂/∂ξ, ∂/∂η): (∂/∂x, ∂/∂y).
+pub(super) fn in_plane<T: Real>(j: &[[T; 2]; 2], det: T, [xi, eta]: [T; 2]) -> [T; 2] {
+    let inverse = T::one() / det;
+    [(j[1][1] * xi - j[0][1] * eta) * inverse, (j[0][0] * eta - j[1][0] * xi) * inverse]
 }
 
 #[cfg(test)]
@@ -185,7 +231,7 @@ mod tests {
     fn with<T>(nodes: &[[f64; 2]], plane: Plane, run: impl Fn(&Membrane) -> T) -> T {
         let material = material(3.0, 0.3);
         let shape = Shape::of(nodes.len()).unwrap();
-        run(&Membrane { shape, nodes, material: &material, plane, thickness: 0.7 })
+        run(&Membrane { shape, nodes, material: &material, plane, thickness: 0.7, incompatible: false })
     }
 
     /// One distorted element of every shape; the quadratic ones with a side that bulges.
@@ -209,8 +255,14 @@ mod tests {
     fn unit_square() {
         let material = material(1.0, 0.0);
         let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let element =
-            Membrane { shape: Shape::Quad4, nodes: &nodes, material: &material, plane: Plane::Strain, thickness: 1.0 };
+        let element = Membrane {
+            shape: Shape::Quad4,
+            nodes: &nodes,
+            material: &material,
+            plane: Plane::Strain,
+            thickness: 1.0,
+            incompatible: false,
+        };
         let k = element.stiffness::<f64>().unwrap();
         // ∫N1x N2x = −1/3, ∫N1y N2y = 1/6; ∫N1x N1y = 1/4.
         assert!((k[(0, 0)] - 0.5).abs() < 1e-15);

@@ -4,6 +4,7 @@
 
 pub mod bar_load;
 pub mod frame;
+mod incompatible;
 pub mod membrane;
 pub mod shape;
 pub mod spring;
@@ -193,14 +194,15 @@ impl BarElement {
 /// What `run` makes of element number `index` as a membrane; `None` for a bar.
 pub fn with_membrane<T>(structure: &Structure, index: usize, run: impl FnOnce(&Membrane<'_>) -> T) -> Option<T> {
     let element = &structure.elements[index];
-    let ElementKind::Membrane { thickness, plane } = element.kind else { return None };
+    let ElementKind::Membrane { thickness, plane, incompatible } = element.kind else { return None };
     let shape = Shape::of(element.nodes.len())?;
     let mut nodes = [[0.0; 2]; MOST];
     for (at, &node) in nodes.iter_mut().zip(&element.nodes) {
         *at = structure.nodes[node].position;
     }
     let nodes = &nodes[..element.nodes.len()];
-    Some(run(&Membrane { shape, nodes, material: &structure.materials[element.material], plane, thickness }))
+    let material = &structure.materials[element.material];
+    Some(run(&Membrane { shape, nodes, material, plane, thickness, incompatible }))
 }
 
 /// Length and direction of a bar.

@@ -70,7 +70,7 @@ impl Model {
         self.0.elements.push(Element {
             nodes: nodes.to_vec(),
             material,
-            kind: ElementKind::Membrane { thickness, plane },
+            kind: ElementKind::Membrane { thickness, plane, incompatible: false },
         });
     }
 

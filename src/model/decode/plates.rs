@@ -19,6 +19,7 @@ pub fn plate<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<PlateG
         "thickness",
         "material",
         "plane",
+        "element",
     ])?;
     let id = id_of(builder, &fields, "plate");
     let grid = plate_grid(builder, &fields, id);
@@ -44,9 +45,28 @@ fn plate_grid<'d>(builder: &Builder<'d>, fields: &Fields<'d>, id: Option<&'d str
     };
     let lines = grid_lines(fields);
     let common = membrane(builder, fields);
+    let incompatible = modes(fields);
     let [x, y] = lines?;
     let (thickness, material, plane) = common?;
-    Some(PlateGrid { id: id?.to_string(), origin: origin?, rotation: rotation?, x, y, thickness, plane, material })
+    Some(PlateGrid {
+        id: id?.to_string(),
+        origin: origin?,
+        rotation: rotation?,
+        x,
+        y,
+        thickness,
+        plane,
+        incompatible: incompatible?,
+        material,
+    })
+}
+
+/// Whether elements of four nodes have incompatible modes: the key `element`.
+pub fn modes(fields: &Fields<'_>) -> Option<bool> {
+    match fields.optional("element") {
+        Some(cursor) => cursor.choice(&[("plain", false), ("incompatible", true)]),
+        None => Some(false),
+    }
 }
 
 /// Thickness, material and plane of a plate, triangle or quad.

@@ -1,7 +1,7 @@
 //! Triangles and quads given one by one.
 
 use super::elements::id_of;
-use super::plates::membrane;
+use super::plates::{membrane, modes};
 use super::reader::{Cursor, Fields};
 use super::structure::Builder;
 use crate::model::structure::{Element, ElementKind};
@@ -11,7 +11,7 @@ const FLAT: f64 = 1e-9;
 
 /// Reads one quad.
 pub fn quad<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<(&'d str, Element)> {
-    let fields = cursor.fields(&["id", "nodes", "thickness", "material", "plane"])?;
+    let fields = cursor.fields(&["id", "nodes", "thickness", "material", "plane", "element"])?;
     element(builder, &fields, "quad", |at| at.list_of(4, "the corners counter-clockwise").map(Iterator::collect))
 }
 
@@ -44,10 +44,9 @@ fn element<'d>(
         let nodes: Vec<usize> = nodes.into_iter().collect::<Option<_>>()?;
         check_nodes(builder, at, &nodes, what).then_some(nodes)
     });
-    let element = common.zip(nodes).map(|((thickness, material, plane), nodes)| Element {
-        nodes,
-        material,
-        kind: ElementKind::Membrane { thickness, plane },
+    let incompatible = modes(fields);
+    let element = common.zip(nodes).zip(incompatible).map(|(((thickness, material, plane), nodes), incompatible)| {
+        Element { nodes, material, kind: ElementKind::Membrane { thickness, plane, incompatible } }
     });
     if element.is_none() {
         builder.broken.extend(id);

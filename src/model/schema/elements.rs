@@ -106,6 +106,15 @@ pub struct Plate {
     material: String,
     /// Plane strain or plane stress
     plane: Plane,
+    /// Plain, or with modes of bending of its own; plain if left out
+    element: Option<QuadKind>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+pub enum QuadKind {
+    Plain,
+    Incompatible,
 }
 
 #[derive(JsonSchema)]
@@ -130,6 +139,8 @@ pub struct Quad {
     material: String,
     /// Plane strain or plane stress
     plane: Plane,
+    /// Plain, or with modes of bending of its own; plain if left out
+    element: Option<QuadKind>,
 }
 
 /// One triangle of three nodes or six
