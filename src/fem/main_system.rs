@@ -47,6 +47,12 @@ pub struct Tail {
     pub(super) error: f64,
 }
 
+impl From<Vec<[f64; 3]>> for Displacements {
+    fn from(nodes: Vec<[f64; 3]>) -> Displacements {
+        Displacements(nodes, None)
+    }
+}
+
 impl Displacements {
     /// In doubled precision.
     pub(super) fn doubled(&self) -> Vec<[Doubled; 3]> {

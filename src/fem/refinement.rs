@@ -108,7 +108,8 @@ impl Refinement<'_> {
                 residual[i] -= step * response[i];
             }
             z = self.precondition(&residual);
-            rz = dot(&residual, &z);
+            // Rounding may turn the sign of what is next to nothing.
+            rz = dot(&residual, &z).abs();
             idle += 1;
             if rz < best.0 {
                 best = (rz, v.clone());
@@ -121,7 +122,7 @@ impl Refinement<'_> {
             }
         }
         let (error, v) = best;
-        Ok((error <= ANSWERED * first).then_some((v, error.max(0.0))))
+        Ok((error <= ANSWERED * first).then_some((v, error)))
     }
 
     /// u for Σ F on the base dofs and the dislocations `z`, and what is left of the energy of the error; `None` if it

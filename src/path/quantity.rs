@@ -540,5 +540,5 @@ fn written(word: &impl serde::Serialize) -> String {
 }
 
 fn from_nodes(nodes: &[NodeDisplacement]) -> Displacements {
-    Displacements(nodes.iter().map(|node| [node.ux, node.uy, node.rz]).collect())
+    nodes.iter().map(|node| [node.ux, node.uy, node.rz]).collect::<Vec<_>>().into()
 }
