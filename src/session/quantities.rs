@@ -121,7 +121,7 @@ pub(super) fn help() -> String {
     let style = Style { width: 79, ..Style::default() };
     let rows = WORDS.iter().flat_map(|entry| {
         let usage = format!("{} {}", entry.word, entry.arguments.usage());
-        style.hanging(&format!("  {:<32} ", usage.trim_end()), entry.about)
+        style.hanging(&format!("  {:<33} ", usage.trim_end()), entry.about)
     });
     let rows: Vec<String> = rows.collect();
     format!(

@@ -10,6 +10,8 @@ use ratatui::buffer::Buffer;
 use ratatui::style::Modifier;
 
 use crate::model::embedded;
+use crate::model::load::load_text;
+use crate::model::scenario::Scenario;
 use crate::session::Session;
 use crate::session::results::{OutcomeKind, State as PairMotion};
 use crate::watch::Quiet;
@@ -33,7 +35,11 @@ struct Rig {
 
 impl Rig {
     fn new(scenario: &str, width: u16, height: u16) -> Rig {
-        let session = Session::new(embedded::load(scenario).unwrap(), &Quiet).unwrap();
+        Rig::of(embedded::load(scenario).unwrap(), width, height)
+    }
+
+    fn of(scenario: Scenario, width: u16, height: u16) -> Rig {
+        let session = Session::new(scenario, &Quiet).unwrap();
         let look = Look { color: true, ascii: false };
         let state =
             State::new(Arc::new(Shown::of(&session)), look, Arc::new(Keymap::default()), (width, height), Leave::Quit);
@@ -315,6 +321,30 @@ fn the_tour_tells_what_is_true() {
 }
 
 // ---- actions -----------------------------------------------------------------------------------------------------
+
+/// A bar of length L pulled by F: the slider of L moves the geometry, the one of the formula does not move.
+#[test]
+fn a_slider_moves_the_geometry() {
+    let text = r#"{ "format": "stickslip/1", "title": "bar",
+      "parameters": { "L": { "value": 2, "min": 1, "max": 4, "step": 0.5 }, "W": { "formula": "10*L" } },
+      "materials": { "m": { "E": 1000, "nu": 0 } }, "sections": { "s": { "area": 0.1 } },
+      "nodes": { "A": [0, 0], "B": ["L", 0] },
+      "bars": [ { "id": "AB", "nodes": ["A", "B"], "kind": "truss", "material": "m", "section": "s" } ],
+      "supports": [ { "at": "A", "fixed": ["x", "y"] } ],
+      "contacts": [ { "id": "c", "node": "B", "against": "ground", "normal": [0, 1], "friction": 0.1 } ],
+      "loads": { "weight": { "factor": "W", "items": [ { "point": { "at": "B", "force": [5, -1] } } ] } } }"#;
+    let mut rig = Rig::of(load_text("bar", text, None).unwrap(), 140, 45);
+    rig.press(&["2", "+"]);
+    assert_eq!((rig.state.value("L"), rig.state.value("W")), (2.5, 25.0));
+    assert_eq!(rig.state.shown.structure().unwrap().nodes[1].position, [2.5, 0.0]);
+    // N = 5 W − 0.1 W = 122.5, u = N L / (E A) = 3.0625.
+    let slip = rig.state.shown.pairs[0].z_t;
+    assert!((slip - 3.0625).abs() < 1e-12, "{slip}");
+    assert!(rig.screen().contains("= 10*L"), "{}", rig.screen());
+    rig.press(&["down", "+"]);
+    assert_eq!(rig.state.value("W"), 25.0);
+    assert!(rig.screen().contains("W is a formula, 10*L"), "{}", rig.screen());
+}
 
 #[test]
 fn a_slider_solves_at_once_and_says_what_changed() {
