@@ -97,13 +97,20 @@ fn pair_state(
             let cover = Sum { value: d_t - f * d_n, magnitude: d_t.max(f * d_n) }.cleaned();
             let (raw, constant) = (state.sum(joint), fixed.value + cover * state.p);
             let sum = fixed.plus(f, x_n).plus(cover, Sum::exactly(state.p));
-            let used_up = |side: f64| side * z_t > 0.0 || (z_t == 0.0 && sum.plus(side, raw).is_zero());
-            let at_limit = if used_up(1.0) { -1.0 } else { f64::from(u8::from(used_up(-1.0))) };
+            let used_up = |side: f64| sum.plus(side, raw).is_zero();
+            // Slip + goes with x⁺ = 0, x_τ = −bound; where nothing slips and both reserves are zero the sign is that of λ.
+            let at_limit = match (used_up(1.0), used_up(-1.0)) {
+                _ if z_t != 0.0 => -z_t.signum(),
+                (true, true) => raw.value.signum(),
+                (true, false) => -1.0,
+                (false, true) => 1.0,
+                (false, false) => 0.0,
+            };
             if at_limit != 0.0 && f > 0.0 && f * x_n.magnitude > raw.magnitude {
                 // At the limit x_n and x_τ tell each other: the one that is known worse follows.
-                let follows = (at_limit * raw.value - constant) / f;
+                let follows = ((at_limit * raw.value - constant) / f).max(0.0);
                 let change = Sum { value: follows - x_n.value, magnitude: x_n.magnitude };
-                if follows >= 0.0 && change.is_zero() {
+                if change.is_zero() {
                     x_n = Sum::exactly(follows);
                 }
             }

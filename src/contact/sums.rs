@@ -79,7 +79,9 @@ pub fn state_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVecto
         moved.iter_mut().zip(&numbers.gap).for_each(|(z, gap)| *z -= gap);
         let given = file.forces(&moved, load);
         for (force, given) in forces.joints.iter_mut().zip(given.joints) {
-            *force = Sum { value: given.value, magnitude: force.magnitude.max(given.magnitude) };
+            // Forces solved for from a compliance have no terms of their own.
+            let magnitude = if file.compliance { force.magnitude.max(given.magnitude) } else { given.magnitude };
+            *force = Sum { value: given.value, magnitude };
         }
         (forces.left, forces.slips) = (given.left, Some(given.slips));
     }
