@@ -165,6 +165,9 @@ impl MainSystem {
             }
         }
         for (spring, force) in std::iter::zip(&structure.springs, self.spring_forces(structure, u)) {
+            if structure.yielding_ground.binary_search(&spring.node).is_ok() {
+                continue;
+            }
             nodes.push(spring.node);
             for (component, force) in std::iter::zip([Component::X, Component::Y], force) {
                 if let Some(dof) = self.dofs.of(spring.node, component) {

@@ -62,6 +62,9 @@ pub struct Pair {
     pub against: Option<usize>,
     /// Unit normal n, from `against` to `node`.
     pub normal: [f64; 2],
+    /// Whether friction acts against the firm ground although `against` is a node: the ground of a foundation yields
+    /// along n only, z_τ = t·u_node.
+    pub slides_on_ground: bool,
     /// The law.
     pub law: Law,
 }
@@ -70,6 +73,11 @@ impl Pair {
     /// Unit tangent t: n turned by −90° (clockwise); n = (0, 1) gives t = (1, 0).
     pub fn tangent(&self) -> [f64; 2] {
         [self.normal[1], -self.normal[0]]
+    }
+
+    /// The node on the first side whose motion along t counts; `None` for the ground.
+    pub fn against_along_tangent(&self) -> Option<usize> {
+        self.against.filter(|_| !self.slides_on_ground)
     }
 }
 
@@ -96,9 +104,9 @@ pub struct Joint {
 /// The joints of the main system: all normals in the order of the pairs, then the tangentials of those pairs
 /// that have one (all but the frictionless ones). This is the order of the rows of R and RF.
 pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
-    let row = |pair: &Pair, a: [f64; 2]| {
+    let row = |pair: &Pair, against: Option<usize>, a: [f64; 2]| {
         let mut terms = vec![(pair.node, a)];
-        if let Some(against) = pair.against {
+        if let Some(against) = against {
             terms.push((against, [-a[0], -a[1]]));
         }
         terms
@@ -106,10 +114,14 @@ pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
     let normals = pairs.iter().enumerate().map(|(index, pair)| Joint {
         pair: index,
         direction: JointDirection::Normal,
-        terms: row(pair, pair.normal),
+        terms: row(pair, pair.against, pair.normal),
     });
     let tangentials = pairs.iter().enumerate().filter(|(_, pair)| !matches!(pair.law, Law::Frictionless { .. })).map(
-        |(index, pair)| Joint { pair: index, direction: JointDirection::Tangential, terms: row(pair, pair.tangent()) },
+        |(index, pair)| Joint {
+            pair: index,
+            direction: JointDirection::Tangential,
+            terms: row(pair, pair.against_along_tangent(), pair.tangent()),
+        },
     );
     normals.chain(tangentials).collect()
 }

@@ -249,6 +249,9 @@ pub struct Structure {
     pub ties: Vec<Tie>,
     /// Springs to the ground.
     pub springs: Vec<Spring>,
+    /// Nodes that stand for the yielding ground of tensionless foundations, in increasing order: what their springs
+    /// carry is contact with the ground and stands under the pairs.
+    pub yielding_ground: Vec<usize>,
     /// Contact pairs in the order of the file.
     pub pairs: Vec<Pair>,
     /// The contacts of edges among them.

@@ -412,7 +412,7 @@ impl Prepared {
                     if matches!(pair.law, Law::Frictionless { .. }) {
                         let t = pair.tangent();
                         let along = |node: usize| t[0] * u.0[node][0] + t[1] * u.0[node][1];
-                        shown.z_t = along(pair.node) - pair.against.map_or(0.0, along);
+                        shown.z_t = along(pair.node) - pair.against_along_tangent().map_or(0.0, along);
                     }
                 }
             }

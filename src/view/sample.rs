@@ -285,6 +285,7 @@ fn ground_pair(id: &str, node: usize) -> Pair {
         node,
         against: None,
         normal: [0.0, 1.0],
+        slides_on_ground: false,
         law: Law::Coulomb {
             friction: Number::Parameter("f".into()),
             cohesion: Number::Value(0.0),

@@ -9,6 +9,7 @@ mod block;
 mod cantilever_gap;
 mod edge_cases;
 mod foundation;
+mod foundations;
 mod frame;
 mod greco;
 mod klarbring;

@@ -122,7 +122,7 @@ impl Model {
     pub fn pair(&mut self, node: usize, against: Option<usize>, normal: [f64; 2], law: Law) {
         let id = format!("c{}", self.0.pairs.len() + 1);
         let length = normal[0].hypot(normal[1]);
-        self.0.pairs.push(Pair { id, node, against, normal: normal.map(|n| n / length), law });
+        self.0.pairs.push(Pair { id, node, against, normal: normal.map(|n| n / length), slides_on_ground: false, law });
     }
 
     pub fn case(&mut self, loads: Vec<Load>) {

@@ -94,6 +94,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             node,
             against,
             normal: sides.normals[index],
+            slides_on_ground: false,
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
         },
     );

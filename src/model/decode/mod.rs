@@ -6,6 +6,7 @@ mod contacts;
 mod edges;
 mod elements;
 mod findings;
+mod foundations;
 mod law;
 mod lcp;
 mod loads;
@@ -42,7 +43,7 @@ const COMMON: [&str; 10] =
     ["$schema", "format", "title", "description", "units", "parameters", "stages", "combinations", "probes", "solver"];
 
 /// Keys of the source *structure*.
-const STRUCTURE: [&str; 13] = [
+const STRUCTURE: [&str; 14] = [
     "materials",
     "sections",
     "nodes",
@@ -54,6 +55,7 @@ const STRUCTURE: [&str; 13] = [
     "ties",
     "supports",
     "springs",
+    "foundations",
     "contacts",
     "loads",
 ];

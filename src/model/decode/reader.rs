@@ -125,6 +125,17 @@ impl<'d> Cursor<'d> {
         }
     }
 
+    /// `true` or `false`.
+    pub fn boolean(self) -> Option<bool> {
+        match self.value {
+            Value::BooleanLit(boolean) => Some(boolean.value),
+            _ => {
+                self.wrong_type("`true` or `false`", "write it without quotation marks");
+                None
+            }
+        }
+    }
+
     /// A string that is one of `words`.
     pub fn choice<T: Copy>(self, words: &[(&'static str, T)]) -> Option<T> {
         let word = self.string()?;

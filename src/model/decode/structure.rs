@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
-use super::{contacts, edges, elements, loads, supports};
+use super::{contacts, edges, elements, foundations, loads, supports};
 use crate::model::edge::{Edge, PlateSide};
 use crate::model::scenario::Places;
 use crate::model::structure::{ElementKind, Node, Structure};
@@ -98,6 +98,7 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
     edges::read(&mut builder, fields);
     supports::read(&mut builder, fields);
     contacts::read(&mut builder, fields)?;
+    foundations::read(&mut builder, fields);
     loads::read(&mut builder, fields);
     if builder.elements_complete {
         builder.report_loose_nodes(fields, &names);

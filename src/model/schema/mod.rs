@@ -28,7 +28,7 @@ use loads::LoadCase;
         { "required": ["materials"] }, { "required": ["sections"] }, { "required": ["nodes"] },
         { "required": ["bars"] }, { "required": ["plates"] }, { "required": ["quads"] },
         { "required": ["triangles"] }, { "required": ["edges"] },
-        { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
+        { "required": ["foundations"] }, { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
         { "required": ["contacts"] }, { "required": ["loads"] },
     ] },
 ]))]
@@ -78,6 +78,8 @@ struct Scenario {
     supports: Option<Vec<Support>>,
     /// Springs to the ground
     springs: Option<Vec<Spring>>,
+    /// Elastic foundations along bars and edges
+    foundations: Option<Vec<Foundation>>,
     /// Frictional contacts
     contacts: Option<Vec<Contact>>,
     /// Load cases by name
@@ -220,6 +222,28 @@ struct Spring {
     /// Force per displacement; at an edge, of each node
     #[schemars(extend("minimum" = 0))]
     stiffness: Number,
+}
+
+/// An elastic foundation
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Foundation {
+    /// Id; pairs are id[0], id[1] …
+    id: String,
+    /// Bar or edge
+    on: String,
+    /// Force per length of line and displacement, along `direction`
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    stiffness: Number,
+    /// From the ground to the body; if left out the inward normal of an edge, local y of a bar
+    direction: Option<[Number; 2]>,
+    /// The same along the line; beside `tensionless` only with `friction`
+    #[schemars(range(min = 0))]
+    tangential: Option<Number>,
+    /// Whether it can open; false if left out
+    tensionless: Option<bool>,
+    /// Friction coefficient f ≥ 0 of a tensionless one; frictionless if left out
+    friction: Option<Number>,
 }
 
 #[derive(JsonSchema)]

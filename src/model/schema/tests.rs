@@ -174,7 +174,7 @@ fn schema_and_decoder_know_the_same_keys() {
         system(unknown.clone()),
         json!({ "lcp": unknown }),
     ];
-    for list in ["bars", "plates", "triangles", "quads", "ties", "supports", "springs", "contacts"] {
+    for list in ["bars", "plates", "triangles", "quads", "ties", "supports", "springs", "foundations", "contacts"] {
         places.push(json!({ list: [unknown] }));
     }
     for kind in ["point", "traction", "line", "gravity", "temperature", "strain", "pressure", "fluid"] {

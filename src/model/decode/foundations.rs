@@ -1,0 +1,194 @@
+//! Elastic foundations along bars and edges: springs at the nodes, or, where they take no tension, contact pairs whose
+//! ground is a spring.
+
+use super::elements::{entries, id_of};
+use super::reader::{Cursor, Fields};
+use super::structure::{Builder, Spot};
+use crate::model::pair::{Law, Pair};
+use crate::model::parameter::Number;
+use crate::model::structure::{Node, Spring};
+use crate::model::uses::Region;
+
+/// What a foundation has in common along its line.
+struct Foundation<'d> {
+    id: &'d str,
+    /// Force per length of line and displacement, along the normal.
+    stiffness: f64,
+    /// The same along the line.
+    tangential: Option<f64>,
+    tensionless: bool,
+    friction: Option<Number>,
+}
+
+/// A node of the line: its normal (from the ground to the body) and the length that belongs to it.
+struct Place {
+    node: usize,
+    normal: [f64; 2],
+    length: f64,
+}
+
+/// Reads `foundations`.
+pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
+    for (index, cursor) in entries(fields, "foundations").into_iter().enumerate() {
+        if let Some((foundation, places)) = foundation(builder, cursor) {
+            let place = format!("foundations[{index}]");
+            for (pair, at) in places.iter().enumerate() {
+                if foundation.tensionless {
+                    tensionless(builder, &foundation, pair, at, &place);
+                } else {
+                    bonded(builder, &foundation, at);
+                }
+            }
+        }
+    }
+}
+
+fn foundation<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<(Foundation<'d>, Vec<Place>)> {
+    let fields = cursor.fields(&["id", "on", "stiffness", "direction", "tangential", "tensionless", "friction"])?;
+    let id = id_of(builder, &fields, "foundation");
+    let stiffness = fields.required("stiffness").and_then(|at| at.positive("stiffness"));
+    let tangential = match fields.optional("tangential") {
+        Some(at) => Some(Some(at.number_that("tangential", "0 or more", |value| value >= 0.0)?)),
+        None => Some(None),
+    };
+    let tensionless = match fields.optional("tensionless") {
+        Some(at) => at.boolean(),
+        None => Some(false),
+    };
+    let friction = match fields.optional("friction") {
+        Some(at) => Some(Some(at.of(Region::Law).non_negative("friction")?)),
+        None => Some(None),
+    };
+    let direction = match fields.optional("direction") {
+        Some(at) => Some(Some(at.direction("direction")?)),
+        None => Some(None),
+    };
+    let places = fields.required("on").and_then(|on| places(builder, on));
+    let foundation = Foundation {
+        id: id?,
+        stiffness: stiffness?,
+        tangential: tangential?,
+        tensionless: tensionless?,
+        friction: friction?,
+    };
+    if foundation.friction.is_some() && !foundation.tensionless {
+        fields.refuse(
+            &["friction"],
+            |_| "a bonded foundation has no `friction`".into(),
+            "add \"tensionless\": true, or give its `tangential` stiffness instead",
+        );
+        return None;
+    }
+    if foundation.tangential.is_some() && foundation.tensionless && foundation.friction.is_none() {
+        fields.refuse(
+            &["tangential"],
+            |_| "`tangential` of a tensionless foundation acts through friction, and there is no `friction`".into(),
+            "add `friction`, or remove `tangential`",
+        );
+        return None;
+    }
+    let mut places = places?;
+    if let Some(direction) = direction? {
+        places.iter_mut().for_each(|place| place.normal = direction);
+    }
+    Some((foundation, places))
+}
+
+/// The nodes of a bar or of an edge with their normals and lengths.
+fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
+    if let Some(&bar) = builder.bars.get(on.string()?) {
+        return Some(along_bar(builder, bar));
+    }
+    let edge = match builder.spot(on)? {
+        Spot::Edge(edge) => edge,
+        Spot::Node(_) => {
+            on.problem(
+                format!("expected a bar or an edge, found the node {}", on.quoted()),
+                "a foundation lies along a line; at one node use `springs`",
+            );
+            return None;
+        }
+    };
+    let nodes = &builder.structure.nodes;
+    let place = |node: usize| nodes[node].position;
+    let outward = edge.outward_normals(nodes);
+    let mut places: Vec<Place> = edge
+        .nodes
+        .iter()
+        .zip(outward)
+        // Subtracting from 0 turns −0 into 0.
+        .map(|(&node, outward)| Place { node, normal: outward.map(|n| 0.0 - n), length: 0.0 })
+        .collect();
+    for k in 1..places.len() {
+        let (a, b) = (place(places[k - 1].node), place(places[k].node));
+        let half = 0.5 * (b[0] - a[0]).hypot(b[1] - a[1]);
+        places[k - 1].length += half;
+        places[k].length += half;
+    }
+    Some(places)
+}
+
+/// The ground lies on the −y side of a bar: the normal is its local y, at a corner the mean of both sides.
+fn along_bar(builder: &Builder<'_>, bar: usize) -> Vec<Place> {
+    let structure = &builder.structure;
+    let mut places: Vec<Place> = Vec::new();
+    for stretch in builder.stretches(bar) {
+        let normal = [0.0 - stretch.direction[1], stretch.direction[0]];
+        let half = 0.5 * stretch.length;
+        let nodes = &structure.elements[stretch.element].nodes;
+        if places.is_empty() {
+            places.push(Place { node: nodes[0], normal: [0.0; 2], length: 0.0 });
+        }
+        let last = places.len() - 1;
+        let before = &mut places[last];
+        before.normal = [before.normal[0] + normal[0], before.normal[1] + normal[1]];
+        before.length += half;
+        places.push(Place { node: nodes[1], normal, length: half });
+    }
+    for place in &mut places {
+        let length = place.normal[0].hypot(place.normal[1]);
+        place.normal = place.normal.map(|n| n / length);
+    }
+    places
+}
+
+fn bonded(builder: &mut Builder<'_>, foundation: &Foundation<'_>, at: &Place) {
+    let [x, y] = at.normal;
+    let springs = &mut builder.structure.springs;
+    springs.push(Spring { node: at.node, direction: at.normal, stiffness: foundation.stiffness * at.length });
+    if let Some(tangential) = foundation.tangential.filter(|stiffness| *stiffness > 0.0) {
+        springs.push(Spring { node: at.node, direction: [y, 0.0 - x], stiffness: tangential * at.length });
+    }
+}
+
+/// A pair against a node of its own on springs: along the normal, and along the line, where a spring that nothing
+/// loads holds the node of a pair whose friction acts against the firm ground.
+fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: usize, at: &Place, place: &str) {
+    let id = format!("{}[{index}]", foundation.id);
+    let position = builder.structure.nodes[at.node].position;
+    let ground = builder.add_node(Node { id: format!("{}/{index}", foundation.id), position }, place.into());
+    builder.has_rotation.push(false);
+    builder.structure.yielding_ground.push(ground);
+    let [x, y] = at.normal;
+    let along = foundation.tangential.filter(|stiffness| *stiffness > 0.0);
+    for (direction, stiffness) in
+        [(at.normal, foundation.stiffness), ([y, 0.0 - x], along.unwrap_or(foundation.stiffness))]
+    {
+        builder.structure.springs.push(Spring { node: ground, direction, stiffness: stiffness * at.length });
+    }
+    let law = match &foundation.friction {
+        Some(friction) => {
+            Law::Coulomb { friction: friction.clone(), cohesion: Number::Value(0.0), gap: Number::Value(0.0) }
+        }
+        None => Law::Frictionless { gap: Number::Value(0.0) },
+    };
+    builder.structure.pairs.push(Pair {
+        id,
+        node: at.node,
+        against: Some(ground),
+        normal: at.normal,
+        slides_on_ground: along.is_none(),
+        law,
+    });
+    builder.places.pairs.push(place.into());
+}
