@@ -1,5 +1,6 @@
 //! The elimination of everything that holds the displacements:
-//! u = T v + G z, with v the free unknowns of the main system and z the mutual displacements of the joints.
+//! u = T v + G z + S s, with v the free unknowns of the main system, z the mutual displacements of the joints and s the
+//! displacements imposed on supports.
 //!
 //! Supports and ties make classes of equal components (or zero). Each joint row B u = z then gives up one class
 //! (Gaussian elimination with pivoting on rows of a few entries, see `joint_rows`), preferably on the `node` side,
@@ -12,27 +13,39 @@ use super::doubled::Real;
 use super::error::DependentJoint;
 use super::joint_rows::{JointReduction, JointRow, holders};
 use crate::model::pair::Joint;
-use crate::model::structure::Structure;
+use crate::model::structure::{Load, Structure};
 
 /// One base dof in terms of v and z.
 #[derive(Clone, Debug, PartialEq)]
 enum Row {
-    /// Held by a support.
-    Zero,
+    /// Held by a support; the number of its imposed displacement if it has one.
+    Held(Option<u32>),
     /// Equal to one unknown.
     Free(u32),
     /// A sum: index into `sums`.
     Sum(u32),
 }
 
-/// Σ coefficient·v + Σ coefficient·z.
+/// Σ coefficient·v + Σ coefficient·z + Σ coefficient·s.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Sum {
     free: Vec<(u32, f64)>,
     joints: Vec<(u32, f64)>,
+    settled: Vec<(u32, f64)>,
 }
 
-/// u = T v + G z.
+/// What supports and ties make of the base dofs: classes of equal components.
+pub struct Classes {
+    /// Representative of the class of each base dof.
+    pub class: Vec<u32>,
+    /// Whether the class of each base dof is held by a support.
+    pub held: Vec<bool>,
+    /// The classes on which some load case imposes a displacement, with the numbers of those displacements in the rows
+    /// of the joints: they follow the joints.
+    pub settled: BTreeMap<u32, u32>,
+}
+
+/// u = T v + G z + S s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elimination {
     rows: Vec<Row>,
@@ -52,20 +65,21 @@ impl Elimination {
     /// # Errors
     /// All joints that depend on supports, ties and earlier joints.
     pub fn new(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Elimination, Vec<DependentJoint>> {
-        let (class, held) = classes(structure, dofs);
+        let classes = classes(structure, dofs, joints.len());
+        let Classes { class, held, settled } = &classes;
         let is_class = |dof: usize| class[dof] as usize == dof && !held[dof];
         let free = (0..dofs.count()).filter(|&dof| is_class(dof)).count();
 
         let mut reduction = JointReduction::default();
         let mut dependent = Vec::new();
         for (index, joint) in joints.iter().enumerate() {
-            let row = JointRow::new(index, joint, dofs, &class, &held);
+            let row = JointRow::new(index, joint, dofs, &classes);
             if let Err(row) = reduction.add(row) {
                 dependent.push(DependentJoint {
                     pair: joint.pair,
                     pair_id: structure.pairs[joint.pair].id.clone(),
                     direction: joint.direction,
-                    holders: holders(structure, dofs, joints, &class, &held, &row, joint),
+                    holders: holders(structure, dofs, joints, &classes, &row, joint),
                 });
             }
         }
@@ -82,20 +96,23 @@ impl Elimination {
                 masters += 1;
             }
         }
+        let count = joints.len() as u32;
+        let beyond = |joint: &&u32| **joint >= count;
         let mut sums = Vec::with_capacity(reduction.slaves.len());
         let mut sum_of = BTreeMap::new();
         for (&dof, row) in &reduction.slaves {
             sum_of.insert(dof, sums.len() as u32);
             sums.push(Sum {
                 free: row.terms.iter().map(|(&other, &a)| (master[other as usize], -a)).collect(),
-                joints: row.joints.iter().map(|(&j, &a)| (j, a)).collect(),
+                joints: row.joints.iter().filter(|(j, _)| !beyond(j)).map(|(&j, &a)| (j, a)).collect(),
+                settled: row.joints.iter().filter(|(j, _)| beyond(j)).map(|(&j, &a)| (j - count, a)).collect(),
             });
         }
         let rows = (0..dofs.count())
             .map(|dof| {
                 let root = class[dof];
                 if held[dof] {
-                    Row::Zero
+                    Row::Held(settled.get(&root).map(|number| number - count))
                 } else if let Some(&sum) = sum_of.get(&root) {
                     Row::Sum(sum)
                 } else {
@@ -103,6 +120,7 @@ impl Elimination {
                 }
             })
             .collect();
+        let Classes { class, held, .. } = classes;
         Ok(Elimination { rows, sums, class, held, free, masters: masters as usize, joints: joints.len() })
     }
 
@@ -142,7 +160,7 @@ impl Elimination {
     /// Entries of a row of T: (index into v, coefficient).
     pub fn free_terms(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (single, sum) = match &self.rows[dof] {
-            Row::Zero => (None, None),
+            Row::Held(_) => (None, None),
             Row::Free(v) => (Some((*v as usize, 1.0)), None),
             Row::Sum(sum) => (None, Some(&self.sums[*sum as usize])),
         };
@@ -160,7 +178,25 @@ impl Elimination {
         many.map(|&(j, a)| (j as usize, a))
     }
 
-    /// u = T v + G z on the base dofs.
+    /// Number of the imposed displacement of a base dof, if a support that settles holds it.
+    pub fn settlement(&self, dof: usize) -> Option<usize> {
+        match self.rows[dof] {
+            Row::Held(number) => number.map(|number| number as usize),
+            _ => None,
+        }
+    }
+
+    /// S s on the base dofs: what follows the imposed displacements `s` with all joints on and v = 0.
+    pub fn settled(&self, s: &[f64]) -> Vec<f64> {
+        let row = |row: &Row| match row {
+            Row::Held(number) => number.map_or(0.0, |number| s[number as usize]),
+            Row::Free(_) => 0.0,
+            Row::Sum(sum) => self.sums[*sum as usize].settled.iter().map(|&(number, a)| a * s[number as usize]).sum(),
+        };
+        self.rows.iter().map(row).collect()
+    }
+
+    /// T v + G z on the base dofs.
     pub fn expand<T: Real>(&self, v: &[T], z: &[f64]) -> Vec<T> {
         let sum = |sum: T, term: T| sum + term;
         (0..self.rows.len())
@@ -172,8 +208,8 @@ impl Elimination {
     }
 }
 
-/// Classes of equal components and whether a support holds them, for every base dof.
-fn classes(structure: &Structure, dofs: &Dofs) -> (Vec<u32>, Vec<bool>) {
+/// Classes of equal components, and which of them supports hold and move.
+fn classes(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
     let mut parent: Vec<u32> = (0..dofs.count() as u32).collect();
     for tie in &structure.ties {
         for &component in &tie.components {
@@ -194,5 +230,14 @@ fn classes(structure: &Structure, dofs: &Dofs) -> (Vec<u32>, Vec<bool>) {
         }
     }
     let held = class.iter().map(|&c| held_class[c as usize]).collect();
-    (class, held)
+    let mut settled = BTreeMap::new();
+    for load in structure.load_cases.iter().flat_map(|case| &case.loads) {
+        if let Load::Settlement { node, component, .. } = *load
+            && let Some(dof) = dofs.of(node, component)
+        {
+            let next = (joints + settled.len()) as u32;
+            settled.entry(class[dof]).or_insert(next);
+        }
+    }
+    Classes { class, held, settled }
 }

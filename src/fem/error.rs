@@ -59,6 +59,17 @@ pub enum MainSystemError {
         /// Its id.
         node_id: String,
     },
+    /// Supports that ties make one, of which some settle differently.
+    #[error(
+        "load case {case} moves the supports at {} and {}, which ties make one, by different amounts: \
+         give both the same settlement, or remove one of the two supports", .nodes[0], .nodes[1]
+    )]
+    UnequalSettlements {
+        /// Name of the load case.
+        case: String,
+        /// Ids of two nodes that are held.
+        nodes: [String; 2],
+    },
     /// An element that has no stiffness because of its shape.
     #[error("the element with the nodes {} cannot be used: {what}", .nodes.join(", "))]
     Element {

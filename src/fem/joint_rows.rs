@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::dof::{Dofs, joint_dofs};
+use super::elimination::Classes;
 use super::error::Holder;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
@@ -18,7 +19,7 @@ const PREFER_NODE_SIDE: f64 = 0.1;
 pub struct JointRow {
     /// Coefficient of each class.
     pub terms: BTreeMap<u32, f64>,
-    /// Coefficient of each joint's z.
+    /// Coefficient of each joint's z; the numbers after those of the joints are imposed displacements.
     pub joints: BTreeMap<u32, f64>,
     /// Classes on the `node` side as the joint itself names them.
     node_side: Vec<u32>,
@@ -26,15 +27,19 @@ pub struct JointRow {
 
 impl JointRow {
     /// The row of joint number `index`.
-    pub fn new(index: usize, joint: &Joint, dofs: &Dofs, class: &[u32], held: &[bool]) -> JointRow {
+    pub fn new(index: usize, joint: &Joint, dofs: &Dofs, classes: &Classes) -> JointRow {
         let mut row = JointRow::default();
         row.joints.insert(index as u32, 1.0);
         for (side, (dof, a)) in joint_dofs(joint, dofs) {
-            if !held[dof] {
-                *row.terms.entry(class[dof]).or_default() += a;
+            let class = classes.class[dof];
+            if !classes.held[dof] {
+                *row.terms.entry(class).or_default() += a;
                 if side == 0 {
-                    row.node_side.push(class[dof]);
+                    row.node_side.push(class);
                 }
+            } else if let Some(&settled) = classes.settled.get(&class) {
+                // Known, so it stands on the side of the z.
+                *row.joints.entry(settled).or_default() -= a;
             }
         }
         row
@@ -132,17 +137,19 @@ pub fn holders(
     structure: &Structure,
     dofs: &Dofs,
     joints: &[Joint],
-    class: &[u32],
-    held: &[bool],
+    classes: &Classes,
     row: &JointRow,
     joint: &Joint,
 ) -> Vec<Holder> {
+    let Classes { class, held, .. } = classes;
     let mut holders = Vec::new();
     let others = row
         .joints
         .iter()
-        .filter(|(j, a)| joints[**j as usize] != *joint && a.abs() > DEPENDENT)
-        .map(|(j, _)| &joints[*j as usize]);
+        .filter(|(_, a)| a.abs() > DEPENDENT)
+        // Numbers beyond are imposed displacements.
+        .filter_map(|(j, _)| joints.get(*j as usize))
+        .filter(|other| *other != joint);
     let mut involved = vec![joint];
     for other in others {
         involved.push(other);

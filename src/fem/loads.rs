@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use super::dof::Dofs;
 use super::element::bar_load::BarLoad;
 use super::element::{BarElement, slots, with_membrane};
+use super::elimination::Elimination;
 use super::error::MainSystemError;
-use crate::model::structure::{Component, Load, Structure};
+use crate::model::structure::{Component, Load, LoadCase, Structure};
 
 /// F per load case and unit factor on the base dofs.
 ///
@@ -47,6 +48,47 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
     Ok(vectors)
 }
 
+/// Imposed displacements of every base dof per load case and unit factor, S s; nothing for a case without settlements.
+///
+/// # Errors
+/// Supports that move as one by ties, of which some settle differently.
+pub fn settlements(
+    structure: &Structure,
+    dofs: &Dofs,
+    elimination: &Elimination,
+) -> Result<Vec<Option<Vec<f64>>>, MainSystemError> {
+    let of_case = |case: &LoadCase| {
+        let mut values: BTreeMap<usize, f64> = BTreeMap::new();
+        for load in &case.loads {
+            if let Load::Settlement { node, component, value } = *load
+                && let Some(dof) = dofs.of(node, component)
+            {
+                values.insert(dof, value);
+            }
+        }
+        if values.is_empty() {
+            return Ok(None);
+        }
+        let mut s = BTreeMap::new();
+        for support in &structure.supports {
+            let Some(dof) = dofs.of(support.node, support.component) else { continue };
+            let Some(number) = elimination.settlement(dof) else { continue };
+            let value = values.get(&dof).copied().unwrap_or(0.0);
+            let (first, known) = *s.entry(number).or_insert((support.node, value));
+            if known != value {
+                return Err(MainSystemError::UnequalSettlements {
+                    case: case.name.clone(),
+                    nodes: [first, support.node].map(|node| structure.nodes[node].id.clone()),
+                });
+            }
+        }
+        let count = s.keys().last().map_or(0, |last| last + 1);
+        let s: Vec<f64> = (0..count).map(|number| s.get(&number).map_or(0.0, |(_, value)| *value)).collect();
+        Ok(Some(elimination.settled(&s)))
+    };
+    structure.load_cases.iter().map(of_case).collect()
+}
+
 /// The element of a load between nodes and its nodal forces, rows as in [`slots`]; `None` for a nodal load or a bar
 /// without length (refused by its stiffness).
 fn element_forces(structure: &Structure, load: &Load) -> Option<(usize, Vec<f64>)> {
@@ -59,14 +101,14 @@ fn element_forces(structure: &Structure, load: &Load) -> Option<(usize, Vec<f64>
     let forces = with_membrane(structure, index, |membrane| match *load {
         Load::Body { value, .. } => Some(membrane.body_force(value)),
         Load::FreeStrain { strain, .. } => Some(membrane.expansion_force(strain)),
-        Load::Nodal { .. } | Load::Line { .. } | Load::BarPoint { .. } => None,
+        _ => None,
     });
     Some((index, forces.flatten()?))
 }
 
 fn element_of(load: &Load) -> Option<usize> {
     match *load {
-        Load::Nodal { .. } => None,
+        Load::Nodal { .. } | Load::Settlement { .. } => None,
         Load::Line { element, .. }
         | Load::BarPoint { element, .. }
         | Load::Body { element, .. }
@@ -78,7 +120,7 @@ fn element_of(load: &Load) -> Option<usize> {
 fn add(structure: &Structure, bar: &BarElement, load: &Load, factor: f64, acts: &mut BarLoad) {
     let axis = bar.axis();
     match *load {
-        Load::Nodal { .. } => {}
+        Load::Nodal { .. } | Load::Settlement { .. } => {}
         Load::Line { range, value, .. } => acts.add_line(axis, range, value, factor),
         Load::BarPoint { distance, force, moment, .. } => acts.add_point(axis, distance, force, moment, factor),
         Load::Body { element, value } => {

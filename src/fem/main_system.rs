@@ -6,6 +6,7 @@
 //!     RF = Cᵀ K_m⁻¹ Tᵀ F − Gᵀ F
 //! ```
 
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -20,7 +21,7 @@ use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::kernel::{self, RigidKernel};
-use super::loads::load_vectors;
+use super::loads::{load_vectors, settlements};
 use super::loose::{Motion, loose_motions};
 use super::order::Places;
 use super::refinement::{Refinement, Verdict};
@@ -96,6 +97,8 @@ pub struct MainSystem {
     pub(super) k: Arc<SymmetricSparse>,
     /// F per load case on the base dofs.
     pub(super) f: Vec<Vec<f64>>,
+    /// S s per load case on the base dofs, for the cases in which supports settle.
+    settled: Vec<Option<Vec<f64>>>,
     /// K in doubled precision, where f64 loses too much of the structure's stiffness.
     pub(super) doubled: Option<Arc<SymmetricSparse<Doubled>>>,
     /// Σ|u||K||u| over uᵀ K u, the largest that was met: how much R and RF lose to rounding.
@@ -135,6 +138,7 @@ impl MainSystem {
         let dofs = Dofs::new(structure);
         let elimination = Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
         let f = load_vectors(structure, &dofs)?;
+        let settled = settlements(structure, &dofs, &elimination)?;
         let k = assemble(structure, &dofs, &|| watch.stop())?;
         let motions = loose_motions(structure, &dofs);
         let rigid = kernel::rigid_kernel(structure, joints, &motions)?;
@@ -166,6 +170,7 @@ impl MainSystem {
             joints: joints.to_vec(),
             k: Arc::new(k),
             f,
+            settled,
             doubled: None,
             amplification: 0.0,
             factor: Arc::new(factor),
@@ -198,6 +203,7 @@ impl MainSystem {
         let clock = Instant::now();
         let mut system = self.clone();
         system.f = load_vectors(structure, &self.dofs)?;
+        system.settled = settlements(structure, &self.dofs, &self.elimination)?;
         if system.doubled.is_some() {
             system.take_loads_doubled(structure, &Quiet)?;
         } else {
@@ -265,9 +271,10 @@ impl MainSystem {
 
     /// RF from F by the f64 factor.
     fn take_loads(&mut self) {
-        let loads: Vec<Vec<f64>> = self.f.iter().map(|f| on_masters(&self.elimination, f)).collect();
+        let driving = self.driving_forces();
+        let loads: Vec<Vec<f64>> = driving.iter().map(|f| on_masters(&self.elimination, f)).collect();
         let condensed = self.factor.project(&loads);
-        let rf = std::iter::zip(&self.f, condensed.column_iter());
+        let rf = std::iter::zip(&driving, condensed.column_iter());
         self.rf = rf.map(|(f, column)| column - DVector::from_vec(on_joints(&self.elimination, f))).collect();
         self.balance_loads();
     }
@@ -275,11 +282,23 @@ impl MainSystem {
     /// RF from F in doubled precision.
     fn take_loads_doubled(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
         let f = std::mem::take(&mut self.f);
-        let rf = self.refinement(structure, watch)?.loads(&f, watch);
-        self.f = f;
+        let settled = std::mem::take(&mut self.settled);
+        let rf = self.refinement(structure, watch)?.loads(&f, &settled, watch);
+        (self.f, self.settled) = (f, settled);
         self.rf = rf?.ok_or_else(|| contrast::refusal(structure))?;
         self.balance_loads();
         Ok(())
+    }
+
+    /// F − K S s per load case: what moves the free unknowns.
+    fn driving_forces(&self) -> Vec<Cow<'_, [f64]>> {
+        let driving = |(f, settled): (&'_ Vec<f64>, &Option<Vec<f64>>)| match settled {
+            None => None,
+            Some(settled) => Some(std::iter::zip(f, self.k.times(settled)).map(|(f, k)| f - k).collect::<Vec<f64>>()),
+        };
+        std::iter::zip(&self.f, &self.settled)
+            .map(|(f, settled)| driving((f, settled)).map_or(Cow::Borrowed(&f[..]), Cow::Owned))
+            .collect()
     }
 
     fn balance_loads(&mut self) {
@@ -343,7 +362,7 @@ impl MainSystem {
             // The eigenvector of a rounded R; what the structure resists is taken out of it twice.
             for _ in 0..3 {
                 let refinement = self.refinement(structure, watch)?;
-                let Some((u, _)) = refinement.displacements(&idle, z.as_slice(), watch)? else { break };
+                let Some((u, _)) = refinement.displacements(&idle, None, z.as_slice(), watch)? else { break };
                 if let Verdict::Mechanism = refinement.cost(structure, &u) {
                     free = Some(u);
                     break;
@@ -414,9 +433,10 @@ impl MainSystem {
     /// Largest nodal force or joint force of each load case per unit factor: what rounding in its RF is measured by.
     pub fn load_sizes(&self) -> Vec<f64> {
         let rotation = self.dofs.is_rotation();
-        std::iter::zip(&self.f, &self.rf)
+        std::iter::zip(self.driving_forces(), &self.rf)
             .map(|(f, rf)| {
-                let nodal = std::iter::zip(f, &rotation).filter(|(_, rotation)| !**rotation).map(|(f, _)| f.abs());
+                let nodal =
+                    std::iter::zip(f.iter(), &rotation).filter(|(_, rotation)| !**rotation).map(|(f, _)| f.abs());
                 nodal.fold(rf.amax(), f64::max)
             })
             .collect()
@@ -430,9 +450,10 @@ impl MainSystem {
     pub fn displacements(&self, factors: &[f64], z: &DVector<f64>) -> Displacements {
         if let Some(k) = &self.doubled {
             let refinement = Refinement { dofs: &self.dofs, k, elimination: &self.elimination, factor: &self.factor };
-            let f = self.load(factors);
+            let f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_default();
+            let settled = sum_of_cases(self.settled.iter().map(Option::as_ref), factors);
             // R and RF came from the same equations, so these converge too.
-            if let Ok(Some((u, error))) = refinement.displacements(&f, z.as_slice(), &Quiet) {
+            if let Ok(Some((u, error))) = refinement.displacements(&f, settled.as_deref(), z.as_slice(), &Quiet) {
                 let part = |part: fn(Doubled) -> f64| {
                     let u: Vec<f64> = u.iter().map(|&u| part(u)).collect();
                     self.dofs.scatter(&u)
@@ -443,24 +464,19 @@ impl MainSystem {
         Displacements(self.dofs.scatter(&self.plain_displacements(factors, z)), None)
     }
 
-    /// Σ factor·F on the base dofs.
-    fn load(&self, factors: &[f64]) -> Vec<f64> {
-        assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
-        let mut sum = vec![0.0; self.dofs.count()];
-        for (case, factor) in std::iter::zip(&self.f, factors) {
-            for (sum, f) in std::iter::zip(&mut sum, case) {
-                *sum += factor * f;
-            }
-        }
-        sum
-    }
-
     /// The base dofs from the f64 factor, with one step of refinement: then the error of each equation is a few ε of
     /// the terms of that equation (Skeel 1980), not of the largest of all.
     fn plain_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
         assert_eq!(z.len(), self.joints.len(), "a z for every joint");
-        // K_m v = Tᵀ F − C z.
-        let f = self.load(factors);
+        assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
+        let mut f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_else(|| vec![0.0; self.dofs.count()]);
+        let settled = sum_of_cases(self.settled.iter().map(Option::as_ref), factors);
+        if let Some(settled) = &settled {
+            for (f, k) in std::iter::zip(&mut f, self.k.times(settled)) {
+                *f -= k;
+            }
+        }
+        // K_m v = Tᵀ (F − K S s) − C z.
         let mut v = on_masters(&self.elimination, &f);
         for &(row, joint, value) in &self.c {
             v[row as usize] -= value * z[joint as usize];
@@ -476,7 +492,11 @@ impl MainSystem {
         for (v, correction) in std::iter::zip(&mut v, correction) {
             *v += correction;
         }
-        self.elimination.expand(&v, z.as_slice())
+        let mut u = self.elimination.expand(&v, z.as_slice());
+        for (u, settled) in std::iter::zip(&mut u, settled.into_iter().flatten()) {
+            *u += settled;
+        }
+        u
     }
 
     /// Numbers of unknowns.
@@ -508,4 +528,17 @@ fn balance(rf: &mut DVector<f64>, rigid: &RigidKernel, motions: &[Motion], f: &[
     let work = DVector::from_iterator(motions.len(), work);
     let error = rigid.coefficients.transpose() * work - rigid.z.transpose() * &*rf;
     *rf += &rigid.z * error;
+}
+
+/// Σ factor·vector over the load cases that have one; `None` if none does.
+fn sum_of_cases<'a>(cases: impl Iterator<Item = Option<&'a Vec<f64>>>, factors: &[f64]) -> Option<Vec<f64>> {
+    let mut sum: Option<Vec<f64>> = None;
+    for (case, factor) in cases.zip(factors) {
+        let Some(case) = case else { continue };
+        let sum = sum.get_or_insert_with(|| vec![0.0; case.len()]);
+        for (sum, value) in std::iter::zip(sum, case) {
+            *sum += factor * value;
+        }
+    }
+    sum
 }

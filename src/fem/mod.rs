@@ -43,6 +43,7 @@ mod watch;
 mod tests;
 
 pub use element::bar_load::Piece;
+pub use energy::Loaded;
 pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub(crate) use kernel::mutual_displacements;
 pub use loose::Motion;

@@ -133,18 +133,25 @@ impl Refinement<'_> {
     pub fn displacements(
         &self,
         f: &[f64],
+        settled: Option<&[f64]>,
         z: &[f64],
         watch: &dyn Watch,
     ) -> Result<Option<(Vec<Doubled>, f64)>, MainSystemError> {
         let nothing = vec![Doubled::zero(); self.elimination.masters()];
-        let imposed = self.elimination.expand(&nothing, z);
+        let add_settled = |mut u: Vec<Doubled>| {
+            for (u, settled) in std::iter::zip(&mut u, settled.unwrap_or_default()) {
+                *u += Doubled::from(*settled);
+            }
+            u
+        };
+        let imposed = add_settled(self.elimination.expand(&nothing, z));
         let mut rhs = self.forces_on_masters(&imposed);
         let f: Vec<Doubled> = f.iter().map(|&f| Doubled::from(f)).collect();
         for (rhs, f) in std::iter::zip(&mut rhs, on_masters(self.elimination, &f)) {
             *rhs = f - *rhs;
         }
         let v = self.solve(&rhs, watch)?;
-        Ok(v.map(|(v, error)| (self.elimination.expand(&v, z), error)))
+        Ok(v.map(|(v, error)| (add_settled(self.elimination.expand(&v, z)), error)))
     }
 
     /// Gᵀ (K u − f).
@@ -168,7 +175,7 @@ impl Refinement<'_> {
         for joint in 0..joints {
             let mut z = vec![0.0; joints];
             z[joint] = 1.0;
-            let Some((u, _)) = self.displacements(&idle, &z, watch)? else { return Ok(None) };
+            let Some((u, _)) = self.displacements(&idle, None, &z, watch)? else { return Ok(None) };
             r.set_column(joint, &self.joint_forces(&u, &idle));
             let what = format!("condensing to {joints} joints in doubled precision");
             watch.progress(&what, joint as f64 / joints as f64);
@@ -180,11 +187,16 @@ impl Refinement<'_> {
     ///
     /// # Errors
     /// Interrupted.
-    pub fn loads(&self, f: &[Vec<f64>], watch: &dyn Watch) -> Result<Option<Vec<DVector<f64>>>, MainSystemError> {
+    pub fn loads(
+        &self,
+        f: &[Vec<f64>],
+        settled: &[Option<Vec<f64>>],
+        watch: &dyn Watch,
+    ) -> Result<Option<Vec<DVector<f64>>>, MainSystemError> {
         let closed = vec![0.0; self.elimination.joints()];
         let mut rf = Vec::with_capacity(f.len());
-        for f in f {
-            let Some((u, _)) = self.displacements(f, &closed, watch)? else { return Ok(None) };
+        for (f, settled) in std::iter::zip(f, settled) {
+            let Some((u, _)) = self.displacements(f, settled.as_deref(), &closed, watch)? else { return Ok(None) };
             rf.push(self.joint_forces(&u, f));
         }
         Ok(Some(rf))

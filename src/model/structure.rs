@@ -199,6 +199,15 @@ pub enum Load {
         /// (b_x, b_y).
         value: [f64; 2],
     },
+    /// Displacement imposed on a component that a support holds.
+    Settlement {
+        /// The node.
+        node: usize,
+        /// The component.
+        component: Component,
+        /// Displacement, or rotation.
+        value: f64,
+    },
     /// What an element would do if nothing held it: temperature, lack of fit, prestress.
     FreeStrain {
         /// Index into [`Structure::elements`].

@@ -16,6 +16,7 @@ mod klarbring;
 mod loads;
 mod plates;
 mod random_structures;
+mod settlements;
 mod slope;
 mod structures;
 mod unit_square;

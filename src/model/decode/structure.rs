@@ -8,7 +8,7 @@ use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
 use super::{contacts, edges, elements, foundations, loads, supports};
 use crate::model::edge::{Edge, PlateSide};
 use crate::model::scenario::Places;
-use crate::model::structure::{ElementKind, Node, Structure};
+use crate::model::structure::{Component, ElementKind, Node, Structure};
 
 /// Cross-section of bars.
 pub struct Section {
@@ -19,6 +19,19 @@ pub struct Section {
     pub shear_area: Option<f64>,
     /// Needed where the temperature varies across the bar.
     pub depth: Option<f64>,
+}
+
+/// Displacement that a load case imposes on a component held by a support.
+#[derive(Clone, Copy)]
+pub struct Settlement<'d> {
+    /// Where the case is named.
+    pub case: Cursor<'d>,
+    /// The node.
+    pub node: usize,
+    /// The component.
+    pub component: Component,
+    /// The amount.
+    pub value: f64,
 }
 
 /// An element of a bar and where it lies along it.
@@ -64,6 +77,8 @@ pub struct Builder<'d> {
     pub ends_of_broken_bars: Vec<Cursor<'d>>,
     /// Whether `nodes` was read at all; if not, unknown nodes are no news.
     nodes_are_known: bool,
+    /// Imposed displacements of supports, until their load cases are known.
+    pub settlements: Vec<Settlement<'d>>,
     /// Whether each node has a rotation; empty until the elements are complete.
     pub has_rotation: Vec<bool>,
     /// Whether every element was read, so that what they do not touch can be judged.
@@ -88,6 +103,7 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
         broken: HashSet::new(),
         ends_of_broken_bars: Vec::new(),
         nodes_are_known: true,
+        settlements: Vec::new(),
         has_rotation: Vec::new(),
         elements_complete: false,
     };

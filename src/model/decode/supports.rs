@@ -4,8 +4,9 @@ use std::collections::HashSet;
 
 use super::elements::entries;
 use super::reader::{Cursor, Fields};
-use super::structure::Builder;
+use super::structure::{Builder, Settlement};
 use crate::model::structure::{Component, Spring, Support, Tie};
+use crate::model::uses::Region;
 
 /// Reads all three lists.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
@@ -18,7 +19,10 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     let mut held = HashSet::new();
     for (index, cursor) in entries(fields, "supports").into_iter().enumerate() {
         let place: std::sync::Arc<str> = format!("supports[{index}]").into();
-        for support in support(builder, cursor).unwrap_or_default() {
+        for (support, settlement) in support(builder, cursor).unwrap_or_default() {
+            if let Some((case, value)) = settlement {
+                builder.settlements.push(Settlement { case, node: support.node, component: support.component, value });
+            }
             // Two edges share their corner: held twice is held.
             if held.insert((support.node, support.component)) {
                 builder.structure.supports.push(support);
@@ -107,22 +111,59 @@ fn tied_nodes<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<usize
     is_right.then_some(nodes)
 }
 
-fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Support>> {
+/// A support of one component, with the case and the amount of its settlement.
+type Held<'d> = (Support, Option<(Cursor<'d>, f64)>);
+
+fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Held<'d>>> {
     let fields = cursor.fields(&["at", "fixed", "settlement", "case"])?;
-    fields.refuse(
-        &["settlement", "case"],
-        |key| format!("settlements of supports (`{key}`) are not supported yet"),
-        "remove `settlement` and `case`",
-    );
     let nodes = fields.required("at").and_then(|at| builder.spot(at)).map(|spot| builder.spot_nodes(spot));
-    let components = fields
-        .required("fixed")
-        .and_then(|fixed| components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed"))?;
+    let components =
+        fields.required("fixed").and_then(|fixed| components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed"));
+    let settlement = settlement(&fields, components.as_deref());
+    let (components, settlement) = (components?, settlement?);
     let supports = nodes?.into_iter().flat_map(|node| {
-        let hold = move |&component: &Component| Support { node, component };
+        let hold = |&component: &Component| {
+            let moved = settlement.map(|(case, amounts)| (case, amounts[component as usize]));
+            (Support { node, component }, moved)
+        };
         components.iter().map(hold).collect::<Vec<_>>()
     });
     Some(supports.collect())
+}
+
+/// The load case and the amounts [u_x, u_y, r] of a settlement. The outer `None`: something was reported.
+#[allow(clippy::option_option)]
+fn settlement<'d>(fields: &Fields<'d>, components: Option<&[Component]>) -> Option<Option<(Cursor<'d>, [f64; 3])>> {
+    if fields.entry("settlement").is_none() && fields.entry("case").is_none() {
+        return Some(None);
+    }
+    let case = fields.required("case").filter(|case| case.string().is_some());
+    let at = fields.required("settlement")?.of(Region::Amount);
+    let entries: Vec<Cursor<'d>> = at.list()?.collect();
+    if !(2..=3).contains(&entries.len()) {
+        at.problem(
+            format!("expected [ux, uy] or [ux, uy, r], found {}", at.found()),
+            "give the displacements along x and y, and the rotation where it is held",
+        );
+        return None;
+    }
+    let mut amounts = [0.0; 3];
+    let mut is_right = true;
+    for (k, (entry, (word, component))) in entries.into_iter().zip(COMPONENTS).enumerate() {
+        match entry.number() {
+            Some(amount) if amount != 0.0 && components.is_some_and(|held| !held.contains(&component)) => {
+                entry.problem(
+                    format!("the support does not hold \"{word}\", so it cannot settle there"),
+                    format!("write 0, or add \"{word}\" to `fixed`"),
+                );
+                is_right = false;
+            }
+            Some(amount) => amounts[k] = amount,
+            None => is_right = false,
+        }
+    }
+    let case = case?;
+    is_right.then_some(Some((case, amounts)))
 }
 
 fn springs<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Spring>> {

@@ -205,8 +205,8 @@ struct Support {
     at: String,
     /// Held displacements
     fixed: Vec<Component>,
-    /// Imposed displacement, scaled by the factor of `case`
-    settlement: Option<[Number; 2]>,
+    /// Imposed displacement [ux, uy] or [ux, uy, r], scaled by the factor of `case`
+    settlement: Option<Vec<Number>>,
     /// Load case of the settlement
     case: Option<String>,
 }

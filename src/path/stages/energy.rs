@@ -4,7 +4,7 @@
 use super::record::{Energy, History, Moment, StageResult};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::fem::Displacements;
+use crate::fem::{Displacements, Loaded};
 use crate::solve::Prepared;
 use crate::solve::prepared::Geometry;
 use crate::solve::solved::dislocation;
@@ -19,6 +19,10 @@ pub(super) fn dissipated(system: &ContactSystem, moments: &[Moment]) -> f64 {
         }
     }
     sum
+}
+
+fn loaded<'a>(u: &'a Displacements, moment: &'a Moment) -> Loaded<'a> {
+    Loaded { u, lambda: &moment.state.force, factors: &moment.factors }
 }
 
 /// W = Σ ½ (F_a + F_b)·Δu and ΔU of every stage, and what is left of W − ΔU − D beside the largest energy met.
@@ -36,9 +40,7 @@ pub(super) fn balance(prepared: &Prepared, numbers: &ContactNumbers, history: &m
             let stored = main.strain_energy(&u);
             largest = largest.max(stored.abs());
             if let Some((last, old, old_stored)) = &before {
-                let step = 0.5
-                    * (main.work(&last.factors, &u) - main.work(&last.factors, old) + main.work(&moment.factors, &u)
-                        - main.work(&moment.factors, old));
+                let step = main.work_between(&loaded(old, last), &loaded(&u, moment));
                 energy.work += step;
                 energy.stored += stored - old_stored;
                 work += step;

@@ -245,7 +245,7 @@ pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow>
                 Load::Line { element, value: [a, b], .. } => (at(*element), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]),
                 Load::BarPoint { element, force, .. } => (at(*element), *force),
                 // They act everywhere, or along no direction.
-                Load::Body { .. } | Load::FreeStrain { .. } => continue,
+                Load::Body { .. } | Load::FreeStrain { .. } | Load::Settlement { .. } => continue,
             };
             let Some(nodes) = nodes else { continue };
             let place = *places.entry(nodes.clone()).or_insert_with(|| {

@@ -10,7 +10,7 @@ mod temperature;
 mod traction;
 
 use super::reader::{Cursor, Entry, Fields};
-use super::structure::Builder;
+use super::structure::{Builder, Settlement};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::edge::Edge;
 use crate::model::parameter::Number;
@@ -38,6 +38,26 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
         check_case_name(entry);
         if let Some(case) = load_case(builder, entry) {
             builder.structure.load_cases.push(case);
+        } else {
+            builder.broken.insert(entry.name());
+        }
+    }
+    settle(builder);
+}
+
+/// Adds the settlements of the supports to their cases.
+fn settle(builder: &mut Builder<'_>) {
+    let mut reported: Option<Cursor<'_>> = None;
+    for Settlement { case, node, component, value } in std::mem::take(&mut builder.settlements) {
+        // A name that is no string was reported.
+        let Some(name) = case.string() else { continue };
+        let cases = &mut builder.structure.load_cases;
+        if let Some(known) = cases.iter_mut().find(|known| known.name == name) {
+            known.loads.push(Load::Settlement { node, component, value });
+        } else if !builder.broken.contains(name) && !reported.is_some_and(|last| std::ptr::eq(last.value, case.value)) {
+            let known: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+            case.unknown("load case", name, &known);
+            reported = Some(case);
         }
     }
 }
