@@ -157,7 +157,12 @@ impl MainSystem {
     /// What rounding may leave of each row.
     fn rounding(&self, u: &Displacements, factors: &[f64]) -> Vec<f64> {
         let base = self.dofs.gather(&u.0);
-        let terms = self.k.times_absolute(&base);
+        // Where supports settle u is a sum, S s and the rest, that may cancel: an open gap, say.
+        let sizes: Vec<f64> = match self.settlement(factors) {
+            None => base.clone(),
+            Some(settled) => std::iter::zip(&base, settled).map(|(u, s)| u.abs() + s.abs()).collect(),
+        };
+        let terms = self.k.times_absolute(&sizes);
         // λ is as good as R and RF, and R and RF as good as the energies they come from.
         let z = mutual_displacements(&self.joints, &u.0);
         let root = |joint: usize| self.r[(joint, joint)].max(0.0).sqrt();

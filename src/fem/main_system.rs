@@ -451,7 +451,7 @@ impl MainSystem {
         if let Some(k) = &self.doubled {
             let refinement = Refinement { dofs: &self.dofs, k, elimination: &self.elimination, factor: &self.factor };
             let f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_default();
-            let settled = sum_of_cases(self.settled.iter().map(Option::as_ref), factors);
+            let settled = self.settlement(factors);
             // R and RF came from the same equations, so these converge too.
             if let Ok(Some((u, error))) = refinement.displacements(&f, settled.as_deref(), z.as_slice(), &Quiet) {
                 let part = |part: fn(Doubled) -> f64| {
@@ -464,13 +464,18 @@ impl MainSystem {
         Displacements(self.dofs.scatter(&self.plain_displacements(factors, z)), None)
     }
 
+    /// Σ factor·S s on the base dofs; `None` if no support settles.
+    pub(super) fn settlement(&self, factors: &[f64]) -> Option<Vec<f64>> {
+        sum_of_cases(self.settled.iter().map(Option::as_ref), factors)
+    }
+
     /// The base dofs from the f64 factor, with one step of refinement: then the error of each equation is a few ε of
     /// the terms of that equation (Skeel 1980), not of the largest of all.
     fn plain_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
         assert_eq!(z.len(), self.joints.len(), "a z for every joint");
         assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
         let mut f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_else(|| vec![0.0; self.dofs.count()]);
-        let settled = sum_of_cases(self.settled.iter().map(Option::as_ref), factors);
+        let settled = self.settlement(factors);
         if let Some(settled) = &settled {
             for (f, k) in std::iter::zip(&mut f, self.k.times(settled)) {
                 *f -= k;
