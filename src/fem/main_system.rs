@@ -292,12 +292,12 @@ impl MainSystem {
 
     /// F − K S s per load case: what moves the free unknowns.
     fn driving_forces(&self) -> Vec<Cow<'_, [f64]>> {
-        let driving = |(f, settled): (&'_ Vec<f64>, &Option<Vec<f64>>)| match settled {
-            None => None,
-            Some(settled) => Some(std::iter::zip(f, self.k.times(settled)).map(|(f, k)| f - k).collect::<Vec<f64>>()),
-        };
-        std::iter::zip(&self.f, &self.settled)
-            .map(|(f, settled)| driving((f, settled)).map_or(Cow::Borrowed(&f[..]), Cow::Owned))
+        let cases = std::iter::zip(&self.f, &self.settled);
+        cases
+            .map(|(f, settled)| match settled {
+                None => Cow::Borrowed(&f[..]),
+                Some(settled) => Cow::Owned(std::iter::zip(f, self.k.times(settled)).map(|(f, k)| f - k).collect()),
+            })
             .collect()
     }
 
