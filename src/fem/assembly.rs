@@ -6,11 +6,11 @@ use nalgebra::DMatrix;
 
 use super::dof::Dofs;
 use super::doubled::Real;
-use super::element::{ROWS, slots, spring_stiffness, stiffness};
+use super::element::{ROWS, check_spring, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::{Spring, Structure};
 
 /// Terms of one block of work between two looks at the watcher.
 const ELEMENTS_PER_LOOK: usize = 4096;
@@ -32,7 +32,9 @@ pub fn assemble<T: Real>(
         }
         visit(&at[..slots.len()]);
     };
-    let spring_dofs = |node: usize| [Component::X, Component::Y].map(|c| dofs.of(node, c));
+    let spring_dofs = |spring: &Spring| -> Vec<Option<usize>> {
+        spring.terms.iter().map(|term| dofs.of(term.node, term.component)).collect()
+    };
     let lower = |at: &[Option<usize>], visit: &mut dyn FnMut(usize, usize, usize, usize)| {
         for (i, row) in at.iter().enumerate() {
             for (j, column) in at.iter().enumerate() {
@@ -53,7 +55,7 @@ pub fn assemble<T: Real>(
                 element_dofs(index, &mut |at| lower(at, &mut |_, column, _, _| count(column)));
             }
             for spring in &structure.springs {
-                lower(&spring_dofs(spring.node), &mut |_, column, _, _| {
+                lower(&spring_dofs(spring), &mut |_, column, _, _| {
                     count(column);
                 });
             }
@@ -70,9 +72,9 @@ pub fn assemble<T: Real>(
                 });
             }
             for element in &structure.springs {
-                let k = spring_stiffness(structure, element)?;
-                lower(&spring_dofs(element.node), &mut |row, column, i, j| {
-                    push(row, column, k[(i, j)]);
+                check_spring(structure, element)?;
+                lower(&spring_dofs(element), &mut |row, column, i, j| {
+                    push(row, column, spring::stiffness(element, i, j));
                 });
             }
             Ok(())

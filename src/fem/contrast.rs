@@ -22,7 +22,8 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
         }
     }
     for spring in &structure.springs {
-        parts.push((spring.stiffness, spring.node, format!("the spring at {}", id(spring.node))));
+        let node = spring.terms[0].node;
+        parts.push((spring.stiffness, node, format!("the spring at {}", id(node))));
     }
     parts.retain(|(k, ..)| *k > 0.0);
     parts.sort_by(|a, b| a.0.total_cmp(&b.0));

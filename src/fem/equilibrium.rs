@@ -113,10 +113,11 @@ impl MainSystem {
             self.add_element(structure, index, &element_forces(structure, index, u), &mut sums);
         }
         for spring in &structure.springs {
-            let [x, y] = spring::force(spring, [u.0[spring.node][0], u.0[spring.node][1]]);
-            for component in [Component::X, Component::Y] {
-                if let Some(dof) = self.dofs.of(spring.node, component) {
-                    sums[dof] += x.hypot(y);
+            // Along a unit vector: its force is the length of its components.
+            let force = spring::force(spring, &u.0).abs();
+            for term in &spring.terms {
+                if let Some(dof) = self.dofs.of(term.node, term.component) {
+                    sums[dof] += force;
                 }
             }
         }

@@ -131,7 +131,7 @@ impl Parts {
         Parts { at_node, turning, turns }
     }
 
-    /// Parts linked by pins and ties.
+    /// Parts linked by pins, ties and springs.
     fn clusters(&self, structure: &Structure) -> Vec<Cluster> {
         let mut parent: Vec<u32> = (0..self.turns.len() as u32).collect();
         let mut join = |a: u32, b: u32| {
@@ -143,6 +143,11 @@ impl Parts {
         }
         for tie in &structure.ties {
             for nodes in tie.nodes.windows(2) {
+                join(self.at_node[nodes[0]][0], self.at_node[nodes[1]][0]);
+            }
+        }
+        for spring in &structure.springs {
+            for nodes in spring.nodes().windows(2) {
                 join(self.at_node[nodes[0]][0], self.at_node[nodes[1]][0]);
             }
         }
@@ -165,7 +170,7 @@ impl Parts {
             clusters[index_of(support.node)].supports.push(i);
         }
         for (i, spring) in structure.springs.iter().enumerate() {
-            clusters[index_of(spring.node)].springs.push(i);
+            clusters[index_of(spring.terms[0].node)].springs.push(i);
         }
         for (i, tie) in structure.ties.iter().enumerate() {
             if let Some(&node) = tie.nodes.first() {
@@ -176,7 +181,7 @@ impl Parts {
     }
 }
 
-/// Parts linked by pins and ties, and what holds them (indices into the structure).
+/// Parts linked by pins, ties and springs, and what holds them (indices into the structure).
 #[derive(Default)]
 struct Cluster {
     parts: Vec<u32>,
@@ -276,12 +281,11 @@ impl Cluster {
         for &spring in &self.springs {
             let spring = &structure.springs[spring];
             if spring.stiffness > 0.0 {
-                let mut row = Vec::new();
-                for (c, component) in [Component::X, Component::Y].into_iter().enumerate() {
-                    let terms = moved(spring.node, parts.at_node[spring.node][0], component);
-                    row.extend(terms.into_iter().map(|(i, a)| (i, spring.direction[c] * a)));
-                }
-                rows.push(row);
+                let terms = spring.terms.iter().filter_map(|term| {
+                    let terms = with_node(term.node, term.component)?;
+                    Some(terms.into_iter().map(|(i, a)| (i, term.factor * a)))
+                });
+                rows.push(terms.flatten().collect());
             }
         }
         for &tie in &self.ties {

@@ -8,7 +8,7 @@ use super::element::shape::Shape;
 use super::element::{Axis, BarElement, slots, spring, with_membrane};
 use super::loads::{bar_loads, free_strains};
 use super::main_system::{Displacements, MainSystem};
-use crate::model::structure::{Component, ElementKind, Spring, Structure};
+use crate::model::structure::{Component, ElementKind, Structure};
 
 /// Internal forces at one end of an element in bar axes: local x from start to end, local y = x turned +90°.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -126,10 +126,10 @@ impl MainSystem {
             .collect()
     }
 
-    /// Force of every spring on its node, in the order of [`Structure::springs`].
-    pub fn spring_forces(&self, structure: &Structure, u: &Displacements) -> Vec<[f64; 2]> {
-        let force = |s: &Spring| spring::force(s, [u.0[s.node][0], u.0[s.node][1]]);
-        structure.springs.iter().map(force).collect()
+    /// Force, or moment, of every spring, in the order of [`Structure::springs`]; on a term's component it acts with
+    /// minus the term's factor.
+    pub fn spring_forces(&self, structure: &Structure, u: &Displacements) -> Vec<f64> {
+        structure.springs.iter().map(|s| spring::force(s, &u.0)).collect()
     }
 
     /// Forces of the ground on the structure, contact aside: one entry per node that is held by a support or sprung, in
@@ -165,13 +165,14 @@ impl MainSystem {
             }
         }
         for (spring, force) in std::iter::zip(&structure.springs, self.spring_forces(structure, u)) {
-            if structure.yielding_ground.binary_search(&spring.node).is_ok() {
+            let node = spring.terms[0].node;
+            if !spring.is_to_ground() || structure.yielding_ground.binary_search(&node).is_ok() {
                 continue;
             }
-            nodes.push(spring.node);
-            for (component, force) in std::iter::zip([Component::X, Component::Y], force) {
-                if let Some(dof) = self.dofs.of(spring.node, component) {
-                    reaction[dof] += force;
+            nodes.push(node);
+            for term in &spring.terms {
+                if let Some(dof) = self.dofs.of(node, term.component) {
+                    reaction[dof] -= term.factor * force;
                 }
             }
         }

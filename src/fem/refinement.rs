@@ -21,7 +21,7 @@ use super::error::MainSystemError;
 use super::factor::Factor;
 use super::sparse::SymmetricSparse;
 use super::watch::check_stop;
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::Structure;
 use crate::watch::Watch;
 
 /// Conjugate gradients go on until the square of the error's energy norm has fallen to this share of the first, or no
@@ -262,9 +262,8 @@ fn each_stiffness(structure: &Structure, mut visit: impl FnMut(&[Slot], &dyn Fn(
         }
     }
     for spring in &structure.springs {
-        let k = spring::stiffness::<Doubled>(spring);
-        let slots = [Component::X, Component::Y].map(|component| Some((spring.node, component)));
-        visit(&slots, &|i, j| k[(i, j)]);
+        let slots: Vec<Slot> = spring.terms.iter().map(|term| Some((term.node, term.component))).collect();
+        visit(&slots, &|i, j| spring::stiffness(spring, i, j));
     }
 }
 

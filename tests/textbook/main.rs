@@ -18,5 +18,6 @@ mod plates;
 mod random_structures;
 mod settlements;
 mod slope;
+mod springs;
 mod structures;
 mod unit_square;

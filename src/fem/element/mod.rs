@@ -10,7 +10,7 @@ pub mod shape;
 pub mod spring;
 pub mod truss;
 
-use nalgebra::{Matrix2, SMatrix};
+use nalgebra::SMatrix;
 
 use self::bar_load::{BarLoad, Internal};
 use self::frame::Frame;
@@ -114,14 +114,14 @@ pub fn stiffness<T: Real>(structure: &Structure, index: usize) -> Result<Stiffne
 ///
 /// # Errors
 /// A stiffness too large or small for numbers.
-pub fn spring_stiffness<T: Real>(structure: &Structure, spring: &Spring) -> Result<Matrix2<T>, MainSystemError> {
+pub fn check_spring(structure: &Structure, spring: &Spring) -> Result<(), MainSystemError> {
     if spring.stiffness != 0.0 && !STIFFNESSES.contains(&spring.stiffness) {
         return Err(MainSystemError::Element {
-            nodes: vec![structure.nodes[spring.node].id.clone()],
+            nodes: spring.nodes().into_iter().map(|node| structure.nodes[node].id.clone()).collect(),
             what: beyond("stiffness", spring.stiffness, &STIFFNESSES, "use other units"),
         });
     }
-    Ok(spring::stiffness(spring))
+    Ok(())
 }
 
 fn beyond(what: &str, value: f64, range: &std::ops::Range<f64>, advice: &str) -> String {

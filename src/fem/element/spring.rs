@@ -1,33 +1,42 @@
-//! Linear spring from a node to the ground: k = s d dᵀ, d its unit direction.
-
-use nalgebra::Matrix2;
+//! Linear spring: k = s a aᵀ, with a the factors of the terms that stretch it.
 
 use crate::fem::doubled::Real;
 use crate::model::structure::Spring;
 
-/// Stiffness on (u_x, u_y) of the node.
-pub fn stiffness<T: Real>(spring: &Spring) -> Matrix2<T> {
-    let [x, y] = spring.direction.map(T::from);
-    Matrix2::new(x * x, x * y, x * y, y * y) * T::from(spring.stiffness)
+/// Stiffness between two of its terms.
+pub fn stiffness<T: Real>(spring: &Spring, i: usize, j: usize) -> T {
+    T::from(spring.terms[i].factor) * T::from(spring.terms[j].factor) * T::from(spring.stiffness)
 }
 
-/// Force of the spring on its node for the node's displacement `u`.
-pub fn force(spring: &Spring, u: [f64; 2]) -> [f64; 2] {
-    let [x, y] = spring.direction;
-    let f = -spring.stiffness * (x * u[0] + y * u[1]);
-    [f * x, f * y]
+/// Force, or moment, with which it resists: s Σ a u for displacements [u_x, u_y, θ] per node.
+pub fn force(spring: &Spring, u: &[[f64; 3]]) -> f64 {
+    let stretch: f64 = spring.terms.iter().map(|term| term.factor * u[term.node][term.component as usize]).sum();
+    spring.stiffness * stretch
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Force on the terms by k u against s (Σ a u) a.
     #[test]
-    fn force_is_minus_stiffness_times_displacement() {
-        let spring = Spring { node: 0, direction: [0.6, 0.8], stiffness: 50.0 };
-        let u = [0.3, -0.1];
-        let f = -stiffness::<f64>(&spring) * nalgebra::Vector2::from(u);
-        let force = force(&spring, u);
-        assert!((f[0] - force[0]).abs() < 1e-14 && (f[1] - force[1]).abs() < 1e-14);
+    fn force_is_stiffness_times_displacement() {
+        let u = [[0.3, -0.1, 0.02], [0.05, 0.4, -0.01]];
+        let springs = [
+            Spring::along(0, None, [0.6, 0.8], 50.0),
+            Spring::along(0, Some(1), [-0.8, 0.6], 50.0),
+            Spring::rotational(1, None, 7.0),
+            Spring::rotational(0, Some(1), 7.0),
+        ];
+        for spring in springs {
+            let force = force(&spring, &u);
+            for i in 0..spring.terms.len() {
+                let terms = spring.terms.iter().enumerate();
+                let row: f64 = terms
+                    .map(|(j, term)| stiffness::<f64>(&spring, i, j) * u[term.node][term.component as usize])
+                    .sum();
+                assert!((row - spring.terms[i].factor * force).abs() < 1e-14);
+            }
+        }
     }
 }

@@ -116,7 +116,7 @@ impl Model {
     }
 
     pub fn spring(&mut self, node: usize, direction: [f64; 2], stiffness: f64) {
-        self.0.springs.push(Spring { node, direction, stiffness });
+        self.0.springs.push(Spring::along(node, None, direction, stiffness));
     }
 
     pub fn pair(&mut self, node: usize, against: Option<usize>, normal: [f64; 2], law: Law) {

@@ -155,9 +155,9 @@ fn along_bar(builder: &Builder<'_>, bar: usize) -> Vec<Place> {
 fn bonded(builder: &mut Builder<'_>, foundation: &Foundation<'_>, at: &Place) {
     let [x, y] = at.normal;
     let springs = &mut builder.structure.springs;
-    springs.push(Spring { node: at.node, direction: at.normal, stiffness: foundation.stiffness * at.length });
+    springs.push(Spring::along(at.node, None, at.normal, foundation.stiffness * at.length));
     if let Some(tangential) = foundation.tangential.filter(|stiffness| *stiffness > 0.0) {
-        springs.push(Spring { node: at.node, direction: [y, 0.0 - x], stiffness: tangential * at.length });
+        springs.push(Spring::along(at.node, None, [y, 0.0 - x], tangential * at.length));
     }
 }
 
@@ -174,7 +174,7 @@ fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: us
     for (direction, stiffness) in
         [(at.normal, foundation.stiffness), ([y, 0.0 - x], along.unwrap_or(foundation.stiffness))]
     {
-        builder.structure.springs.push(Spring { node: ground, direction, stiffness: stiffness * at.length });
+        builder.structure.springs.push(Spring::along(ground, None, direction, stiffness * at.length));
     }
     let law = match &foundation.friction {
         Some(friction) => {

@@ -398,7 +398,7 @@ impl<'d> Builder<'d> {
         let elements = structure.elements.iter().flat_map(|element| &element.nodes);
         let ties = structure.ties.iter().flat_map(|tie| &tie.nodes);
         let supports = structure.supports.iter().map(|support| &support.node);
-        let springs = structure.springs.iter().map(|spring| &spring.node);
+        let springs = structure.springs.iter().flat_map(|spring| spring.terms.iter().map(|term| &term.node));
         for &node in elements.chain(ties).chain(supports).chain(springs) {
             touched[node] = true;
         }

@@ -211,17 +211,24 @@ struct Support {
     case: Option<String>,
 }
 
-/// A spring to the ground
+/// A spring to the ground or between two nodes
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["at"] }, { "required": ["between"] }]))]
+#[schemars(extend("anyOf" = [{ "required": ["direction", "stiffness"] }, { "required": ["rotation"] }]))]
 struct Spring {
-    /// Node or edge
-    at: String,
+    /// Node or edge, held to the ground
+    at: Option<String>,
+    /// Two nodes, held to each other
+    between: Option<[String; 2]>,
     /// Any non-zero vector
-    direction: [Number; 2],
+    direction: Option<[Number; 2]>,
     /// Force per displacement; at an edge, of each node
     #[schemars(extend("minimum" = 0))]
-    stiffness: Number,
+    stiffness: Option<Number>,
+    /// Moment per rotation, instead of direction and stiffness
+    #[schemars(extend("minimum" = 0))]
+    rotation: Option<Number>,
 }
 
 /// An elastic foundation
@@ -238,7 +245,7 @@ struct Foundation {
     /// From the ground to the body; if left out the inward normal of an edge, local y of a bar
     direction: Option<[Number; 2]>,
     /// The same along the line; beside `tensionless` only with `friction`
-    #[schemars(range(min = 0))]
+    #[schemars(extend("minimum" = 0))]
     tangential: Option<Number>,
     /// Whether it can open; false if left out
     tensionless: Option<bool>,

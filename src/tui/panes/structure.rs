@@ -279,8 +279,8 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
             legend.note(sign, Role::Muted, word);
         }
     }
-    for spring in &structure.springs {
-        let (x, y) = at(spring.node);
+    for node in structure.springs.iter().flat_map(|spring| spring.nodes()) {
+        let (x, y) = at(node);
         if view.holds((x, y)) {
             let sign = look.sign('≷', 'S');
             canvas.put(x, y, sign, Role::Muted);
