@@ -13,7 +13,7 @@ pub const TOLERANCE: f64 = 1e-9;
 pub const ROUNDING: f64 = 4.0 * NOISE;
 
 /// Checks an answer over the joints, row by row: forces and reserves as shares of the terms they are summed from (loads,
-/// gaps closed by force, R z), displacements as the share of those forces that hangs on them, products of the two shares.
+/// gaps closed by force, R z), displacements as the share of those forces that hangs on them, of a couple the smaller of the two shares.
 /// `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
 pub fn check_contact(
     system: &ContactSystem,
@@ -27,8 +27,9 @@ pub fn check_contact(
     let mut couple = |x: Sum, z: f64, share: f64| {
         check.min_w = check.min_w.min(x.share());
         check.min_z = check.min_z.min(if z < 0.0 { -share } else { 0.0 });
-        let product = if z == 0.0 { 0.0 } else { (x.share() * share).abs() };
-        check.complementarity = check.complementarity.max(product);
+        // One of the two is zero by its own terms: a product of two small shares would excuse both.
+        let smaller = if z == 0.0 { 0.0 } else { x.share().abs().min(share) };
+        check.complementarity = check.complementarity.max(smaller);
     };
     for (i, pair) in system.pairs.iter().enumerate() {
         let sums = pair_sums(system, numbers, &forces, (i, state.z[i] > 0.0));

@@ -102,6 +102,8 @@ pub struct ExactCheck {
     pub released: usize,
     /// Number of signs told.
     pub signs: usize,
+    /// z over the joints, each rounded once, where the equations have one solution.
+    pub z: Option<DVector<f64>>,
 }
 
 /// A linear form (Σ coefficient·z + constant) / scale over the released joints, scale > 0.
@@ -220,7 +222,7 @@ pub fn exact_check(
         .collect();
     let rhs: Vec<BigInt> = equations.iter().map(|form| -&form.constant).collect();
     let matrix: Vec<Vec<BigInt>> = equations.into_iter().map(|form| form.coefficients).collect();
-    let ended = |finding| ExactCheck { finding, released, signs: 0 };
+    let ended = |finding| ExactCheck { finding, released, signs: 0, z: None };
     let solution = match rational_solve::solve(&matrix, &rhs, &mut |share| progress(0.9 * share)) {
         RationalSolution::Unique(solution) => solution,
         RationalSolution::Singular { rank, particular } => {
@@ -238,11 +240,17 @@ pub fn exact_check(
         }
     }
     let signs_told = signs.told;
+    let joints = (0..system.joint_count()).map(|joint| {
+        let (over, under) = signs.displacement(joint);
+        ratio_to_f64(&over, &under)
+    });
+    let z = Some(DVector::from_iterator(system.joint_count(), joints));
     let (violations, zeros): (Vec<_>, Vec<_>) = signs.notable.into_iter().partition(|sign| sign.sign == Ordering::Less);
     ExactCheck {
         finding: if violations.is_empty() { Finding::Proved { zeros } } else { Finding::Refuted { violations } },
         released,
         signs: signs_told,
+        z,
     }
 }
 

@@ -70,18 +70,22 @@ impl FileData {
         dot(start, self.matrix.column(row).iter().zip(x.iter()))
     }
 
-    /// The same with the magnitudes of its terms.
-    fn row_sum(&self, row: usize, x: &DVector<f64>, start: f64, size: f64) -> Sum {
-        let terms: f64 = self.matrix.column(row).iter().zip(x.iter()).map(|(a, x)| (a * x).abs()).sum();
+    /// The same with the magnitudes of its terms, those of x given.
+    fn row_sum(&self, row: usize, (x, sizes): (&DVector<f64>, &DVector<f64>), start: f64, size: f64) -> Sum {
+        let terms: f64 = self.matrix.column(row).iter().zip(sizes.iter()).map(|(a, x)| (a * x).abs()).sum();
         Sum { value: self.row(row, x, start), magnitude: size + terms }
     }
 
-    /// Forces at displacements z − (g, 0) of the kept joints.
-    pub fn forces(&self, z: &DVector<f64>, load: &FileLoad) -> FileForces {
-        if self.compliance { self.forces_of_compliance(z, load) } else { self.forces_of_stiffness(z, load) }
+    /// Forces at displacements z − (g, 0) of the kept joints, which are known to a few ε of `sizes` = |z| + |(g, 0)|.
+    pub fn forces(&self, z: &DVector<f64>, sizes: &DVector<f64>, load: &FileLoad) -> FileForces {
+        if self.compliance {
+            self.forces_of_compliance(z, sizes, load)
+        } else {
+            self.forces_of_stiffness(z, sizes, load)
+        }
     }
 
-    fn forces_of_stiffness(&self, z: &DVector<f64>, load: &FileLoad) -> FileForces {
+    fn forces_of_stiffness(&self, z: &DVector<f64>, sizes: &DVector<f64>, load: &FileLoad) -> FileForces {
         let mut all = DVector::zeros(self.matrix.nrows());
         for (value, &row) in z.iter().zip(&self.kept) {
             all[row] = *value;
@@ -92,7 +96,11 @@ impl FileData {
             let step = self.factor.solve(&DVector::from_iterator(released.len(), force));
             step.iter().zip(released).for_each(|(step, &row)| all[row] -= step);
         }
-        let sum = |row: &usize| self.row_sum(*row, &all, load.vector[*row], load.terms[*row]);
+        let mut all_sizes = all.abs();
+        for (size, &row) in sizes.iter().zip(&self.kept) {
+            all_sizes[row] = *size;
+        }
+        let sum = |row: &usize| self.row_sum(*row, (&all, &all_sizes), load.vector[*row], load.terms[*row]);
         FileForces {
             joints: self.kept.iter().map(sum).collect(),
             left: released.iter().map(sum).collect(),
@@ -100,7 +108,7 @@ impl FileData {
         }
     }
 
-    fn forces_of_compliance(&self, z: &DVector<f64>, load: &FileLoad) -> FileForces {
+    fn forces_of_compliance(&self, z: &DVector<f64>, sizes: &DVector<f64>, load: &FileLoad) -> FileForces {
         let kept = &self.kept;
         let target = DVector::from_fn(kept.len(), |i, _| z[i] - load.vector[kept[i]]);
         let mut all = DVector::zeros(self.matrix.nrows());
@@ -110,7 +118,7 @@ impl FileData {
             step.iter().zip(kept).for_each(|(step, &row)| all[row] += step);
         }
         let left = (kept.iter().enumerate())
-            .map(|(i, &row)| self.row_sum(row, &all, -target[i], z[i].abs() + load.terms[row]))
+            .map(|(i, &row)| self.row_sum(row, (&all, &all), -target[i], sizes[i] + load.terms[row]))
             .collect();
         let slip = |&row: &usize| self.row(row, &all, load.vector[row]);
         FileForces {

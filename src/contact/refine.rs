@@ -12,7 +12,7 @@ use super::doubled::dot;
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces, pair_sums};
 use super::system::ContactSystem;
-use super::whole::friction;
+use super::whole::{fixed_bound, friction};
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::NOISE;
 use crate::lcp::vertex::{Basis, corrected};
@@ -24,26 +24,51 @@ const GOOD: f64 = NOISE / 8.0;
 
 /// The point with the rows of its released joints put right; as it is where they are, or where no step helps.
 pub fn refined(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: Point) -> Point {
-    let released: Vec<usize> = (0..point.z.len()).filter(|&row| point.z[row] > 0.0).collect();
-    let basis = Basis { active: released.clone(), z: released, p: false };
     let mut best = point;
-    let mut left = worst(&rows(system, numbers, contact, &best, false), &basis);
+    let mut left = worst(&rows(system, numbers, contact, &best, false), &released(&best));
     for _ in 0..ROUNDS {
         if left <= GOOD {
             break;
         }
         let sums = rows(system, numbers, contact, &best, true);
         let w = equations(system, numbers, contact, &best, &sums);
-        let Some(next) = corrected(&contact.lcp, &basis, &best, &w) else {
+        let Some(mut next) = corrected(&contact.lcp, &released(&best), &best, &w) else {
             break;
         };
-        let now = worst(&rows(system, numbers, contact, &next, true), &basis);
+        settle_signs(system, numbers, contact, &mut next);
+        let now = worst(&rows(system, numbers, contact, &next, true), &released(&next));
         if now.is_nan() || now >= left {
             break;
         }
         (best, left) = (next, now);
     }
     best
+}
+
+/// The basis of the rows whose joint is released at a point.
+fn released(point: &Point) -> Basis {
+    let rows: Vec<usize> = (0..point.z.len()).filter(|&row| point.z[row] > 0.0).collect();
+    Basis { active: rows.clone(), z: rows, p: false }
+}
+
+/// An open pair that nothing holds slides either way: z⁺ < 0 is z⁻. Elsewhere what is below zero is rounding.
+fn settle_signs(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: &mut Point) {
+    for (row, meaning) in contact.rows.iter().enumerate() {
+        if point.z[row] >= 0.0 {
+            continue;
+        }
+        let i = meaning.pair;
+        let is_open = contact.normal_row[i].is_some_and(|normal| point.z[normal] > 0.0);
+        let other = match meaning.couple {
+            Couple::Normal => None,
+            Couple::Plus => contact.minus_row[i],
+            Couple::Minus => contact.plus_row[i],
+        };
+        let moved = std::mem::take(&mut point.z[row]);
+        if let Some(other) = other.filter(|_| is_open && fixed_bound(system, numbers, i) == 0.0) {
+            point.z[other] -= moved;
+        }
+    }
 }
 
 /// w of every row as the LCP has it, dimensionless: the reserves of an open pair contain f x_n, which the matrix sees.

@@ -52,5 +52,10 @@ pub fn sharpen(
         return point;
     }
     let rows = balanced_rows(system, numbers, contact, &point);
-    corrected(&contact.lcp, basis, &point, &rows).unwrap_or(point)
+    let Some(mut found) = corrected(&contact.lcp, basis, &point, &rows) else {
+        return point;
+    };
+    let clean = |value: &mut f64| *value = value.max(0.0);
+    found.z.iter_mut().chain(&mut found.w).chain([&mut found.p]).for_each(clean);
+    found
 }

@@ -75,9 +75,12 @@ pub struct StateForces {
 pub fn state_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> StateForces {
     let mut forces = StateForces { joints: condensed_forces(system, numbers, z), left: Vec::new(), slips: None };
     if let (Some(file), Some(load)) = (&system.file, &numbers.file_load) {
-        let mut moved = z.clone();
-        moved.iter_mut().zip(&numbers.gap).for_each(|(z, gap)| *z -= gap);
-        let given = file.forces(&moved, load);
+        let (mut moved, mut sizes) = (z.clone(), z.abs());
+        for (i, gap) in numbers.gap.iter().enumerate() {
+            moved[i] -= gap;
+            sizes[i] += gap.abs();
+        }
+        let given = file.forces(&moved, &sizes, load);
         for (force, given) in forces.joints.iter_mut().zip(given.joints) {
             // Forces solved for from a compliance have no terms of their own.
             let magnitude = if file.compliance { force.magnitude.max(given.magnitude) } else { given.magnitude };

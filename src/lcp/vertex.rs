@@ -155,7 +155,7 @@ pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
 }
 
 /// The point of a basis after one step of Newton's method from `point`, whose w (of all rows, better known than from
-/// the data) is given; z and p stay ≥ 0. `None` where the equations are singular.
+/// the data) is given; no sign is looked at. `None` where the equations are singular.
 pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> Option<Point> {
     let whole = Whole::new(lcp);
     let n = basis.active.len();
@@ -166,13 +166,12 @@ pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> 
     let step = whole.system(basis).solve(&right)?;
     let mut point = point.clone();
     for (b, &k) in basis.z.iter().enumerate() {
-        point.z[k] = (point.z[k] + step[b]).max(0.0);
+        point.z[k] += step[b];
     }
     if basis.p {
-        point.p = (point.p + step[n - 1]).max(0.0);
+        point.p += step[n - 1];
     }
     point.w = whole.response(basis, &point.z, point.p, 1.0);
-    point.w.iter_mut().for_each(|w| *w = w.max(0.0));
     Some(point)
 }
 

@@ -11,6 +11,7 @@ use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved, Trace, empty_answer};
 use crate::answer::check::TOLERANCE;
 use crate::answer::check_plain::{ROUNDING, check_plain};
+use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{Answer, OutcomeKind, PairDirection, PlainSolution, State};
 use crate::contact;
 use crate::contact::complementarity::{Couple, contact_lcp};
@@ -290,8 +291,8 @@ impl Prepared {
         if found.complete { Ok(found) } else { Err(QuestionError::Interrupted) }
     }
 
-    /// An answer that failed its check in f64 is one nevertheless if its working scheme holds in exact arithmetic: with
-    /// great stiffness contrasts no f64 z has residuals at the tolerance. Equilibrium with K is never excused.
+    /// A state that failed its check has the right working scheme where that holds in exact arithmetic: with great
+    /// stiffness contrasts no elimination in f64 gives its z. The exact z, rounded once, is then checked as any other.
     pub(super) fn prove_after_all(&self, solved: &mut Solved, watch: &dyn Watch) {
         let small = solved.answer.pairs.len() <= EXACT_PAIRS;
         let check = solved.answer.check;
@@ -304,28 +305,34 @@ impl Prepared {
             return;
         }
         let deadline = Deadline::after(EXACT_BUDGET, watch);
-        let proved = matches!(
-            self.check_exactly(solved, &deadline),
-            Ok(Exactly::Contact(ExactCheck { finding: Finding::Proved { .. }, .. }))
-        );
-        if !proved {
+        let Ok(Exactly::Contact(ExactCheck { finding: Finding::Proved { .. }, z: Some(z), .. })) =
+            self.check_exactly(solved, &deadline)
+        else {
             if deadline.passed() {
                 solved.say(&format!(" Its exact check was given up after {} s.", EXACT_BUDGET.as_secs()));
             }
             return;
-        }
+        };
+        let (Trace::Contact { contact, numbers, factors, .. }, Some(system)) = (&solved.trace, self.system()) else {
+            return;
+        };
+        let state = JointState::at(system, numbers, z, 0.0);
         let answer = &mut solved.answer;
         answer.outcome = OutcomeKind::Normal;
         answer.failure = None;
-        answer.check.passed = true;
         if let Some(last) = answer.attempts.last_mut() {
             last.outcome = OutcomeKind::Normal;
         }
-        answer.notes.push(
-            "the figures of the check are those of f64 rounding under great stiffness contrasts; the working scheme was \
-             proved in exact arithmetic"
-                .to_owned(),
-        );
+        answer.pairs = pair_states(system, numbers, contact, &state);
+        self.add_released_slips(&mut answer.pairs, numbers, factors, &state.z);
+        self.complete(answer, system, numbers, factors, &state);
+        if answer.is_answer() {
+            answer.notes.push(
+                "the displacements were computed in exact arithmetic: elimination in f64 loses them under great stiffness \
+                 contrasts"
+                    .to_owned(),
+            );
+        }
     }
 
     /// The final scheme of an answer in exact arithmetic from the f64 data.

@@ -420,7 +420,8 @@ impl Prepared {
                 let Some(file) = &system.file else {
                     return;
                 };
-                let slips = file.forces(&dislocation(numbers, z), &file.load(factors)).slips;
+                let moved = dislocation(numbers, z);
+                let slips = file.forces(&moved, &moved.abs(), &file.load(factors)).slips;
                 for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
                     pairs[pair].z_t = *slip;
                 }

@@ -25,7 +25,7 @@ pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<
     };
     push("min w", check.min_w, "smallest contact force or reserve");
     push("min z", check.min_z, "smallest opening or slip");
-    push("w·z", check.complementarity, "largest product of a couple");
+    push("w·z", check.complementarity, "the lesser of a couple, max");
     if let Some(equilibrium) = check.equilibrium {
         push("equilibrium", equilibrium, "residual of K u = F + Bᵀλ");
     }

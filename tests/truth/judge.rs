@@ -201,7 +201,7 @@ impl Problem {
             .filter(|&k| self.r[k][k] > 0.0)
             .map(|k| {
                 let root = self.r[k][k].sqrt();
-                self.load[k].abs() / root + if k < m { self.gap[k] * root } else { 0.0 }
+                1e8 * self.load[k].abs() / root + if k < m { 10.0 * self.gap[k] * root } else { 0.0 }
             })
             .sum();
         // λ over (columns, constant).
@@ -226,7 +226,7 @@ impl Problem {
         for (c, (k, _)) in columns.iter().enumerate().filter(|(_, (k, _))| self.r[*k][*k] > 0.0) {
             let mut row = vec![Exact::zero(); columns.len() + 1];
             row[c] = -Exact::one();
-            row[columns.len()] = exact(1e8 * reach / self.r[*k][*k].sqrt());
+            row[columns.len()] = exact(reach / self.r[*k][*k].sqrt());
             positive.push(row);
         }
         for (i, (open, slip)) in scheme.iter().enumerate() {
