@@ -245,7 +245,7 @@ pub struct Check {
     pub min_w: f64,
     /// Smallest z.
     pub min_z: f64,
-    /// Of every couple the smaller of w_i and z_i, the largest of all; of a bare LCP the largest |w_i z_i|.
+    /// Of every couple the smaller of w_i and z_i, the largest of all; of a bare LCP w where z > 0.
     pub complementarity: f64,
     /// ‖K u − F − Bᵀλ‖; `None` where there is no K.
     pub equilibrium: Option<f64>,

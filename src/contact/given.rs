@@ -119,7 +119,6 @@ fn from_stiffness(
     given: &GivenContactSystem,
     matrix: &DMatrix<f64>,
 ) -> Result<(ContactSystem, Vec<String>), GivenError> {
-    let (whole, null) = null_space("stiffness", matrix)?;
     let mut remarks = Vec::new();
     // What the author knows to be a kernel is one, to the last digit, whatever the digits of the matrix.
     let (motions, data) = match &given.kernel {
@@ -127,9 +126,11 @@ fn from_stiffness(
             let motions: Vec<DVector<f64>> = kernel.iter().map(|z| DVector::from_column_slice(z)).collect();
             let exact = motions.iter().all(|z| is_null(matrix, z));
             let data = if exact { matrix.clone() } else { without_kernel(matrix, &motions) };
+            null_space("stiffness", &data)?;
             (motions, data)
         }
         None => {
+            let (whole, null) = null_space("stiffness", matrix)?;
             remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &whole.scale)));
             (null.exact, matrix.clone())
         }
@@ -358,5 +359,10 @@ fn without_kernel(stiffness: &DMatrix<f64>, motions: &[DVector<f64>]) -> DMatrix
     }
     let left = &scaled - &q * (q.transpose() * &scaled);
     let both = &left - (&left * &q) * q.transpose();
-    DMatrix::from_fn(n, n, |i, j| 0.5 * (both[(i, j)] + both[(j, i)]) * scale[i] * scale[j])
+    // A joint of which nothing is left but rounding moves for nothing: noise against which no zero can be told.
+    let is_free = |i: usize| both[(i, i)] <= NOISE;
+    DMatrix::from_fn(n, n, |i, j| {
+        let entry = 0.5 * (both[(i, j)] + both[(j, i)]) * scale[i] * scale[j];
+        if is_free(i) || is_free(j) { 0.0 } else { entry }
+    })
 }

@@ -22,6 +22,9 @@ const SYMMETRY: f64 = 1e-8;
 /// R z of a kernel vector may be this much of Σ √R_ii √R_kk |z_k|.
 const KERNEL: f64 = 1e-8;
 
+/// Rounding of an entry of R that was computed beside the largest one.
+const STORED: f64 = 256.0 * f64::EPSILON;
+
 /// Reads a contact system; `path` is the scenario file, for the file of the matrix.
 pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSystem> {
     let fields = cursor.fields(&[
@@ -205,6 +208,7 @@ const TWO_EACH: &str = "all normals, then all tangentials";
 
 fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let roots = diagonal_roots(stiffness);
+    let largest = roots.iter().fold(0.0_f64, |largest, root| largest.max(root * root));
     let mut motions = Vec::new();
     let mut is_right = true;
     for entry in cursor.list()? {
@@ -218,10 +222,14 @@ fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Ve
             is_right = false;
             continue;
         }
-        // |(R z)_i| / (√R_ii Σ √R_kk |z_k|), the worst of all rows.
+        // |(R z)_i| / (√R_ii Σ √R_kk |z_k|), the worst of all rows. Where R was computed in f64 a joint that nothing
+        // resists has rounding of the largest entry in its row: that is no stiffness.
         let terms: f64 = roots.iter().zip(&motion).map(|(root, z)| root * (z / size).abs()).sum();
         let force = (stiffness.iter().zip(&roots))
-            .map(|(row, root)| row.iter().zip(&motion).map(|(r, z)| r * (z / size)).sum::<f64>().abs() / (root * terms))
+            .map(|(row, root)| {
+                let force = row.iter().zip(&motion).map(|(r, z)| r * (z / size)).sum::<f64>().abs();
+                if force <= STORED * largest { 0.0 } else { force / (root * terms) }
+            })
             .fold(0.0_f64, f64::max);
         if force > KERNEL {
             entry.problem(
