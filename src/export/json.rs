@@ -38,6 +38,13 @@ pub fn problems(problems: &[Problems]) -> Value {
     if more == 0 { json!({"error": errors}) } else { json!({"error": errors, "more": more}) }
 }
 
+/// [`problems`] where a result was due: `outcome` is null, for programs that look at it first.
+pub fn no_result(of_files: &[Problems]) -> Value {
+    let mut value = problems(of_files);
+    value["outcome"] = Value::Null;
+    value
+}
+
 /// The result of one solve.
 ///
 /// A very long run keeps the records of its first pivots only; `pivot_count` then says how many there were.
