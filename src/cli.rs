@@ -342,7 +342,9 @@ fn status(result: Result<u8, Failure>, json: bool, errors: &Style) -> u8 {
     };
     if json && status == 2 && !matches!(&failure, Failure::Command(error) if error.is_output()) {
         tell_json(&match &failure {
-            Failure::Command(CommandError::Scenario(problems)) => json_export::no_result(std::slice::from_ref(problems)),
+            Failure::Command(CommandError::Scenario(problems)) => {
+                json_export::no_result(std::slice::from_ref(problems))
+            }
             _ => json_export::no_result(&[Problems::of_file("", message.as_str(), "")]),
         });
     }
