@@ -414,7 +414,8 @@ impl Session {
             Err(error) => Err(error.into()),
         };
         self.missing = match (is_load, &result) {
-            (true, Err(_)) if io.unattended => Missing::JustNow,
+            // Who interrupts sits there: what follows is meant for the session as it is.
+            (true, Err(error)) if io.unattended && !error.is_interrupted() => Missing::JustNow,
             (true, _) => Missing::Nothing,
             (false, _) if !io.unattended => Missing::Nothing,
             (false, _) if self.missing == Missing::JustNow => {
