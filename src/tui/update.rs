@@ -471,7 +471,8 @@ fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     state.progress = None;
     state.shown = done.shown;
     if new_scenario {
-        state.waiting.clear();
+        // Sliders and steps meant the old one; lines (those of the tour, too) are carried out in their order.
+        state.waiting.retain(|job| matches!(job, Job::Line { .. }));
         state.wanted_step = None;
         state.new_scenario();
     }
