@@ -45,6 +45,19 @@ pub fn series(path: &PathRecord, quantity: Quantity, pair: usize, case: Option<u
     [Series { label: label.clone(), points }, Series { label, points: marked }]
 }
 
+/// What a picture of the path goes over: of a history the load case that moves most, else what was followed; and its name.
+fn abscissa(path: &PathRecord) -> (Option<usize>, String) {
+    let case = match path.followed {
+        Followed::Stages => path.widest_case(),
+        _ => None,
+    };
+    let over = match case {
+        Some(case) => format!("the factor of {}", path.cases[case]),
+        None => path.name.clone(),
+    };
+    (case, over)
+}
+
 /// Draws a quantity of the pairs (indices) over what was followed.
 pub fn write(
     out: &mut dyn Write,
@@ -55,14 +68,7 @@ pub fn write(
     height: usize,
     style: &Style,
 ) -> io::Result<()> {
-    let case = match path.followed {
-        Followed::Stages => path.widest_case(),
-        _ => None,
-    };
-    let over = match case {
-        Some(case) => format!("the factor of {}", path.cases[case]),
-        None => path.name.clone(),
-    };
+    let (case, over) = abscissa(path);
     let (what, unit) = match quantity {
         Quantity::Slip => ("slip z_τ", length_unit(units)),
         Quantity::Gap => ("gap z_n", length_unit(units)),
@@ -98,14 +104,7 @@ pub fn write_along(
     height: usize,
     style: &Style,
 ) -> io::Result<()> {
-    let case = match path.followed {
-        Followed::Stages => path.widest_case(),
-        _ => None,
-    };
-    let over = match case {
-        Some(case) => format!("the factor of {}", path.cases[case]),
-        None => path.name.clone(),
-    };
+    let (case, over) = abscissa(path);
     let abscissas = path.abscissas(case);
     let mut curves = Vec::new();
     for (number, (quantity, values)) in along.iter().enumerate() {
