@@ -14,6 +14,7 @@ mod frame;
 mod greco;
 mod klarbring;
 mod loads;
+mod method;
 mod plates;
 mod random_structures;
 mod settlements;

@@ -1,0 +1,66 @@
+//! A contact system made in Rust, without a file: one node on the ground that wedges itself.
+//!
+//! `cargo run --example contact_system_by_hand`
+//!
+//! R = [[2, 1.5], [1.5, 2]] couples the normal and the tangential joint. Beyond f = R_ττ / |R_nτ| = 4/3 a load may have
+//! more than one answer; f = 0.5 is below that.
+
+use std::error::Error;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, dvector};
+use stickslip::contact::complementarity::contact_lcp;
+use stickslip::contact::numbers::ContactNumbers;
+use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
+use stickslip::lcp::driver::run;
+use stickslip::lcp::lemke::SchemeEngine;
+use stickslip::model::pair::Law;
+use stickslip::model::parameter::Number;
+use stickslip::model::rules::{Covering, TieBreak};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let load = JointLoad::exactly("load".to_owned(), dvector![1.0, -2.0]);
+    let friction = 0.5;
+    let system = ContactSystem {
+        pairs: vec![ContactPair {
+            id: "c1".to_owned(),
+            law: Law::Coulomb {
+                friction: Number::Value(friction),
+                cohesion: Number::Value(0.0),
+                gap: Number::Value(0.0),
+            },
+            position: None,
+            tangential: Some(1),
+        }],
+        stiffness: DMatrix::from_row_slice(2, 2, &[2.0, 1.5, 1.5, 2.0]),
+        loads: vec![load.clone()],
+        rounded: false,
+        kernel: DMatrix::zeros(2, 0),
+        corrected: None,
+        file: None,
+    };
+    let numbers = ContactNumbers {
+        friction: vec![friction],
+        cohesion: vec![0.0],
+        gap: vec![0.0],
+        bound: vec![0.0],
+        load: load.vector,
+        load_terms: load.terms,
+        file_load: None,
+    };
+    let lcp = contact_lcp(&system, &numbers, Covering::Cohesive)?;
+    let mut engine = SchemeEngine::new(Arc::clone(&lcp.lcp), lcp.tie_rule(TieBreak::Lexicographic));
+    let run = run(&mut engine, 100, &mut |pivot| {
+        println!("{} enters, {} leaves", lcp.name(pivot.entering, &system), lcp.name(pivot.leaving, &system));
+        ControlFlow::Continue(())
+    });
+    let point = lcp.in_units(&run.point);
+    println!(
+        "{:?}: z = {:?}, joints displaced by {}",
+        run.outcome,
+        point.z,
+        lcp.joint_displacements(&system, &point.z)
+    );
+    Ok(())
+}
