@@ -100,6 +100,19 @@ enum Command {
         #[arg(default_value = embedded::DEFAULT)]
         scenario: String,
     },
+    /// Answer the requests of another program: JSON lines on stdin and stdout
+    ///
+    /// One line is one request, {"id": …, "command": "…"}; its answer comes at once, on one line: {"id": …, "ok": true,
+    /// "report": …}, the report of `replay --format json`, or {"id": …, "ok": false, "error": "…", "status": N}, with the
+    /// exit status that the error would have had. A request of several commands is answered by a list of reports. Whatever
+    /// cannot be understood is answered by an error, with the id null where none can be read. SIGINT stops a long command,
+    /// `quit` or the end of the input ends the program.
+    #[command(after_help = "Example:\n  echo '{\"id\": 1, \"command\": \"set f 0.4; pairs\"}' | stickslip serve beam")]
+    Serve {
+        /// The first scenario: a file, or an embedded one
+        #[arg(default_value = embedded::DEFAULT)]
+        scenario: String,
+    },
     /// List the embedded scenarios
     Scenarios,
     /// Print the JSON Schema of the scenario format
@@ -236,9 +249,11 @@ pub enum Next {
     Repl(Box<Start>),
     /// The full screen.
     Tui(Box<Start>),
+    /// JSON lines.
+    Serve(Box<Start>),
 }
 
-/// What the REPL and the full screen start from.
+/// What the REPL, the full screen and `serve` start from.
 pub struct Start {
     /// The scenario, loaded and solved.
     pub session: Session,
@@ -271,6 +286,9 @@ pub fn main() -> Next {
         None => start(&cli, &cli.scenario, errors).map_or_else(failed, |start| Next::Repl(Box::new(start))),
         Some(Command::Tui { scenario }) => {
             start_screen(&cli, scenario, errors).map_or_else(failed, |start| Next::Tui(Box::new(start)))
+        }
+        Some(Command::Serve { scenario }) => {
+            start(&cli, scenario, errors).map_or_else(failed, |start| Next::Serve(Box::new(start)))
         }
         Some(_) => {
             let json = asks_for_json(&arguments);
@@ -367,7 +385,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
     let style = cli.look.style(&io::stdout());
     let mut out = Printable::new(io::stdout(), style.color);
     match cli.command {
-        None | Some(Command::Tui { .. }) => Ok(0), // `main` starts those
+        None | Some(Command::Tui { .. } | Command::Serve { .. }) => Ok(0), // `main` starts those
         Some(Command::Solve(arguments)) => solve(&arguments, &style, &mut out),
         Some(Command::Replay(arguments)) => replay(&arguments, style, &mut out),
         Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),

@@ -13,6 +13,10 @@ fn main() -> ExitCode {
     ExitCode::from(match cli::main() {
         Next::Exit(status) => status,
         Next::Repl(start) => finish(*start, None),
+        Next::Serve(start) => {
+            let Start { mut session, style, signals, errors } = *start;
+            cli::finish(repl::serve(&mut session, style, &signals), &errors)
+        }
         Next::Tui(start) => {
             let first = tui::Start { tour: false, home: Leave::Quit };
             finish(*start, Some(first))

@@ -1,8 +1,9 @@
-//! The command line that stays: an editor on a terminal, plain lines without one.
+//! The command line that stays: an editor on a terminal, plain lines without one, JSON lines for programs.
 
 mod editor;
 mod pager;
 mod plain;
+mod serve;
 mod terminal;
 
 use std::io::{self, IsTerminal, Write};
@@ -13,6 +14,8 @@ use crate::view::status;
 use crate::view::style::Style;
 
 use crate::signals::{Signals, is_dumb};
+
+pub use serve::serve;
 
 /// How a face ended: what `main` does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use super::{Ended, show_error};
 use crate::signals::{Signals, TerminalWatch};
 
 /// Between two looks at the signals while nothing comes in.
-const LOOK: Duration = Duration::from_millis(50);
+pub(super) const LOOK: Duration = Duration::from_millis(50);
 
 /// One result after the other; without a terminal no prompt.
 ///
@@ -106,7 +106,7 @@ fn error_style(style: Style) -> Style {
 }
 
 /// What the reader of stdin hands over.
-enum Input {
+pub(super) enum Input {
     Line(Vec<u8>),
     /// A line of more bytes than any command has: read to its end and dropped.
     TooLong,
@@ -115,7 +115,7 @@ enum Input {
 }
 
 /// Reads stdin on a thread of its own: a blocked read cannot be given up, a blocked thread can be left behind.
-fn reader() -> io::Result<Receiver<Input>> {
+pub(super) fn reader() -> io::Result<Receiver<Input>> {
     // a few lines ahead at most, so that an endless input does not pile up
     let (sender, receiver) = mpsc::sync_channel(16);
     let read = move || {

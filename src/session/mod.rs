@@ -387,16 +387,19 @@ impl Session {
         if self.depth == 0 {
             self.history.push(text.to_owned());
         }
-        if io.format == Format::JsonLines {
+        if io.format != Format::Text {
             let report = io.report.take().unwrap_or_default();
-            let line = match &result {
+            let answer = match &result {
                 Ok(_) => json!({"command": text, "line": io.line, "ok": true, "report": report}),
                 Err(error) => json!({
                     "command": text, "line": io.line, "ok": false,
                     "error": error.to_string(), "status": error.status(),
                 }),
             };
-            writeln!(io.out, "{}", printable::json(line.to_string()))?;
+            match io.format {
+                Format::Values => io.answers.push(answer),
+                _ => writeln!(io.out, "{}", printable::json(answer.to_string()))?,
+            }
         }
         io.out.flush()?;
         result

@@ -15,6 +15,8 @@ pub enum Format {
     Text,
     /// One JSON object per command.
     JsonLines,
+    /// The same objects, kept in [`Output::answers`] for a face that puts them into its own.
+    Values,
 }
 
 /// The place a face gives to [`Session::execute`](super::Session::execute).
@@ -35,6 +37,8 @@ pub struct Output<'a> {
     pub unattended: bool,
     /// The report of the command that runs, in JSON.
     pub(super) report: Option<Value>,
+    /// What the commands answered, with [`Format::Values`].
+    pub answers: Vec<Value>,
 }
 
 impl<'a> Output<'a> {
@@ -45,7 +49,17 @@ impl<'a> Output<'a> {
 
     /// Output in the given format.
     pub fn new(out: &'a mut dyn Write, style: Style, format: Format, watch: &'a dyn Watch) -> Self {
-        Output { out, style, format, watch, line: 0, has_screen: false, unattended: false, report: None }
+        Output {
+            out,
+            style,
+            format,
+            watch,
+            line: 0,
+            has_screen: false,
+            unattended: false,
+            report: None,
+            answers: Vec::new(),
+        }
     }
 
     /// Reports a result: only the form that is asked for is made.
@@ -56,7 +70,7 @@ impl<'a> Output<'a> {
     ) -> io::Result<()> {
         match self.format {
             Format::Text => text(self.out, &self.style),
-            Format::JsonLines => {
+            Format::JsonLines | Format::Values => {
                 self.report = Some(json());
                 Ok(())
             }

@@ -126,8 +126,10 @@ impl Session {
         (inner.line, inner.has_screen, inner.unattended) = (io.line, io.has_screen, io.unattended);
         let result = self.run_plain(text, &mut inner);
         let report = inner.report.take();
+        let mut answers = std::mem::take(&mut inner.answers);
         let shown = std::mem::take(&mut tee.copy);
         io.report = report;
+        io.answers.append(&mut answers);
         let again = matches!(parsed, Some(command::Command::Restore { .. })).then(|| self.opening());
         let Some(recorder) = &mut self.recorder else {
             return result; // that was `record off`
