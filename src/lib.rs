@@ -29,6 +29,8 @@
 //! those before it; only the last three read or write the terminal.
 
 #![forbid(unsafe_code)]
+// A page of a module may name what stands inside it.
+#![allow(rustdoc::private_intra_doc_links)]
 
 pub mod answer;
 pub mod cli;

@@ -239,7 +239,7 @@ fn coordinate(value: f64) -> String {
     if value == 0.0 { "0.0".to_owned() } else { short(value) }
 }
 
-/// What a direction does to the pairs: "all pairs slip +", "base[0] to base[3] open".
+/// What a direction does to the pairs: "all pairs slip +", `base[0] to base[3] open`.
 pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<String> {
     let largest = direction.amax();
     let mut kinds: HashMap<&str, Vec<usize>> = HashMap::new();
@@ -277,7 +277,7 @@ pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<Strin
         .collect()
 }
 
-/// "all pairs", "pair c1", "pairs c1 and c3", "pairs base[0] to base[3]".
+/// "all pairs", "pair c1", "pairs c1 and c3", `pairs base[0] to base[3]`.
 pub fn pair_names(system: &ContactSystem, pairs: &[usize]) -> String {
     let id = |i: usize| system.pairs[i].id.clone();
     if pairs.len() == system.pairs.len() && pairs.len() > 1 {

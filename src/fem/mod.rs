@@ -9,6 +9,19 @@
 //!     Z   k × r   kernel of R: motions that cost no energy once the joints are off
 //! ```
 //!
+//! ```
+//! use stickslip::fem::MainSystem;
+//! use stickslip::model::{embedded, pair::joints, scenario::Source};
+//! use stickslip::watch::Quiet;
+//!
+//! let scenario = embedded::load("beam")?;
+//! let Source::Structure(structure) = &scenario.source else { panic!("beam is a structure") };
+//! let main = MainSystem::new(structure, &joints(&structure.pairs), &Quiet)?;
+//! // Six pairs, each with a normal and a tangential joint; without them the beam moves as a rigid body.
+//! assert_eq!((main.stiffness().nrows(), main.kernel().ncols()), (12, 3));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! The joints reach this module as rows of B ([`crate::model::pair::Joint`]); it knows no contact law.
 //!
 //! Order of reading: `dof`, `elimination` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor` (sparse

@@ -1,4 +1,18 @@
 //! The pipeline: scenario → prepared geometry (once) → solved state (for every change of a parameter).
+//!
+//! ```
+//! use stickslip::{model::embedded, solve::prepare, watch::Quiet};
+//!
+//! let scenario = embedded::load("beam")?;
+//! let prepared = prepare(&scenario, &Quiet)?;
+//! let mut values = scenario.parameter_values();
+//! values.insert("F2".to_owned(), 250.0).expect("a parameter of the beam");
+//! let answer = prepared.solve(&scenario, &values, scenario.rules, &Quiet)?.answer;
+//! // Pair c6 slips on its bound f x_n = 0.5 · 100 kN.
+//! let c6 = &answer.pairs[5];
+//! assert!(answer.is_answer() && (c6.x_t + 0.5 * 100.0).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod all_answers;
 pub mod attempt;
