@@ -50,34 +50,39 @@ impl Law {
 
 /// A contact pair of a structure.
 ///
-/// z_n = n·(u_node − u_against) > 0 when the two part; z_τ = t·(u_node − u_against); `against = None` is the
-/// ground (u = 0).
+/// With the mutual displacement z = Σ weight·u of its nodes: z_n = n·z > 0 when the two sides part, z_τ = t·z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
     /// `c1`, `joint[0]`.
     pub id: String,
-    /// Index of the second side's node.
+    /// Index of the second side's node: the place of the pair.
     pub node: usize,
-    /// Index of the first side's node; `None` for the ground.
-    pub against: Option<usize>,
+    /// The nodes that move against each other, `node` first, with their weights: 1 on the second side and −1 on the
+    /// first, in sum where several nodes of an edge stand for a side; nothing on the first side for the ground (u = 0).
+    pub weights: Vec<(usize, f64)>,
     /// Unit normal n, from `against` to `node`.
     pub normal: [f64; 2],
-    /// Whether friction acts against the firm ground although `against` is a node: the ground of a foundation yields
-    /// along n only, z_τ = t·u_node.
+    /// Whether friction acts against the firm ground although the first side is a node: the ground of a foundation
+    /// yields along n only, z_τ = t·u_node.
     pub slides_on_ground: bool,
     /// The law.
     pub law: Law,
 }
 
 impl Pair {
+    /// The weights of a node against another one, or against the ground.
+    pub fn of_nodes(node: usize, against: Option<usize>) -> Vec<(usize, f64)> {
+        [Some((node, 1.0)), against.map(|against| (against, -1.0))].into_iter().flatten().collect()
+    }
+
     /// Unit tangent t: n turned by −90° (clockwise); n = (0, 1) gives t = (1, 0).
     pub fn tangent(&self) -> [f64; 2] {
         [self.normal[1], -self.normal[0]]
     }
 
-    /// The node on the first side whose motion along t counts; `None` for the ground.
-    pub fn against_along_tangent(&self) -> Option<usize> {
-        self.against.filter(|_| !self.slides_on_ground)
+    /// The weights of the motion along t.
+    pub fn tangential_weights(&self) -> &[(usize, f64)] {
+        if self.slides_on_ground { &self.weights[..1] } else { &self.weights }
     }
 }
 
@@ -97,30 +102,27 @@ pub struct Joint {
     pub pair: usize,
     /// Along n or along t.
     pub direction: JointDirection,
-    /// (node, a): one term for a pair with the ground, two between nodes.
+    /// (node, a), that of the pair's own node first: one term for a pair with the ground, two between nodes, more
+    /// where edges meet that do not match.
     pub terms: Vec<(usize, [f64; 2])>,
 }
 
 /// The joints of the main system: all normals in the order of the pairs, then the tangentials of those pairs
 /// that have one (all but the frictionless ones). This is the order of the rows of R and RF.
 pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
-    let row = |pair: &Pair, against: Option<usize>, a: [f64; 2]| {
-        let mut terms = vec![(pair.node, a)];
-        if let Some(against) = against {
-            terms.push((against, [-a[0], -a[1]]));
-        }
-        terms
+    let row = |weights: &[(usize, f64)], a: [f64; 2]| {
+        weights.iter().map(|&(node, weight)| (node, a.map(|a| weight * a))).collect()
     };
     let normals = pairs.iter().enumerate().map(|(index, pair)| Joint {
         pair: index,
         direction: JointDirection::Normal,
-        terms: row(pair, pair.against, pair.normal),
+        terms: row(&pair.weights, pair.normal),
     });
     let tangentials = pairs.iter().enumerate().filter(|(_, pair)| !matches!(pair.law, Law::Frictionless { .. })).map(
         |(index, pair)| Joint {
             pair: index,
             direction: JointDirection::Tangential,
-            terms: row(pair, pair.against_along_tangent(), pair.tangent()),
+            terms: row(pair.tangential_weights(), pair.tangent()),
         },
     );
     normals.chain(tangentials).collect()

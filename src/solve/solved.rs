@@ -411,8 +411,9 @@ impl Prepared {
                 for (pair, shown) in structure.pairs.iter().zip(pairs) {
                     if matches!(pair.law, Law::Frictionless { .. }) {
                         let t = pair.tangent();
-                        let along = |node: usize| t[0] * u.0[node][0] + t[1] * u.0[node][1];
-                        shown.z_t = along(pair.node) - pair.against_along_tangent().map_or(0.0, along);
+                        let along =
+                            |&(node, weight): &(usize, f64)| weight * (t[0] * u.0[node][0] + t[1] * u.0[node][1]);
+                        shown.z_t = pair.tangential_weights().iter().map(along).sum();
                     }
                 }
             }

@@ -223,7 +223,8 @@ pub fn plates() -> Structure {
         for component in [Component::X, Component::Y] {
             structure.supports.push(Support { node: lower[0][i], component });
         }
-        structure.pairs.push(Pair { against: Some(lower[ny][i]), ..ground_pair(&format!("joint[{i}]"), upper[0][i]) });
+        let weights = Pair::of_nodes(upper[0][i], Some(lower[ny][i]));
+        structure.pairs.push(Pair { weights, ..ground_pair(&format!("joint[{i}]"), upper[0][i]) });
     }
     structure
 }
@@ -283,7 +284,7 @@ fn ground_pair(id: &str, node: usize) -> Pair {
     Pair {
         id: id.into(),
         node,
-        against: None,
+        weights: Pair::of_nodes(node, None),
         normal: [0.0, 1.0],
         slides_on_ground: false,
         law: Law::Coulomb {

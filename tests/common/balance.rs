@@ -78,9 +78,8 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
         let (n, t) = (pair.normal, pair.tangent());
         let force = [0, 1].map(|i| state.x_n * n[i] + state.x_t * t[i]);
-        add(pair.node, at(pair.node), force, 0.0);
-        if let Some(against) = pair.against {
-            add(against, at(against), force.map(|f| -f), 0.0);
+        for &(node, weight) in &pair.weights {
+            add(node, at(node), force.map(|f| weight * f), 0.0);
         }
     }
     let find = |id: &str| structure.nodes.iter().position(|node| node.id == id);
@@ -161,9 +160,8 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
         let (n, t) = (pair.normal, pair.tangent());
         let force = [0, 1].map(|i| state.x_n * n[i] + state.x_t * t[i]);
-        add(pair.node, [force[0], force[1], 0.0]);
-        if let Some(against) = pair.against {
-            add(against, [-force[0], -force[1], 0.0]);
+        for &(node, weight) in &pair.weights {
+            add(node, [weight * force[0], weight * force[1], 0.0]);
         }
     }
     for reaction in answer.reactions.as_ref().expect("reactions") {
@@ -194,9 +192,8 @@ pub fn incompatibility(scenario: &Scenario, values: &ParameterValues, answer: &A
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
         let gap = pair.law.numbers().into_iter().find(|(key, _)| *key == "gap");
         let gap = gap.map_or(0.0, |(_, gap)| gap.value(values));
-        let along = |a: [f64; 2]| {
-            let project = |node: usize| a[0] * u(node)[0] + a[1] * u(node)[1];
-            project(pair.node) - pair.against.map_or(0.0, project)
+        let along = |a: [f64; 2]| -> f64 {
+            pair.weights.iter().map(|&(node, weight)| weight * (a[0] * u(node)[0] + a[1] * u(node)[1])).sum()
         };
         largest = largest.max(gap).max(state.z_n);
         off = off.max((along(pair.normal) + gap - state.z_n).abs());

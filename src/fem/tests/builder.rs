@@ -122,7 +122,8 @@ impl Model {
     pub fn pair(&mut self, node: usize, against: Option<usize>, normal: [f64; 2], law: Law) {
         let id = format!("c{}", self.0.pairs.len() + 1);
         let length = normal[0].hypot(normal[1]);
-        self.0.pairs.push(Pair { id, node, against, normal: normal.map(|n| n / length), slides_on_ground: false, law });
+        let (weights, normal) = (Pair::of_nodes(node, against), normal.map(|n| n / length));
+        self.0.pairs.push(Pair { id, node, weights, normal, slides_on_ground: false, law });
     }
 
     pub fn case(&mut self, loads: Vec<Load>) {

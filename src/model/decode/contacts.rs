@@ -92,7 +92,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         |(index, &(node, against))| Pair {
             id: if is_edge { format!("{id}[{index}]") } else { id.to_string() },
             node,
-            against,
+            weights: Pair::of_nodes(node, against),
             normal: sides.normals[index],
             slides_on_ground: false,
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
@@ -354,9 +354,11 @@ fn report_repeated_joints(builder: &Builder<'_>, sources: &[(Cursor<'_>, usize)]
     all.sort_by_key(|joint| joint.pair);
     for joint in all {
         let pair = &pairs[joint.pair];
-        let key = match pair.against {
-            Some(against) if against < pair.node => (against, Some(pair.node)),
-            against => (pair.node, against),
+        let key = match pair.weights[..] {
+            [(node, _)] => (node, None),
+            [(node, _), (against, _)] => (node.min(against), Some(node.max(against))),
+            // Every pair of edges that do not match has a node of its own.
+            _ => continue,
         };
         let direction = match joint.direction {
             JointDirection::Normal => pair.normal,
@@ -373,8 +375,8 @@ fn report_repeated_joints(builder: &Builder<'_>, sources: &[(Cursor<'_>, usize)]
         let entry = entry_of[joint.pair];
         match repeated {
             Some(first) if reported.insert(entry) => {
-                let against = match pair.against {
-                    Some(against) => format!("\"{}\"", builder.node_id(against)),
+                let against = match pair.weights.get(1) {
+                    Some((against, _)) => format!("\"{}\"", builder.node_id(*against)),
                     None => "the ground".into(),
                 };
                 sources[entry].0.problem(

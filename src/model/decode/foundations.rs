@@ -185,7 +185,7 @@ fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: us
     builder.structure.pairs.push(Pair {
         id,
         node: at.node,
-        against: Some(ground),
+        weights: Pair::of_nodes(at.node, Some(ground)),
         normal: at.normal,
         slides_on_ground: along.is_none(),
         law,

@@ -1,7 +1,7 @@
 //! Small scenarios → what must be in the checked structure, and where it says it came from.
 
 use crate::model::load::load_text;
-use crate::model::pair::Law;
+use crate::model::pair::{Law, Pair};
 use crate::model::parameter::Number;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::{Component, ElementKind, Load, Structure};
@@ -115,7 +115,7 @@ fn edge_contacts_pair_nodes_at_the_same_place() {
     assert_eq!(ids, ["joint[0]", "joint[2]", "joint[3]", "wall[0]", "wall[1]", "pin"]);
     let joint = &structure.pairs[1];
     assert_eq!(joint.node, index(structure, "upper[2,0]"));
-    assert_eq!(joint.against, Some(index(structure, "lower[2,1]")));
+    assert_eq!(joint.weights, Pair::of_nodes(joint.node, Some(index(structure, "lower[2,1]"))));
     // Out of the lower plate, towards the upper one.
     assert_eq!(joint.normal, [0.0, 1.0]);
     assert_eq!(
@@ -146,7 +146,7 @@ fn a_plate_turned_upside_down_meets_its_partner_in_reverse() {
     );
     let structure = structure(&scenario);
     for pair in &structure.pairs {
-        let against = pair.against.expect("edge against edge");
+        let against = pair.weights[1].0;
         assert_eq!(structure.nodes[pair.node].position, structure.nodes[against].position);
         assert_eq!(pair.normal, [0.0, 1.0]);
     }
