@@ -60,7 +60,7 @@ pub fn joint_state(
     JointState::at(system, numbers, z, point.p * contact.force_unit)
 }
 
-/// The pairs at a vertex. With p > 0 the forces include the covering (theory §4): x_n = λ_n + d_n p, bound =
+/// The pairs at a vertex. With p > 0 the forces include the covering (method §4): x_n = λ_n + d_n p, bound =
 /// f x_n + c + (d_τ − f d_n) p. z_τ of frictionless pairs is left 0: it is read from the displacements.
 pub fn pair_states(
     system: &ContactSystem,

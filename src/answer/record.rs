@@ -25,7 +25,7 @@ pub enum OutcomeKind {
     CheckFailed,
 }
 
-/// Class of a ray (theory §4).
+/// Class of a ray (method §4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RayClass {

@@ -1,4 +1,4 @@
-//! Contact system + numbers → LCP, eqs. (1), (2), (8) of theory §3, laws mixed, dimensionless inside.
+//! Contact system + numbers → LCP, eqs. (1), (2), (8) of method §3, laws mixed, dimensionless inside.
 //!
 //! Rows of the whole LCP: all x_n (coulomb, frictionless), then all x⁺, then all x⁻ (coulomb, bound), each in the
 //! order of the pairs. Only x_n and x⁺ are stored; x⁻ is the mirror of x⁺ (see `lcp::mirrored`), so the 3m rows of M

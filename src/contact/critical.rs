@@ -1,4 +1,4 @@
-//! Critical friction: how rough a structure may be before more than one answer is possible (theory §6).
+//! Critical friction: how rough a structure may be before more than one answer is possible (method §6).
 //!
 //! For every choice of states (open O, slip S with its sign σ, else stick) the block with rows R_n (O), R_τ (O), R_τ +
 //! σ f R_n (S) and columns z_n (O), z_τ (O ∪ S) must keep a positive determinant. It is a polynomial in the parameter;

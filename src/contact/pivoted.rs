@@ -5,7 +5,7 @@
 //!   S = D⁻¹ A D⁻¹ (D powers of two near √A_ii, so that S has the digits of A),   P S Pᵀ = L Lᵀ + [0 0; 0 Σ]
 //! ```
 //! A vector z counts as null only if every |(A z)_i| ≤ 64 ε Σ_k |A_ik||z_k|: what the digits of A cannot tell from 0. A
-//! ratio to the largest eigenvalue says nothing: diag(1e9, 1e-3) is regular (theory §4, "The kernel of R is known").
+//! ratio to the largest eigenvalue says nothing: diag(1e9, 1e-3) is regular (method §2).
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

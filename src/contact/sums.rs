@@ -1,7 +1,7 @@
 //! Forces and reserves of a state, each with the magnitudes of the terms it was summed from.
 //!
 //! A value computed as a sum is known to a few ε of the sum of the magnitudes of its terms, whatever the largest force,
-//! bound or stiffness elsewhere (theory §4, "No tolerance without a source"). Everything that asks whether a force, a
+//! bound or stiffness elsewhere (method §4, "Zero"). Everything that asks whether a force, a
 //! reserve or a displacement is zero or negative asks here.
 
 use nalgebra::DVector;

@@ -48,7 +48,7 @@ pub struct ContactSystem {
     /// The m pairs.
     pub pairs: Vec<ContactPair>,
     /// R, k × k, symmetric, positive semidefinite: what answers are checked against. Of a structure its kernel is exact
-    /// (theory, "Numerics that matter"); of a file it stands as given.
+    /// (method §4, "Zero"); of a file it stands as given.
     pub stiffness: DMatrix<f64>,
     /// RF per load case.
     pub loads: Vec<JointLoad>,

@@ -1,4 +1,4 @@
-//! The contact problem as one LCP with every row written out (theory §3), in any number type.
+//! The contact problem as one LCP with every row written out (method §3), in any number type.
 //!
 //! Coulomb, with f and c diagonal, laws mixed pair by pair:
 //!
@@ -178,7 +178,7 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
     Lcp { matrix, q, covering: cover, scale }
 }
 
-/// d_n or d_τ of a row (theory §4, "Coverings").
+/// d_n or d_τ of a row (method §4).
 fn covering_entry<T: Scalar>(input: &WholeInput, row: RowMeaning, covering: Covering) -> T {
     let law = &input.system.pairs[row.pair].law;
     if row.couple == Couple::Normal || !matches!(law, Law::Coulomb { .. }) {

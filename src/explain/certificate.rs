@@ -8,7 +8,7 @@
 //! The second line is the Farkas alternative: on ζ every admissible λ takes at most Σ c |ζ_τ|, and the loads do more.
 //!
 //! The motion looked for is the one with the largest least margin: the signs of such a motion have room, so that f64
-//! sums with the bounds of their rounding prove them (theory §4, "The certificate, fast"). Where a part is confined
+//! sums with the bounds of their rounding prove them (method §4, "Rays"). Where a part is confined
 //! on both sides no motion has room everywhere: then the inequalities that must hold as equations are found, solved in
 //! rationals, and every sign that has no room is evaluated exactly. A linear program only *proposes*; no verified
 //! motion, no certificate.

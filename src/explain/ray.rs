@@ -1,4 +1,4 @@
-//! Rays: class by the signs of theory §4, verdict, the motion in words and the work of the loads on it. Never more than
+//! Rays: class by the signs of method §4, verdict, the motion in words and the work of the loads on it. Never more than
 //! was proved.
 
 use std::ops::ControlFlow;

@@ -27,7 +27,7 @@ const ROW: f64 = 4.0 * f64::EPSILON;
 /// The same in doubled precision.
 const DOUBLED_ROW: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 
-/// The same of a row of R z with z from an LCP (theory, "Zero test").
+/// The same of a row of R z with z from an LCP (method §4, "Zero").
 const JOINT_ROW: f64 = 64.0 * f64::EPSILON;
 
 impl MainSystem {

@@ -7,7 +7,7 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
 /// Lets faer compute on one thread, so that the bits of a result do not depend on the number of threads; parallel
-/// factorizations of the sizes met here are no faster (theory §5).
+/// factorizations of the sizes met here are no faster (method §5).
 pub(crate) fn compute_sequentially() {
     faer::set_global_parallelism(Par::Seq);
 }

@@ -2,7 +2,7 @@
 //!
 //! w = M z + q + d p. p enters first, at the smallest value for which w ≥ 0 with z = 0; then the complement of
 //! what left enters, until p leaves (normal end) or nothing blocks (ray). One dictionary of N rows carries the
-//! run ([`super::dictionary`]); zero tests are scaled (theory §4, "Numerics that matter").
+//! run ([`super::dictionary`]); zero tests are scaled (method §4, "Zero").
 
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -5,7 +5,7 @@
 //!   w_i' = 2 f_i w_n(i) + b_i + e_i p − w_i          mirror of row i (not every row has one)
 //!   column of z_i' = −(column of z_i)
 //! ```
-//! For a Coulomb pair w_i = x⁺, w_i' = x⁻, w_n = x_n, b = 2c, e = 2(d_τ − f d_n) (theory §5): so 2m rows carry
+//! For a Coulomb pair w_i = x⁺, w_i' = x⁻, w_n = x_n, b = 2c, e = 2(d_τ − f d_n) (method §5): so 2m rows carry
 //! all of the 3m-row LCP (8). A plain LCP is the case without mirrors.
 
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 //! t enters first and rises; where a variable reaches zero (a *knot*) it leaves, its complement enters, and t goes
 //! on with it. Between knots every variable is affine in t. d is the increment of the load and has any sign, so the
 //! mirrors must not cover (e ≥ 0 only where a bound grows with t). The rule for ties is the lexicographic one, so
-//! that starts from zero load, where everything is degenerate, end as well (theory §6, "Load parameter").
+//! that starts from zero load, where everything is degenerate, end as well (method §6).
 
 mod friction;
 mod path;

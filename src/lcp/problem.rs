@@ -1,6 +1,6 @@
 //! The whole LCP written out: w = M z + q + d p, w ≥ 0, z ≥ 0, wᵀz = 0.
 
-/// A value or rate counts as zero below this multiple of its natural size (theory: 64 … 256 ε), see [`Scale`].
+/// A value or rate counts as zero below this multiple of its natural size (method §4, "Zero"), see [`Scale`].
 pub const NOISE: f64 = 256.0 * f64::EPSILON;
 /// Rounds of equilibration: the logarithms of the factors come twice as near in each.
 const EQUILIBRATIONS: usize = 8;
@@ -11,7 +11,7 @@ pub const MARGINAL: f64 = 1e-12;
 /// 256 ε · `row`_i · Σ_k `column`_k |Δz_k|.
 ///
 /// For contact `row`_i = √R_ii (friction-weighted for the reserves) and `column`_k = √R_kk, i.e. R scaled to
-/// unit diagonal (theory §4); for a plain LCP see [`Scale::plain`].
+/// unit diagonal (method §4); for a plain LCP see [`Scale::plain`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     /// One entry per row of the LCP.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// Covering vector d of a contact LCP (theory §4).
+/// Covering vector d of a contact LCP (method §4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Covering {
     /// (d_n, d_τ) = (1, 1 + f): tightening weight and an equal extra cohesion.
@@ -70,7 +70,7 @@ impl Rules {
         [self.covering.to_string(), self.tie_break.to_string(), self.engine.to_string()]
     }
 
-    /// Whether covering and tie-break are the defaults: only then a failed run is retried (theory §4).
+    /// Whether covering and tie-break are the defaults: only then a failed run is retried (method §4).
     pub fn are_default(&self) -> bool {
         self.covering == Covering::default() && self.tie_break == TieBreak::default()
     }

@@ -1,5 +1,5 @@
 //! The answer followed over a friction coefficient: the intervals in which one working scheme holds, their ends by
-//! safeguarded root search on the exact dependence (theory §6, "Friction parameter").
+//! safeguarded root search on the exact dependence (method §6).
 //!
 //! Within a scheme every variable is a rational function of f. Its values and slopes at both ends of a step and its
 //! value in the middle tell whether a cubic stands for it; then a zero inside the step shows, and is found on the

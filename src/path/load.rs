@@ -1,5 +1,5 @@
 //! The answer followed over the factor of a load case: every breakpoint exact, the end a target, a turning point or
-//! the limit load (theory §6, "Load parameter").
+//! the limit load (method §6).
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

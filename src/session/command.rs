@@ -4,6 +4,9 @@
 //! [`GROUPS`](super::help::GROUPS), and its arm in `apply`. Completion, hints and help follow from the grammar: the `value_name` of an
 //! argument says what may stand there (see [`super::complete`]).
 
+// The comments of variants are help texts: `z[NAME]` in them is no link.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 use std::path::PathBuf;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};

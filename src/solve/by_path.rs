@@ -1,5 +1,5 @@
 //! The retry that does not start from the load: from zero load, where nothing is violated, the answer is followed
-//! along the growing load (theory §4, "fault").
+//! along the growing load (method §4, "Rays").
 
 use std::ops::ControlFlow;
 

@@ -1,4 +1,4 @@
-//! What follows a run that ended badly: proofs, retries under other rules, and the words for both (theory §4).
+//! What follows a run that ended badly: proofs, retries under other rules, and the words for both (method §4).
 //!
 //! Under the default rules a run that is no answer and not certified to have none is tried again: exact arithmetic
 //! first, then other coverings and ties, then, where they are few, all working schemes. An answer found this way is

@@ -1,4 +1,4 @@
-//! Warm start: the last answer followed along a change of its numbers in a kept dictionary (theory §5).
+//! Warm start: the last answer followed along a change of its numbers in a kept dictionary (method §5).
 //!
 //! Loads, gaps, cohesions and bounds only move q: the answer is followed along the change, pivot by pivot. Friction
 //! is in the matrix: the dictionary stays that of the friction it was built for, and the difference of the bounds,

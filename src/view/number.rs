@@ -1,7 +1,7 @@
 //! Numbers as an engineer reads them.
 
 /// Largest share of a column's largest entry that is rounding noise and shown as 0. The smallest difference the
-/// solver tells apart in a load is 1e-10 of it (theory §4).
+/// solver tells apart in a load is 1e-10 of it (method §4).
 const NOISE: f64 = 1e-12;
 
 /// Five significant digits; exponents are multiples of three and appear below 0.1 and from 1e5 on:

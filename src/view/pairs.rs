@@ -10,7 +10,7 @@ use crate::answer::record::{PairState, State};
 use crate::model::scenario::Units;
 
 /// State of a pair in words; an open pair that cohesion (or p) still holds says so: `open (held)`,
-/// `open (slip +)` (theory §4).
+/// `open (slip +)` (method §4).
 pub fn state_words(pair: &PairState) -> &'static str {
     match (pair.state, pair.held) {
         (State::Open, Some(State::Stick)) => "open (held)",

@@ -1,4 +1,4 @@
-//! Load history with memory: the stages of a scenario followed one after the other (theory §6, "Load history").
+//! Load history with memory: the stages of a scenario followed one after the other (method §6).
 //!
 //! Eq. (8) relates the *total* slip to the force, which is right for one monotone loading from the unloaded state. A
 //! history is followed event by event instead: at each state the rate problem gives the rates of all displacements

@@ -1,4 +1,4 @@
-//! The rate problem (theory §6, "Load history"): where the loads go on at a rate, the rates of all joints.
+//! The rate problem (method §6): where the loads go on at a rate, the rates of all joints.
 //!
 //! ```text
 //!   λ̇ = R ż + Ḟ
