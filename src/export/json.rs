@@ -130,7 +130,11 @@ pub fn reactions(answer: &Answer) -> Value {
 /// A record as a value, −0 written as 0. The records hold strings, numbers and lists only, with string keys:
 /// serde_json has no way to fail on them.
 pub(super) fn value(record: &impl Serialize) -> Value {
-    let mut value = serde_json::to_value(record).unwrap_or(Value::Null);
+    without_signed_zeros(serde_json::to_value(record).unwrap_or(Value::Null))
+}
+
+/// A value with −0 as 0.
+pub fn without_signed_zeros(mut value: Value) -> Value {
     unsign_zeros(&mut value);
     value
 }

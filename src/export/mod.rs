@@ -1,4 +1,4 @@
-//! Results for other programs: JSON, CSV, and writing a file so that a crash never leaves half of one.
+//! Results for other programs: JSON, CSV, meshes, and writing a file so that a crash never leaves half of one.
 
 pub mod atomic;
 pub mod csv;
@@ -6,6 +6,8 @@ pub mod history;
 pub mod json;
 pub mod lcp;
 pub mod path;
+pub mod table;
+pub mod vtu;
 
 #[cfg(test)]
 mod tests;

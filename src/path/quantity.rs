@@ -9,7 +9,7 @@ use super::limit;
 use super::stages::History;
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{Answer, MemberForces, NodeDisplacement, PairState, Reaction};
-use crate::fem::{Displacements, MainSystem};
+use crate::fem::{Displacements, MainSystem, MembraneStress, NodeStress};
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::{BarPlace, Over, Quantity, ResultantPart, fits};
 use crate::model::scenario::Scenario;
@@ -63,6 +63,22 @@ impl fmt::Display for NoValue {
 
 fn none<T>(why: impl Into<String>) -> Result<T, NoValue> {
     Err(NoValue(why.into()))
+}
+
+/// A state over the whole structure: at every node, in every element and pair.
+pub struct Field<'a> {
+    /// The structure.
+    pub structure: &'a Structure,
+    /// (u_x, u_y, rotation) of every node.
+    pub displacements: &'a [[f64; 3]],
+    /// At the nodes of membranes.
+    pub node_stresses: Vec<NodeStress>,
+    /// At the centres of membranes.
+    pub element_stresses: Vec<MembraneStress>,
+    /// Of the bars, element by element.
+    pub members: &'a [MemberForces],
+    /// The pairs, in the order of the structure.
+    pub pairs: &'a [PairState],
 }
 
 /// What quantities are read from: one state of the structure, and what else is known around it.
@@ -397,13 +413,32 @@ impl<'a> Facts<'a> {
         Ok(u.0[self.node(node)?][component])
     }
 
-    fn of_bar(&self, word: &str, bar: &str, place: BarPlace) -> Result<f64, NoValue> {
+    fn members(&self) -> Result<&[MemberForces], NoValue> {
         let (_, u) = (self.structure()?, self.displacements()?);
-        let members = self.members.get_or_init(|| {
+        Ok(self.members.get_or_init(|| {
             let at_end = self.answer.filter(|_| self.at_end).and_then(|answer| answer.members.clone());
             at_end.or_else(|| self.prepared?.members(u, &self.factors)).unwrap_or_default()
-        });
-        let diagram = Diagram::of(members, bar).ok_or_else(|| self.missing())?;
+        }))
+    }
+
+    /// The state over the whole structure.
+    ///
+    /// # Errors
+    /// No structure, or no displacements.
+    pub fn field(&self) -> Result<Field<'_>, NoValue> {
+        let ((structure, main), u) = (self.structure()?, self.displacements()?);
+        Ok(Field {
+            structure,
+            displacements: &u.0,
+            node_stresses: main.node_stresses(structure, u, &self.factors),
+            element_stresses: main.element_stresses(structure, u, &self.factors),
+            members: self.members()?,
+            pairs: self.pairs,
+        })
+    }
+
+    fn of_bar(&self, word: &str, bar: &str, place: BarPlace) -> Result<f64, NoValue> {
+        let diagram = Diagram::of(self.members()?, bar).ok_or_else(|| self.missing())?;
         let which = match word {
             "N" => Internal::Axial,
             "Q" => Internal::Shear,
@@ -521,8 +556,11 @@ pub fn of_pair(word: &str, pair: &PairState) -> f64 {
     }
 }
 
-/// One number of (σ_xx, σ_yy, σ_xy, σ_zz).
-fn of_stress(word: &str, [x, y, xy, z]: [f64; 4]) -> f64 {
+/// The words of stresses.
+pub const STRESSES: [&str; 6] = ["sx", "sy", "sxy", "s1", "s2", "mises"];
+
+/// One number of (σ_xx, σ_yy, σ_xy, σ_zz), by its word.
+pub fn of_stress(word: &str, [x, y, xy, z]: [f64; 4]) -> f64 {
     let (middle, radius) = (0.5 * (x + y), (0.5 * (x - y)).hypot(xy));
     match word {
         "sx" => x,

@@ -17,7 +17,7 @@ use crate::view::number::short;
 use crate::view::status;
 use crate::view::style::Role;
 
-use super::command::{Command, Export};
+use super::command::Command;
 use super::expect;
 use super::journal::Record;
 use super::values::{self, Setting};
@@ -71,9 +71,7 @@ impl Session {
             Command::Source { file } => return script::source(self, &file, io),
             Command::Record { file } => self.record(&file, io)?,
             Command::Expect { words } => self.expect(&words, io)?,
-            Command::Export { what: Export::Path, file } => self.export_path(&file, io)?,
-            Command::Export { what: Export::Lcp, file } => self.export_lcp(&file, io)?,
-            Command::Export { what, file } => self.export(what, &file, io)?,
+            Command::Export { what, words } => self.export(what, &words, io)?,
             Command::Import { file } => {
                 let (written, rows) = import::import(&file)?;
                 io.say(&format!("wrote {}: an LCP of {rows} rows", written.display()))?;
@@ -152,6 +150,7 @@ impl Session {
         if !same_scenario {
             self.previous = None;
             self.path = None;
+            self.swept = None;
         }
         Ok(())
     }

@@ -343,21 +343,32 @@ pub enum Command {
         #[arg(value_name = "EXPECTATION", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
-    /// Write results, or the LCP, to a file
+    /// Write results, the mesh with its results, or the LCP, to a file
     ///
-    /// Results go to .csv or .json. `export lcp` writes M, q and the covering d, in the units of the scenario: to .json
-    /// as a scenario of this program, or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a
-    /// scenario reads M back with `"M": { "file": "FILE.mtx" }`.
+    /// Tables go to .csv or .json: `export WHAT [OF] FILE`, where OF are the quantities of `quantities` and `envelope`, or
+    /// the parameter of `sensitivity`. A table is what the command shows, at the pivot chosen by `step`, after `stages`
+    /// at the end of the history.
+    ///
+    /// `export vtu FILE.vtu` is the state shown for ParaView: the nodes with displacement, rotation and stress, the
+    /// elements with stress or N, Q, M, and a vertex for each pair with its state (0 open, 1 stick, 2 slip+, 3 slip-,
+    /// 4 closed) and the vectors of force, friction and slip. `export vtu FILE.pvd` is a series, of the moments of the
+    /// history after `stages`, else of the pivots: FILE-0000.vtu, FILE-0001.vtu … stand beside it.
+    ///
+    /// `export lcp` writes M, q and the covering d, in the units of the scenario: to .json as a scenario of this program,
+    /// or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a scenario reads M back with
+    /// `"M": { "file": "FILE.mtx" }`.
+    ///
+    /// A file that is there is replaced, whole or not at all; never the scenario itself.
     #[command(
-        after_help = "Example:\n  export pairs pairs.csv\n  export result answer.json\n  export lcp beam-lcp.json"
+        after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export result answer.json\n  export lcp beam-lcp.json"
     )]
     Export {
         /// What to write
         #[arg(value_name = "WHAT")]
         what: Export,
-        /// Its ending says the format: .csv, .json or .mtx
-        #[arg(value_name = "FILE")]
-        file: PathBuf,
+        /// Its ending says the format; of what stands before it
+        #[arg(value_name = "OF FILE", required = true, allow_negative_numbers = true)]
+        words: Vec<String>,
     },
     /// Turn an LCP of Siconos (FILE.dat: dense, sparse or in blocks) into a scenario
     ///
@@ -478,10 +489,38 @@ pub enum Export {
     Members,
     /// Reactions of supports and springs
     Reactions,
-    /// The whole result as `solve --format json` prints it
-    Result,
+    /// Stresses at the nodes of plates, quads and triangles
+    Stresses,
+    /// Resultants of the edge contacts
+    Resultants,
+    /// Quantities that are named
+    Quantities,
+    /// Probes of the scenario
+    Probes,
+    /// Parameters with their values and ranges
+    Parameters,
+    /// Load combinations
+    Combinations,
+    /// Least and largest value over the combinations
+    Envelope,
+    /// Every answer that `enumerate` finds
+    Answers,
+    /// Every covering, tie-break and engine
+    Compare,
+    /// What one more unit of a parameter does to the pairs
+    Sensitivity,
+    /// Stages of the history that `stages` followed
+    Stages,
     /// What the last `trace` or `stages` followed
     Path,
+    /// The last `sweep` that was shown
+    Sweep,
+    /// What `summary` shows
+    Summary,
+    /// The whole result as `solve --format json` prints it
+    Result,
+    /// The structure with its results, for ParaView
+    Vtu,
     /// The LCP for other solvers: a scenario of its own (.json) or Matrix Market (.mtx)
     Lcp,
 }

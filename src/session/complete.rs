@@ -198,6 +198,7 @@ fn usage(name: &str) -> String {
         "step" => return "[N|back N|to K|first|last]".to_owned(),
         "pairs" => return "[PAIR…] [sort KEY]".to_owned(),
         "pivots" => return "[FROM..TO]".to_owned(),
+        "export" => return "WHAT [OF] FILE".to_owned(),
         _ => {}
     }
     let words: Vec<String> = command
@@ -317,6 +318,16 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             },
             _ => Vec::new(),
         },
+        "OF FILE" => {
+            let (what, of) = given.split_first().map_or(("", given), |(what, of)| (what.as_str(), of));
+            let mut all = files(word);
+            all.extend(match what {
+                "quantities" | "envelope" => plain(&quantities::next_names(of, vocabulary)),
+                "sensitivity" => parameters(),
+                _ => Vec::new(),
+            });
+            all
+        }
         "TRACED" | "LOAD" => {
             let mut all = parameters();
             all.extend(vocabulary.cases.iter().map(|case| candidate(case, "load case")));

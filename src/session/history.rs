@@ -142,7 +142,7 @@ impl Session {
     }
 }
 
-fn history_json(history: &History) -> Value {
+pub(super) fn history_json(history: &History) -> Value {
     let stages = history.stages.iter().map(|stage| {
         let changes = stage.moments.iter().filter(|at| !at.changes.is_empty()).map(|at| {
             json!({

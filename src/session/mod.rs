@@ -41,6 +41,7 @@ pub use crate::answer::record as results;
 pub use crate::answer::record::Answer;
 use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
 pub use crate::explain::remedy::Remedies;
+use crate::export::table::Table;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
@@ -138,6 +139,8 @@ pub struct Session {
     depth: usize,
     /// What the last `trace` or `stages` followed.
     path: Option<Arc<PathRecord>>,
+    /// The table of the last `sweep` that was shown.
+    swept: Option<Arc<Table>>,
     /// What would stop the collapse of this answer, once it was looked for.
     remedies: Option<(Arc<Solved>, Arc<Remedies>)>,
     /// The load history that quantities mean, until the next change or `solve`.
@@ -196,6 +199,7 @@ impl Session {
             trouble: None,
             depth: 0,
             path: None,
+            swept: None,
             remedies: None,
             followed: None,
             combination: None,

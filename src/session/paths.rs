@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use crate::export::{atomic, path as path_export};
+use crate::export::atomic;
+use crate::export::table::Table;
 use crate::model::quantity::{self, Quantity};
 use crate::path::friction::{self, is_friction};
 use crate::path::grid::{Axis, Grid, GridError, POINTS};
@@ -245,6 +246,23 @@ impl Session {
         found.map_err(|error| CommandError::Refused(format!("sweep: {error}")))
     }
 
+    /// What quantities are read from at a place of a path.
+    pub(super) fn with_place<T>(
+        &self,
+        prepared: &Prepared,
+        path: &PathRecord,
+        place: &PathPlace,
+        watch: &dyn Watch,
+        read: impl FnOnce(&Facts<'_>) -> T,
+    ) -> T {
+        let mut values = self.now.values.clone();
+        if path.followed != Followed::Stages && values.contains_key(&path.name) {
+            values.insert(path.name.clone(), place.value);
+        }
+        let factors = if place.factors.is_empty() { factors(prepared, &values) } else { place.factors.clone() };
+        read(&Facts::of_state(&self.now.scenario, prepared, &values, factors, &place.pairs, watch))
+    }
+
     /// The values of a quantity at the places of a path; `None` where it has none.
     fn along(
         &self,
@@ -253,16 +271,8 @@ impl Session {
         quantity: &Quantity,
         watch: &dyn Watch,
     ) -> Vec<Option<f64>> {
-        let value = |place: &PathPlace| {
-            let mut values = self.now.values.clone();
-            if path.followed != Followed::Stages && values.contains_key(&path.name) {
-                values.insert(path.name.clone(), place.value);
-            }
-            let factors = if place.factors.is_empty() { factors(prepared, &values) } else { place.factors.clone() };
-            let facts = Facts::of_state(&self.now.scenario, prepared, &values, factors, &place.pairs, watch);
-            facts.value(quantity).ok()?.number()
-        };
-        path.places.iter().map(value).collect()
+        let number = |facts: &Facts<'_>| facts.value(quantity).ok()?.number();
+        path.places.iter().map(|place| self.with_place(prepared, path, place, watch, number)).collect()
     }
 
     /// The table of `trace … of`: as JSON and as rows.
@@ -329,6 +339,7 @@ impl Session {
                 columns.iter().map(|name| row.get(name).cloned().unwrap_or_default()).collect()
             })
             .collect();
+        let table = Arc::new(Table { columns: columns.clone(), rows: rows.clone() });
         io.report(
             || json!({"columns": columns, "rows": rows, "complete": done.is_complete()}),
             |out, style| {
@@ -339,6 +350,7 @@ impl Session {
                 Ok(())
             },
         )?;
+        self.swept = Some(table);
         Ok(())
     }
 
@@ -399,21 +411,7 @@ impl Session {
         Ok(())
     }
 
-    /// `export path FILE`.
-    pub(super) fn export_path(&self, file: &Path, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let path = self.need_path()?;
-        let written = match format_of(file)? {
-            Format::Csv => atomic::write(file, |out| path_export::csv(out, path)),
-            Format::Json => atomic::write(file, |out| {
-                let text = crate::export::json::pretty(path)?;
-                writeln!(out, "{text}")
-            }),
-        };
-        written.map_err(|error| CommandError::Refused(error.to_string()))?;
-        Ok(io.say(&format!("wrote {}", file.display()))?)
-    }
-
-    fn need_path(&self) -> Result<&PathRecord, CommandError> {
+    pub(super) fn need_path(&self) -> Result<&PathRecord, CommandError> {
         self.path.as_deref().ok_or_else(|| {
             CommandError::Refused(
                 "no path was followed yet: `trace CASE`, `trace FRICTION`, `limit CASE` or `stages`".into(),

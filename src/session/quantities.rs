@@ -9,6 +9,7 @@ use crate::view;
 use crate::view::style::Style;
 use crate::watch::{Quiet, Watch};
 
+use super::exports::tables::stress_rows;
 use super::{CommandError, Output, Session};
 
 impl Session {
@@ -98,18 +99,28 @@ impl Session {
         Some(self.with_probes(result))
     }
 
-    /// A result with the probes and resultants of what quantities mean now.
+    /// A result with the probes, resultants and stresses of what quantities mean now, and its notes.
     pub fn with_probes(&self, mut result: Json) -> Json {
-        let is_answer = self.quantity_answer().is_some_and(crate::answer::record::Answer::is_answer);
-        let (probes, resultants) = self.with_facts(&Quiet, |facts| {
-            (self.probe_values(facts), if is_answer { self.resultants(facts) } else { Vec::new() })
+        let answer = self.quantity_answer();
+        let is_answer = answer.is_some_and(crate::answer::record::Answer::is_answer);
+        let (probes, resultants, stresses) = self.with_facts(&Quiet, |facts| {
+            let resultants = if is_answer { self.resultants(facts) } else { Vec::new() };
+            let stresses = if is_answer { stress_rows(facts).unwrap_or_default() } else { Vec::new() };
+            (self.probe_values(facts), resultants, stresses)
         });
+        let notes = answer.map_or(&[][..], |answer| &answer.notes);
         if let Json::Object(object) = &mut result {
             if !probes.is_empty() {
                 object.insert("probes".into(), Json::Object(probes));
             }
             if !resultants.is_empty() {
                 object.insert("resultants".into(), json!(resultants));
+            }
+            if !stresses.is_empty() {
+                object.insert("stresses".into(), json_export::without_signed_zeros(stresses.into()));
+            }
+            if !notes.is_empty() {
+                object.insert("notes".into(), json!(notes));
             }
         }
         result
