@@ -329,7 +329,7 @@ impl Sides {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::mesh::{GridLines, PlateGrid};
+    use crate::model::grid::{GridLines, PlateGrid};
     use crate::model::structure::Plane;
 
     fn graded(rotation: f64) -> (Vec<Node>, Plate, Vec<Element>) {

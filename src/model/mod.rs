@@ -1,17 +1,17 @@
 //! What the user describes: scenario file → checked scenario. No linear algebra.
 //!
-//! `load` (text) → `locate` (tree with places) → `decode` (typed, all problems in one pass; `mesh`, `edge` make
+//! `load` (text) → `locate` (tree with places) → `decode` (typed, all problems in one pass; `grid`, `edge` make
 //! plates) → `scenario` (what everything later works on).
 
 mod decode;
 pub mod edge;
 pub mod embedded;
 pub mod expression;
+pub mod grid;
 pub mod jet;
 pub mod load;
 pub mod locate;
 pub(crate) mod memory;
-pub mod mesh;
 pub mod pair;
 pub mod parameter;
 pub mod problem;

@@ -8,8 +8,8 @@ use super::reader::{Cursor, Fields};
 use super::single_elements::{quad, triangle};
 use super::structure::{Builder, Section};
 use super::words::{ID_RULE, is_id, quoted};
+use crate::model::grid::PlateGrid;
 use crate::model::memory;
-use crate::model::mesh::PlateGrid;
 use crate::model::structure::{Element, Material, Plate, Structure};
 
 /// Reads a single element and its id.

@@ -3,7 +3,7 @@
 use super::elements::{id_of, material_of};
 use super::reader::{Cursor, Fields};
 use super::structure::Builder;
-use crate::model::mesh::{GridLines, PlateGrid};
+use crate::model::grid::{GridLines, PlateGrid};
 use crate::model::structure::Plane;
 
 /// Reads one plate.
