@@ -5,6 +5,7 @@ pub mod csv;
 pub mod history;
 pub mod json;
 pub mod lcp;
+pub mod mesh;
 pub mod path;
 pub mod table;
 pub mod vtu;

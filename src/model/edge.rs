@@ -245,9 +245,12 @@ impl Edge {
     }
 }
 
-/// Sides of all membrane elements by their two corner nodes, to find chains of them.
+/// Sides of plane elements by their two corner nodes, to find chains of them.
+#[derive(Default)]
 pub struct Sides {
     by_corners: std::collections::HashMap<(usize, usize), Vec<EdgeSide>>,
+    /// Corners of the side that has this node in its middle.
+    by_middle: std::collections::HashMap<usize, (usize, usize)>,
 }
 
 /// Why nodes do not make an edge.
@@ -266,20 +269,44 @@ pub enum ChainError {
 impl Sides {
     /// Of all membrane elements.
     pub fn of(elements: &[Element]) -> Sides {
-        let mut by_corners: std::collections::HashMap<(usize, usize), Vec<EdgeSide>> = Default::default();
-        for (element, data) in elements.iter().enumerate() {
-            if !matches!(data.kind, ElementKind::Membrane { .. }) {
-                continue;
-            }
-            let corners = data.corners();
-            for k in 0..corners {
-                let ends = [data.nodes[k], data.nodes[(k + 1) % corners]];
-                let middle = (data.nodes.len() > corners).then(|| data.nodes[corners + k]);
-                let key = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-                by_corners.entry(key).or_default().push(EdgeSide { element, ends, middle, reversed: false });
+        let mut sides = Sides::default();
+        for (index, element) in elements.iter().enumerate() {
+            if matches!(element.kind, ElementKind::Membrane { .. }) {
+                sides.add(index, element.corners(), &element.nodes);
             }
         }
-        Sides { by_corners }
+        sides
+    }
+
+    /// Adds those of an element: nodes counter-clockwise, corners first.
+    pub fn add(&mut self, element: usize, corners: usize, nodes: &[usize]) {
+        for k in 0..corners {
+            let ends = [nodes[k], nodes[(k + 1) % corners]];
+            let middle = nodes.get(corners + k).copied();
+            let key = key(ends);
+            if let Some(middle) = middle {
+                self.by_middle.insert(middle, key);
+            }
+            self.by_corners.entry(key).or_default().push(EdgeSide { element, ends, middle, reversed: false });
+        }
+    }
+
+    /// The sides between two corners: two inside a body, one on its boundary.
+    pub fn at(&self, ends: [usize; 2]) -> &[EdgeSide] {
+        self.by_corners.get(&key(ends)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The corners of the side with this node in its middle.
+    pub fn with_middle(&self, node: usize) -> Option<[usize; 2]> {
+        self.by_middle.get(&node).map(|&(a, b)| [a, b])
+    }
+
+    /// The sides of one element only, in the order of elements, each in the sense of its element.
+    pub fn boundary(&self) -> Vec<EdgeSide> {
+        let single = self.by_corners.values().filter_map(|sides| <[EdgeSide; 1]>::try_from(&sides[..]).ok());
+        let mut boundary: Vec<EdgeSide> = single.flatten().collect();
+        boundary.sort_unstable_by_key(|side| (side.element, side.ends));
+        boundary
     }
 
     /// The chain through `nodes`: corners in order; middles of quadratic sides may be named between them.
@@ -319,11 +346,16 @@ impl Sides {
 
     /// The side from `a` to `b`, if there is one.
     fn between(&self, a: usize, b: usize) -> Option<Result<EdgeSide, ChainError>> {
-        match &self.by_corners.get(&(a.min(b), a.max(b)))?[..] {
+        match self.at([a, b]) {
+            [] => None,
             [side] => Some(Ok(EdgeSide { ends: [a, b], reversed: side.ends[0] != a, ..*side })),
             _ => Some(Err(ChainError::Inside([a, b]))),
         }
     }
+}
+
+fn key([a, b]: [usize; 2]) -> (usize, usize) {
+    (a.min(b), a.max(b))
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ pub mod jet;
 pub mod load;
 pub mod locate;
 pub(crate) mod memory;
+pub mod mesh;
 pub mod pair;
 pub mod parameter;
 pub mod problem;

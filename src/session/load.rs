@@ -4,6 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::model::load;
+use crate::model::mesh::overview::Overview;
+use crate::model::mesh::{self, Mesh};
 use crate::model::problem::Problems;
 use crate::model::scenario::Scenario;
 use crate::text::file;
@@ -42,6 +44,20 @@ pub fn stdin(watch: &dyn Watch) -> Result<Scenario, CommandError> {
 pub fn file(path: &Path, watch: &dyn Watch) -> Result<Scenario, CommandError> {
     let path = path.to_owned();
     on_a_thread(watch, move || load::load_file(&path))
+}
+
+/// A mesh file by itself, and what it holds.
+///
+/// # Errors
+/// What is wrong with it, an interruption.
+pub fn mesh(word: &str, watch: &dyn Watch) -> Result<(Mesh, Overview), CommandError> {
+    let word = word.to_owned();
+    let read = worker::run(watch, move |_| {
+        let mesh = mesh::read(Path::new(&word), &word).map_err(|found| mesh::as_problems(&word, found))?;
+        let overview = Overview::of(&mesh);
+        Ok((mesh, overview))
+    });
+    read?.map_err(CommandError::Scenario)
 }
 
 /// The text of a script; `None` for stdin.

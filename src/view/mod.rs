@@ -11,6 +11,7 @@ pub mod enumerate;
 pub mod exact;
 pub mod loose;
 pub mod members;
+pub mod mesh;
 pub mod number;
 pub mod pairs;
 pub mod parameters;

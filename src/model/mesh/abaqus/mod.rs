@@ -1,0 +1,419 @@
+//! The mesh of an .inp file of Abaqus or CalculiX: nodes, elements, sets and surfaces. What else the file says to a
+//! solver is left alone.
+//!
+//! Abaqus Keywords Reference Guide; CalculiX CrunchiX User's Manual, ch. 7.
+
+mod cards;
+mod sets;
+mod types;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::assemble::{RawGroup, RawMembers, RawMesh};
+use super::{MeshProblem, Place, Shape};
+use crate::model::words::quoted;
+use cards::{Card, Cards, Keyword, number, whole};
+use sets::Sets;
+use types::ElementType;
+
+/// What the data lines that come next belong to.
+enum Mode {
+    Skip,
+    Nodes { set: Option<usize> },
+    Elements { kind: ElementType, set: Option<usize> },
+    NodeSet { set: usize, generate: bool },
+    ElementSet { set: usize, generate: bool },
+    Surface { surface: usize },
+    Instance,
+}
+
+struct Surface {
+    name: String,
+    place: Place,
+    of_nodes: bool,
+    /// A set or a number, the face, and where it stands.
+    items: Vec<(String, Option<String>, Place)>,
+}
+
+struct Reader<'a> {
+    cards: Cards<'a>,
+    mesh: RawMesh,
+    node_sets: Sets,
+    element_sets: Sets,
+    surfaces: Vec<Surface>,
+    mode: Mode,
+    /// An element whose nodes go on in the next line: number, nodes so far, place.
+    begun: Option<(u64, Vec<u64>, Place)>,
+    parts: usize,
+    instances: usize,
+}
+
+/// Reads a file.
+pub fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<RawMesh, MeshProblem> {
+    let mut mesh = RawMesh::new(name, "Abaqus/CalculiX".into());
+    mesh.ignores_case = true;
+    let mut reader = Reader {
+        cards: Cards::new(bytes, name, folder),
+        mesh,
+        node_sets: Sets::new("the node set"),
+        element_sets: Sets::new("the element set"),
+        surfaces: Vec::new(),
+        mode: Mode::Skip,
+        begun: None,
+        parts: 0,
+        instances: 0,
+    };
+    let mut has_keyword = false;
+    while let Some(card) = reader.cards.next() {
+        match card {
+            Card::Keyword(keyword) => {
+                has_keyword = true;
+                reader.end_of_data()?;
+                reader.keyword(&keyword)?;
+                reader.mesh.files.clone_from(&reader.cards.files);
+            }
+            Card::Data { place, .. } if !has_keyword => {
+                return Err(reader.cards.problem(
+                    place,
+                    "expected a keyword like *NODE",
+                    "this is no input file of Abaqus or CalculiX, or its beginning is missing",
+                ));
+            }
+            Card::Data { fields, goes_on, place } => reader.data(&fields, goes_on, place)?,
+        }
+    }
+    reader.end_of_data()?;
+    reader.mesh.files.clone_from(&reader.cards.files);
+    reader.groups()?;
+    Ok(reader.mesh)
+}
+
+impl Reader<'_> {
+    fn end_of_data(&mut self) -> Result<(), MeshProblem> {
+        let Some((tag, nodes, place)) = self.begun.take() else { return Ok(()) };
+        Err(self.short_element(tag, nodes.len(), place))
+    }
+
+    fn short_element(&self, tag: u64, found: usize, place: Place) -> MeshProblem {
+        let expected = match &self.mode {
+            Mode::Elements { kind, .. } => kind.shape.nodes(),
+            _ => 0,
+        };
+        self.cards.problem(
+            place,
+            format!("element {tag} has {found} nodes, expected {expected}"),
+            "the line is cut off, or the type of the elements is another one",
+        )
+    }
+
+    fn keyword(&mut self, keyword: &Keyword) -> Result<(), MeshProblem> {
+        let place = keyword.place;
+        let refused = |message: &str, help: &str| Err(self.cards.problem(place, message, help));
+        let named = |key: &str| {
+            keyword.value(key).ok_or_else(|| {
+                self.cards.problem(place, format!("*{} without {key}=", keyword.name), format!("add {key}=…"))
+            })
+        };
+        self.mode = match keyword.name.as_str() {
+            "NODE" => {
+                if keyword.value("SYSTEM").is_some_and(|system| !system.eq_ignore_ascii_case("R")) {
+                    return refused(
+                        "coordinates that are not rectangular (SYSTEM=) are not read",
+                        "write x and y of every node",
+                    );
+                }
+                Mode::Nodes { set: keyword.value("NSET").map(|name| self.node_sets.open(name, place)) }
+            }
+            "ELEMENT" => {
+                let name = named("TYPE")?;
+                let kind =
+                    ElementType::named(name).map_err(|(message, help)| self.cards.problem(place, message, help))?;
+                Mode::Elements { kind, set: keyword.value("ELSET").map(|name| self.element_sets.open(name, place)) }
+            }
+            "NSET" => {
+                let set = self.node_sets.open(named("NSET")?, place);
+                if let Some(elements) = keyword.value("ELSET") {
+                    self.node_sets.push_elements(set, elements, place);
+                }
+                Mode::NodeSet { set, generate: keyword.has("GENERATE") }
+            }
+            "ELSET" => {
+                let set = self.element_sets.open(named("ELSET")?, place);
+                Mode::ElementSet { set, generate: keyword.has("GENERATE") }
+            }
+            "SURFACE" => self.surface(keyword)?,
+            "INCLUDE" => {
+                let file = named("INPUT")?.to_owned();
+                // Data lines before and after it belong together only within what it includes.
+                self.cards.include(&file, place)?;
+                return Ok(());
+            }
+            "PART" => {
+                self.parts += 1;
+                if self.parts > 1 {
+                    return refused(
+                        "a second *PART: their numbers repeat one another",
+                        "write a file of its own for each part, or an input file without parts and assemblies",
+                    );
+                }
+                Mode::Skip
+            }
+            "INSTANCE" => {
+                self.instances += 1;
+                if self.instances > 1 {
+                    return refused(
+                        "a second *INSTANCE: its numbers are those of the first one",
+                        "write a file of its own for each body, or an input file without parts and assemblies",
+                    );
+                }
+                Mode::Instance
+            }
+            "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SYSTEM" => {
+                return refused(
+                    &format!("*{} makes or moves nodes or elements and is not read", keyword.name),
+                    "write out all nodes and elements, in the coordinates of the model",
+                );
+            }
+            other => {
+                let structural = ["HEADING", "END PART", "ASSEMBLY", "END ASSEMBLY", "END INSTANCE", "PREPRINT"];
+                let shown = format!("*{}", quoted(other).trim_matches('"'));
+                if !structural.contains(&other) && !self.mesh.skipped.contains(&shown) && self.mesh.skipped.len() < 100
+                {
+                    self.mesh.skipped.push(shown);
+                }
+                Mode::Skip
+            }
+        };
+        if matches!(self.mode, Mode::Skip | Mode::Surface { .. } | Mode::Instance) {
+            return Ok(());
+        }
+        match keyword.value("INPUT") {
+            Some(file) => self.cards.include(file, place),
+            None => Ok(()),
+        }
+    }
+
+    fn surface(&mut self, keyword: &Keyword) -> Result<Mode, MeshProblem> {
+        let place = keyword.place;
+        let Some(name) = keyword.value("NAME") else {
+            return Err(self.cards.problem(place, "*SURFACE without NAME=", "add NAME=…"));
+        };
+        let of_nodes = match keyword.value("TYPE").map(str::to_ascii_uppercase).as_deref() {
+            None | Some("ELEMENT") => false,
+            Some("NODE") => true,
+            Some(_) => return Ok(Mode::Skip),
+        };
+        if keyword.has("COMBINE") {
+            return Ok(Mode::Skip);
+        }
+        self.surfaces.push(Surface { name: name.to_owned(), place, of_nodes, items: Vec::new() });
+        Ok(Mode::Surface { surface: self.surfaces.len() - 1 })
+    }
+
+    fn data(&mut self, fields: &[String], goes_on: bool, place: Place) -> Result<(), MeshProblem> {
+        match self.mode {
+            Mode::Skip => Ok(()),
+            Mode::Nodes { set } => self.node(fields, set, place),
+            Mode::Elements { set, .. } => self.element(fields, goes_on, set, place),
+            Mode::NodeSet { set, generate } => self.node_sets.read(set, generate, fields, place, &self.cards),
+            Mode::ElementSet { set, generate } => self.element_sets.read(set, generate, fields, place, &self.cards),
+            Mode::Surface { surface } => {
+                let mut fields = fields.iter().filter(|field| !field.is_empty());
+                if let Some(of) = fields.next() {
+                    let face = fields.next().map(|face| face.to_ascii_uppercase());
+                    self.surfaces[surface].items.push((of.clone(), face, place));
+                }
+                Ok(())
+            }
+            Mode::Instance if fields.iter().all(|field| number(field) == Some(0.0)) => Ok(()),
+            Mode::Instance => Err(self.cards.problem(
+                place,
+                "an *INSTANCE that is moved or turned is not read",
+                "write an input file without parts and assemblies, or give the part its place",
+            )),
+        }
+    }
+
+    fn node(&mut self, fields: &[String], set: Option<usize>, place: Place) -> Result<(), MeshProblem> {
+        let wrong = |what: &str, found: &str| {
+            self.cards.problem(
+                place,
+                format!("{what}, found {}", quoted(found)),
+                "a node is its number, x and y (and z), with commas between them",
+            )
+        };
+        let Some(tag) = fields.first().and_then(|field| whole(field)) else {
+            return Err(wrong("expected the number of a node", fields.first().map_or("", String::as_str)));
+        };
+        if fields.len() < 3 {
+            return Err(wrong(&format!("node {tag} has no x and y"), &fields.join(", ")));
+        }
+        let mut position = [0.0; 3];
+        for ((x, field), axis) in position.iter_mut().zip(&fields[1..]).zip(["x", "y", "z"]) {
+            *x = number(field).ok_or_else(|| wrong(&format!("node {tag}: {axis} is no number"), field))?;
+        }
+        self.mesh.add_node(tag, position, place)?;
+        if let Some(set) = set {
+            self.node_sets.push(set, tag, place);
+        }
+        Ok(())
+    }
+
+    fn element(
+        &mut self,
+        fields: &[String],
+        goes_on: bool,
+        set: Option<usize>,
+        place: Place,
+    ) -> Result<(), MeshProblem> {
+        let Mode::Elements { kind, .. } = self.mode else { return Ok(()) };
+        let mut numbers = Vec::with_capacity(fields.len());
+        for field in fields {
+            numbers.push(whole(field).ok_or_else(|| {
+                self.cards.problem(
+                    place,
+                    format!("expected the number of an element and those of its nodes, found {}", quoted(field)),
+                    "write whole numbers with commas between them",
+                )
+            })?);
+        }
+        let (tag, mut nodes, place) = match self.begun.take() {
+            Some((tag, mut nodes, first)) => {
+                nodes.extend(numbers);
+                (tag, nodes, first)
+            }
+            None => {
+                let Some((tag, nodes)) = numbers.split_first() else { return Ok(()) };
+                (*tag, nodes.to_vec(), place)
+            }
+        };
+        let expected = kind.shape.nodes();
+        if nodes.len() < expected && goes_on {
+            self.begun = Some((tag, nodes, place));
+            return Ok(());
+        }
+        if nodes.len() != expected {
+            return Err(self.short_element(tag, nodes.len(), place));
+        }
+        if kind.shape == Shape::Line3 {
+            // End, middle, end.
+            nodes.swap(1, 2);
+        }
+        self.mesh.add_element(tag, kind.shape, &nodes, place);
+        if kind.is_truss {
+            self.mesh.last_is_truss();
+        }
+        if let Some(set) = set {
+            self.element_sets.push(set, tag, place);
+        }
+        Ok(())
+    }
+
+    /// Sets and surfaces as groups.
+    fn groups(&mut self) -> Result<(), MeshProblem> {
+        let mut element_of = HashMap::new();
+        for index in 0..self.mesh.element_count() {
+            element_of.insert(self.mesh.element(index).0, index);
+        }
+        let mut tags: Vec<u64> = element_of.keys().copied().collect();
+        tags.sort_unstable();
+        let none = |_: &str, _: Place| Ok(Vec::new());
+        let members = sets::Members { sorted: &tags, of_elements: &none };
+        let element_sets = self.element_sets.resolved(&members, &self.cards)?;
+        let of_elements = |name: &str, place: Place| {
+            let Some(set) = self.element_sets.find(name) else {
+                let message = format!("the element set {} is not there", quoted(name));
+                return Err(self.cards.problem(place, message, "define it, or correct the name"));
+            };
+            Ok(element_sets[set].iter().flat_map(|tag| self.mesh.element(element_of[tag]).2.to_vec()).collect())
+        };
+        let mut tags: Vec<u64> = self.mesh.nodes.iter().map(|node| node.tag).collect();
+        tags.sort_unstable();
+        let members = sets::Members { sorted: &tags, of_elements: &of_elements };
+        let node_sets = self.node_sets.resolved(&members, &self.cards)?;
+        let mut groups: Vec<RawGroup> = Vec::new();
+        let mut push = |name: &str, place: Place, members: RawMembers| {
+            groups.push(RawGroup { dimension: 0, number: 0, name: Some(name.to_owned()), members, place });
+        };
+        for ((name, place), tags) in self.element_sets.names().zip(&element_sets) {
+            push(name, place, RawMembers::Elements(tags.iter().map(|tag| element_of[tag]).collect()));
+        }
+        for surface in &self.surfaces {
+            push(&surface.name, surface.place, self.surface_members(surface, &element_of, &element_sets, &node_sets)?);
+        }
+        for ((name, place), tags) in self.node_sets.names().zip(node_sets) {
+            push(name, place, RawMembers::NodeSet(tags));
+        }
+        self.mesh.groups = groups;
+        Ok(())
+    }
+
+    fn surface_members(
+        &self,
+        surface: &Surface,
+        element_of: &HashMap<u64, u32>,
+        element_sets: &[Vec<u64>],
+        node_sets: &[Vec<u64>],
+    ) -> Result<RawMembers, MeshProblem> {
+        let unknown = |what: &str, of: &str, place: Place| {
+            self.cards.problem(
+                place,
+                format!("the surface \"{}\" names the {what} {}, which is not there", surface.name, quoted(of)),
+                "define it, or correct the name",
+            )
+        };
+        if surface.of_nodes {
+            let mut tags = Vec::new();
+            for (of, _, place) in &surface.items {
+                match (whole(of), self.node_sets.find(of)) {
+                    (Some(tag), _) if self.mesh.node(tag).is_some() => tags.push(tag),
+                    (None, Some(set)) => tags.extend(&node_sets[set]),
+                    _ => return Err(unknown("node or node set", of, *place)),
+                }
+            }
+            return Ok(RawMembers::NodeSet(tags));
+        }
+        let mut sides = Vec::new();
+        for (of, face, place) in &surface.items {
+            let tags = match (whole(of), self.element_sets.find(of)) {
+                (Some(tag), _) if element_of.contains_key(&tag) => vec![tag],
+                (None, Some(set)) => element_sets[set].clone(),
+                _ => return Err(unknown("element or element set", of, *place)),
+            };
+            for tag in tags {
+                let index = element_of[&tag];
+                let (_, shape, _) = self.mesh.element(index);
+                let side = match face {
+                    None if shape.is_area() => None,
+                    Some(face) if shape.is_area() => {
+                        let side =
+                            face.strip_prefix('S').and_then(whole).filter(|k| (1..=shape.corners() as u64).contains(k));
+                        let Some(side) = side else {
+                            return Err(self.cards.problem(
+                                *place,
+                                format!(
+                                    "the surface \"{}\" names the face {} of element {tag}, which is {}",
+                                    surface.name,
+                                    quoted(face),
+                                    shape.words()
+                                ),
+                                format!("its faces are S1 to S{}: from each corner to the next", shape.corners()),
+                            ));
+                        };
+                        Some(side as u8 - 1)
+                    }
+                    _ => {
+                        return Err(self.cards.problem(
+                            *place,
+                            format!("the surface \"{}\" names element {tag}, which is {}", surface.name, shape.words()),
+                            "a surface is made of sides of triangles and quadrilaterals",
+                        ));
+                    }
+                };
+                sides.push((index, side));
+            }
+        }
+        Ok(RawMembers::Sides(sides))
+    }
+}

@@ -1,0 +1,293 @@
+//! Meshes that other programs wrote: files of Gmsh (`gmsh`) and of Abaqus and CalculiX (`abaqus`) → one [`Mesh`]
+//! whatever the format, every number of it checked (`assemble`, `shape`). `chain` and `boundary` find edges in it,
+//! `overview` lists what there is.
+//!
+//! Nothing a file claims is trusted: counts only say when to stop.
+
+mod abaqus;
+mod assemble;
+pub mod boundary;
+pub mod chain;
+mod file;
+mod gmsh;
+pub mod overview;
+mod shape;
+mod source;
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+pub use shape::Shape;
+
+use super::problem::{Problem, Problems};
+
+/// What is wrong with a mesh, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshProblem {
+    /// The file as it was named; one that it includes has a name of its own.
+    pub file: String,
+    /// Line, from 1; 0 where there is none (binary files, files that cannot be read).
+    pub line: usize,
+    /// What was found and what was expected.
+    pub message: String,
+    /// What to do.
+    pub help: String,
+}
+
+impl MeshProblem {
+    /// `dam.msh:17`, or `dam.msh` without a line.
+    pub fn place(&self) -> String {
+        match self.line {
+            0 => self.file.clone(),
+            line => format!("{}:{line}", self.file),
+        }
+    }
+}
+
+/// The problems of a mesh that is looked at by itself.
+pub fn as_problems(name: &str, found: Vec<MeshProblem>) -> Problems {
+    let problem = |found: MeshProblem| {
+        let place = found.place();
+        // What stands in an included file is told with the name of that file.
+        let (line, message) = match found.file == name {
+            true => (found.line, found.message),
+            false => (0, format!("{place}: {}", found.message)),
+        };
+        Problem { line, column: usize::from(line > 0), path: String::new(), message, help: found.help }
+    };
+    Problems { file: name.to_owned(), problems: found.into_iter().map(problem).collect(), more: 0 }
+}
+
+/// Where something stands: the file (an index into [`Mesh::files`]) and the line, from 1; 0 in a binary file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Index of the file.
+    pub file: u32,
+    /// Line.
+    pub line: u32,
+}
+
+/// A node of the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshNode {
+    /// Its number in the file.
+    pub tag: u64,
+    /// Coordinates; the third is the same for all nodes of the areas.
+    pub position: [f64; 3],
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// What a bar element of an .inp file is by its type; Gmsh does not say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineType {
+    /// T2D2 and its like.
+    Truss,
+    /// B21 and its like, and the lines of Gmsh.
+    Beam,
+}
+
+/// A line or an area of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshElement {
+    /// Its number in the file.
+    pub tag: u64,
+    /// What it is.
+    pub shape: Shape,
+    /// Indices of its nodes: corners (of areas counter-clockwise), then the middles of the sides 1-2, 2-3 …
+    pub nodes: Vec<u32>,
+    /// What a line is as a bar.
+    pub line_type: LineType,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// What a group consists of, as indices of nodes or elements, in the order of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Members {
+    /// Single nodes: a group of points.
+    Points(Vec<u32>),
+    /// A node set of an .inp file: its nodes, and the boundary between them as an edge.
+    NodeSet(Vec<u32>),
+    /// Lines: an edge, or bars.
+    Lines(Vec<u32>),
+    /// Sides of areas: the element, and the corner at which the side begins; `None`: all sides on the boundary.
+    Sides(Vec<(u32, Option<u8>)>),
+    /// Areas.
+    Areas(Vec<u32>),
+}
+
+impl Members {
+    /// What its members are, in words.
+    pub fn what(&self) -> &'static str {
+        match self {
+            Members::Points(_) => "points",
+            Members::NodeSet(_) => "nodes",
+            Members::Lines(_) => "lines",
+            Members::Sides(_) => "element sides",
+            Members::Areas(_) => "elements",
+        }
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        match self {
+            Members::Points(all) | Members::NodeSet(all) | Members::Lines(all) | Members::Areas(all) => all.len(),
+            Members::Sides(all) => all.len(),
+        }
+    }
+}
+
+/// A physical group or a set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Its name, or its number where it has none.
+    pub name: String,
+    /// Whether it has a name.
+    pub is_named: bool,
+    /// What it consists of.
+    pub members: Members,
+    /// Where it is named, or its first member stands.
+    pub place: Place,
+}
+
+/// A mesh as its file describes it, checked: areas are convex and counter-clockwise, in one plane, and all numbers finite.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Names of the file and of those it includes.
+    pub files: Vec<String>,
+    /// `Gmsh 4.1, ASCII`.
+    pub format: String,
+    /// All nodes of the file.
+    pub nodes: Vec<MeshNode>,
+    /// Lines and areas, each once.
+    pub elements: Vec<MeshElement>,
+    /// Groups that have members, in the order of the file.
+    pub groups: Vec<Group>,
+    /// Whether names of groups are the same in large and small letters.
+    pub ignores_case: bool,
+    /// What was put right, in words.
+    pub notes: Vec<String>,
+    /// What the file holds besides the mesh and was left alone: keywords or sections.
+    pub skipped: Vec<String>,
+    node_of: HashMap<u64, u32>,
+    element_of: HashMap<u64, u32>,
+}
+
+impl Mesh {
+    /// The node with this number.
+    pub fn node(&self, tag: u64) -> Option<u32> {
+        self.node_of.get(&tag).copied()
+    }
+
+    /// The element with this number.
+    pub fn element(&self, tag: u64) -> Option<u32> {
+        self.element_of.get(&tag).copied()
+    }
+
+    /// `dam.msh:17`.
+    pub fn at(&self, place: Place) -> String {
+        let file = &self.files[place.file as usize];
+        match place.line {
+            0 => file.clone(),
+            line => format!("{file}:{line}"),
+        }
+    }
+
+    /// The groups of this name.
+    pub fn groups_named<'m>(&'m self, name: &'m str) -> impl Iterator<Item = &'m Group> {
+        self.groups.iter().filter(move |group| self.same_name(&group.name, name))
+    }
+
+    /// Whether two names mean the same group.
+    pub fn same_name(&self, one: &str, other: &str) -> bool {
+        one == other || self.ignores_case && one.eq_ignore_ascii_case(other)
+    }
+
+    /// Indices of the areas.
+    pub fn areas(&self) -> impl Iterator<Item = u32> {
+        self.elements.iter().zip(0..).filter(|(element, _)| element.shape.is_area()).map(|(_, index)| index)
+    }
+
+    /// Coordinates of a node in the plane.
+    pub fn position(&self, node: u32) -> [f64; 2] {
+        let [x, y, _] = self.nodes[node as usize].position;
+        [x, y]
+    }
+
+    /// Whether some group can be an edge; otherwise the boundary is named by direction.
+    pub fn has_edge_groups(&self) -> bool {
+        self.groups.iter().any(|group| match &group.members {
+            Members::Lines(_) | Members::Sides(_) => true,
+            Members::NodeSet(nodes) => nodes.len() > 1,
+            Members::Points(_) | Members::Areas(_) => false,
+        })
+    }
+}
+
+/// Whether a file name has the ending of a mesh.
+pub fn is_mesh_name(path: &Path) -> bool {
+    format_of(path).is_some()
+}
+
+#[derive(Clone, Copy)]
+enum Format {
+    Gmsh,
+    Abaqus,
+}
+
+fn format_of(path: &Path) -> Option<Format> {
+    let ending = path.extension()?;
+    if ending.eq_ignore_ascii_case("msh") {
+        Some(Format::Gmsh)
+    } else if ending.eq_ignore_ascii_case("inp") {
+        Some(Format::Abaqus)
+    } else {
+        None
+    }
+}
+
+/// Reads a mesh file. `name` is how messages call it; `path` is where it is.
+///
+/// # Errors
+/// What is wrong with it: one problem of each kind.
+pub fn read(path: &Path, name: &str) -> Result<Mesh, Vec<MeshProblem>> {
+    let problem = |message: String, help: &str| {
+        vec![MeshProblem { file: name.to_owned(), line: 0, message, help: help.to_owned() }]
+    };
+    let Some(format) = format_of(path) else {
+        return Err(problem(
+            "the name of a mesh file ends in .msh (Gmsh) or .inp (Abaqus, CalculiX)".into(),
+            "save the mesh in one of these formats",
+        ));
+    };
+    let bytes =
+        file::read(path).map_err(|error| problem(format!("cannot read the mesh: {error}"), "check name and folder"))?;
+    match format {
+        Format::Gmsh => read_gmsh(&bytes, name),
+        Format::Abaqus => read_abaqus(&bytes, name, path.parent()),
+    }
+}
+
+/// Reads the bytes of a .msh file.
+///
+/// # Errors
+/// See [`read`].
+pub fn read_gmsh(bytes: &[u8], name: &str) -> Result<Mesh, Vec<MeshProblem>> {
+    assemble::mesh(gmsh::read(bytes, name).map_err(|problem| vec![problem])?)
+}
+
+/// Reads the bytes of an .inp file; without a folder it cannot include others.
+///
+/// # Errors
+/// See [`read`].
+pub fn read_abaqus(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Mesh, Vec<MeshProblem>> {
+    assemble::mesh(abaqus::read(bytes, name, folder).map_err(|problem| vec![problem])?)
+}
+
+/// Meshes by the names that a scenario gives them, read once: a value set later means the mesh that was loaded.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshFiles(pub HashMap<String, Arc<Mesh>>);

@@ -1,0 +1,92 @@
+//! What a mesh file holds.
+
+use std::io::{self, Write};
+
+use super::number::{in_column, largest, short};
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::model::mesh::overview::Overview;
+use crate::model::mesh::{Mesh, Shape};
+
+/// Writes nodes, elements, groups with their lengths and areas, the boundary by direction where there are no groups of
+/// lines, and the worst element.
+pub fn write(out: &mut dyn Write, name: &str, mesh: &Mesh, overview: &Overview, style: &Style) -> io::Result<()> {
+    let mut say = |text: String| -> io::Result<()> {
+        for line in style.wrap(&style.text(&text), style.width) {
+            writeln!(out, "{line}")?;
+        }
+        Ok(())
+    };
+    say(format!("{name}: no problems found ({})", mesh.format))?;
+    let unused = match overview.unused_nodes {
+        0 => String::new(),
+        count => format!(" ({count} of them unused)"),
+    };
+    let [[x0, y0], [x1, y1]] = overview.extent.map(|corner| corner.map(short));
+    say(format!("{} nodes{unused}, x {x0} to {x1}, y {y0} to {y1}", mesh.nodes.len()))?;
+    let elements: Vec<String> = overview.shapes.iter().map(|(shape, count)| counted(*shape, *count)).collect();
+    say(format!("{}; area {}", elements.join(", "), short(overview.area)))?;
+    if let Some(worst) = &overview.worst {
+        let (quality, place) = (short(worst.quality), &worst.place);
+        say(format!("worst element: {} ({place}), quality {quality} (1 best, 0 degenerate)", worst.tag))?;
+    }
+    for note in &mesh.notes {
+        say(format!("note: {note}"))?;
+    }
+    if !mesh.skipped.is_empty() {
+        say(format!("left alone: {}", mesh.skipped.join(", ")))?;
+    }
+    if !overview.groups.is_empty() {
+        writeln!(out)?;
+        groups(overview, style).write(out, style)?;
+    }
+    if !overview.boundary.is_empty() {
+        writeln!(out)?;
+        let lengths = largest(overview.boundary.iter().map(|edge| edge.length));
+        let mut table =
+            Table::new(vec![Column::words("boundary"), Column::count("nodes"), Column::numbers("length", None)]);
+        for edge in &overview.boundary {
+            let length = in_column(edge.length, lengths);
+            table.rows.push(Row::new(vec![edge.name.as_str().into(), edge.nodes.to_string().into(), length.into()]));
+        }
+        table.write(out, style)?;
+    }
+    Ok(())
+}
+
+/// `3 quadrilaterals of 8 nodes`.
+fn counted(shape: Shape, count: usize) -> String {
+    let what = ["line", "triangle", "quadrilateral"][shape.corners() - 2];
+    format!("{count} {what}{} of {} nodes", if count == 1 { "" } else { "s" }, shape.nodes())
+}
+
+fn groups(overview: &Overview, style: &Style) -> Table {
+    let of = |areas: bool| {
+        let those = overview.groups.iter().filter(move |group| (group.dimension == 2) == areas);
+        largest(those.filter_map(|group| group.measure))
+    };
+    let (lengths, areas) = (of(false), of(true));
+    let mut table = Table::new(vec![
+        Column::words("group"),
+        Column::words("members"),
+        Column::count("number"),
+        Column::numbers("length", None),
+        Column::numbers("area", None),
+        Column::words("").droppable(1),
+    ]);
+    for group in &overview.groups {
+        let text = |scale: f64| group.measure.map_or(String::new(), |measure| in_column(measure, scale));
+        let (length, area) =
+            if group.dimension == 2 { (String::new(), text(areas)) } else { (text(lengths), String::new()) };
+        let fault = group.fault.as_ref().map_or(String::new(), |fault| format!("no edge: {fault}"));
+        table.rows.push(Row::new(vec![
+            Cell::from(style.text(&group.name)),
+            Cell::from(group.what),
+            Cell::from(group.count.to_string()),
+            Cell::from(length),
+            Cell::from(area),
+            Cell::new(fault, Role::Muted),
+        ]));
+    }
+    table
+}
