@@ -95,7 +95,7 @@ impl RawMesh {
         // Larger ones have squares that are no numbers.
         const LARGEST: f64 = 1e150;
         for (axis, x) in ["x", "y", "z"].into_iter().zip(position) {
-            if !(x.abs() <= LARGEST) {
+            if x.is_nan() || x.abs() > LARGEST {
                 return Err(self.problem(
                     place,
                     format!("node {tag}: {axis} is {x}, which cannot be computed with"),

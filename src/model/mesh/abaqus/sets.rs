@@ -33,12 +33,15 @@ pub struct Sets {
     by_name: HashMap<String, usize>,
 }
 
+/// Numbers of the nodes of the elements in a set, by its name and the place where it is named.
+type NodesOf<'a> = &'a dyn Fn(&str, Place) -> Result<Vec<u64>, MeshProblem>;
+
 /// What its members are found by.
 pub struct Members<'a> {
     /// Their numbers in increasing order.
     pub sorted: &'a [u64],
-    /// Numbers of the nodes of an element set.
-    pub of_elements: &'a dyn Fn(&str, Place) -> Result<Vec<u64>, MeshProblem>,
+    /// Nodes of element sets.
+    pub of_elements: NodesOf<'a>,
 }
 
 /// A name without the instance before it.
