@@ -15,7 +15,8 @@ use crate::model::structure::{Spring, Structure};
 /// Terms of one block of work between two looks at the watcher.
 const ELEMENTS_PER_LOOK: usize = 4096;
 
-/// K on the base dofs, with neither supports nor ties nor joints.
+/// K on the base dofs, with neither supports nor ties nor joints. Elements inside a rigid body are left out: nothing
+/// strains them, and the rounding of their stiffness could hide what the body stands on.
 ///
 /// # Errors
 /// An element without stiffness because of its shape; interrupted.
@@ -32,6 +33,8 @@ pub fn assemble<T: Real>(
         }
         visit(&at[..slots.len()]);
     };
+    let rigid = structure.rigid_elements();
+    let elements = || (0..structure.elements.len()).filter(|&index| !rigid[index]);
     let spring_dofs = |spring: &Spring| -> Vec<Option<usize>> {
         spring.terms.iter().map(|term| dofs.of(term.node, term.component)).collect()
     };
@@ -51,7 +54,7 @@ pub fn assemble<T: Real>(
         |count| {
             // Every dof has its diagonal entry, also where nothing is attached.
             (0..dofs.count()).for_each(&mut *count);
-            for index in 0..structure.elements.len() {
+            for index in elements() {
                 element_dofs(index, &mut |at| lower(at, &mut |_, column, _, _| count(column)));
             }
             for spring in &structure.springs {
@@ -62,7 +65,7 @@ pub fn assemble<T: Real>(
         },
         |push| {
             (0..dofs.count()).for_each(|dof| push(dof, dof, T::zero()));
-            for index in 0..structure.elements.len() {
+            for index in elements() {
                 if index % ELEMENTS_PER_LOOK == 0 && stop() {
                     return Err(MainSystemError::Interrupted);
                 }

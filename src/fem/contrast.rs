@@ -9,7 +9,8 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
     let id = |node: usize| structure.nodes[node].id.as_str();
     // (stiffness against translation of its first node, that node, name)
     let mut parts: Vec<(f64, usize, String)> = Vec::new();
-    for (index, element) in structure.elements.iter().enumerate() {
+    let rigid = structure.rigid_elements();
+    for (index, element) in structure.elements.iter().enumerate().filter(|(index, _)| !rigid[*index]) {
         if let Ok(k) = stiffness::<f64>(structure, index) {
             let name = match structure.bars.iter().find(|bar| bar.elements.contains(&index)) {
                 Some(bar) => format!("bar {}", bar.id),

@@ -7,7 +7,8 @@ use crate::model::structure::{Component, ElementKind, Structure};
 /// Components in the order x, y, r.
 const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::R];
 
-/// Numbers of the nodal components ("base dofs"): x, y at every node, r where a frame bar is rigidly attached.
+/// Numbers of the nodal components ("base dofs"): x, y at every node, r where a frame bar is rigidly attached
+/// and at the nodes of rigid bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dofs {
     first: Vec<u32>,
@@ -28,6 +29,9 @@ impl Dofs {
                     has_rotation[node] |= !hinges[end];
                 }
             }
+        }
+        for &node in structure.rigid.iter().flat_map(|body| &body.nodes) {
+            has_rotation[node] = true;
         }
         let mut count = 0;
         let first = has_rotation

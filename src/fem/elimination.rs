@@ -4,16 +4,18 @@
 //!
 //! Supports and ties make classes of equal components (or zero). Each joint row B u = z then gives up one class
 //! (Gaussian elimination with pivoting on rows of a few entries, see `joint_rows`), preferably on the `node` side,
-//! so that G has entries on that side only. Because all rows are kept fully reduced, B T = 0 and B G = I.
+//! so that G has entries on that side only. Because all rows are kept fully reduced, B T = 0 and B G = I. The rows of
+//! rigid bodies (see `body_rows`) come first and go the same way.
 
 use std::collections::BTreeMap;
 
+use super::body_rows::{BodyRow, body_rows, over_constraint, reaches};
 use super::dof::{Dofs, root};
 use super::doubled::Real;
-use super::error::DependentJoint;
+use super::error::{DependentJoint, Holder, MainSystemError, OverConstraint};
 use super::joint_rows::{JointReduction, JointRow, holders};
 use crate::model::pair::Joint;
-use crate::model::structure::{Load, Structure};
+use crate::model::structure::{Component, Load, Structure};
 
 /// One base dof in terms of v and z.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +34,8 @@ struct Sum {
     free: Vec<(u32, f64)>,
     joints: Vec<(u32, f64)>,
     settled: Vec<(u32, f64)>,
+    /// What the row would follow if the nodes of a body could leave their places: entries of G_A.
+    bodies: Vec<(u32, f64)>,
 }
 
 /// What supports and ties make of the base dofs: classes of equal components.
@@ -43,6 +47,15 @@ pub struct Classes {
     /// The classes on which some load case imposes a displacement, with the numbers of those displacements in the rows
     /// of the joints: they follow the joints.
     pub settled: BTreeMap<u32, u32>,
+    /// Of the rotations of rigid bodies the distance at which they are reduced as a displacement.
+    pub reach: BTreeMap<u32, f64>,
+}
+
+impl Classes {
+    /// What one unit of the reduced unknown of a class is divided by in the rows of the bodies and joints.
+    pub fn unit(&self, class: u32) -> f64 {
+        self.reach.get(&class).copied().unwrap_or(1.0)
+    }
 }
 
 /// u = T v + G z + S s.
@@ -54,37 +67,52 @@ pub struct Elimination {
     class: Vec<u32>,
     /// Whether the class of each base dof is held by a support.
     held: Vec<bool>,
+    /// The rows of rigid bodies.
+    bodies: Vec<BodyRow>,
     free: usize,
     masters: usize,
     joints: usize,
 }
 
 impl Elimination {
-    /// Eliminates supports, ties, then the joints.
+    /// Eliminates supports, ties, rigid bodies, then the joints.
     ///
     /// # Errors
-    /// All joints that depend on supports, ties and earlier joints.
-    pub fn new(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Elimination, Vec<DependentJoint>> {
+    /// Bodies that supports and ties hold more often than they can move; all joints that depend on supports, ties, bodies
+    /// and earlier joints.
+    pub fn new(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Elimination, MainSystemError> {
         let classes = classes(structure, dofs, joints.len());
-        let Classes { class, held, settled } = &classes;
+        let Classes { class, held, settled, .. } = &classes;
         let is_class = |dof: usize| class[dof] as usize == dof && !held[dof];
-        let free = (0..dofs.count()).filter(|&dof| is_class(dof)).count();
 
         let mut reduction = JointReduction::default();
+        let bodies = body_rows(structure, dofs);
+        let beyond_settled = joints.len() + settled.len();
+        reduce_bodies(structure, dofs, &classes, &bodies, beyond_settled, &mut reduction)
+            .map_err(MainSystemError::OverConstrained)?;
+        let free = (0..dofs.count()).filter(|&dof| is_class(dof)).count() - bodies.len();
         let mut dependent = Vec::new();
         for (index, joint) in joints.iter().enumerate() {
             let row = JointRow::new(index, joint, dofs, &classes);
             if let Err(row) = reduction.add(row) {
+                let mut holders = holders(structure, dofs, joints, &classes, &row, joint);
+                let involved = row.joints.keys().filter_map(|row| (*row as usize).checked_sub(beyond_settled));
+                for id in involved.map(|row| &structure.rigid[bodies[row].body].id) {
+                    let holder = Holder::Body { id: id.clone() };
+                    if !holders.contains(&holder) {
+                        holders.push(holder);
+                    }
+                }
                 dependent.push(DependentJoint {
                     pair: joint.pair,
                     pair_id: structure.pairs[joint.pair].id.clone(),
                     direction: joint.direction,
-                    holders: holders(structure, dofs, joints, &classes, &row, joint),
+                    holders,
                 });
             }
         }
         if !dependent.is_empty() {
-            return Err(dependent);
+            return Err(MainSystemError::DependentJoints(dependent));
         }
 
         // Number the classes that are left, then write out the rows.
@@ -97,15 +125,21 @@ impl Elimination {
             }
         }
         let count = joints.len() as u32;
-        let beyond = |joint: &&u32| **joint >= count;
+        let beyond = beyond_settled as u32;
         let mut sums = Vec::with_capacity(reduction.slaves.len());
         let mut sum_of = BTreeMap::new();
         for (&dof, row) in &reduction.slaves {
             sum_of.insert(dof, sums.len() as u32);
+            let unit = classes.unit(dof);
+            let part = |range: std::ops::Range<u32>| -> Vec<(u32, f64)> {
+                row.joints.range(range.clone()).map(|(&j, &a)| (j - range.start, a / unit)).collect()
+            };
+            let own = |(&other, &a): (&u32, &f64)| (master[other as usize], -a * classes.unit(other) / unit);
             sums.push(Sum {
-                free: row.terms.iter().map(|(&other, &a)| (master[other as usize], -a)).collect(),
-                joints: row.joints.iter().filter(|(j, _)| !beyond(j)).map(|(&j, &a)| (j, a)).collect(),
-                settled: row.joints.iter().filter(|(j, _)| beyond(j)).map(|(&j, &a)| (j - count, a)).collect(),
+                free: row.terms.iter().map(own).collect(),
+                joints: part(0..count),
+                settled: part(count..beyond),
+                bodies: part(beyond..u32::MAX),
             });
         }
         let rows = (0..dofs.count())
@@ -121,7 +155,7 @@ impl Elimination {
             })
             .collect();
         let Classes { class, held, .. } = classes;
-        Ok(Elimination { rows, sums, class, held, free, masters: masters as usize, joints: joints.len() })
+        Ok(Elimination { rows, sums, class, held, bodies, free, masters: masters as usize, joints: joints.len() })
     }
 
     /// Unknowns after supports and ties, before the joints.
@@ -178,6 +212,21 @@ impl Elimination {
         many.map(|&(j, a)| (j as usize, a))
     }
 
+    /// The rows of rigid bodies.
+    pub fn bodies(&self) -> &[BodyRow] {
+        &self.bodies
+    }
+
+    /// Entries of a row of G_A: (row of a body, coefficient).
+    pub fn body_terms(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let sum = match &self.rows[dof] {
+            Row::Sum(sum) => Some(&self.sums[*sum as usize]),
+            _ => None,
+        };
+        let many = sum.into_iter().flat_map(|sum| &sum.bodies);
+        many.map(|&(row, a)| (row as usize, a))
+    }
+
     /// Number of the imposed displacement of a base dof, if a support that settles holds it.
     pub fn settlement(&self, dof: usize) -> Option<usize> {
         match self.rows[dof] {
@@ -208,6 +257,30 @@ impl Elimination {
     }
 }
 
+/// Reduces the rows of the bodies; they are numbered from `first` on.
+///
+/// # Errors
+/// Every body of which a row repeats what is held already.
+fn reduce_bodies(
+    structure: &Structure,
+    dofs: &Dofs,
+    classes: &Classes,
+    rows: &[BodyRow],
+    first: usize,
+    reduction: &mut JointReduction,
+) -> Result<(), Vec<OverConstraint>> {
+    let mut wrong: Vec<OverConstraint> = Vec::new();
+    for (index, row) in rows.iter().enumerate() {
+        let terms = row.terms.iter().map(|&(dof, a)| (usize::from(dof != row.terms[0].0), (dof, a)));
+        let Err(left) = reduction.add(JointRow::of_terms(first + index, terms, classes)) else { continue };
+        if wrong.last().is_none_or(|last| last.body != row.body) {
+            let involved = left.joints.keys().filter_map(|other| rows.get((*other as usize).checked_sub(first)?));
+            wrong.push(over_constraint(structure, dofs, classes, row.body, &involved.collect::<Vec<_>>()));
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(wrong) }
+}
+
 /// Classes of equal components, and which of them supports hold and move.
 fn classes(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
     let mut parent: Vec<u32> = (0..dofs.count() as u32).collect();
@@ -219,6 +292,13 @@ fn classes(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
                 let (a, b) = (root(&mut parent, first), root(&mut parent, other));
                 parent[a.max(b)] = a.min(b) as u32;
             }
+        }
+    }
+    for body in &structure.rigid {
+        let turning = body.nodes.iter().filter_map(|&node| dofs.of(node, Component::R));
+        for (first, other) in turning.clone().zip(turning.skip(1)) {
+            let (a, b) = (root(&mut parent, first), root(&mut parent, other));
+            parent[a.max(b)] = a.min(b) as u32;
         }
     }
     let class: Vec<u32> = (0..dofs.count()).map(|dof| root(&mut parent, dof) as u32).collect();
@@ -239,5 +319,6 @@ fn classes(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
             settled.entry(class[dof]).or_insert(next);
         }
     }
-    Classes { class, held, settled }
+    let reach = reaches(structure, dofs, &class);
+    Classes { class, held, settled, reach }
 }

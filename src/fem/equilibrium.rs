@@ -1,7 +1,7 @@
 //! Equilibrium of an answer, node by node, from K itself and nothing condensed.
 //!
 //! ```text
-//!     r = K u − F − Bᵀ λ on every component that no support holds (ties summed)
+//!     r = K u − F − Bᵀ λ on every component that no support holds (ties summed, rigid bodies as a whole)
 //!     |r_i| ≤ TOL · s_i + ρ_i
 //!     s_i   the forces that meet there: of each element, of the loads, of the joints
 //!     ρ_i   what rounding leaves: 4 ε Σ_k |K_ik||u_k|, with ε² where K and u are in doubled precision;
@@ -31,7 +31,8 @@ const DOUBLED_ROW: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 const JOINT_ROW: f64 = 64.0 * f64::EPSILON;
 
 impl MainSystem {
-    /// Nodal forces K u − F − Bᵀ λ on the base dofs: what supports and ties have to give.
+    /// Nodal forces K u − F − Bᵀ λ on the base dofs without those inside rigid bodies: what supports and ties have to
+    /// give.
     pub(super) fn unbalanced(&self, u: &Displacements, lambda: &DVector<f64>, factors: &[f64]) -> Vec<f64> {
         match &self.doubled {
             None => self.minus_loads(self.k.times(&self.dofs.gather(&u.0)), lambda, factors),
@@ -39,7 +40,7 @@ impl MainSystem {
         }
     }
 
-    /// forces − Σ factor·F − Bᵀ λ.
+    /// forces − Σ factor·F − Bᵀ λ, and without the forces inside rigid bodies.
     fn minus_loads<T: Real>(&self, mut forces: Vec<T>, lambda: &DVector<f64>, factors: &[f64]) -> Vec<f64> {
         for (f, factor) in std::iter::zip(&self.f, factors) {
             for (force, f) in std::iter::zip(&mut forces, f) {
@@ -49,6 +50,7 @@ impl MainSystem {
         for (joint, lambda) in std::iter::zip(&self.joints, lambda.iter()) {
             self.each_term(joint, |dof, a| forces[dof] -= T::from(a) * T::from(*lambda));
         }
+        self.elimination.take_out_body_forces(&mut forces);
         forces.into_iter().map(Real::to_f64).collect()
     }
 
@@ -89,8 +91,12 @@ impl MainSystem {
         factors: &[f64],
     ) -> f64 {
         let residual = self.unheld(self.unbalanced(u, lambda, factors));
-        let scale = self.unheld(self.meeting_forces(structure, u, lambda, factors));
-        let rounding = self.unheld(self.rounding(u, factors));
+        let handed_on = |mut magnitudes: Vec<f64>| {
+            self.elimination.add_body_forces(&mut magnitudes);
+            self.unheld(magnitudes)
+        };
+        let scale = handed_on(self.meeting_forces(structure, u, lambda, factors));
+        let rounding = handed_on(self.rounding(u, factors));
         let shares = residual.iter().zip(scale.iter().zip(&rounding)).map(|(r, (scale, rounding))| {
             let size = scale + rounding / TOLERANCE;
             // A force where none can be is infinitely wrong; NaN stays NaN.
@@ -109,7 +115,8 @@ impl MainSystem {
         factors: &[f64],
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.dofs.count()];
-        for index in 0..structure.elements.len() {
+        let rigid = structure.rigid_elements();
+        for index in (0..structure.elements.len()).filter(|&index| !rigid[index]) {
             self.add_element(structure, index, &element_forces(structure, index, u), &mut sums);
         }
         for spring in &structure.springs {
@@ -175,14 +182,14 @@ impl MainSystem {
         let mut rows: Vec<f64> =
             std::iter::zip(&terms, &diagonal).map(|(terms, k)| row * terms + unsolved * k.sqrt()).collect();
         let field = std::iter::zip(&terms, &base).map(|(terms, u)| terms * u.abs()).sum::<f64>().sqrt();
-        // Balancing RF on the motions of the kernel spreads its rounding over all joints that feel them.
+        // Balancing RF on the motions of the kernel spreads its rounding over all joints that feel them, also that of joints
+        // that do not: they enter with the rounding of Z, whose columns are of length one.
         let loads: Vec<f64> = (0..self.joints.len())
             .map(|joint| std::iter::zip(&self.rf, factors).map(|(rf, factor)| (rf[joint] * factor).abs()).sum())
             .collect();
-        let spread: Vec<f64> =
-            self.z.column_iter().map(|z| z.iter().zip(&loads).map(|(z, load)| z.abs() * load).sum()).collect();
+        let spread: f64 = loads.iter().sum();
         for (index, joint) in self.joints.iter().enumerate() {
-            let balanced: f64 = self.z.row(index).iter().zip(&spread).map(|(z, spread)| z.abs() * spread).sum();
+            let balanced = spread * self.z.row(index).iter().map(|z| z.abs()).sum::<f64>();
             let rounded = JOINT_ROW * (root(index) * dislocation + loads[index] + balanced)
                 + row * self.amplification.sqrt() * root(index) * field;
             self.each_term(joint, |dof, a| rows[dof] += a.abs() * rounded);

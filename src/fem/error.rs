@@ -12,6 +12,9 @@ pub enum MainSystemError {
     /// All of them, in the order of the joints.
     #[error("{}", list(.0))]
     DependentJoints(Vec<DependentJoint>),
+    /// Rigid bodies that supports and ties hold more often than they can move. All of them.
+    #[error("{}", list(.0))]
+    OverConstrained(Vec<OverConstraint>),
     /// The structure moves freely although every joint is on.
     #[error(
         "the structure is a mechanism whatever its contacts do: node {node_id} is free to move {}; \
@@ -120,6 +123,17 @@ pub struct DependentJoint {
     pub holders: Vec<Holder>,
 }
 
+/// A rigid body that others hold more often than it can move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OverConstraint {
+    /// Index of the body.
+    pub body: usize,
+    /// Its id.
+    pub id: String,
+    /// What holds it; one of them too much.
+    pub holders: Vec<Holder>,
+}
+
 /// Something that holds a displacement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Holder {
@@ -136,6 +150,11 @@ pub enum Holder {
         nodes: [String; 2],
         /// Component shared.
         component: Component,
+    },
+    /// A rigid body.
+    Body {
+        /// Its id.
+        id: String,
     },
     /// A joint of another pair.
     Joint {
@@ -209,6 +228,7 @@ impl fmt::Display for Holder {
             Holder::Tie { nodes, component } => {
                 write!(f, "the tie of {} and {} in {}", nodes[0], nodes[1], component_word(*component))
             }
+            Holder::Body { id } => write!(f, "the rigid body {id}"),
             Holder::Joint { pair, direction } => {
                 write!(f, "the {} joint of {pair}", direction_word(*direction))
             }
@@ -218,15 +238,13 @@ impl fmt::Display for Holder {
 
 impl fmt::Display for DependentJoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the {} joint of {} is already held by ", direction_word(self.direction), self.pair_id)?;
-        for (i, holder) in self.holders.iter().enumerate() {
-            let glue = match i {
-                0 => "",
-                _ if i + 1 == self.holders.len() => " and ",
-                _ => ", ",
-            };
-            write!(f, "{glue}{holder}")?;
-        }
+        write!(
+            f,
+            "the {} joint of {} is already held by {}",
+            direction_word(self.direction),
+            self.pair_id,
+            all(&self.holders)
+        )?;
         f.write_str(match self.direction {
             JointDirection::Normal => ": use `skip` or split the node",
             JointDirection::Tangential => ": use `skip`, a `frictionless` pair, or split the node",
@@ -234,8 +252,30 @@ impl fmt::Display for DependentJoint {
     }
 }
 
-fn list(joints: &[DependentJoint]) -> String {
-    let lines: Vec<String> = joints.iter().map(DependentJoint::to_string).collect();
+impl fmt::Display for OverConstraint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the rigid body {} moves as one, and {} hold it more often than it can move: remove one of them, or hold fewer \
+             displacements",
+            self.id,
+            all(&self.holders)
+        )
+    }
+}
+
+/// `a, b and c`.
+fn all(holders: &[Holder]) -> String {
+    let words: Vec<String> = holders.iter().map(Holder::to_string).collect();
+    match &words[..] {
+        [] => String::new(),
+        [one] => one.clone(),
+        [before @ .., last] => format!("{} and {last}", before.join(", ")),
+    }
+}
+
+fn list(what: &[impl fmt::Display]) -> String {
+    let lines: Vec<String> = what.iter().map(ToString::to_string).collect();
     lines.join("\n")
 }
 

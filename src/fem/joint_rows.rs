@@ -19,7 +19,8 @@ const PREFER_NODE_SIDE: f64 = 0.1;
 pub struct JointRow {
     /// Coefficient of each class.
     pub terms: BTreeMap<u32, f64>,
-    /// Coefficient of each joint's z; the numbers after those of the joints are imposed displacements.
+    /// Coefficient of each joint's z; the numbers after those of the joints are imposed displacements, then come the
+    /// rows of rigid bodies.
     pub joints: BTreeMap<u32, f64>,
     /// Classes on the `node` side as the joint itself names them.
     node_side: Vec<u32>,
@@ -28,12 +29,17 @@ pub struct JointRow {
 impl JointRow {
     /// The row of joint number `index`.
     pub fn new(index: usize, joint: &Joint, dofs: &Dofs, classes: &Classes) -> JointRow {
+        JointRow::of_terms(index, joint_dofs(joint, dofs), classes)
+    }
+
+    /// Row number `index` from its (side, (base dof, coefficient)).
+    pub fn of_terms(index: usize, terms: impl Iterator<Item = (usize, (usize, f64))>, classes: &Classes) -> JointRow {
         let mut row = JointRow::default();
         row.joints.insert(index as u32, 1.0);
-        for (side, (dof, a)) in joint_dofs(joint, dofs) {
+        for (side, (dof, a)) in terms {
             let class = classes.class[dof];
             if !classes.held[dof] {
-                *row.terms.entry(class).or_default() += a;
+                *row.terms.entry(class).or_default() += a / classes.unit(class);
                 if side == 0 {
                     row.node_side.push(class);
                 }
@@ -147,7 +153,7 @@ pub fn holders(
         .joints
         .iter()
         .filter(|(_, a)| a.abs() > DEPENDENT)
-        // Numbers beyond are imposed displacements.
+        // Numbers beyond are imposed displacements and rows of bodies.
         .filter_map(|(j, _)| joints.get(*j as usize))
         .filter(|other| *other != joint);
     let mut involved = vec![joint];

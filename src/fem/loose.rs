@@ -1,7 +1,7 @@
 //! Motions that cost no energy when every contact joint is off: the kernel of K from the rigid motions of parts.
 //!
 //! A *part* is a set of elements that can only move as one rigid body: elements with a common edge, frame bars
-//! rigidly attached to one node; a lone node is a part without rotation. Parts that share a node are pinned there.
+//! rigidly attached to one node, a rigid body and elements with two nodes in it; a lone node is a part without rotation. Parts that share a node are pinned there.
 //! Parts linked by pins and ties make a *cluster*. In each cluster the motions q (a translation and a rotation per
 //! part) that open no pin and no tie, move no support and stretch no spring are the null space of a small matrix;
 //! testing motions one by one would miss a rotation about a pin or a tie.
@@ -64,8 +64,9 @@ struct Parts {
 
 impl Parts {
     fn new(structure: &Structure) -> Parts {
+        // Rigid bodies count as elements, after the others.
         let elements = structure.elements.len();
-        let mut parent: Vec<u32> = (0..elements as u32).collect();
+        let mut parent: Vec<u32> = (0..(elements + structure.rigid.len()) as u32).collect();
         let mut join = |a: u32, b: u32| {
             let (a, b) = (root(&mut parent, a as usize), root(&mut parent, b as usize));
             parent[a.max(b)] = a.min(b) as u32;
@@ -87,8 +88,19 @@ impl Parts {
                 join(pair[0].2, pair[1].2);
             }
         }
-        // Frame bars rigidly attached to one node.
-        let mut turning: Vec<Option<u32>> = vec![None; structure.nodes.len()];
+        // Elements with two nodes in one body.
+        let body_of = structure.body_of_nodes();
+        for (index, element) in structure.elements.iter().enumerate() {
+            let bodies: Vec<usize> = element.nodes.iter().filter_map(|&node| body_of[node]).collect();
+            for (at, &body) in bodies.iter().enumerate() {
+                if bodies[..at].contains(&body) {
+                    join(index as u32, (elements + body) as u32);
+                }
+            }
+        }
+        // Frame bars rigidly attached to one node, or to a body.
+        let mut turning: Vec<Option<u32>> =
+            body_of.iter().map(|body| body.map(|body| (elements + body) as u32)).collect();
         for (index, element) in structure.elements.iter().enumerate() {
             if let ElementKind::Frame { hinges, .. } = &element.kind {
                 for (end, &node) in element.nodes.iter().enumerate() {
@@ -102,7 +114,7 @@ impl Parts {
             }
         }
         // Number the parts; lone nodes come last.
-        let mut number = vec![u32::MAX; elements];
+        let mut number = vec![u32::MAX; parent.len()];
         let mut turns = Vec::new();
         let mut part_of = |parent: &mut Vec<u32>, element: usize| {
             let element = root(parent, element);
@@ -113,9 +125,11 @@ impl Parts {
             number[element]
         };
         let mut at_node: Vec<Vec<u32>> = vec![Vec::new(); structure.nodes.len()];
-        for (index, element) in structure.elements.iter().enumerate() {
+        let elements = structure.elements.iter().map(|element| &element.nodes);
+        let bodies = structure.rigid.iter().map(|body| &body.nodes);
+        for (index, nodes) in elements.chain(bodies).enumerate() {
             let part = part_of(&mut parent, index);
-            for &node in &element.nodes {
+            for &node in nodes {
                 if !at_node[node].contains(&part) {
                     at_node[node].push(part);
                 }
@@ -195,8 +209,9 @@ impl Cluster {
     /// This cluster with one part per group of elements joined by common nodes; tied groups stay apart.
     fn with_whole_groups(self, structure: &Structure) -> (Parts, Cluster) {
         let mut parent: Vec<u32> = (0..structure.nodes.len() as u32).collect();
-        for element in &structure.elements {
-            for nodes in element.nodes.windows(2) {
+        let elements = structure.elements.iter().map(|element| &element.nodes);
+        for nodes in elements.chain(structure.rigid.iter().map(|body| &body.nodes)) {
+            for nodes in nodes.windows(2) {
                 let (a, b) = (root(&mut parent, nodes[0]), root(&mut parent, nodes[1]));
                 parent[a.max(b)] = a.min(b) as u32;
             }

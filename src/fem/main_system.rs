@@ -130,13 +130,13 @@ impl MainSystem {
     /// Assembles, factorizes and condenses the structure to its joints.
     ///
     /// # Errors
-    /// Dependent joints, a mechanism, an element without shape, a moment where nothing turns, too large,
+    /// Bodies held too often, dependent joints, a mechanism, an element without shape, a moment where nothing turns, too large,
     /// interrupted: see [`MainSystemError`].
     pub fn new(structure: &Structure, joints: &[Joint], watch: &dyn Watch) -> Result<MainSystem, MainSystemError> {
         let clock = Instant::now();
         watch.progress(&format!("assembling {} elements", structure.elements.len()), 0.0);
         let dofs = Dofs::new(structure);
-        let elimination = Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
+        let elimination = Elimination::new(structure, &dofs, joints)?;
         let f = load_vectors(structure, &dofs)?;
         let settled = settlements(structure, &dofs, &elimination)?;
         let k = assemble(structure, &dofs, &|| watch.stop())?;
@@ -344,7 +344,7 @@ impl MainSystem {
         watch: &dyn Watch,
     ) -> Result<SymmetricSparse, MainSystemError> {
         let dofs = Dofs::new(structure);
-        let elimination = Elimination::new(structure, &dofs, joints).map_err(MainSystemError::DependentJoints)?;
+        let elimination = Elimination::new(structure, &dofs, joints)?;
         let k: SymmetricSparse = assemble(structure, &dofs, &|| watch.stop())?;
         Ok(main_matrices(&k, &elimination).k_m)
     }

@@ -31,6 +31,7 @@ pub mod main_system;
 pub mod recovery;
 
 mod assembly;
+mod body_rows;
 mod contrast;
 mod dense;
 mod dof;

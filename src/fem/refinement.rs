@@ -256,7 +256,8 @@ impl Refinement<'_> {
 
 /// Calls `visit(slots, k)` with every element and spring; those without stiffness were refused before.
 fn each_stiffness(structure: &Structure, mut visit: impl FnMut(&[Slot], &dyn Fn(usize, usize) -> Doubled)) {
-    for (index, element) in structure.elements.iter().enumerate() {
+    let rigid = structure.rigid_elements();
+    for (index, element) in structure.elements.iter().enumerate().filter(|(index, _)| !rigid[*index]) {
         if let Ok(k) = stiffness::<Doubled>(structure, index) {
             visit(&slots(element), &|i, j| k[(i, j)]);
         }

@@ -22,7 +22,7 @@ pub enum Component {
     X,
     /// Displacement along y.
     Y,
-    /// Rotation, counter-clockwise. Exists only at nodes of frame bars.
+    /// Rotation, counter-clockwise. Exists only at nodes of frame bars and of rigid bodies.
     R,
 }
 
@@ -146,6 +146,15 @@ pub struct Tie {
     pub nodes: Vec<usize>,
     /// The shared components.
     pub components: Vec<Component>,
+}
+
+/// Nodes that move as one body: u_i = u_0 + θ × (x_i − x_0), small displacements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    /// Name in the file.
+    pub id: String,
+    /// Its nodes, two or more; the first is the one whose displacement and rotation are the body's unknowns.
+    pub nodes: Vec<usize>,
 }
 
 /// Linear spring: it resists the stretch Σ factor·u of its terms.
@@ -297,6 +306,8 @@ pub struct Structure {
     pub supports: Vec<Support>,
     /// Ties.
     pub ties: Vec<Tie>,
+    /// Rigid bodies; no node is in two of them.
+    pub rigid: Vec<RigidBody>,
     /// Springs to the ground.
     pub springs: Vec<Spring>,
     /// Nodes that stand for the yielding ground of tensionless foundations, in increasing order: what their springs
@@ -308,4 +319,25 @@ pub struct Structure {
     pub edge_contacts: Vec<EdgeContact>,
     /// Load cases in the order of the file.
     pub load_cases: Vec<LoadCase>,
+}
+
+impl Structure {
+    /// The rigid body of every node.
+    pub fn body_of_nodes(&self) -> Vec<Option<usize>> {
+        let mut body_of = vec![None; self.nodes.len()];
+        for (body, rigid) in self.rigid.iter().enumerate() {
+            rigid.nodes.iter().for_each(|&node| body_of[node] = Some(body));
+        }
+        body_of
+    }
+
+    /// Whether each element lies inside a rigid body, so that nothing strains it.
+    pub fn rigid_elements(&self) -> Vec<bool> {
+        let body_of = self.body_of_nodes();
+        let is_rigid = |element: &Element| {
+            let first = body_of[element.nodes[0]];
+            first.is_some() && element.nodes.iter().all(|&node| body_of[node] == first)
+        };
+        self.elements.iter().map(is_rigid).collect()
+    }
 }

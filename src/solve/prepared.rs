@@ -173,19 +173,12 @@ fn main_system_problem(scenario: &Scenario, structure: &Structure, error: MainSy
     let path = match &error {
         MainSystemError::Interrupted => return PrepareError::Interrupted,
         MainSystemError::DependentJoints(joints) => {
-            let mut all: Option<Problems> = None;
-            for joint in joints {
-                let path = places.pairs.get(joint.pair).map_or("contacts", |path| path);
-                let one = scenario.problem_at(path, joint.to_string(), "");
-                match &mut all {
-                    None => all = Some(one),
-                    Some(all) if all.problems.len() < LISTED => all.problems.extend(one.problems),
-                    Some(all) => all.more += 1,
-                }
-            }
-            return PrepareError::Problems(
-                all.unwrap_or_else(|| scenario.problem_at("contacts", error.to_string(), "")),
-            );
+            let place = |pair: usize| places.pairs.get(pair).map_or("contacts".to_owned(), ToString::to_string);
+            return problems_at(scenario, joints.iter().map(|joint| (place(joint.pair), joint.to_string())));
+        }
+        MainSystemError::OverConstrained(bodies) => {
+            let place = |body: usize| format!("rigid[{body}]");
+            return problems_at(scenario, bodies.iter().map(|body| (place(body.body), body.to_string())));
         }
         MainSystemError::Mechanism { node: at, .. } | MainSystemError::Contrast { node: at, .. } => node(*at),
         MainSystemError::MomentWithoutRotation { case, .. } => format!("loads.{case}"),
@@ -197,6 +190,19 @@ fn main_system_problem(scenario: &Scenario, structure: &Structure, error: MainSy
         _ => String::new(),
     };
     PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
+}
+
+/// Several problems with their places; of very many the first ones.
+fn problems_at(scenario: &Scenario, all: impl Iterator<Item = (String, String)>) -> PrepareError {
+    let mut listed = Problems { file: scenario.name.clone(), problems: Vec::new(), more: 0 };
+    for (path, message) in all {
+        if listed.problems.len() < LISTED {
+            listed.problems.extend(scenario.problem_at(&path, message, "").problems);
+        } else {
+            listed.more += 1;
+        }
+    }
+    PrepareError::Problems(listed)
 }
 
 /// RF of every load case with its name and the magnitude of its terms.

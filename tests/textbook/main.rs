@@ -17,6 +17,7 @@ mod loads;
 mod method;
 mod plates;
 mod random_structures;
+mod rigid;
 mod settlements;
 mod slope;
 mod springs;

@@ -4,7 +4,8 @@ use crate::fem::{MainSystem, MainSystemError};
 use crate::model::pair::{Joint, Law, Pair, joints};
 use crate::model::parameter::Number;
 use crate::model::structure::{
-    Bar, Component, Element, ElementKind, Load, LoadCase, Material, Node, Plane, Plate, Spring, Structure, Support, Tie,
+    Bar, Component, Element, ElementKind, Load, LoadCase, Material, Node, Plane, Plate, RigidBody, Spring, Structure,
+    Support, Tie,
 };
 
 /// A structure being built; materials are made as they are used.
@@ -113,6 +114,11 @@ impl Model {
 
     pub fn tie(&mut self, nodes: &[usize], letters: &str) {
         self.0.ties.push(Tie { nodes: nodes.to_vec(), components: components(letters) });
+    }
+
+    pub fn rigid(&mut self, nodes: &[usize]) {
+        let id = format!("body{}", self.0.rigid.len() + 1);
+        self.0.rigid.push(RigidBody { id, nodes: nodes.to_vec() });
     }
 
     pub fn spring(&mut self, node: usize, direction: [f64; 2], stiffness: f64) {

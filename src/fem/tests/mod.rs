@@ -7,3 +7,4 @@ mod kernel;
 mod large;
 mod ordering;
 mod refusals;
+mod rigid;

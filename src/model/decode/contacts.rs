@@ -74,6 +74,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             None
         }
     };
+    let sides = sides.filter(|sides| !is_within_a_body(builder, cursor, sides));
     let count = sides.as_ref().map(|sides| sides.pairs.len());
     let numbers = law_numbers(&fields, law, count, is_edge);
     let skipped = fields
@@ -114,6 +115,29 @@ fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
 struct Sides {
     pairs: Vec<(usize, Option<usize>)>,
     normals: Vec<[f64; 2]>,
+}
+
+/// Reports a pair whose two nodes move as one.
+fn is_within_a_body<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, sides: &Sides) -> bool {
+    let body = |node: usize| builder.body_of.get(&node);
+    let mut sides = sides.pairs.iter();
+    let within = sides.find_map(|&(node, against)| {
+        let both = body(node)?;
+        (body(against?) == Some(both)).then_some((node, against?, *both))
+    });
+    let Some((node, against, both)) = within else {
+        return false;
+    };
+    cursor.problem(
+        format!(
+            "\"{}\" and \"{}\" belong to one rigid body, \"{}\": they move as one and cannot meet",
+            builder.node_id(node),
+            builder.node_id(against),
+            builder.structure.rigid[both].id
+        ),
+        "remove the contact, or make two bodies",
+    );
+    true
 }
 
 fn node_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {

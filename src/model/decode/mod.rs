@@ -16,6 +16,7 @@ mod numbers;
 mod parameters;
 mod plates;
 mod reader;
+mod rigid;
 mod single_elements;
 mod stages;
 mod structure;
@@ -43,7 +44,7 @@ const COMMON: [&str; 10] =
     ["$schema", "format", "title", "description", "units", "parameters", "stages", "combinations", "probes", "solver"];
 
 /// Keys of the source *structure*.
-const STRUCTURE: [&str; 14] = [
+const STRUCTURE: [&str; 15] = [
     "materials",
     "sections",
     "nodes",
@@ -52,6 +53,7 @@ const STRUCTURE: [&str; 14] = [
     "triangles",
     "quads",
     "edges",
+    "rigid",
     "ties",
     "supports",
     "springs",

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
-use super::{contacts, edges, elements, foundations, loads, supports};
+use super::{contacts, edges, elements, foundations, loads, rigid, supports};
 use crate::model::edge::{Edge, PlateSide};
 use crate::model::scenario::Places;
 use crate::model::structure::{Component, ElementKind, Node, Structure};
@@ -79,6 +79,8 @@ pub struct Builder<'d> {
     nodes_are_known: bool,
     /// Imposed displacements of supports, until their load cases are known.
     pub settlements: Vec<Settlement<'d>>,
+    /// The rigid body of each of their nodes.
+    pub body_of: HashMap<usize, usize>,
     /// Whether each node has a rotation; empty until the elements are complete.
     pub has_rotation: Vec<bool>,
     /// Whether every element was read, so that what they do not touch can be judged.
@@ -104,6 +106,7 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
         ends_of_broken_bars: Vec::new(),
         nodes_are_known: true,
         settlements: Vec::new(),
+        body_of: HashMap::new(),
         has_rotation: Vec::new(),
         elements_complete: false,
     };
@@ -112,6 +115,7 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
     builder.elements_complete = fields.cursor().problems_so_far() == before;
     builder.find_rotations();
     edges::read(&mut builder, fields);
+    rigid::read(&mut builder, fields);
     supports::read(&mut builder, fields);
     contacts::read(&mut builder, fields)?;
     foundations::read(&mut builder, fields);
@@ -381,7 +385,7 @@ impl<'d> Builder<'d> {
         }
         cursor.problem(
             format!("the node \"{}\" has no rotation: {what}", self.node_id(node)),
-            "only nodes of frame bars have one: remove it here",
+            "only nodes of frame bars and of rigid bodies have one: remove it here",
         );
         false
     }
@@ -389,17 +393,18 @@ impl<'d> Builder<'d> {
     /// A node that nothing holds or connects would move freely: reported at its name.
     fn report_loose_nodes(&self, fields: &Fields<'d>, names: &[Place<'d>]) {
         let structure = &self.structure;
-        if structure.elements.is_empty() && structure.springs.is_empty() {
-            let message = "the structure has no elements: expected bars, plates, quads or springs";
+        if structure.elements.is_empty() && structure.springs.is_empty() && structure.rigid.is_empty() {
+            let message = "the structure has no elements: expected bars, plates, quads, rigid bodies or springs";
             fields.cursor().problem(message, "add what carries the load");
             return;
         }
         let mut touched = vec![false; structure.nodes.len()];
         let elements = structure.elements.iter().flat_map(|element| &element.nodes);
+        let rigid = structure.rigid.iter().flat_map(|body| &body.nodes);
         let ties = structure.ties.iter().flat_map(|tie| &tie.nodes);
         let supports = structure.supports.iter().map(|support| &support.node);
         let springs = structure.springs.iter().flat_map(|spring| spring.terms.iter().map(|term| &term.node));
-        for &node in elements.chain(ties).chain(supports).chain(springs) {
+        for &node in elements.chain(rigid).chain(ties).chain(supports).chain(springs) {
             touched[node] = true;
         }
         // The author's nodes come first, so names and touched run side by side; generated nodes have elements.
@@ -407,7 +412,7 @@ impl<'d> Builder<'d> {
             if !touched[node] {
                 place.problem(
                     format!(
-                        "nothing is connected to the node \"{}\": no bar, quad, tie, spring or support",
+                        "nothing is connected to the node \"{}\": no bar, quad, rigid body, tie, spring or support",
                         self.node_id(node)
                     ),
                     "connect it or remove it",

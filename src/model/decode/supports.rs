@@ -1,6 +1,6 @@
 //! Ties, supports and springs.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::elements::entries;
 use super::reader::{Cursor, Fields};
@@ -78,11 +78,33 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
             nodes.and_then(|at| tied_nodes(builder, at))
         }
     };
+    let nodes = nodes.filter(|nodes| !ties_a_body(builder, cursor, nodes));
     let components = match (fields.optional("fixed"), &nodes) {
         (Some(fixed), nodes) => components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "tied"),
         (None, _) => Some(vec![Component::X, Component::Y]),
     };
     Some(Tie { nodes: nodes?, components: components? })
+}
+
+/// Reports two nodes of one rigid body.
+fn ties_a_body<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, nodes: &[usize]) -> bool {
+    let mut seen = HashMap::new();
+    for &node in nodes {
+        let Some(&body) = builder.body_of.get(&node) else { continue };
+        if let Some(other) = seen.insert(body, node) {
+            cursor.problem(
+                format!(
+                    "the nodes \"{}\" and \"{}\" of this tie belong to one rigid body, \"{}\": they move as one already",
+                    builder.node_id(other),
+                    builder.node_id(node),
+                    builder.structure.rigid[body].id
+                ),
+                "keep one node of the body in the tie",
+            );
+            return true;
+        }
+    }
+    false
 }
 
 fn tied_nodes<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<usize>> {

@@ -28,7 +28,7 @@ use loads::LoadCase;
         { "required": ["materials"] }, { "required": ["sections"] }, { "required": ["nodes"] },
         { "required": ["bars"] }, { "required": ["plates"] }, { "required": ["quads"] },
         { "required": ["triangles"] }, { "required": ["edges"] },
-        { "required": ["foundations"] }, { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
+        { "required": ["foundations"] }, { "required": ["rigid"] }, { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
         { "required": ["contacts"] }, { "required": ["loads"] },
     ] },
 ]))]
@@ -72,6 +72,8 @@ struct Scenario {
     quads: Option<Vec<Quad>>,
     /// Edges with a name: chains of the sides of elements, corner by corner
     edges: Option<BTreeMap<String, Vec<String>>>,
+    /// Rigid bodies
+    rigid: Option<Vec<Rigid>>,
     /// Nodes that share displacements
     ties: Option<Vec<Tie>>,
     /// Supports
@@ -182,6 +184,21 @@ enum Component {
     X,
     Y,
     R,
+}
+
+/// Nodes that move as one rigid body
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["nodes"] }, { "required": ["at"] }]))]
+struct Rigid {
+    /// Id
+    id: String,
+    /// Its nodes
+    nodes: Option<Vec<String>>,
+    /// An edge all nodes of which move as one
+    at: Option<String>,
+    /// Node that belongs to the body and by which its motion is told; the first one if left out
+    about: Option<String>,
 }
 
 /// Nodes that share displacements
