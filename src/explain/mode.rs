@@ -66,9 +66,22 @@ fn members(structure: &Structure) -> Vec<Member> {
         .chain(structure.plates.iter().map(|plate| (&plate.id, &plate.elements)))
         .map(|(id, elements)| Member { id: format!("`{id}`"), nodes: nodes_of(elements.clone()) })
         .collect();
+    for mesh in &structure.meshes {
+        all.extend(mesh.bodies.iter().map(|body| {
+            let mut nodes: Vec<usize> =
+                body.elements.iter().flat_map(|element| structure.elements[*element].nodes.iter().copied()).collect();
+            nodes.sort_unstable();
+            nodes.dedup();
+            Member { id: format!("`{}`", body.name), nodes }
+        }));
+    }
     let mut named = vec![false; structure.elements.len()];
-    for elements in
-        structure.bars.iter().map(|bar| &bar.elements).chain(structure.plates.iter().map(|plate| &plate.elements))
+    for elements in structure
+        .bars
+        .iter()
+        .map(|bar| &bar.elements)
+        .chain(structure.plates.iter().map(|plate| &plate.elements))
+        .chain(structure.meshes.iter().map(|mesh| &mesh.elements))
     {
         named[elements.clone()].fill(true);
     }

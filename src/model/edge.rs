@@ -160,6 +160,14 @@ impl EdgeSide {
 }
 
 impl Edge {
+    /// Its nodes without the last one of a closed edge, which is the first.
+    pub fn distinct_nodes(&self) -> &[usize] {
+        match &self.nodes[..] {
+            [first, .., last] if self.sides.len() > 1 && first == last => &self.nodes[..self.nodes.len() - 1],
+            nodes => nodes,
+        }
+    }
+
     /// Its length.
     pub fn length(&self, nodes: &[Node]) -> f64 {
         self.sides.iter().map(|side| side.length_to(nodes, 1.0)).sum()
@@ -299,6 +307,13 @@ impl Sides {
     /// The corners of the side with this node in its middle.
     pub fn with_middle(&self, node: usize) -> Option<[usize; 2]> {
         self.by_middle.get(&node).map(|&(a, b)| [a, b])
+    }
+
+    /// All sides, each once, with whether two elements share it.
+    pub fn all(&self) -> Vec<(EdgeSide, bool)> {
+        let mut all: Vec<_> = self.by_corners.values().map(|sides| (sides[0], sides.len() > 1)).collect();
+        all.sort_unstable_by_key(|(side, _)| (side.element, side.ends));
+        all
     }
 
     /// The sides of one element only, in the order of elements, each in the sense of its element.

@@ -6,6 +6,7 @@ use super::decode;
 use super::embedded;
 use super::locate::position;
 use super::memory;
+use super::mesh::MeshFiles;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
@@ -61,7 +62,7 @@ fn load_bytes(
 
 /// Checks the text of a scenario. `path` is the file it came from: other files it names are relative to it.
 pub fn load_text(name: &str, text: &str, path: Option<&Path>) -> Result<Scenario, Problems> {
-    decode::scenario(name, text, path.map(PathBuf::from), None)
+    decode::scenario(name, text, path.map(PathBuf::from), None, MeshFiles::default())
 }
 
 /// The scenario read once more, with its numbers under other values of its parameters.
@@ -69,7 +70,7 @@ pub fn load_text(name: &str, text: &str, path: Option<&Path>) -> Result<Scenario
 /// # Errors
 /// A model that these values make invalid, with the place.
 pub fn at_values(scenario: &Scenario, values: &ParameterValues) -> Result<Scenario, Problems> {
-    decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), Some(values))
+    decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), Some(values), scenario.meshes.clone())
 }
 
 /// Loads what a user names: an embedded scenario, or a file if the word holds a slash, ends in `.json` or is the

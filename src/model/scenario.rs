@@ -6,6 +6,7 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::locate::Document;
+use super::mesh::MeshFiles;
 use super::pair::Law;
 use super::parameter::{Formulas, Number, Parameter, ParameterValues};
 use super::problem::{Problem, Problems};
@@ -150,6 +151,10 @@ pub struct Scenario {
     pub rules: Rules,
     /// Where its parts stand in `text`.
     pub places: Places,
+    /// The meshes it names, as they were when it was loaded.
+    pub meshes: MeshFiles,
+    /// What was put right in them, in words.
+    pub notes: Vec<String>,
 }
 
 impl Scenario {

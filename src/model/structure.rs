@@ -1,7 +1,8 @@
 //! The checked, resolved structure: names have become indices, lists are complete, every number is finite.
 //!
 //! Node indices point into [`Structure::nodes`]; that list holds the author's nodes first (file order), then
-//! the generated ones (plate nodes `lower[i,j]`, then bar divisions `AB/1`), so that results keep the author's order.
+//! the generated ones (plate nodes `lower[i,j]`, mesh nodes `dam/17`, bar divisions `AB/1`), so that results keep the
+//! author's order.
 
 use super::pair::Pair;
 use super::parameter::Number;
@@ -108,6 +109,12 @@ impl Element {
             count => count,
         }
     }
+
+    /// Its nodes as they lie round it, middle nodes between their corners; the two of a bar.
+    pub fn ring(&self) -> impl Iterator<Item = usize> {
+        let corners = self.corners();
+        (0..corners).flat_map(move |k| [Some(self.nodes[k]), self.nodes.get(corners + k).copied()]).flatten()
+    }
 }
 
 /// A bar of the file: a chain of equal elements.
@@ -128,6 +135,28 @@ pub struct Plate {
     pub elements: std::ops::Range<usize>,
     /// Node grid: `nodes[j][i]` is `id[i,j]`.
     pub nodes: Vec<Vec<usize>>,
+}
+
+/// The elements of a mesh file that are areas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshElements {
+    /// Name in the file.
+    pub id: String,
+    /// A range of [`Structure::elements`].
+    pub elements: std::ops::Range<usize>,
+    /// Their numbers in the mesh file.
+    pub tags: Vec<u64>,
+    /// The parts that hang together.
+    pub bodies: Vec<Body>,
+}
+
+/// Elements that hang together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// `m`, `m.GROUP` or `m#TAG`.
+    pub name: String,
+    /// Indices into [`Structure::elements`].
+    pub elements: Vec<usize>,
 }
 
 /// A displacement component held by a support.
@@ -296,12 +325,14 @@ pub struct Structure {
     pub nodes: Vec<Node>,
     /// Materials by index.
     pub materials: Vec<Material>,
-    /// All elements: of bars, of plates, then single quads, in file order.
+    /// All elements: of bars, of plates, of meshes, then single ones, in file order.
     pub elements: Vec<Element>,
     /// The bars.
     pub bars: Vec<Bar>,
     /// The plates.
     pub plates: Vec<Plate>,
+    /// The meshes.
+    pub meshes: Vec<MeshElements>,
     /// Held components, without repetition.
     pub supports: Vec<Support>,
     /// Ties.
@@ -339,5 +370,14 @@ impl Structure {
             first.is_some() && element.nodes.iter().all(|&node| body_of[node] == first)
         };
         self.elements.iter().map(is_rigid).collect()
+    }
+
+    /// The element `ID#TAG` of a mesh.
+    pub fn mesh_element(&self, name: &str) -> Option<usize> {
+        let (id, tag) = name.split_once('#')?;
+        let mesh = self.meshes.iter().find(|mesh| mesh.id == id)?;
+        let tag: u64 = tag.parse().ok()?;
+        let index = mesh.tags.iter().position(|known| *known == tag)?;
+        Some(mesh.elements.start + index)
     }
 }

@@ -217,6 +217,7 @@ impl Session {
         let scenario = load::scenario(name, io.watch)?;
         let mut notes = vec![format!("{}: {}", scenario.name, scenario.title)];
         notes.extend(scenario.description.clone());
+        notes.extend(scenario.notes.iter().cloned());
         self.change_noting(Setup::of(scenario), text, &notes, io)
     }
 

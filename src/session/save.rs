@@ -106,7 +106,7 @@ fn put(object: &CstObject, key: &str, value: CstInputValue) {
     }
 }
 
-/// A matrix file named relative to the old place is named in full when the scenario moves to another folder.
+/// A matrix or mesh file named relative to the old place is named in full when the scenario moves to another folder.
 fn keep_file_references(object: &CstObject, scenario: &Scenario, path: &Path) {
     let Some(old) = scenario.path.as_deref() else {
         return;
@@ -123,8 +123,10 @@ fn keep_file_references(object: &CstObject, scenario: &Scenario, path: &Path) {
     }
     let system = object.object_value("contact_system");
     let matrix = |key: &str| system.as_ref().and_then(|system| system.object_value(key));
-    let files = ["stiffness", "compliance"].into_iter().filter_map(|key| matrix(key)?.get("file"));
-    for property in files {
+    let matrices = ["stiffness", "compliance"].into_iter().filter_map(|key| matrix(key)?.get("file"));
+    let meshes = object.array_value("meshes").map(|meshes| meshes.elements()).unwrap_or_default();
+    let meshes = meshes.into_iter().filter_map(|mesh| mesh.as_object()?.get("file"));
+    for property in matrices.chain(meshes) {
         if let Some(name) = property.value().and_then(|value| value.as_string_lit())
             && let Ok(name) = name.decoded_value()
             && Path::new(&name).is_relative()

@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 
 use crate::answer::record::*;
 use crate::fem::Piece;
+use crate::model::mesh::MeshFiles;
 use crate::model::pair::{Law, Pair};
 use crate::model::parameter::{Number, Parameter};
 use crate::model::rules::Rules;
@@ -325,6 +326,8 @@ pub fn scenario() -> Scenario {
         combinations: Vec::new(),
         probes: Vec::new(),
         places: Places::default(),
+        meshes: MeshFiles::default(),
+        notes: Vec::new(),
         rules: Rules::default(),
     }
 }

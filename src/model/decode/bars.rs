@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::elements::{id_of, material_of};
 use super::reader::{Cursor, Fields};
-use super::structure::Builder;
+use super::structure::{Builder, Section};
 use crate::model::structure::{Bar, Element, ElementKind, Node};
 
 /// A bar before its division.
@@ -62,16 +62,7 @@ fn bar_outline<'d>(
         Some(cursor) => hinges(cursor),
         None => Some([false; 2]),
     };
-    let section = fields.required("section").and_then(|cursor| {
-        let name = cursor.string()?;
-        let section = builder.sections.get(name);
-        if section.is_none() {
-            let mut known: Vec<&str> = builder.sections.keys().copied().collect();
-            known.sort_unstable();
-            cursor.unknown("section", name, &known);
-        }
-        Some((cursor, name, section?))
-    });
+    let section = section_of(builder, fields);
     let is_frame = is_frame?;
     if !is_frame && fields.entry("polyline").is_some() {
         fields.refuse(
@@ -100,19 +91,42 @@ fn bar_outline<'d>(
         return None;
     }
     let (at, name, section) = section?;
-    let kind = if is_frame {
-        let Some(inertia) = section.inertia else {
-            at.problem(
-                format!("the section \"{name}\" has no `inertia`, which a frame bar needs"),
-                format!("add sections.{name}.inertia, or make the bar a truss"),
-            );
-            return None;
-        };
-        ElementKind::Frame { area: section.area, inertia, shear_area: section.shear_area, hinges: hinges? }
-    } else {
-        ElementKind::Truss { area: section.area }
-    };
+    let kind = bar_kind(at, name, section, is_frame, hinges?)?;
     Some(BarOutline { cursor, id: id?, section: name, nodes: nodes?, divisions: divisions?, material: material?, kind })
+}
+
+/// Where a section is named, its name and the section.
+pub fn section_of<'b, 'd>(builder: &'b Builder<'d>, fields: &Fields<'d>) -> Option<(Cursor<'d>, &'d str, &'b Section)> {
+    let cursor = fields.required("section")?;
+    let name = cursor.string()?;
+    let section = builder.sections.get(name);
+    if section.is_none() {
+        let mut known: Vec<&str> = builder.sections.keys().copied().collect();
+        known.sort_unstable();
+        cursor.unknown("section", name, &known);
+    }
+    Some((cursor, name, section?))
+}
+
+/// What an element of a bar is; a section that does not suffice is reported.
+pub fn bar_kind(
+    at: Cursor<'_>,
+    name: &str,
+    section: &Section,
+    is_frame: bool,
+    hinges: [bool; 2],
+) -> Option<ElementKind> {
+    if !is_frame {
+        return Some(ElementKind::Truss { area: section.area });
+    }
+    let Some(inertia) = section.inertia else {
+        at.problem(
+            format!("the section \"{name}\" has no `inertia`, which a frame bar needs"),
+            format!("add sections.{name}.inertia, or make the bar a truss"),
+        );
+        return None;
+    };
+    Some(ElementKind::Frame { area: section.area, inertia, shear_area: section.shear_area, hinges })
 }
 
 /// The nodes along a bar: `nodes`, start and end, or `polyline`.
@@ -191,7 +205,7 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
         builder.structure.elements.push(Element { nodes: pair.to_vec(), material: bar.material, kind });
         builder.places.elements.push(place.clone());
     }
-    builder.bars.insert(bar.id, builder.structure.bars.len());
+    builder.bars.insert(bar.id.into(), builder.structure.bars.len());
     builder.bar_sections.push(bar.section);
     builder.structure.bars.push(Bar { id: bar.id.to_string(), elements: first..builder.structure.elements.len() });
 }

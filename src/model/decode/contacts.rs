@@ -8,7 +8,6 @@ use super::law::{self, LawKind, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::structure::{Builder, Spot};
 use super::words::nearest;
-use crate::model::edge::Edge;
 use crate::model::memory;
 use crate::model::pair::{JointDirection, Pair, joints};
 use crate::model::parameter::Number;
@@ -179,7 +178,9 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
             // Subtracting from 0 turns −0 into 0.
             None => edge.outward_normals(nodes).into_iter().map(|outward| outward.map(|n| 0.0 - n)).collect(),
         };
-        return Some(Sides { pairs: edge.nodes.iter().map(|&node| (node, None)).collect(), normals });
+        // The last node of a closed edge is the first.
+        let pairs: Vec<(usize, Option<usize>)> = edge.distinct_nodes().iter().map(|&node| (node, None)).collect();
+        return Some(Sides { normals: normals[..pairs.len()].to_vec(), pairs });
     }
     if is_misspelt_ground(builder, against.string()?) {
         against.unknown("edge", against.string()?, &[GROUND]);
@@ -202,17 +203,18 @@ fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) ->
         );
         return None;
     }
-    let reversed = partners(builder, at, against, &edge.nodes, &other)?;
-    let mut partners = other.nodes.clone();
+    let reversed = partners(builder, at, against, edge.distinct_nodes(), other.distinct_nodes())?;
+    let mut partners = other.distinct_nodes().to_vec();
     let mut normals = match normal {
         Some(normal) => vec![normal; partners.len()],
-        None => other.outward_normals(nodes),
+        None => other.outward_normals(nodes)[..partners.len()].to_vec(),
     };
     if reversed {
         partners.reverse();
         normals.reverse();
     }
-    Some(Sides { pairs: edge.nodes.into_iter().zip(partners.into_iter().map(Some)).collect(), normals })
+    let pairs = edge.distinct_nodes().iter().copied().zip(partners.into_iter().map(Some)).collect();
+    Some(Sides { pairs, normals })
 }
 
 /// Whether the other edge runs the other way; each of its nodes must be at the place of its partner.
@@ -221,9 +223,9 @@ fn partners<'d>(
     at: Cursor<'d>,
     against: Cursor<'d>,
     nodes: &[usize],
-    other: &Edge,
+    others: &[usize],
 ) -> Option<bool> {
-    let mut others = other.nodes.clone();
+    let mut others = others.to_vec();
     if others.len() != nodes.len() {
         against.problem(
             format!(

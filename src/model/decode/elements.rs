@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::bars::{BarOutline, bar, divide};
+use super::meshes::{self, MeshOutline};
 use super::plates::plate;
 use super::reader::{Cursor, Fields};
 use super::single_elements::{quad, triangle};
@@ -23,14 +24,20 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
     let plates = entries(fields, "plates");
     let plates: Vec<(Cursor<'d>, PlateGrid)> =
         plates.into_iter().filter_map(|cursor| Some((cursor, plate(builder, cursor)?))).collect();
+    let meshes: Vec<MeshOutline<'d>> =
+        entries(fields, "meshes").into_iter().filter_map(|cursor| meshes::outline(builder, cursor)).collect();
     let bars: Vec<BarOutline<'d>> = bars.into_iter().filter_map(|cursor| bar(builder, cursor)).collect();
-    refuse_too_large(builder, &bars, &plates)?;
+    refuse_too_large(builder, &bars, &plates, &meshes)?;
 
     for (index, (_, plate)) in plates.iter().enumerate() {
         let nodes = plate.append_nodes(&mut builder.structure.nodes);
         builder.structure.plates.push(Plate { id: plate.id.clone(), elements: 0..0, nodes });
         let place: Arc<str> = format!("plates[{index}]").into();
         builder.places.nodes.resize(builder.structure.nodes.len(), place);
+    }
+    let place = |index: usize| -> Arc<str> { format!("meshes[{index}]").into() };
+    for (index, mesh) in meshes.iter().enumerate() {
+        meshes::append_nodes(builder, mesh, &place(index));
     }
     for (index, bar) in bars.into_iter().enumerate() {
         divide(builder, bar, format!("bars[{index}]").into());
@@ -43,6 +50,9 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
         plates[index].elements = plate.append_elements(&plates[index].nodes, elements);
         let place: Arc<str> = format!("plates[{index}]").into();
         builder.places.elements.resize(builder.structure.elements.len(), place);
+    }
+    for (index, mesh) in meshes.iter().enumerate() {
+        meshes::append_elements(builder, mesh, &place(index));
     }
     for (list, read) in [("triangles", triangle as ReadElement), ("quads", quad)] {
         for (index, cursor) in entries(fields, list).into_iter().enumerate() {
@@ -144,10 +154,16 @@ pub fn id_of<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>, kind: &'static 
 }
 
 /// Reports a mesh that would not fit in memory, at its largest part, before it is made.
-fn refuse_too_large(builder: &Builder<'_>, bars: &[BarOutline<'_>], plates: &[(Cursor<'_>, PlateGrid)]) -> Option<()> {
+fn refuse_too_large(
+    builder: &Builder<'_>,
+    bars: &[BarOutline<'_>],
+    plates: &[(Cursor<'_>, PlateGrid)],
+    meshes: &[MeshOutline<'_>],
+) -> Option<()> {
     let bars = bars.iter().map(|bar| (bar.cursor, bar.element_count()));
     let plates = plates.iter().map(|(cursor, plate)| (*cursor, plate.node_count()));
-    let parts: Vec<(Cursor<'_>, f64)> = bars.chain(plates).collect();
+    let meshes = meshes.iter().map(|mesh| (mesh.cursor, mesh.node_count()));
+    let parts: Vec<(Cursor<'_>, f64)> = bars.chain(plates).chain(meshes).collect();
     let generated: f64 = parts.iter().map(|(_, nodes)| nodes).sum();
     let nodes = generated + builder.structure.nodes.len() as f64;
     let Some(refusal) = memory::refusal(memory::for_nodes(nodes)) else {
@@ -159,7 +175,7 @@ fn refuse_too_large(builder: &Builder<'_>, bars: &[BarOutline<'_>], plates: &[(C
     };
     largest.problem(
         format!("the model is too large: with {} nodes it {refusal}", count(nodes)),
-        "lower the `divisions`, here first",
+        "lower the `divisions`, or mesh more coarsely, here first",
     );
     None
 }

@@ -125,6 +125,12 @@ fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
         places[k - 1].length += half;
         places[k].length += half;
     }
+    if edge.distinct_nodes().len() < places.len()
+        && let Some(last) = places.pop()
+    {
+        // A closed edge: half of its last side belongs to the first node.
+        places[0].length += last.length;
+    }
     Some(places)
 }
 

@@ -12,6 +12,8 @@ mod lcp;
 mod loads;
 mod matrix_file;
 mod matrix_market;
+mod mesh_names;
+mod meshes;
 mod numbers;
 mod parameters;
 mod plates;
@@ -24,10 +26,12 @@ mod supports;
 #[cfg(test)]
 mod tests;
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::locate::{Document, position};
+use super::mesh::MeshFiles;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::quantity::{self, Names, Quantity};
@@ -50,6 +54,7 @@ const STRUCTURE: [&str; 15] = [
     "nodes",
     "bars",
     "plates",
+    "meshes",
     "triangles",
     "quads",
     "edges",
@@ -65,12 +70,13 @@ const STRUCTURE: [&str; 15] = [
 /// Keys of the other two sources.
 const OTHER_SOURCES: [&str; 2] = ["contact_system", "lcp"];
 
-/// Checks the text of a scenario under the parameter values of the file, or those given.
+/// Checks the text of a scenario under the parameter values of the file, or those given; `meshes` are not read again.
 pub fn scenario(
     name: &str,
     text: &str,
     path: Option<PathBuf>,
     values: Option<&ParameterValues>,
+    meshes: MeshFiles,
 ) -> Result<Scenario, Problems> {
     let document = Document::parse(text).map_err(|error| {
         let (line, column) = position(text, error.offset);
@@ -86,7 +92,7 @@ pub fn scenario(
             more: 0,
         }
     })?;
-    let reading = Reading::default();
+    let reading = Reading { path: path.clone(), meshes: RefCell::new(meshes), ..Reading::default() };
     let decoded = read(Cursor::root(&document, &reading), name, text, path, values);
     let parameters = reading.parameters.into_inner().unwrap_or_default();
     match (reading.findings.into_problems(name, &document), decoded) {
@@ -94,6 +100,7 @@ pub fn scenario(
             let places = reading.uses.into_inner();
             let places = places.into_iter().map(|((name, region), offset)| (name, region, document.path_at(offset)));
             scenario.uses = Uses::new(places, parameters.formulas());
+            scenario.meshes = reading.meshes.into_inner();
             Ok(scenario)
         }
         (Some(problems), _) => Err(problems),
@@ -131,11 +138,12 @@ fn read(
     let rules = solver.and_then(rules).unwrap_or_default();
 
     let mut places = Places::default();
+    let mut notes = Vec::new();
     let source = match source_key(&fields)? {
         SourceKey::Structure => {
-            let (structure, found) = structure::read(&fields)?;
-            places = found;
-            Source::Structure(structure)
+            let found = structure::read(&fields)?;
+            (places, notes) = (found.places, found.notes);
+            Source::Structure(found.structure)
         }
         SourceKey::ContactSystem(cursor) => {
             let system = contact_system::read(cursor, path.as_deref())?;
@@ -170,6 +178,8 @@ fn read(
         places,
         formulas: Arc::new(root.parameters().formulas().clone()),
         uses: Uses::default(),
+        meshes: MeshFiles::default(),
+        notes,
     };
     scenario.probes = match fields.optional("probes") {
         Some(cursor) => probes(cursor, &scenario)?,

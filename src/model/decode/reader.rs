@@ -6,6 +6,7 @@
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Display;
+use std::path::PathBuf;
 
 use jsonc_parser::ast::{ObjectProp, Value};
 use jsonc_parser::common::Ranged;
@@ -15,6 +16,7 @@ use super::numbers::shortened;
 use super::parameters::Parameters;
 use super::words::{counted, did_you_mean, listed, quoted};
 use crate::model::locate::{self, Document};
+use crate::model::mesh::MeshFiles;
 use crate::model::uses::Region;
 
 /// What one reading of a text collects, besides what it returns.
@@ -25,6 +27,10 @@ pub struct Reading {
     pub parameters: OnceCell<Parameters>,
     /// A byte offset for every name of a parameter in every region.
     pub uses: RefCell<BTreeMap<(String, Region), usize>>,
+    /// The file of the scenario: others are named relative to it.
+    pub path: Option<PathBuf>,
+    /// Meshes read so far.
+    pub meshes: RefCell<MeshFiles>,
 }
 
 /// A position in the tree: one value, and the region whose numbers are read from it.

@@ -1,8 +1,10 @@
 //! The source *structure*: reads its parts in the order in which they refer to each other, resolves names.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
+use super::mesh_names::MeshPart;
 use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
 use super::{contacts, edges, elements, foundations, loads, rigid, supports};
@@ -60,15 +62,19 @@ pub struct Builder<'d> {
     pub places: Places,
     pub materials: HashMap<&'d str, usize>,
     pub sections: HashMap<&'d str, Section>,
-    pub bars: HashMap<&'d str, usize>,
+    /// By their ids; those of meshes are made of the names of groups.
+    pub bars: HashMap<Cow<'d, str>, usize>,
     /// Section of each bar, in the order of the bars.
     pub bar_sections: Vec<&'d str>,
     pub plates: HashMap<&'d str, usize>,
+    pub meshes: HashMap<&'d str, MeshPart>,
+    /// What was put right in mesh files.
+    pub notes: Vec<String>,
     /// The edges that have a name of their own.
     pub edges: HashMap<&'d str, Edge>,
     /// Triangles and quads by their ids.
     pub single_elements: HashMap<&'d str, usize>,
-    /// Nodes of the author and of bar divisions; plate nodes are found by their indices.
+    /// Nodes of the author and of bar divisions; those of plates and meshes are found by their indices.
     pub nodes: HashMap<String, usize>,
     /// Every id and what it names.
     ids: HashMap<&'d str, &'static str>,
@@ -87,8 +93,16 @@ pub struct Builder<'d> {
     pub elements_complete: bool,
 }
 
+/// A structure as it was read.
+pub struct Found {
+    pub structure: Structure,
+    pub places: Places,
+    /// What was put right in mesh files.
+    pub notes: Vec<String>,
+}
+
 /// Reads a structure. `None`, or an incomplete structure, only after a problem was reported.
-pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
+pub fn read<'d>(fields: &Fields<'d>) -> Option<Found> {
     let before = fields.cursor().problems_so_far();
     let mut builder = Builder {
         structure: Structure::default(),
@@ -98,6 +112,8 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
         bars: HashMap::new(),
         bar_sections: Vec::new(),
         plates: HashMap::new(),
+        meshes: HashMap::new(),
+        notes: Vec::new(),
         edges: HashMap::new(),
         single_elements: HashMap::new(),
         nodes: HashMap::new(),
@@ -123,7 +139,7 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<(Structure, Places)> {
     if builder.elements_complete {
         builder.report_loose_nodes(fields, &names);
     }
-    Some((builder.structure, builder.places))
+    Some(Found { structure: builder.structure, places: builder.places, notes: builder.notes })
 }
 
 /// The nodes of the file, with the places of their names.
@@ -178,6 +194,12 @@ impl<'d> Builder<'d> {
         if let Some(edge) = self.edges.get(name) {
             return Some(Spot::Edge(edge.clone()));
         }
+        if let Some((part, rest)) = self.mesh_name(name) {
+            return part.spot(cursor, rest);
+        }
+        if self.is_of_broken_mesh(name) {
+            return None;
+        }
         if let Some((id, side)) = name.split_once('.') {
             let plate = self.plate(cursor, id, name)?;
             let Some((_, side)) = PlateSide::WORDS.iter().find(|(word, _)| *word == side) else {
@@ -209,6 +231,26 @@ impl<'d> Builder<'d> {
         None
     }
 
+    /// The mesh that a name begins with, and what follows its id.
+    fn mesh_name<'n>(&self, name: &'n str) -> Option<(&MeshPart, &'n str)> {
+        let at = name.find(['/', '.', '#'])?;
+        Some((self.meshes.get(&name[..at])?, &name[at..]))
+    }
+
+    fn is_of_broken_mesh(&self, name: &str) -> bool {
+        name.find(['/', '.', '#']).is_some_and(|at| self.broken.contains(&name[..at]))
+    }
+
+    /// All nodes that `at` names, where their order does not matter: one, those of an edge, or those of a set.
+    pub fn nodes_at(&self, cursor: Cursor<'d>) -> Option<Vec<usize>> {
+        let name = cursor.string()?;
+        let set = self.mesh_name(name).and_then(|(part, rest)| part.node_set(rest));
+        set.or_else(|| match self.spot(cursor)? {
+            Spot::Node(node) => Some(vec![node]),
+            Spot::Edge(edge) => Some(edge.distinct_nodes().to_vec()),
+        })
+    }
+
     fn plate(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<usize> {
         let plate = self.plates.get(id).copied();
         if plate.is_none() && !self.broken.contains(id) {
@@ -235,6 +277,13 @@ impl<'d> Builder<'d> {
     fn unknown_spot(&self, cursor: Cursor<'d>, name: &str) {
         let bar = name.split_once('/').map(|(bar, _)| bar);
         if !self.nodes_are_known || self.broken.contains(name) || bar.is_some_and(|bar| self.broken.contains(bar)) {
+            return;
+        }
+        if self.meshes.contains_key(name) {
+            cursor.problem(
+                format!("\"{name}\" is a mesh, expected a node or an edge"),
+                format!("name one of its nodes, \"{name}/17\", or groups of lines, \"{name}.GROUP\""),
+            );
             return;
         }
         if self.plates.contains_key(name) {
@@ -301,15 +350,7 @@ impl<'d> Builder<'d> {
         }
     }
 
-    /// All nodes that `at` names: one, or those of an edge.
-    pub fn spot_nodes(&self, spot: Spot) -> Vec<usize> {
-        match spot {
-            Spot::Node(node) => vec![node],
-            Spot::Edge(edge) => edge.nodes,
-        }
-    }
-
-    /// The elements of a bar, plate, triangle or quad that a string names.
+    /// The elements of a bar, plate, mesh, group of a mesh, triangle or quad that a string names.
     pub fn elements_of(&self, cursor: Cursor<'d>) -> Option<Vec<usize>> {
         let name = cursor.string()?;
         if let Some(&bar) = self.bars.get(name) {
@@ -321,9 +362,13 @@ impl<'d> Builder<'d> {
         if let Some(&element) = self.single_elements.get(name) {
             return Some(vec![element]);
         }
-        if !self.broken.contains(name) {
-            let mut known: Vec<&str> =
-                self.bars.keys().chain(self.plates.keys()).chain(self.single_elements.keys()).copied().collect();
+        let mesh = self.meshes.get(name).map(|part| (part, ""));
+        if let Some((part, rest)) = mesh.or_else(|| self.mesh_name(name)) {
+            return part.elements(cursor, rest);
+        }
+        if !self.broken.contains(name) && !self.is_of_broken_mesh(name) {
+            let own = self.plates.keys().chain(self.single_elements.keys()).chain(self.meshes.keys()).copied();
+            let mut known: Vec<&str> = self.bars.keys().map(|id| &**id).chain(own).collect();
             known.sort_unstable();
             cursor.unknown("element", name, &known);
         }
@@ -394,7 +439,8 @@ impl<'d> Builder<'d> {
     fn report_loose_nodes(&self, fields: &Fields<'d>, names: &[Place<'d>]) {
         let structure = &self.structure;
         if structure.elements.is_empty() && structure.springs.is_empty() && structure.rigid.is_empty() {
-            let message = "the structure has no elements: expected bars, plates, quads, rigid bodies or springs";
+            let message =
+                "the structure has no elements: expected bars, plates, meshes, quads, rigid bodies or springs";
             fields.cursor().problem(message, "add what carries the load");
             return;
         }

@@ -70,8 +70,12 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
             None
         }
         (None, Some(at)) => {
-            let edge = builder.edge(at.value());
-            edge.map(|edge| edge.nodes)
+            let nodes = builder.nodes_at(at.value());
+            match nodes {
+                // One node is no edge: reported.
+                Some(nodes) if nodes.len() < 2 => builder.edge(at.value()).map(|edge| edge.nodes),
+                nodes => nodes,
+            }
         }
         (nodes, None) => {
             let nodes = nodes.or_else(|| fields.required("nodes"));
@@ -138,7 +142,7 @@ type Held<'d> = (Support, Option<(Cursor<'d>, f64)>);
 
 fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Held<'d>>> {
     let fields = cursor.fields(&["at", "fixed", "settlement", "case"])?;
-    let nodes = fields.required("at").and_then(|at| builder.spot(at)).map(|spot| builder.spot_nodes(spot));
+    let nodes = fields.required("at").and_then(|at| builder.nodes_at(at));
     let components =
         fields.required("fixed").and_then(|fixed| components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed"));
     let settlement = settlement(&fields, components.as_deref());
@@ -216,8 +220,8 @@ fn springs<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Spring>>
 /// The nodes that a spring connects: with the ground (each of an edge), or two with each other.
 fn spring_ends<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<(usize, Option<usize>)>> {
     let Some(between) = fields.entry("between") else {
-        let spot = fields.required("at").and_then(|at| builder.spot(at))?;
-        return Some(builder.spot_nodes(spot).into_iter().map(|node| (node, None)).collect());
+        let nodes = fields.required("at").and_then(|at| builder.nodes_at(at))?;
+        return Some(nodes.into_iter().map(|node| (node, None)).collect());
     };
     if fields.entry("at").is_some() {
         between.key_problem("`between` cannot stand beside `at`", "name two nodes, or one that is held to the ground");

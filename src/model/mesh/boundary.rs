@@ -4,6 +4,7 @@
 
 use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
+use std::ops::Deref;
 
 use super::chain::{chains, oriented, signed_area};
 use super::{Group, Members, Mesh, MeshElement};
@@ -44,8 +45,8 @@ pub struct Facing {
 }
 
 /// The sides of a mesh, and the edges found among them.
-pub struct Boundary<'m> {
-    mesh: &'m Mesh,
+pub struct Boundary<M> {
+    mesh: M,
     sides: Sides,
     facing: OnceCell<Vec<Facing>>,
 }
@@ -54,9 +55,9 @@ fn usizes(nodes: &[u32]) -> Vec<usize> {
     nodes.iter().map(|node| *node as usize).collect()
 }
 
-impl<'m> Boundary<'m> {
+impl<M: Deref<Target = Mesh>> Boundary<M> {
     /// Of a mesh.
-    pub fn of(mesh: &'m Mesh) -> Self {
+    pub fn of(mesh: M) -> Self {
         let mut sides = Sides::default();
         for index in mesh.areas() {
             let element = &mesh.elements[index as usize];
@@ -267,7 +268,7 @@ impl<'m> Boundary<'m> {
 
     /// What is wrong with a group as an edge, and what to do.
     pub fn words(&self, group: &Group, fault: &EdgeFault) -> (String, String) {
-        let mesh = self.mesh;
+        let mesh = &*self.mesh;
         let tag = |node: usize| mesh.nodes[node].tag;
         let what = |ends: &[usize; 2], line: &Option<u32>| match line {
             Some(line) => {

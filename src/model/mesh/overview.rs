@@ -114,7 +114,13 @@ impl Overview {
     }
 }
 
-fn view(group: &Group, mesh: &Mesh, boundary: &Boundary<'_>, nodes: &[Node], area: &dyn Fn(u32) -> f64) -> GroupView {
+fn view(
+    group: &Group,
+    mesh: &Mesh,
+    boundary: &Boundary<&Mesh>,
+    nodes: &[Node],
+    area: &dyn Fn(u32) -> f64,
+) -> GroupView {
     let edge = boundary.edge(group);
     let (dimension, measure) = match &group.members {
         Members::Points(_) => (0, None),

@@ -1,5 +1,7 @@
 //! Schema of materials, sections and elements.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 
 use super::Number;
@@ -122,6 +124,56 @@ pub enum QuadKind {
 pub enum Plane {
     Strain,
     Stress,
+}
+
+/// A mesh file: nodes id/17, elements id#17, groups of lines are edges id.GROUP
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Mesh {
+    /// Id
+    id: String,
+    /// File of Gmsh (.msh) or of Abaqus or CalculiX (.inp), relative to the scenario
+    file: String,
+    /// Multiplies the coordinates; 1 if left out
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    scale: Option<Number>,
+    /// What the groups are made of; "*" is for elements in no group
+    materials: BTreeMap<String, MeshGroup>,
+}
+
+/// What a group of a mesh is made of
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum MeshGroup {
+    /// Elements
+    Areas(MeshAreas),
+    /// Lines that are bars
+    Lines(MeshLines),
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct MeshAreas {
+    /// Id of the material
+    material: String,
+    /// Thickness
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    thickness: Number,
+    /// Plane strain or plane stress
+    plane: Plane,
+    /// Plain, or with modes of bending of their own (four nodes); plain if left out
+    element: Option<QuadKind>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct MeshLines {
+    /// Id of the material
+    material: String,
+    /// Id of the section
+    section: String,
+    /// If left out as the file says: truss for T2D2, else frame
+    kind: Option<BarKind>,
 }
 
 /// One four-node element of any convex shape

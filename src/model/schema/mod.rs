@@ -15,7 +15,7 @@ use serde_json::{Map, Value};
 mod elements;
 mod loads;
 
-use elements::{Bar, Material, Plate, Quad, Section, Triangle};
+use elements::{Bar, Material, Mesh, Plate, Quad, Section, Triangle};
 use loads::LoadCase;
 
 /// A scenario of stickslip: a structure, a contact system or an LCP
@@ -27,7 +27,7 @@ use loads::LoadCase;
     { "anyOf": [
         { "required": ["materials"] }, { "required": ["sections"] }, { "required": ["nodes"] },
         { "required": ["bars"] }, { "required": ["plates"] }, { "required": ["quads"] },
-        { "required": ["triangles"] }, { "required": ["edges"] },
+        { "required": ["meshes"] }, { "required": ["triangles"] }, { "required": ["edges"] },
         { "required": ["foundations"] }, { "required": ["rigid"] }, { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
         { "required": ["contacts"] }, { "required": ["loads"] },
     ] },
@@ -66,6 +66,8 @@ struct Scenario {
     bars: Option<Vec<Bar>>,
     /// Rectangular plates of bilinear elements
     plates: Option<Vec<Plate>>,
+    /// Meshes of Gmsh, Abaqus and CalculiX
+    meshes: Option<Vec<Mesh>>,
     /// Single triangles
     triangles: Option<Vec<Triangle>>,
     /// Single four-node elements

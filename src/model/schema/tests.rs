@@ -174,9 +174,19 @@ fn schema_and_decoder_know_the_same_keys() {
         system(unknown.clone()),
         json!({ "lcp": unknown }),
     ];
-    for list in
-        ["bars", "plates", "triangles", "quads", "rigid", "ties", "supports", "springs", "foundations", "contacts"]
-    {
+    for list in [
+        "bars",
+        "plates",
+        "meshes",
+        "triangles",
+        "quads",
+        "rigid",
+        "ties",
+        "supports",
+        "springs",
+        "foundations",
+        "contacts",
+    ] {
         places.push(json!({ list: [unknown] }));
     }
     for kind in ["point", "traction", "line", "gravity", "temperature", "strain", "pressure", "fluid"] {

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use super::canvas::{Canvas, Stroke};
 use super::chart::{dotted, range, write_legend};
 use crate::answer::record::{NodeDisplacement, PairState, State};
+use crate::model::edge::Sides;
 use crate::model::parameter::ParameterValues;
 use crate::model::structure::{Element, ElementKind, Load, Structure};
 use crate::view::number::short;
@@ -93,7 +94,9 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
     };
     let mut outline = Vec::new();
     let mut grid = Vec::new();
-    let in_plate = |index: usize| structure.plates.iter().any(|p| p.elements.contains(&index));
+    let plates = structure.plates.iter().map(|plate| &plate.elements);
+    let own: Vec<_> = plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)).collect();
+    let in_plate = |index: usize| own.iter().any(|elements| elements.contains(&index));
     for (index, element) in structure.elements.iter().enumerate() {
         match &element.kind {
             ElementKind::Truss { .. } => {
@@ -104,9 +107,16 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
             }
             ElementKind::Membrane { .. } if in_plate(index) => {}
             ElementKind::Membrane { .. } => {
-                let ring = element.nodes.iter().chain(element.nodes.first());
-                outline.push(ring.map(|&node| at(node)).collect());
+                let ring = element.ring().chain(element.nodes.first().copied());
+                outline.push(ring.map(at).collect());
             }
+        }
+    }
+    for mesh in &structure.meshes {
+        for (side, is_inside) in Sides::of(&structure.elements[mesh.elements.clone()]).all() {
+            let [a, b] = side.ends;
+            let line = [Some(a), side.middle, Some(b)].into_iter().flatten().map(at).collect();
+            if is_inside { grid.push(line) } else { outline.push(line) }
         }
     }
     for plate in &structure.plates {

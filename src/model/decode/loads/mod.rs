@@ -124,7 +124,7 @@ fn bar<'d>(builder: &Builder<'d>, at: Cursor<'d>) -> Option<usize> {
     let name = at.string()?;
     let bar = builder.bars.get(name).copied();
     if bar.is_none() && !builder.broken.contains(name) {
-        let mut known: Vec<&str> = builder.bars.keys().copied().collect();
+        let mut known: Vec<&str> = builder.bars.keys().map(|id| &**id).collect();
         known.sort_unstable();
         at.unknown("bar", name, &known);
     }

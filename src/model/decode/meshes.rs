@@ -1,0 +1,499 @@
+//! `meshes`: files of other programs, which of their groups are what, and the nodes and elements they bring.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::bars::{bar_kind, section_of};
+use super::elements::{id_of, material_of};
+use super::mesh_names::MeshPart;
+use super::plates::{membrane, modes};
+use super::reader::{Cursor, Entry, Fields};
+use super::structure::Builder;
+use super::words::{counted, did_you_mean, listed, quoted};
+use crate::model::mesh::chain::{chains, oriented};
+use crate::model::mesh::{self, Group, LineType, Members, Mesh, Shape};
+use crate::model::structure::{Bar, Body, Element, ElementKind, MeshElements, Node, Plane};
+
+/// The key for elements in no group.
+const REST: &str = "*";
+
+/// What a group of areas is made of.
+#[derive(Clone, Copy, PartialEq)]
+struct Area {
+    thickness: f64,
+    material: usize,
+    plane: Plane,
+    incompatible: bool,
+}
+
+/// A group of lines that are bars.
+struct Lines<'d> {
+    group: String,
+    material: usize,
+    section: &'d str,
+    /// Index and kind of each line.
+    lines: Vec<(u32, ElementKind)>,
+}
+
+/// A mesh before its nodes are known.
+pub struct MeshOutline<'d> {
+    pub cursor: Cursor<'d>,
+    id: &'d str,
+    mesh: Arc<Mesh>,
+    scale: f64,
+    /// For each element of the file what it is made of; `None` for lines and what is not used.
+    areas: Vec<Option<Area>>,
+    /// Groups of lines that are bars.
+    bars: Vec<Lines<'d>>,
+}
+
+impl MeshOutline<'_> {
+    fn used_elements(&self) -> impl Iterator<Item = u32> {
+        let areas = (0..).zip(&self.areas).filter(|(_, area)| area.is_some()).map(|(index, _)| index);
+        areas.chain(self.bars.iter().flat_map(|bars| bars.lines.iter().map(|(index, _)| *index)))
+    }
+
+    /// Nodes it will have.
+    pub fn node_count(&self) -> f64 {
+        self.used_nodes().iter().filter(|used| **used).count() as f64
+    }
+
+    fn used_nodes(&self) -> Vec<bool> {
+        let mut used = vec![false; self.mesh.nodes.len()];
+        for element in self.used_elements() {
+            for node in &self.mesh.elements[element as usize].nodes {
+                used[*node as usize] = true;
+            }
+        }
+        used
+    }
+}
+
+/// Reads one mesh.
+pub fn outline<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<MeshOutline<'d>> {
+    let fields = cursor.fields(&["id", "file", "scale", "materials"])?;
+    let id = id_of(builder, &fields, "mesh");
+    let outline = read_outline(builder, cursor, &fields, id);
+    if outline.is_none() {
+        builder.broken.extend(id);
+    }
+    outline
+}
+
+fn read_outline<'d>(
+    builder: &Builder<'d>,
+    cursor: Cursor<'d>,
+    fields: &Fields<'d>,
+    id: Option<&'d str>,
+) -> Option<MeshOutline<'d>> {
+    let file = fields.required("file");
+    let mesh = file.and_then(mesh_of);
+    let scale = match fields.optional("scale") {
+        Some(at) => at.positive("scale"),
+        None => Some(1.0),
+    };
+    let materials = fields.required("materials")?;
+    let Some(mesh) = mesh else {
+        // Of a file that cannot be read only the values can be looked at.
+        for entry in materials.entries()? {
+            let _ = entry.value().entries();
+        }
+        return None;
+    };
+    let mut outline = MeshOutline {
+        cursor,
+        id: id.unwrap_or_default(),
+        scale: scale.unwrap_or(1.0),
+        areas: vec![None; mesh.elements.len()],
+        bars: Vec::new(),
+        mesh,
+    };
+    let is_right = groups(builder, &mut outline, materials)?;
+    (is_right && id.is_some() && scale.is_some()).then_some(outline)
+}
+
+/// The mesh that a name means, from what was read before or from its file beside the scenario.
+fn mesh_of(at: Cursor<'_>) -> Option<Arc<Mesh>> {
+    let name = at.string()?;
+    let mut known = at.reading.meshes.borrow_mut();
+    if let Some(mesh) = known.0.get(name) {
+        return Some(Arc::clone(mesh));
+    }
+    let Some(scenario) = &at.reading.path else {
+        at.problem(
+            "a scenario without a file of its own cannot name another file",
+            "save the scenario to a file beside the mesh",
+        );
+        return None;
+    };
+    match mesh::read(&scenario.parent().unwrap_or(Path::new("")).join(name), name) {
+        Ok(mesh) => {
+            let mesh = Arc::new(mesh);
+            known.0.insert(name.to_owned(), Arc::clone(&mesh));
+            Some(mesh)
+        }
+        Err(found) => {
+            for problem in found {
+                at.problem(format!("{}: {}", problem.place(), problem.message), problem.help);
+            }
+            None
+        }
+    }
+}
+
+/// What each group is made of; `Some(false)` if a group or an element has no place.
+fn groups<'d>(builder: &Builder<'d>, outline: &mut MeshOutline<'d>, materials: Cursor<'d>) -> Option<bool> {
+    let mut is_right = true;
+    let mut rest = None;
+    // Index of the entry that gave an element its material.
+    let mut given: Vec<Option<&'d str>> = vec![None; outline.mesh.elements.len()];
+    for entry in materials.entries()? {
+        let is_line = entry.value().has_key("section") || entry.value().has_key("kind");
+        if entry.name() == REST {
+            match area(builder, entry) {
+                Some(area) => rest = Some(area),
+                None => is_right = false,
+            }
+            continue;
+        }
+        let mesh = Arc::clone(&outline.mesh);
+        let Some(group) = group_of(&mesh, &entry, is_line) else {
+            is_right = false;
+            continue;
+        };
+        match &group.members {
+            Members::Lines(lines) => match lines_of(builder, &mesh, entry, group, lines) {
+                Some(of) => outline.bars.push(of),
+                None => is_right = false,
+            },
+            Members::Areas(areas) => match area(builder, entry) {
+                Some(of) => {
+                    is_right &= takes_modes(&mesh, entry, &of, areas);
+                    is_right &= give(outline, entry, of, areas, &mut given);
+                }
+                None => is_right = false,
+            },
+            _ => is_right = false,
+        }
+    }
+    if is_right {
+        is_right = is_complete(outline, materials, rest);
+    }
+    Some(is_right)
+}
+
+/// The group of a key, lines or areas.
+fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m Group> {
+    let name = entry.name();
+    let fits = |group: &Group| match group.members {
+        Members::Lines(_) => is_line,
+        Members::Areas(_) => !is_line,
+        _ => false,
+    };
+    let all: Vec<&Group> = mesh.groups.iter().filter(|group| mesh.same_name(&group.name, name)).collect();
+    if let Some(group) = all.iter().find(|group| fits(group)) {
+        return Some(group);
+    }
+    let file = &mesh.files[0];
+    match all.first() {
+        Some(group) => entry.key_problem(
+            format!(
+                "the group {} of {file} consists of {}, not of {}",
+                quoted(name),
+                group.members.what(),
+                if is_line { "lines" } else { "elements" }
+            ),
+            "a group of elements gets `material`, `thickness` and `plane`, a group of lines `material` and `section`",
+        ),
+        None => {
+            let known =
+                mesh.groups.iter().filter(|group| matches!(group.members, Members::Lines(_) | Members::Areas(_)));
+            let known: Vec<&str> = known.map(|group| group.name.as_str()).collect();
+            entry.key_problem(
+                format!("{file} has no group {}{}", quoted(name), did_you_mean(name, known.iter().copied())),
+                match known[..] {
+                    [] => "it has no groups of elements: give all of them the material of \"*\"".to_owned(),
+                    _ => format!("expected {} (or \"*\" for elements in no group)", listed(&known)),
+                },
+            );
+        }
+    }
+    None
+}
+
+fn area<'d>(builder: &Builder<'d>, entry: Entry<'d>) -> Option<Area> {
+    let fields = entry.value().fields(&["material", "thickness", "plane", "element"])?;
+    let common = membrane(builder, &fields);
+    let incompatible = modes(&fields)?;
+    let (thickness, material, plane) = common?;
+    Some(Area { thickness, material, plane, incompatible })
+}
+
+/// Incompatible modes are those of four nodes.
+fn takes_modes(mesh: &Mesh, entry: Entry<'_>, of: &Area, areas: &[u32]) -> bool {
+    let takes = !of.incompatible || areas.iter().any(|index| mesh.elements[*index as usize].shape == Shape::Quad4);
+    if !takes {
+        entry.key_problem(
+            format!(
+                "the group {} has no elements of four nodes, which alone can be \"incompatible\"",
+                quoted(entry.name())
+            ),
+            "remove `element`",
+        );
+    }
+    takes
+}
+
+/// Gives the members of a group their material; an element in two groups has the same in both.
+fn give<'d>(
+    outline: &mut MeshOutline<'d>,
+    entry: Entry<'d>,
+    of: Area,
+    areas: &[u32],
+    given: &mut [Option<&'d str>],
+) -> bool {
+    for index in areas {
+        let index = *index as usize;
+        match (outline.areas[index], given[index]) {
+            (Some(other), Some(first)) if other != of => {
+                let element = &outline.mesh.elements[index];
+                entry.key_problem(
+                    format!(
+                        "{}: element {} is in the groups {} and {}, which are made of different things",
+                        outline.mesh.at(element.place),
+                        element.tag,
+                        quoted(first),
+                        quoted(entry.name())
+                    ),
+                    "give both the same material, thickness, plane and element, or name one of them only",
+                );
+                return false;
+            }
+            _ => (outline.areas[index], given[index]) = (Some(of), Some(entry.name())),
+        }
+    }
+    true
+}
+
+/// Whether every element has a material; those in no group get that of `rest`.
+fn is_complete(outline: &mut MeshOutline<'_>, materials: Cursor<'_>, rest: Option<Area>) -> bool {
+    let mesh = Arc::clone(&outline.mesh);
+    let mut is_right = true;
+    let mut named = vec![false; mesh.elements.len()];
+    for group in mesh.groups.iter().filter(|group| group.is_named) {
+        let Members::Areas(areas) = &group.members else { continue };
+        let without = |index: &&u32| outline.areas[**index as usize].is_none() && !named[**index as usize];
+        let first = areas.iter().find(without).copied();
+        let count = areas.iter().filter(without).count();
+        if let Some(first) = first {
+            let element = &mesh.elements[first as usize];
+            materials.problem(
+                format!(
+                    "{}: the group {} has no material: {} in it without one, the first is element {} ({})",
+                    mesh.at(group.place),
+                    quoted(&group.name),
+                    counted(count, "element is", "elements are"),
+                    element.tag,
+                    mesh.at(element.place)
+                ),
+                format!("add {}: {{ \"material\": …, \"thickness\": …, \"plane\": … }}", quoted(&group.name)),
+            );
+            is_right = false;
+        }
+        areas.iter().for_each(|index| named[*index as usize] = true);
+    }
+    let mut bare = mesh.areas().filter(|index| outline.areas[*index as usize].is_none() && !named[*index as usize]);
+    match (rest, bare.next()) {
+        (_, None) => {}
+        (Some(rest), Some(first)) => {
+            for index in std::iter::once(first).chain(bare).collect::<Vec<u32>>() {
+                outline.areas[index as usize] = Some(rest);
+            }
+        }
+        (None, Some(first)) => {
+            let element = &mesh.elements[first as usize];
+            let count = 1 + bare.count();
+            materials.problem(
+                format!(
+                    "{}: element {} is in no group that has a material{}",
+                    mesh.at(element.place),
+                    element.tag,
+                    if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }
+                ),
+                "add \"*\": { \"material\": …, \"thickness\": …, \"plane\": … } for the elements in no group",
+            );
+            is_right = false;
+        }
+    }
+    is_right
+}
+
+/// What bars of a group of lines are.
+fn lines_of<'d>(
+    builder: &Builder<'d>,
+    mesh: &Mesh,
+    entry: Entry<'d>,
+    group: &Group,
+    lines: &[u32],
+) -> Option<Lines<'d>> {
+    let fields = entry.value().fields(&["material", "section", "kind"])?;
+    let material = material_of(builder, &fields);
+    let section = section_of(builder, &fields);
+    let is_frame = match fields.optional("kind") {
+        Some(at) => at.choice(&[("frame", Some(true)), ("truss", Some(false))]),
+        None => Some(None),
+    };
+    let (at, section, data) = section?;
+    let (material, is_frame) = (material?, is_frame?);
+    let plane = mesh.nodes[mesh.elements[lines[0] as usize].nodes[0] as usize].position[2];
+    let mut kinds = Vec::with_capacity(lines.len());
+    for &index in lines {
+        let line = &mesh.elements[index as usize];
+        let [a, b] = [0, 1].map(|end| mesh.nodes[line.nodes[end] as usize].position);
+        let wrong = if line.shape == Shape::Line3 {
+            Some(("has three nodes", "bars have two: mesh the lines linearly"))
+        } else if a[..2] == b[..2] {
+            Some(("has no length", "remove the line"))
+        } else if (a[2] - plane).abs().max((b[2] - plane).abs()) > 1e-8 * (b[0] - a[0]).hypot(b[1] - a[1]) {
+            Some(("is not in the plane of the mesh", "a structure lies in the x-y plane"))
+        } else {
+            None
+        };
+        if let Some((what, help)) = wrong {
+            entry.key_problem(
+                format!("{}: element {} of the group {} {what}", mesh.at(line.place), line.tag, quoted(&group.name)),
+                help,
+            );
+            return None;
+        }
+        let is_frame = is_frame.unwrap_or(line.line_type == LineType::Beam);
+        kinds.push((index, bar_kind(at, section, data, is_frame, [false; 2])?));
+    }
+    Some(Lines { group: group.name.clone(), material, section, lines: kinds })
+}
+
+/// Appends the nodes `ID/TAG` that are used.
+pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
+    let mut node_of = vec![None; outline.mesh.nodes.len()];
+    for ((node, used), index) in outline.mesh.nodes.iter().zip(outline.used_nodes()).zip(&mut node_of) {
+        if used {
+            let [x, y, _] = node.position;
+            *index = Some(builder.structure.nodes.len());
+            let id = format!("{}/{}", outline.id, node.tag);
+            builder.structure.nodes.push(Node { id, position: [outline.scale * x, outline.scale * y] });
+        }
+    }
+    builder.places.nodes.resize(builder.structure.nodes.len(), place.clone());
+    let part = MeshPart::new(outline.id, Arc::clone(&outline.mesh), node_of);
+    builder.meshes.entry(outline.id).or_insert(part);
+}
+
+/// Appends bars and areas.
+pub fn append_elements<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
+    for bars in &outline.bars {
+        append_bars(builder, outline, bars);
+    }
+    let Some(part) = builder.meshes.get_mut(outline.id) else { return };
+    let elements = &mut builder.structure.elements;
+    let first = elements.len();
+    let mut tags = Vec::new();
+    for (index, area) in outline.areas.iter().enumerate() {
+        let Some(area) = area else { continue };
+        let element = &outline.mesh.elements[index];
+        let incompatible = area.incompatible && element.shape == Shape::Quad4;
+        let kind = ElementKind::Membrane { thickness: area.thickness, plane: area.plane, incompatible };
+        part.element_of[index] = Some(elements.len());
+        // Nodes of used elements are there.
+        let nodes = element.nodes.iter().filter_map(|node| part.node_of[*node as usize]).collect();
+        elements.push(Element { nodes, material: area.material, kind });
+        tags.push(element.tag);
+    }
+    let range = first..elements.len();
+    let bodies = bodies(part, &elements[range.clone()], first, builder.structure.nodes.len());
+    builder.structure.meshes.push(MeshElements { id: outline.id.to_owned(), elements: range, tags, bodies });
+    builder.notes.extend(outline.mesh.notes.iter().map(|note| format!("{}: {note}", outline.id)));
+    builder.places.elements.resize(builder.structure.elements.len(), place.clone());
+}
+
+/// The two nodes of a line, as indices into the mesh.
+type Ends = [usize; 2];
+
+/// A chain of lines is one bar `ID.GROUP` from left to right; otherwise every line is a bar `ID#TAG`.
+fn append_bars<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, group: &Lines<'d>) {
+    let mesh = &outline.mesh;
+    let lines: Vec<(Ends, &(u32, ElementKind))> = group
+        .lines
+        .iter()
+        .map(|line| {
+            let nodes = &mesh.elements[line.0 as usize].nodes;
+            ([nodes[0] as usize, nodes[1] as usize], line)
+        })
+        .collect();
+    let segments: Vec<Ends> = lines.iter().map(|(ends, _)| *ends).collect();
+    let chain = chains(&segments).ok().and_then(|found| <[Vec<usize>; 1]>::try_from(found).ok());
+    let bars: Vec<(String, Vec<(Ends, &(u32, ElementKind))>)> = match chain {
+        Some([chain]) => {
+            let of: HashMap<Ends, &(u32, ElementKind)> =
+                lines.iter().flat_map(|&([a, b], line)| [([a, b], line), ([b, a], line)]).collect();
+            let chain = oriented(chain, &|node| mesh.position(node as u32));
+            let along = chain.windows(2).filter_map(|ends| Some(([ends[0], ends[1]], *of.get(ends)?)));
+            vec![(format!("{}.{}", outline.id, group.group), along.collect())]
+        }
+        None => {
+            let name = |index: u32| format!("{}#{}", outline.id, mesh.elements[index as usize].tag);
+            lines.iter().map(|&(ends, line)| (name(line.0), vec![(ends, line)])).collect()
+        }
+    };
+    let Some(part) = builder.meshes.get_mut(outline.id) else { return };
+    for (id, along) in bars {
+        let first = builder.structure.elements.len();
+        for (ends, (index, kind)) in along {
+            part.element_of[*index as usize] = Some(builder.structure.elements.len());
+            let nodes = ends.iter().filter_map(|node| part.node_of[*node]).collect();
+            let element = Element { nodes, material: group.material, kind: kind.clone() };
+            builder.structure.elements.push(element);
+        }
+        builder.bars.insert(Cow::Owned(id.clone()), builder.structure.bars.len());
+        builder.bar_sections.push(group.section);
+        builder.structure.bars.push(Bar { id, elements: first..builder.structure.elements.len() });
+    }
+}
+
+/// The parts of a mesh that hang together, with names: of the mesh, of a group that is just this part, or of a node.
+fn bodies(part: &MeshPart, elements: &[Element], first: usize, nodes: usize) -> Vec<Body> {
+    let mut parent: Vec<usize> = (0..nodes).collect();
+    fn root(parent: &mut [usize], mut node: usize) -> usize {
+        while parent[node] != node {
+            parent[node] = parent[parent[node]];
+            node = parent[node];
+        }
+        node
+    }
+    for element in elements {
+        let one = root(&mut parent, element.nodes[0]);
+        for node in &element.nodes[1..] {
+            let other = root(&mut parent, *node);
+            parent[other] = one;
+        }
+    }
+    let mut bodies: Vec<Body> = Vec::new();
+    let mut body_of: HashMap<usize, usize> = HashMap::new();
+    for (index, element) in elements.iter().enumerate() {
+        let body = *body_of.entry(root(&mut parent, element.nodes[0])).or_insert_with(|| {
+            bodies.push(Body { name: String::new(), elements: Vec::new() });
+            bodies.len() - 1
+        });
+        bodies[body].elements.push(first + index);
+    }
+    let single = bodies.len() == 1;
+    for body in &mut bodies {
+        body.name = match part.group_of_elements(&body.elements) {
+            _ if single => part.id().to_owned(),
+            Some(group) => format!("{}.{group}", part.id()),
+            None => part.element_name(body.elements[0]),
+        };
+    }
+    bodies
+}
