@@ -160,23 +160,21 @@ fn refuse_too_large(
     plates: &[(Cursor<'_>, PlateGrid)],
     meshes: &[MeshOutline<'_>],
 ) -> Option<()> {
-    let bars = bars.iter().map(|bar| (bar.cursor, bar.element_count()));
-    let plates = plates.iter().map(|(cursor, plate)| (*cursor, plate.node_count()));
-    let meshes = meshes.iter().map(|mesh| (mesh.cursor, mesh.node_count()));
-    let parts: Vec<(Cursor<'_>, f64)> = bars.chain(plates).chain(meshes).collect();
-    let generated: f64 = parts.iter().map(|(_, nodes)| nodes).sum();
+    const DIVISIONS: &str = "lower the `divisions`, here first";
+    let bars = bars.iter().map(|bar| (bar.cursor, bar.element_count(), DIVISIONS));
+    let plates = plates.iter().map(|(cursor, plate)| (*cursor, plate.node_count(), DIVISIONS));
+    let meshes = meshes.iter().map(|mesh| (mesh.cursor, mesh.node_count(), "mesh more coarsely, here first"));
+    let parts: Vec<(Cursor<'_>, f64, &str)> = bars.chain(plates).chain(meshes).collect();
+    let generated: f64 = parts.iter().map(|(_, nodes, _)| nodes).sum();
     let nodes = generated + builder.structure.nodes.len() as f64;
     let Some(refusal) = memory::refusal(memory::for_nodes(nodes)) else {
         return Some(());
     };
-    let Some((largest, _)) = parts.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+    let Some((largest, _, help)) = parts.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         // Only written-out nodes: the file itself was read, so it fits.
         return Some(());
     };
-    largest.problem(
-        format!("the model is too large: with {} nodes it {refusal}", count(nodes)),
-        "lower the `divisions`, or mesh more coarsely, here first",
-    );
+    largest.problem(format!("the model is too large: with {} nodes it {refusal}", count(nodes)), *help);
     None
 }
 

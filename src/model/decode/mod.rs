@@ -48,7 +48,7 @@ const COMMON: [&str; 10] =
     ["$schema", "format", "title", "description", "units", "parameters", "stages", "combinations", "probes", "solver"];
 
 /// Keys of the source *structure*.
-const STRUCTURE: [&str; 15] = [
+const STRUCTURE: [&str; 16] = [
     "materials",
     "sections",
     "nodes",
