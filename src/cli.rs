@@ -612,16 +612,21 @@ fn check(names: &[String], format: Form, style: &Style, out: &mut dyn Write) -> 
             continue;
         }
         let looked = named(name, &watch).and_then(|scenario| {
-            let title = scenario.title.clone();
-            diagnose(scenario, &watch).map(|loose| (title, loose))
+            let (title, notes) = (scenario.title.clone(), scenario.notes.clone());
+            diagnose(scenario, &watch).map(|loose| (title, notes, loose))
         });
         watch.clear();
         match looked {
-            Ok((title, loose)) if format == Form::Json => {
-                checked.push(json!({"scenario": name, "title": title, "loose": loose}));
+            Ok((title, notes, loose)) if format == Form::Json => {
+                checked.push(json!({"scenario": name, "title": title, "notes": notes, "loose": loose}));
             }
-            Ok((title, loose)) => {
+            Ok((title, notes, loose)) => {
                 writeln!(out, "{}", style.text(&format!("{name}: no problems found ({title})")))?;
+                for note in notes {
+                    for line in style.hanging("note: ", &style.text(&note)) {
+                        writeln!(out, "{line}")?;
+                    }
+                }
                 view::loose::write(out, &loose, style)?;
             }
             Err(error) if error.is_interrupted() => return Err(error.into()),

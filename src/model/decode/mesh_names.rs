@@ -1,6 +1,6 @@
 //! What names of a mesh mean: nodes `ID/TAG`, elements `ID#TAG`, groups `ID.NAME` as edges, nodes and elements.
 
-use std::collections::HashMap;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::reader::Cursor;
@@ -162,26 +162,36 @@ impl MeshPart {
         found
     }
 
-    /// All nodes of what is named, where the order does not matter: sets of nodes whether or not they make an edge, all
-    /// pieces of a direction. `None` if it is none of these.
+    /// All nodes of what is named, where their order does not matter and no edge need be in one piece. `None` if
+    /// nothing is named so, or none of its nodes is used.
     pub fn node_set(&self, rest: &str) -> Option<Vec<usize>> {
         let name = rest.strip_prefix('.')?;
-        let used = |nodes: &[u32]| nodes.iter().filter_map(|node| self.node_of[*node as usize]).collect();
-        let mut groups = self.mesh.groups_named(name);
-        let is_edge = |group: &Group| matches!(group.members, Members::Lines(_) | Members::Sides(_));
-        if self.mesh.groups_named(name).any(is_edge) {
-            return None;
-        }
-        let set = groups.find_map(|group| match &group.members {
-            Members::NodeSet(nodes) | Members::Points(nodes) => Some(used(nodes)),
-            _ => None,
-        });
-        if set.is_some() || self.mesh.has_edge_groups() || !DIRECTIONS.contains(&name) {
-            return set;
-        }
-        let pieces = self.boundary.facing().iter().filter(|facing| DIRECTIONS[facing.direction] == name);
-        let nodes: Vec<usize> = pieces.flat_map(|facing| self.in_structure(&facing.edge).nodes).collect();
+        let groups: Vec<&Group> = self.mesh.groups_named(name).collect();
+        let lines = groups.iter().find(|group| matches!(group.members, Members::Lines(_) | Members::Sides(_)));
+        let set = groups.iter().find(|group| matches!(group.members, Members::NodeSet(_) | Members::Points(_)));
+        let mut nodes = match lines.or(set) {
+            Some(group) => match (self.boundary.edge(group), &group.members) {
+                (_, Members::NodeSet(nodes) | Members::Points(nodes)) => self.used_of(nodes),
+                (Ok(edge), _) => self.in_structure(&edge).nodes,
+                (Err(_), Members::Lines(lines)) => {
+                    let nodes = lines.iter().flat_map(|line| self.mesh.elements[*line as usize].nodes.iter().copied());
+                    self.used_of(&nodes.collect::<Vec<u32>>())
+                }
+                (Err(_), _) => self.used_of(&self.boundary.nodes_of_sides(group)),
+            },
+            None if self.mesh.has_edge_groups() => return None,
+            None => {
+                let pieces = self.boundary.facing().iter().filter(|facing| DIRECTIONS[facing.direction] == name);
+                pieces.flat_map(|facing| self.in_structure(&facing.edge).nodes).collect()
+            }
+        };
+        let mut seen = HashSet::new();
+        nodes.retain(|node| seen.insert(*node));
         (!nodes.is_empty()).then_some(nodes)
+    }
+
+    fn used_of(&self, nodes: &[u32]) -> Vec<usize> {
+        nodes.iter().filter_map(|node| self.node_of[*node as usize]).collect()
     }
 
     /// The elements of the mesh, of one of its groups, or the one that is named; something else is reported.
@@ -232,10 +242,10 @@ impl MeshPart {
 
     /// The group of areas that consists of just these elements of the structure.
     pub fn group_of_elements(&self, elements: &[usize]) -> Option<&str> {
-        let wanted: HashMap<usize, ()> = elements.iter().map(|element| (*element, ())).collect();
+        let wanted: HashSet<&usize> = elements.iter().collect();
         let fits = |group: &&Group| match &group.members {
             Members::Areas(indices) if indices.len() == elements.len() => {
-                indices.iter().all(|index| self.element_of[*index as usize].is_some_and(|e| wanted.contains_key(&e)))
+                indices.iter().all(|index| self.element_of[*index as usize].is_some_and(|e| wanted.contains(&e)))
             }
             _ => false,
         };

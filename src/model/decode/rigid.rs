@@ -30,14 +30,10 @@ fn body<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<RigidBody> 
             at.key_problem("`at` cannot stand beside `nodes`", "give the nodes, or an edge whose nodes move as one");
             None
         }
-        (None, Some(at)) => builder.edge(at.value()).map(|edge| {
-            let mut nodes = edge.nodes;
-            // A closed edge ends where it began.
-            if nodes.first() == nodes.last() {
-                nodes.pop();
-            }
-            nodes.into_iter().map(|node| (node, at.value())).collect()
-        }),
+        (None, Some(at)) => {
+            let nodes = builder.nodes_at(at.value());
+            nodes.map(|nodes| nodes.into_iter().map(|node| (node, at.value())).collect())
+        }
         (nodes, None) => nodes.or_else(|| fields.required("nodes")).and_then(|at| listed_nodes(builder, at)),
     };
     let about = match fields.optional("about") {

@@ -158,6 +158,19 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
         Ok(corners)
     }
 
+    /// Nodes of the sides that a surface names, whatever they make together.
+    pub fn nodes_of_sides(&self, group: &Group) -> Vec<u32> {
+        let Members::Sides(sides) = &group.members else { return Vec::new() };
+        let corners = self.of_sides(sides).unwrap_or_default();
+        let side = |ends: [usize; 2]| self.sides.at(ends).first().and_then(|side| side.middle);
+        corners
+            .into_iter()
+            .flat_map(|ends| [Some(ends[0]), side(ends), Some(ends[1])])
+            .flatten()
+            .map(|n| n as u32)
+            .collect()
+    }
+
     /// Corners of the boundary sides with both corners in a set.
     fn of_nodes(&self, nodes: &[u32]) -> Result<Vec<[usize; 2]>, EdgeFault> {
         let set: HashSet<usize> = nodes.iter().map(|node| *node as usize).collect();
