@@ -26,6 +26,20 @@ embedded!(
     "slope",
     "klarbring",
     "gap",
+    "portal",
+    "continuous-beam",
+    "pipeline",
+    "dam",
+    "retaining-wall",
+    "footing",
+    "foundation",
+    "arch",
+    "wall",
+    "press-fit",
+    "tendon",
+    "isolator",
+    "ratchet",
+    "hertz",
     "greco",
     "murty6",
     "cycling",
@@ -80,7 +94,9 @@ mod tests {
                 Ok(scenario) => {
                     assert!(scenario.description.is_some(), "{name}");
                     for (parameter, of) in &scenario.parameters {
-                        assert!(of.about.is_some() && of.step.is_some(), "{name}: {parameter}");
+                        assert!(of.about.is_some(), "{name}: {parameter}");
+                        let slider = of.min.is_some() && of.max.is_some() && of.step.is_some();
+                        assert!(slider || of.formula.is_some(), "{name}: {parameter}");
                     }
                 }
                 Err(problems) => panic!("{problems}"),

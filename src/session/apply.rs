@@ -403,7 +403,7 @@ impl Session {
     }
 
     fn expect(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let expectation = expect::read(words, &self.names())?;
+        let expectation = expect::read(words, &self.names(), &self.now.values)?;
         self.with_facts(io.watch, |facts| expectation.test(facts, self.last_error.as_deref()))?;
         match expectation {
             expect::Expectation::Word { quantity: Quantity::Plain("outcome"), .. } => self.trouble = None,
@@ -429,8 +429,9 @@ fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
 /// # Errors
 /// Those of `out`.
 pub fn write_scenarios(out: &mut dyn Write, style: &crate::view::style::Style) -> std::io::Result<()> {
+    let width = embedded::names().map(str::len).max().unwrap_or(0);
     for (name, title) in embedded::list() {
-        let line = format!("{name:<14} {title}");
+        let line = format!("{name:<width$} {title}");
         writeln!(out, "{}", style.fit(&style.text(&line), style.width))?;
     }
     Ok(())

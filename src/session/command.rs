@@ -333,10 +333,11 @@ pub enum Command {
     ///   expect verdict certified|proved|undecided
     ///   expect stage S …                        (after `stages`: at the end of stage S)
     ///   expect error "part of the message"      (after a command that fails)
+    /// NUMBER and TOLERANCE may be formulas of the parameters: `2*f*F`, `q*L^2/8`; a tolerance also `1%`.
     /// States, forces and p are those at the pivot chosen by `step`.
     #[command(
         verbatim_doc_comment,
-        after_help = "Example:\n  expect outcome normal\n  expect x_n c1 = 100 ± 1e-6\n  expect pivots <= 20"
+        after_help = "Example:\n  expect outcome normal\n  expect x_n c1 = 100 ± 1e-6\n  expect x_t c6 = -f*F ± 1%\n  expect pivots <= 20"
     )]
     Expect {
         /// What is expected

@@ -4,6 +4,9 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::model::expression::Expression;
+use crate::model::jet::Jet;
+use crate::model::parameter::ParameterValues;
 use crate::model::quantity::{self, Names, Quantity, STATES, WORDS};
 use crate::path::quantity::{Facts, Value};
 
@@ -108,11 +111,11 @@ fn subject(quantity: &Quantity) -> &'static str {
     }
 }
 
-/// Reads the words after `expect`.
+/// Reads the words after `expect`; numbers may be formulas of the parameters, which have these values.
 ///
 /// # Errors
 /// [`ExpectationSyntax`].
-pub fn read(words: &[String], names: &Names<'_>) -> Result<Expectation, ExpectationSyntax> {
+pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Result<Expectation, ExpectationSyntax> {
     let bad = |what: String| ExpectationSyntax { what };
     let Some((first, rest)) = words.split_first() else {
         return Err(bad("what is expected?".into()));
@@ -145,7 +148,7 @@ pub fn read(words: &[String], names: &Names<'_>) -> Result<Expectation, Expectat
     }
     let (quantity, rest) = quantity::read(&words, names).map_err(|error| bad(error.to_string()))?;
     if !quantity.is_word() {
-        return Ok(Expectation::Number { quantity, bound: bound(rest)? });
+        return Ok(Expectation::Number { quantity, bound: bound(rest, values)? });
     }
     let (equal, rest) = match rest {
         [sign, rest @ ..] if sign == "=" || sign == "==" => (true, rest),
@@ -156,14 +159,33 @@ pub fn read(words: &[String], names: &Names<'_>) -> Result<Expectation, Expectat
     Ok(Expectation::Word { quantity, word, equal })
 }
 
-/// `= 100 ± 1e-6`, `<=20`, with or without blanks.
-fn bound(words: &[String]) -> Result<Bound, ExpectationSyntax> {
-    let text = words.concat();
+/// A number, or a formula of the parameters.
+///
+/// # Errors
+/// What is wrong with the formula.
+fn computed(text: &str, values: &ParameterValues) -> Result<f64, String> {
+    if let Some(value) = number(text) {
+        return Ok(value);
+    }
+    let names: Vec<&str> = values.keys().map(String::as_str).collect();
+    let formula = Expression::parse(text, &names).map_err(|error| error.message)?;
+    let known = |name: &str| Jet::constant(values.get(name).copied().unwrap_or(f64::NAN));
+    Ok(formula.evaluate(&known).value)
+}
+
+/// `= 100 ± 1e-6`, `<=20`, `= q*L^2/8 ± 1%`, with or without blanks.
+fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, ExpectationSyntax> {
+    let text = words.join(" ");
     let bad = || ExpectationSyntax {
         what: format!(
-            "`{}` is no comparison: expected one of = != < <= > >= and a number, after `=` also `± TOLERANCE`",
-            words.join(" ")
+            "`{text}` is no comparison: expected one of = != < <= > >= and a number or a formula of the parameters, after \
+             `=` also `± TOLERANCE`"
         ),
+    };
+    let finite = |part: &str| match computed(part, values) {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(value) => Err(ExpectationSyntax { what: format!("`{}` is {value}, not a finite number", part.trim()) }),
+        Err(message) => Err(ExpectationSyntax { what: format!("`{}`: {message}", part.trim()) }),
     };
     let operators = [
         ("<=", Operator::LessEqual),
@@ -180,16 +202,19 @@ fn bound(words: &[String]) -> Result<Bound, ExpectationSyntax> {
         Some((value, tolerance)) => (value, Some(tolerance)),
         None => (rest, None),
     };
-    let value = number(value).filter(|v| v.is_finite()).ok_or_else(bad)?;
+    if value.trim().is_empty() {
+        return Err(bad());
+    }
+    let value = finite(value)?;
     let tolerance = match tolerance {
         None => 0.0,
         Some(_) if operator != Operator::Equal => return Err(bad()),
-        Some(text) => match text.strip_suffix('%') {
-            Some(percent) => number(percent).ok_or_else(bad)? / 100.0 * value.abs(),
-            None => number(text).ok_or_else(bad)?,
+        Some(text) => match text.trim_end().strip_suffix('%') {
+            Some(percent) => finite(percent)? / 100.0 * value.abs(),
+            None => finite(text)?,
         },
     };
-    if !(tolerance >= 0.0 && tolerance.is_finite()) {
+    if tolerance < 0.0 {
         return Err(bad());
     }
     Ok(Bound { operator, value, tolerance })
@@ -288,7 +313,7 @@ mod tests {
 
     fn read(text: &str) -> Result<Expectation, ExpectationSyntax> {
         let scenario = crate::model::embedded::load("beam").unwrap();
-        super::read(&super::super::words::split(text).unwrap(), &Names::of(&scenario))
+        super::read(&super::super::words::split(text).unwrap(), &Names::of(&scenario), &scenario.parameter_values())
     }
 
     #[test]
@@ -310,9 +335,29 @@ mod tests {
             };
             assert_eq!(bound.holds(found), holds, "{text}");
         }
-        for text in ["p", "p 3", "p = ", "p = x", "p < 1 ± 2", "p = 1 ± -2", "p = inf"] {
+        for text in ["p", "p 3", "p = ", "p = x", "p < 1 ± 2", "p = 1 ± -2", "p = inf", "p = 1 ± inf", "p = 1/0"] {
             assert!(read(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn numbers_may_be_formulas_of_the_parameters() {
+        // The file has f = 0.5, F = 100, F2 = 250.
+        for (text, found, holds) in [
+            ("p = F2 - 6*f*F ± 1e-9", -50.0, true),
+            ("p = (F2 - 6*f*F)/6±1%", -8.41, true),
+            ("p = -f*F +- f", -50.6, false),
+            ("p < 6 * f * F", 300.0, false),
+        ] {
+            let Ok(Expectation::Number { bound, .. }) = read(text) else {
+                panic!("{text}");
+            };
+            assert_eq!(bound.holds(found), holds, "{text}");
+        }
+        let error = read("p = 6*g*F").unwrap_err().to_string();
+        assert!(error.contains("`6*g*F`") && error.contains("\"g\""), "{error}");
+        let error = read("p = 1/(f - 0.5)").unwrap_err().to_string();
+        assert!(error.contains("not a finite number"), "{error}");
     }
 
     #[test]

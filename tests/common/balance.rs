@@ -5,7 +5,7 @@
 use stickslip::answer::record::Answer;
 use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::{Scenario, Source};
-use stickslip::model::structure::{Component, Load, Structure};
+use stickslip::model::structure::{Component, Load, LoadCase, Structure};
 
 /// Parts of the structure as a label per node: nodes joined by elements or ties.
 fn parts(structure: &Structure) -> Vec<usize> {
@@ -26,6 +26,35 @@ fn parts(structure: &Structure) -> Vec<usize> {
         join(&tie.nodes);
     }
     label
+}
+
+/// A force that rounding may leave where nothing is loaded: a millionth of what the largest displacement would cost if it
+/// were all strain of one element. (The check asks for 1e-9 of a force that is there.)
+fn floor(structure: &Structure, answer: &Answer) -> f64 {
+    let moved = answer.displacements.as_ref().expect("displacements");
+    let moved = moved.iter().fold(0f64, |a, d| a.max(d.ux.abs()).max(d.uy.abs()));
+    let stiffest = structure.elements.iter().fold(0f64, |a, element| {
+        let at = |k: usize| structure.nodes[element.nodes[k]].position;
+        let length = (at(1)[0] - at(0)[0]).hypot(at(1)[1] - at(0)[1]);
+        let across = if element.nodes.len() == 2 { 1.0 } else { length };
+        a.max(structure.materials[element.material].youngs_modulus * element.kind.area() * across / length)
+    });
+    1e-6 * stiffest * moved
+}
+
+/// Length and middle of a bar, area and centroid of a polygon.
+fn measure_and_middle(corners: Vec<[f64; 2]>) -> (f64, [f64; 2]) {
+    if let [a, b] = corners[..] {
+        return ((b[0] - a[0]).hypot(b[1] - a[1]), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
+    }
+    let next = corners.iter().cycle().skip(1);
+    let mut sum = [0.0; 3];
+    for (a, b) in corners.iter().zip(next) {
+        let twice = a[0] * b[1] - b[0] * a[1];
+        let parts = [0.5 * twice, twice * (a[0] + b[0]) / 6.0, twice * (a[1] + b[1]) / 6.0];
+        sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+    }
+    (sum[0], [sum[1] / sum[0], sum[2] / sum[0]])
 }
 
 /// Worst imbalance of any part, relative to the sum of the forces (times lever arms) on the part that carries
@@ -70,8 +99,21 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
                         add(a, place, q.map(|q| factor * q * weight * (to - from) / 6.0), 0.0);
                     }
                 }
-                #[allow(unreachable_patterns)] // loads of later issues
-                _ => return f64::NAN,
+                Load::BarPoint { element, distance, force, moment } => {
+                    let [a, b] = [0, 1].map(|end| at(structure.elements[*element].nodes[end]));
+                    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                    let place = [0, 1].map(|i| a[i] + distance / length * (b[i] - a[i]));
+                    let node = structure.elements[*element].nodes[0];
+                    add(node, place, force.map(|f| factor * f), factor * moment);
+                }
+                Load::Body { element, value } => {
+                    let element = &structure.elements[*element];
+                    let (measure, middle) = measure_and_middle(element.nodes.iter().map(|&node| at(node)).collect());
+                    let volume = measure * element.kind.area();
+                    add(element.nodes[0], middle, value.map(|b| factor * b * volume), 0.0);
+                }
+                // They pull one part of a structure against another, and against what holds it.
+                Load::FreeStrain { .. } | Load::Settlement { .. } => {}
             }
         }
     }
@@ -99,9 +141,12 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
     }
     // Relative to the part that carries most: one that carries nothing has only rounding.
     let largest = |k: usize| size.iter().fold(0f64, |a, size| a.max(size[k]));
-    let (force, moment) = (largest(0), largest(1));
+    let floor = floor(structure, answer);
+    let (force, moment) = (largest(0).max(floor), largest(1).max(floor));
+    // The springs of yielding ground are no reactions: it is held by what the pairs press on it.
+    let is_structure = |part: &usize| !structure.yielding_ground.contains(part);
     let mut worst = 0f64;
-    for part in 0..n {
+    for part in (0..n).filter(is_structure) {
         if force > 0.0 {
             worst = worst.max(sum[part][0].abs() / force).max(sum[part][1].abs() / force);
         }
@@ -168,9 +213,10 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
         let node = structure.nodes.iter().position(|node| node.id == reaction.node);
         add(node.unwrap(), [reaction.fx, reaction.fy, reaction.m]);
     }
+    largest[0] = largest[0].max(floor(structure, answer));
     let moment = largest[1].max(largest[0]);
     let mut worst = 0f64;
-    for node in (0..n).filter(|&node| bars_only[node]) {
+    for node in (0..n).filter(|&node| bars_only[node] && !structure.yielding_ground.contains(&node)) {
         let [x, y, m] = sum[node].map(f64::abs);
         if largest[0] > 0.0 {
             worst = worst.max(x / largest[0]).max(y / largest[0]).max(m / moment);
@@ -205,7 +251,19 @@ pub fn incompatibility(scenario: &Scenario, values: &ParameterValues, answer: &A
         Component::R => 2,
     };
     for support in &structure.supports {
-        assert_eq!(u(support.node)[part(support.component)], 0.0);
+        let settles = |case: &LoadCase| -> f64 {
+            let own = case.loads.iter().map(|load| match load {
+                Load::Settlement { node, component, value }
+                    if (*node, *component) == (support.node, support.component) =>
+                {
+                    *value
+                }
+                _ => 0.0,
+            });
+            case.factor.value(values) * own.sum::<f64>()
+        };
+        let settlement: f64 = structure.load_cases.iter().map(settles).sum();
+        assert_eq!(u(support.node)[part(support.component)], settlement);
     }
     for tie in &structure.ties {
         for component in &tie.components {

@@ -9,7 +9,8 @@ pub mod systems;
 use serde_json::Value;
 use stickslip::answer::record::{Answer, OutcomeKind, PairState, RayClass, State};
 use stickslip::model::embedded;
-use stickslip::model::load::load_text;
+use stickslip::model::load::{at_values, load_text};
+use stickslip::model::parameter::ParameterValues;
 use stickslip::model::rules::{Covering, Rules, TieBreak};
 use stickslip::model::scenario::Scenario;
 use stickslip::solve::{Prepared, Solved, prepare};
@@ -25,6 +26,13 @@ impl Case {
     /// An embedded scenario.
     pub fn embedded(name: &str) -> Case {
         Case::text(embedded::text(name).expect("an embedded scenario"))
+    }
+
+    /// The same read under other values.
+    pub fn at(&self, values: &ParameterValues) -> Case {
+        let scenario = at_values(&self.scenario, values).unwrap_or_else(|e| panic!("{e}"));
+        let prepared = prepare(&scenario, &Quiet).unwrap_or_else(|e| panic!("{e}"));
+        Case { scenario, prepared }
     }
 
     /// A scenario from its JSON text.

@@ -2,6 +2,7 @@
 //! and ten thousand lines of noise.
 
 mod program;
+mod references;
 mod work;
 
 use std::fs;
