@@ -1,0 +1,10 @@
+//! What the elements can do in assembled structures: patch tests of every kind of element and bending against the closed
+//! form, the figures of docs/elements.md.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bars;
+mod bending;
+mod membranes;
+mod mesh;
