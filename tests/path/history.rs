@@ -369,6 +369,28 @@ fn apart(data: &Data, history: &History, steps: usize) -> Option<Vec<f64>> {
     Some(differences.collect())
 }
 
+/// The largest distance of any stage end by `steps` small steps, and, where that is more than 4 / `steps`, by 4 and 16
+/// times as many; `None` where a small step has no answer.
+fn distances(data: &Data, history: &History, steps: usize) -> Option<Vec<f64>> {
+    let distance = |steps: usize| Some(apart(data, history, steps)?.into_iter().fold(0.0, f64::max));
+    let first = distance(steps)?;
+    if first <= 4.0 / steps as f64 {
+        return Some(vec![first]);
+    }
+    Some(vec![first, distance(4 * steps)?, distance(16 * steps)?])
+}
+
+/// A step that contains an event is right to the order of what one step moves: small steps lead to the same ends if
+/// their distance falls with the step. How far they are apart at one number of steps is no measure, a frame that gives
+/// way moves far in one step. Where in a step an event lies makes a factor of up to 4 of the 16 of the first order.
+fn converges(distances: &[f64], steps: usize) -> bool {
+    match distances {
+        [first] => *first <= 4.0 / steps as f64,
+        [first, .., last] => 4.0 * last <= *first,
+        [] => false,
+    }
+}
+
 /// Whether a state close to `pairs`, by less than `near` of its displacements, is led to by the load of `factors`;
 /// `None` where there are too many schemes to go through.
 fn goes_on(data: &Data, pairs: &[PairState], factors: &[f64], near: f64) -> Option<bool> {
@@ -410,6 +432,11 @@ fn try_histories(seeds: std::ops::Range<u64>, clamped: bool, steps: usize) -> Ta
             let on = goes_on(&data, &ends[0].pairs, &ends[1].factors, 1e-6);
             assert_ne!(on, Some(true), "seed {seed}: a jump where a way leads on\n{text}");
         }
+        for ends in &jumps {
+            let [from, to] = [0, 1].map(|end| data.displacements(&ends[end].pairs));
+            let (moved, size) = ((&to - &from).amax(), from.amax().max(to.amax()));
+            assert!(moved > 1e-6 * size, "seed {seed}: a jump that moves nothing, {moved:e} of {size:e}\n{text}");
+        }
         if !jumps.is_empty() {
             continue;
         }
@@ -440,12 +467,10 @@ fn try_histories(seeds: std::ops::Range<u64>, clamped: bool, steps: usize) -> Ta
         if steps == 0 {
             continue;
         }
-        // A step that contains an event is right to the order of what one step moves.
-        match apart(&data, &history, steps) {
-            Some(apart) => {
+        match distances(&data, &history, steps) {
+            Some(distances) => {
                 tally.compared += 1;
-                let worst = apart.iter().copied().fold(0.0, f64::max);
-                assert!(worst <= 4.0 / steps as f64, "seed {seed}: {apart:?}\n{text}");
+                assert!(converges(&distances, steps), "seed {seed}: {distances:?}\n{text}");
             }
             None => println!("seed {seed}: a small step has no answer"),
         }
@@ -472,10 +497,15 @@ fn random_histories_of_loose_frames_end_where_no_way_leads_on() {
 #[test]
 #[ignore = "many more of the same kinds: minutes"]
 fn many_random_histories() {
-    let clamped = try_histories(10_000..11_000, true, 60);
-    assert!(clamped.complete >= 950, "{clamped:?}");
-    let loose = try_histories(20_000..22_000, false, 0);
-    assert!(loose.limits >= 1000, "{loose:?}");
+    let (clamped, loose) = match std::env::var("STICKSLIP_SEEDS").ok().and_then(|given| given.parse::<u64>().ok()) {
+        Some(count) => (10_000..10_000 + count, 20_000..20_000 + 2 * count),
+        None => (10_000..11_000, 20_000..22_000),
+    };
+    let count = clamped.end - clamped.start;
+    let clamped = try_histories(clamped, true, 60);
+    assert!(clamped.complete as u64 >= count * 95 / 100, "{clamped:?}");
+    let loose = try_histories(loose, false, 0);
+    assert!(loose.limits as u64 >= count, "{loose:?}");
 }
 
 /// A pipe of EA = 1.32e6 kN from a nozzle around a corner along its supports; warm by 180 K · T, α = 1.2e-5.

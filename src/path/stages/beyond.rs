@@ -15,8 +15,13 @@ use crate::path::start::{PathError, cold, state_of};
 
 /// The collapse is certified this part of a stage further on: at the limit itself the forces still balance.
 const CERTIFIED_AT: f64 = 1e-6;
-/// After a jump the path goes on this part of a stage further on.
-const JUMPED_TO: f64 = 1e-9;
+/// Where no rates lead on, states are looked for these parts of a stage further on: a stiffness near to singular, and
+/// displacements far out, may hide the nearest in their rounding.
+const BEYOND: [f64; 3] = [1e-9, 1e-8, 1e-7];
+/// A look so many times as far ahead …
+const FARTHER: f64 = 16.0;
+/// … shows less than this many times the motion where it is a jump.
+const STAYS: f64 = 4.0;
 
 impl Walk<'_> {
     /// What comes where the rate problem ends in a ray at place t: a jump, and the place it leads to, or the collapse.
@@ -68,10 +73,34 @@ impl Walk<'_> {
         Ok(ray::report(system, &numbers, &contact, &direction, p))
     }
 
-    /// The answer of eq. (8) just beyond, in increments from the present slip, where there is one.
+    /// The answer of eq. (8) just beyond, in increments from the present slip, where there is one; the place it is at.
+    ///
+    /// The motion of a jump does not get smaller with the step that leads to it. Where it does, a way goes on, and what
+    /// the rate problem took for its end is rounding: then that way is taken, without a jump.
     fn jump(&mut self, course: &Course, t: f64, way: &mut Way) -> Result<Option<f64>, PathError> {
+        let motion = |there: &Option<There>, from: &DVector<f64>| there.as_ref().map(|there| (&there.z - from).amax());
+        let mut found = None;
+        for step in BEYOND {
+            let to = (t + step).min(1.0);
+            let Some(near) = self.answer_at(course, to)? else { break };
+            let far = self.answer_at(course, t + FARTHER * step)?;
+            let from = &self.standing.z;
+            let jump = motion(&far, from).is_some_and(|far| far < STAYS * (&near.z - from).amax());
+            found = Some((to, near, jump));
+            if jump {
+                break;
+            }
+        }
+        Ok(found.map(|(to, there, jump)| {
+            self.stand_at(course, to, there.z, there.states);
+            way.moments.push(self.moment(to, jump));
+            to
+        }))
+    }
+
+    /// The answer of eq. (8) at a place, in increments from the present slip.
+    fn answer_at(&self, course: &Course, to: f64) -> Result<Option<There>, PathError> {
         let system = self.laws.system;
-        let to = (t + JUMPED_TO).min(1.0);
         let mut committed = self.standing.z.clone();
         for i in 0..system.pair_count() {
             committed[i] = 0.0;
@@ -83,10 +112,16 @@ impl Walk<'_> {
             return Ok(None);
         }
         let state = state_of(system, &numbers, &found.contact, &found.point);
-        let states: Vec<(State, Option<State>)> =
-            pair_states(system, &numbers, &found.contact, &state).iter().map(|pair| (pair.state, pair.held)).collect();
-        self.stand_at(course, to, state.z + committed, states);
-        way.moments.push(self.moment(to, true));
-        Ok(Some(to))
+        let pairs = pair_states(system, &numbers, &found.contact, &state);
+        let states = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
+        Ok(Some(There { z: state.z + committed, states }))
     }
+}
+
+/// A state that was not reached by rates.
+struct There {
+    /// Total z over the joints.
+    z: DVector<f64>,
+    /// What every pair does on the way to it.
+    states: Vec<(State, Option<State>)>,
 }
