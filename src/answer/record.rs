@@ -129,7 +129,10 @@ pub struct Attempt {
     pub engine: String,
     /// How it ended.
     pub outcome: OutcomeKind,
-    /// Which limit it reached, where that is no ray and no answer.
+    /// Pivots that it made, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pivots: Option<usize>,
+    /// Which limit it reached, where that is no ray and no answer; where a path ended.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }

@@ -13,6 +13,7 @@ use crate::lcp::outcome::Outcome;
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::tableau::Tableau;
 use crate::model::parameter::Number;
+use crate::watch::Quiet;
 
 /// m Coulomb pairs with this R (normals, then tangentials).
 pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
@@ -230,7 +231,7 @@ fn random_contact(random: &mut rand_chacha::ChaCha8Rng, m: usize, contrast: f64)
 
 fn run_exact(input: &WholeInput) -> crate::lcp::outcome::Run<BigRational> {
     let lcp = whole_lcp::<BigRational>(input);
-    let mut engine = Exact::new(lcp, tangential_first(input.system));
+    let mut engine = Exact::new(lcp, tangential_first(input.system), &Quiet);
     run(&mut engine, 5000, &mut |_| ControlFlow::Continue(()))
 }
 

@@ -39,13 +39,14 @@ impl SolvableClass {
     }
 }
 
-/// The class of M, where it is one of these and that is cheap to tell.
-pub fn solvable_class(matrix: &DMatrix<f64>) -> Option<SolvableClass> {
+/// The class of M, where it is one of these and that is cheap to tell. `go_on` is asked before every step of an
+/// elimination and may stop it.
+pub fn solvable_class(matrix: &DMatrix<f64>, go_on: &mut dyn FnMut() -> bool) -> Option<SolvableClass> {
     let n = matrix.nrows();
     if (0..n).any(|i| matrix[(i, i)] <= 0.0) {
         return None; // all three have a positive diagonal
     }
-    if n <= MOST_DEFINITE && is_positive_definite(matrix) {
+    if n <= MOST_DEFINITE && is_positive_definite(matrix, go_on) {
         return Some(SolvableClass::PositiveDefinite);
     }
     if matrix.iter().all(|entry| *entry >= 0.0) {
@@ -59,7 +60,7 @@ pub fn solvable_class(matrix: &DMatrix<f64>) -> Option<SolvableClass> {
 }
 
 /// Leading minors of M + Mᵀ by elimination in integers.
-fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
+fn is_positive_definite(matrix: &DMatrix<f64>, go_on: &mut dyn FnMut() -> bool) -> bool {
     let n = matrix.nrows();
     let mut rows = WholeRows::default();
     for i in 0..n {
@@ -73,7 +74,7 @@ fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
     let mut before = BigInt::one();
     for k in 0..n {
         let pivot = a[k][k].clone();
-        if !pivot.is_positive() {
+        if !pivot.is_positive() || !go_on() {
             return false;
         }
         let own = a[k].clone();
@@ -114,7 +115,7 @@ mod tests {
     use super::*;
 
     fn of(n: usize, rows: &[f64]) -> Option<SolvableClass> {
-        solvable_class(&DMatrix::from_row_slice(n, n, rows))
+        solvable_class(&DMatrix::from_row_slice(n, n, rows), &mut || true)
     }
 
     #[test]

@@ -20,6 +20,7 @@ use super::scalar::{BigInt, Scalar};
 use super::tableau::Tableau;
 use super::trace::PivotLog;
 use super::variable::Variable;
+use crate::watch::Watch;
 
 /// More bits than this are not tried.
 const MOST_BITS: u32 = 1 << 17;
@@ -34,19 +35,21 @@ struct WholeRow {
 }
 
 /// See the [module documentation](self).
-#[derive(Clone, Debug)]
-pub struct Exact {
+#[derive(Clone)]
+pub struct Exact<'a> {
     lcp: Lcp<BigRational>,
     rows: Vec<WholeRow>,
     rule: TieRule,
     precision: u32,
     tableau: Tableau<Filtered>,
     ended: Option<Outcome<BigRational>>,
+    watch: &'a dyn Watch,
 }
 
-impl Exact {
-    /// An engine before the entry of p. All vectors and rows of `lcp` must have the length of q.
-    pub fn new(lcp: Lcp<BigRational>, rule: TieRule) -> Self {
+impl<'a> Exact<'a> {
+    /// An engine before the entry of p. All vectors and rows of `lcp` must have the length of q. `watch` may stop what
+    /// takes long between two pivots: the run once more with more bits, and the proof of its end.
+    pub fn new(lcp: Lcp<BigRational>, rule: TieRule, watch: &'a dyn Watch) -> Self {
         let precision = 160 + 2 * lcp.size() as u32;
         let rows = lcp
             .matrix
@@ -60,7 +63,7 @@ impl Exact {
                 WholeRow { matrix, q, covering, scale }
             })
             .collect();
-        Self { tableau: start(&lcp, &rule, precision), lcp, rows, rule, precision, ended: None }
+        Self { tableau: start(&lcp, &rule, precision), lcp, rows, rule, precision, ended: None, watch }
     }
 
     /// Bits that the numbers are carried with at present.
@@ -68,15 +71,18 @@ impl Exact {
         self.precision
     }
 
-    /// Repeats the run so far with twice the bits; false when there are no more.
+    /// Repeats the run so far with twice the bits; false when there are no more, or when stopped.
     fn refine(&mut self) -> bool {
         let done = self.tableau.pivots().count();
         while self.precision < MOST_BITS {
             self.precision *= 2;
             self.tableau = start(&self.lcp, &self.rule, self.precision);
-            let repeated = (0..done).all(|_| self.tableau.step() == Step::Pivoted);
+            let repeated = (0..done).all(|_| !self.watch.stop() && self.tableau.step() == Step::Pivoted);
             if repeated {
                 return true;
+            }
+            if self.watch.stop() {
+                return false;
             }
         }
         false
@@ -113,8 +119,8 @@ impl Exact {
                 }
             })
             .collect();
-        let RationalSolution::Unique(Quotients { numerators, denominator }) =
-            solve(&matrix, &rhs, &mut |_| ControlFlow::Continue(()))
+        let mut progress = |_| if self.watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let RationalSolution::Unique(Quotients { numerators, denominator }) = solve(&matrix, &rhs, &mut progress)
         else {
             return None;
         };
@@ -171,6 +177,9 @@ impl Exact {
     /// Turns the end of the filtered run into a proved one.
     fn prove(&self, outcome: Outcome<Filtered>) -> Outcome<BigRational> {
         let failed = || {
+            if self.watch.stop() {
+                return Outcome::Interrupted;
+            }
             Outcome::Breakdown(
                 "the exact values of the last basis do not confirm the run (a prime divided a pivot)".to_owned(),
             )
@@ -233,7 +242,7 @@ fn start(lcp: &Lcp<BigRational>, rule: &TieRule, precision: u32) -> Tableau<Filt
     Tableau::new(&filtered, rule.clone())
 }
 
-impl Engine for Exact {
+impl Engine for Exact<'_> {
     type Number = BigRational;
 
     fn step(&mut self) -> Step<BigRational> {
@@ -246,6 +255,9 @@ impl Engine for Exact {
                 Step::Ended(Outcome::Breakdown(why)) => {
                     // A sign that could not be told.
                     if !self.refine() {
+                        if self.watch.stop() {
+                            break Outcome::Interrupted;
+                        }
                         break Outcome::Breakdown(format!("{why} with {} bits", self.precision));
                     }
                 }

@@ -7,6 +7,7 @@ use super::*;
 use crate::lcp::driver::run;
 use crate::lcp::problem::Scale;
 use crate::lcp::trace::Pivot;
+use crate::watch::Quiet;
 
 fn problem(m: Vec<Vec<BigRational>>, q: Vec<BigRational>) -> Lcp<BigRational> {
     let n = q.len();
@@ -35,7 +36,7 @@ fn same_run_as_the_rational_tableau() {
         };
         let mut on = |_: &Pivot| ControlFlow::Continue(());
         let slow = run(&mut Tableau::new(&lcp, rule.clone()), 300, &mut on);
-        let fast = run(&mut Exact::new(lcp, rule), 300, &mut on);
+        let fast = run(&mut Exact::new(lcp, rule, &Quiet), 300, &mut on);
         assert_eq!(slow.outcome, fast.outcome, "case {case}");
         assert_eq!(slow.point, fast.point, "case {case}");
         assert_eq!(slow.pivots.count(), fast.pivots.count());
@@ -56,7 +57,7 @@ fn takes_more_bits_where_they_are_needed() {
     let third = BigRational::new(BigInt::from(1), BigInt::from(3));
     let m = vec![vec![one(), Zero::zero()], vec![Zero::zero(), one()]];
     let lcp = problem(m, vec![-&third - &tiny, -third]);
-    let mut engine = Exact::new(lcp, TieRule::Lexicographic(vec![0, 1]));
+    let mut engine = Exact::new(lcp, TieRule::Lexicographic(vec![0, 1]), &Quiet);
     assert_eq!(engine.step(), Step::Pivoted);
     assert_eq!(engine.pivots().recorded()[0].leaving, Variable::W(0));
     assert_eq!(engine.pivots().recorded()[0].ties.len(), 1);

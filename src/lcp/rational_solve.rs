@@ -64,7 +64,9 @@ pub fn solve(
 ) -> RationalSolution {
     let k = rhs.len();
     for prime in PRIMES {
-        let basis = independent(matrix, prime);
+        let Some(basis) = independent(matrix, prime, &mut || progress(0.0).is_continue()) else {
+            return RationalSolution::Interrupted;
+        };
         let rank = basis.rows.len();
         // A nonzero minor modulo p is nonzero: the system of the chosen rows and columns is nonsingular.
         let minor = |column_or_rhs: Option<usize>, row: usize| match column_or_rhs {
@@ -73,8 +75,10 @@ pub fn solve(
         };
         let square: Vec<Vec<BigInt>> =
             basis.rows.iter().map(|row| basis.columns.iter().map(|c| matrix[*row][*c].clone()).collect()).collect();
-        let Some(lifting) = Lifting::new(square, prime) else {
-            continue;
+        let lifting = match Lifting::new(square, prime, &mut || progress(0.0).is_continue()) {
+            ControlFlow::Break(()) => return RationalSolution::Interrupted,
+            ControlFlow::Continue(None) => continue,
+            ControlFlow::Continue(Some(lifting)) => lifting,
         };
         let dependent: Vec<usize> = (0..k).filter(|c| !basis.columns.contains(c)).collect();
         let shares = (dependent.len() + 1) as f64;
@@ -153,13 +157,16 @@ struct Independent {
     columns: Vec<usize>,
 }
 
-/// Rows and columns of a largest minor that is nonzero modulo p.
-fn independent(matrix: &[Vec<BigInt>], p: u64) -> Independent {
+/// Rows and columns of a largest minor that is nonzero modulo p; `None` when stopped.
+fn independent(matrix: &[Vec<BigInt>], p: u64, go_on: &mut dyn FnMut() -> bool) -> Option<Independent> {
     let k = matrix.len();
     let mut a: Vec<Vec<u64>> = matrix.iter().map(|row| row.iter().map(|x| residue(x, p)).collect()).collect();
     let mut rows: Vec<usize> = (0..k).collect();
     let mut found = Independent { rows: Vec::new(), columns: Vec::new() };
     for column in 0..k {
+        if !go_on() {
+            return None;
+        }
         let next = found.rows.len();
         let Some(pivot) = (next..k).find(|row| a[*row][column] != 0) else {
             continue;
@@ -180,7 +187,7 @@ fn independent(matrix: &[Vec<BigInt>], p: u64) -> Independent {
         found.rows.push(rows[next]);
         found.columns.push(column);
     }
-    found
+    Some(found)
 }
 
 /// A nonsingular matrix with its inverse modulo p.
@@ -191,7 +198,8 @@ struct Lifting {
 }
 
 impl Lifting {
-    fn new(matrix: Vec<Vec<BigInt>>, p: u64) -> Option<Self> {
+    /// Continues with nothing where it is singular modulo p.
+    fn new(matrix: Vec<Vec<BigInt>>, p: u64, go_on: &mut dyn FnMut() -> bool) -> ControlFlow<(), Option<Self>> {
         let k = matrix.len();
         let mut a: Vec<Vec<u64>> = matrix
             .iter()
@@ -202,7 +210,12 @@ impl Lifting {
             })
             .collect();
         for column in 0..k {
-            let pivot = (column..k).find(|row| a[*row][column] != 0)?;
+            if !go_on() {
+                return ControlFlow::Break(());
+            }
+            let Some(pivot) = (column..k).find(|row| a[*row][column] != 0) else {
+                return ControlFlow::Continue(None);
+            };
             a.swap(column, pivot);
             let over = inverse(a[column][column], p);
             for x in &mut a[column] {
@@ -221,7 +234,8 @@ impl Lifting {
                 }
             }
         }
-        Some(Self { matrix, inverse: a.into_iter().map(|row| row[k..].to_vec()).collect(), p })
+        let inverse = a.into_iter().map(|row| row[k..].to_vec()).collect();
+        ControlFlow::Continue(Some(Self { matrix, inverse, p }))
     }
 
     /// inverse · b modulo p.

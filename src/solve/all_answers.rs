@@ -352,7 +352,10 @@ impl Prepared {
                     }
                     _ => pivots.basis().z,
                 };
-                check_plain_exactly(lcp, &basis).map(Exactly::Plain).ok_or_else(|| {
+                check_plain_exactly(lcp, &basis, watch).map(Exactly::Plain).ok_or_else(|| {
+                    if watch.stop() {
+                        return QuestionError::Interrupted;
+                    }
                     QuestionError::Refused(format!(
                         "{} rows are too many for the exact check of a bare LCP",
                         lcp.size()

@@ -7,6 +7,7 @@ use nalgebra::DVector;
 
 use super::prepared::Prepared;
 use super::solved::{SolveError, Solved};
+use crate::answer::record::{Attempt, OutcomeKind};
 use crate::contact::complementarity::contact_lcp_like;
 use crate::contact::load_path::{order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
@@ -22,9 +23,18 @@ pub const LOAD_PATH: &str = "load-path";
 /// A path with more pivots is given up.
 const PIVOTS: usize = 20_000;
 
+/// How the path from zero load ended.
+pub(super) enum AlongLoad {
+    /// At the load.
+    Answer(Box<Solved>),
+    /// Before it.
+    Ended(Attempt),
+    /// It was not followed: there are gaps (zero load then is no simpler start).
+    NotTried,
+}
+
 impl Prepared {
-    /// The answer at the end of the path from zero load, turning points passed through. `Ok(None)` where there are
-    /// gaps (zero load then is no simpler start) or the path ends before the load.
+    /// The answer at the end of the path from zero load, turning points passed through.
     ///
     /// # Errors
     /// Where the default covering does not fit the numbers.
@@ -34,28 +44,40 @@ impl Prepared {
         numbers: &ContactNumbers,
         factors: &[f64],
         watch: &dyn Watch,
-    ) -> Result<Option<Solved>, SolveError> {
+    ) -> Result<AlongLoad, SolveError> {
         if numbers.gap.iter().any(|gap| *gap > 0.0) {
-            return Ok(None);
+            return Ok(AlongLoad::NotTried);
         }
         let mut rest = numbers.clone();
         rest.set_load(DVector::zeros(system.joint_count()));
         let path = path_lcp(system, &rest, &numbers.load);
         let nothing = Basis { z: Vec::new(), active: Vec::new(), p: false };
         let Some(mut engine) = Parametric::new(path.lcp.clone(), &nothing, order(&path)) else {
-            return Ok(None);
+            return Ok(AlongLoad::NotTried);
         };
         let reach = Reach { target: 1.0, through: true, pivots: PIVOTS };
-        let (end, _) = engine.walk(reach, &mut |_| {
+        let mut reached = 0.0;
+        let (end, pivots) = engine.walk(reach, &mut |t| {
+            reached = t;
             if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        if end == End::Interrupted {
-            return Err(SolveError::Interrupted);
-        }
-        if end != End::Target {
-            return Ok(None);
-        }
         let rules = Rules::default();
+        let words = [rules.covering.to_string(), rules.tie_break.to_string(), LOAD_PATH.to_owned()];
+        let (outcome, why) = match end {
+            End::Target => (OutcomeKind::Normal, String::new()),
+            End::Interrupted => return Err(SolveError::Interrupted),
+            End::PivotLimit => (OutcomeKind::PivotLimit, format!("the limit of {PIVOTS} pivots was reached")),
+            End::Returned => (OutcomeKind::Ray, "the path from zero load comes back to zero load".to_owned()),
+            End::Limit(_) | End::Turning | End::Unbounded => {
+                (OutcomeKind::Ray, format!("the path from zero load ends at {reached:.6} of the load"))
+            }
+            End::Breakdown(why) => (OutcomeKind::Breakdown, why),
+        };
+        if outcome != OutcomeKind::Normal {
+            let [covering, tie_break, engine] = words;
+            let attempt = Attempt { covering, tie_break, engine, outcome, pivots: Some(pivots), why: Some(why) };
+            return Ok(AlongLoad::Ended(attempt));
+        }
         let contact = contact_lcp_like(Some(&path), system, numbers, rules.covering)?;
         let length = path.length_unit / contact.length_unit;
         let point = Point {
@@ -63,13 +85,15 @@ impl Prepared {
             w: vec![0.0; contact.rows.len()],
             p: 0.0,
         };
-        let words = [rules.covering.to_string(), rules.tie_break.to_string(), LOAD_PATH.to_owned()];
-        Ok(Some(self.answer_at(system, numbers, factors, contact, point, words)))
+        let mut solved = self.answer_at(system, numbers, factors, contact, point, words);
+        solved.answer.attempts.iter_mut().for_each(|attempt| attempt.pivots = Some(pivots));
+        Ok(AlongLoad::Answer(Box::new(solved)))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::AlongLoad;
     use crate::model::embedded;
     use crate::solve::numbers::{contact_numbers, factors};
     use crate::solve::prepare;
@@ -87,10 +111,10 @@ mod tests {
             let system = prepared.system().expect("a contact problem");
             let factors = factors(&prepared, &values);
             let numbers = contact_numbers(system, &factors, &values);
-            let found = prepared
-                .along_load(system, &numbers, &factors, &Quiet)
-                .expect("covered")
-                .unwrap_or_else(|| panic!("{name}: no way"));
+            let AlongLoad::Answer(found) = prepared.along_load(system, &numbers, &factors, &Quiet).expect("covered")
+            else {
+                panic!("{name}: no way")
+            };
             assert!(found.answer.check.passed, "{name}");
             assert!(same_answer(&found.answer, &cold.answer), "{name}");
         }

@@ -100,7 +100,7 @@ pub fn run_exact_contact(
 }
 
 fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run<BigRational> {
-    watched(&mut Exact::new(problem, rule), "exact arithmetic", watch)
+    watched(&mut Exact::new(problem, rule, watch), "exact arithmetic", watch)
 }
 
 fn rational(value: f64) -> BigRational {

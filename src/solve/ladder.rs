@@ -60,8 +60,14 @@ impl Ladder {
             tie_break: tie_break.to_owned(),
             engine: engine.to_owned(),
             outcome: OutcomeKind::PivotLimit,
+            pivots: None,
             why: Some(format!("given up after {} s of exact arithmetic", budget.as_secs())),
         });
+    }
+
+    /// Notes a try that came to no state at all.
+    pub(super) fn ended(&mut self, attempt: Attempt) {
+        self.tried.push(attempt);
     }
 
     /// The last try as the result, with all before it.
@@ -87,7 +93,7 @@ impl Ladder {
             (None, OutcomeKind::PivotLimit) => "reached the limit of pivots",
             (None, _) => "broke down",
         };
-        let found = self.tried.last().map_or(String::new(), rules_words);
+        let found = self.tried.last().map_or(String::new(), rules_of);
         let number = 1 + self.tried.len();
         format!("the run under the default rules {how}; the answer was found at attempt {number} ({found})")
     }
@@ -107,10 +113,18 @@ impl Ladder {
     }
 }
 
+/// `covering ones, tie-break lexicographic, engine exact`.
+fn rules_of(attempt: &Attempt) -> String {
+    format!("covering {}, tie-break {}, engine {}", attempt.covering, attempt.tie_break, attempt.engine)
+}
+
 /// `covering ones, tie-break lexicographic, engine exact (given up after 10 s of exact arithmetic)`.
 fn rules_words(attempt: &Attempt) -> String {
-    let why = attempt.why.as_ref().map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
-    format!("covering {}, tie-break {}, engine {}{why}", attempt.covering, attempt.tie_break, attempt.engine)
+    let why = attempt.why.as_ref().map(|why| why.trim_end_matches('.').to_owned());
+    let cost = attempt.pivots.filter(|pivots| *pivots > 0).map(|pivots| format!("{pivots} pivots"));
+    let told: Vec<String> = why.into_iter().chain(cost).collect();
+    let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join("; ")) };
+    rules_of(attempt) + &told
 }
 
 fn has_ties(solved: &Solved) -> bool {

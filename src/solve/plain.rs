@@ -7,7 +7,7 @@ use std::time::Instant;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::all_answers::{others, plain_answer};
+use super::all_answers::{ENUMERATION, others, plain_answer};
 use super::attempt::run_scheme;
 use super::judge::{EXACT_ROWS, run_exact_plain, run_tableau};
 use super::ladder::{Deadline, EXACT_BUDGET, LAST_RESORT, Ladder, within_budget};
@@ -202,15 +202,17 @@ pub(super) fn solve_plain_judged(
     }
     // Beyond a few rows a combination of them proves sooner than all bases that there is no answer.
     let few = problem.lcp.size() <= FEW_ROWS;
-    let mut proof = None;
+    let (mut proof, mut given_up) = (None, false);
     if !few && first.plain_ray.is_some() {
-        proof = prove_plain_ray(&problem.lcp, watch);
+        (proof, given_up) = prove_in_time(&problem.lcp, watch);
     }
     if let (Some(proof @ RayProof::Infeasible(_)), Some(ray)) = (&proof, &first.plain_ray) {
         first.answer.ray = Some(proof.record(ray, problem.names));
         return Ok(first);
     }
-    let found = all_plain_answers(&problem.lcp, watch);
+    let deadline = Deadline::after(EXACT_BUDGET, watch);
+    let found = all_plain_answers(&problem.lcp, &deadline);
+    let too_long = deadline.passed() && found.as_ref().is_some_and(|found| !found.complete);
     if found.as_ref().is_some_and(PlainAnswers::none)
         && let Some(ray) = &first.plain_ray
     {
@@ -218,7 +220,7 @@ pub(super) fn solve_plain_judged(
         return Ok(first);
     }
     if few && first.plain_ray.is_some() {
-        proof = prove_plain_ray(&problem.lcp, watch);
+        (proof, given_up) = prove_in_time(&problem.lcp, watch);
     }
     if let (Some(proof), Some(ray)) = (&proof, &first.plain_ray) {
         first.answer.ray = Some(proof.record(ray, problem.names));
@@ -228,8 +230,15 @@ pub(super) fn solve_plain_judged(
     if by_rounding && proof.is_none() {
         fail_ray(&mut first);
     }
+    if given_up {
+        let seconds = EXACT_BUDGET.as_secs();
+        first.say(&format!(" A proof that there is no answer was looked for and given up after {seconds} s."));
+    }
     let budget = if by_rounding { LAST_RESORT } else { EXACT_BUDGET };
     let mut ladder = Ladder::new(first);
+    if too_long {
+        ladder.gave_up(&own.covering.word(problem), &own.tie_break.to_string(), ENUMERATION, EXACT_BUDGET);
+    }
     for rules in rungs {
         if rules.tie_break != own.tie_break && ladder.would_repeat(&rules.covering.word(problem), rules.engine) {
             continue;
@@ -256,6 +265,14 @@ pub(super) fn solve_plain_judged(
         }
     }
     Ok(ladder.without_answer())
+}
+
+/// Looks for a proof within its time, and says whether that was too short.
+fn prove_in_time(lcp: &MirroredLcp, watch: &dyn Watch) -> (Option<RayProof>, bool) {
+    let deadline = Deadline::after(EXACT_BUDGET, watch);
+    let proof = prove_plain_ray(lcp, &deadline);
+    let given_up = proof.is_none() && deadline.passed();
+    (proof, given_up)
 }
 
 /// A ray that is none in exact arithmetic claims nothing: the run broke down.

@@ -1,5 +1,7 @@
 //! Bare LCPs: all answers, the exact check of a basis, and what can be proved of a ray.
 
+use std::ops::ControlFlow;
+
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
@@ -75,8 +77,8 @@ pub struct PlainCheck {
     pub zeros: Vec<(char, usize)>,
 }
 
-/// Solves a basis exactly and tells every sign; `None` for more than a thousand rows.
-pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCheck> {
+/// Solves a basis exactly and tells every sign; `None` for more than a thousand rows, or where `watch` stops it.
+pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize], watch: &dyn Watch) -> Option<PlainCheck> {
     let n = lcp.size();
     if n > MOST_CHECKED || lcp.whole_size != n {
         return None;
@@ -85,8 +87,14 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize]) -> Option<PlainCh
     let mut check = PlainCheck { unique: false, violations: Vec::new(), zeros: Vec::new() };
     let matrix: Vec<Vec<BigInt>> = basis.iter().map(|&i| basis.iter().map(|&j| rows[i][j].clone()).collect()).collect();
     let right: Vec<BigInt> = basis.iter().map(|&i| -&rows[i][n]).collect();
-    let RationalSolution::Unique(z) = solve(&matrix, &right, &mut |_| std::ops::ControlFlow::Continue(())) else {
-        return Some(check);
+    let mut progress = |share| {
+        watch.progress("exact check", share);
+        if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let z = match solve(&matrix, &right, &mut progress) {
+        RationalSolution::Unique(z) => z,
+        RationalSolution::Interrupted => return None,
+        _ => return Some(check),
     };
     check.unique = true;
     let mut tell = |letter: char, row: usize, over: &BigInt, under: &BigInt| {
@@ -161,10 +169,10 @@ pub fn prove_plain_ray(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<RayProof>
         return None;
     }
     let matrix = lcp.matrix();
-    if let Some(class) = solvable_class(&matrix) {
+    watch.progress("looking for a proof that there is no answer", 0.0);
+    if let Some(class) = solvable_class(&matrix, &mut || !watch.stop()) {
         return Some(RayProof::Solvable(class));
     }
-    watch.progress("looking for a proof that there is no answer", 0.0);
     farkas(&matrix, &lcp.q, &mut || !watch.stop()).map(RayProof::Infeasible)
 }
 

@@ -8,6 +8,7 @@
 use std::time::Duration;
 
 use super::all_answers::{ENUMERATION, others};
+use super::by_path::AlongLoad;
 use super::judge::EXACT_PAIRS;
 use super::ladder::{Deadline, EXACT_BUDGET, Ladder, within_budget};
 use super::numbers::{contact_numbers, factors};
@@ -180,11 +181,16 @@ impl Job<'_> {
                 }
             }
         }
-        if try_rules
-            && let Some(again) = self.prepared.along_load(self.system, self.numbers, self.factors, self.watch)?
-            && let Ok(answer) = ladder.add(again)
-        {
-            return Ok(answer);
+        if try_rules {
+            match self.prepared.along_load(self.system, self.numbers, self.factors, self.watch)? {
+                AlongLoad::Answer(again) => {
+                    if let Ok(answer) = ladder.add(*again) {
+                        return Ok(answer);
+                    }
+                }
+                AlongLoad::Ended(attempt) => ladder.ended(attempt),
+                AlongLoad::NotTried => {}
+            }
         }
         if let Some(found) = found {
             for candidate in &found.answers {
@@ -206,7 +212,13 @@ impl Job<'_> {
         let said = if other.answer.is_answer() {
             format!(" The default rules ({words}) find an answer in {} pivots.", other.pivot_count())
         } else {
-            match all_answers(subject, &Deadline::after(EXACT_BUDGET, self.watch)) {
+            let deadline = Deadline::after(EXACT_BUDGET, self.watch);
+            match all_answers(subject, &deadline) {
+                None if deadline.passed() => format!(
+                    " The default rules ({words}) find no answer either; going through all working schemes was given up \
+                     after {} s.",
+                    EXACT_BUDGET.as_secs()
+                ),
                 Some(found) if found.no_answer() => {
                     mark_proved(solved);
                     String::new()

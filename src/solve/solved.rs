@@ -507,6 +507,7 @@ pub(super) fn empty_answer(run: &Run, force_unit: f64, words: [String; 3], size:
             tie_break: tie_break.clone(),
             engine: engine.clone(),
             outcome,
+            pivots: Some(run.pivots.count()),
             why: failure.clone().filter(|_| outcome == OutcomeKind::PivotLimit),
         }],
         covering,

@@ -100,6 +100,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             tie_break: "lexicographic".into(),
             engine: "scheme".into(),
             outcome: OutcomeKind::Normal,
+            pivots: Some(pivots.len()),
             why: None,
         }],
         pivot_count: pivots.len(),

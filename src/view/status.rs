@@ -51,7 +51,11 @@ pub fn pivot_count(answer: &Answer) -> String {
             changes => format!("warm start, {changes} changes"),
         };
     }
-    match answer.pivot_count {
+    pivots_word(answer.pivot_count)
+}
+
+fn pivots_word(count: usize) -> String {
+    match count {
         0 => "no pivot".into(),
         1 => "1 pivot".into(),
         n => format!("{n} pivots"),
@@ -307,11 +311,12 @@ pub fn write(
             rows.push((
                 if i == 0 { "attempts" } else { "" },
                 format!(
-                    "{} · {} · {}: {}{}",
+                    "{} · {} · {}: {}{}{}",
                     attempt.covering,
                     attempt.tie_break,
                     attempt.engine,
                     outcome_word(attempt.outcome),
+                    attempt.pivots.map_or(String::new(), |pivots| format!(" · {}", pivots_word(pivots))),
                     attempt.why.as_ref().map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')))
                 ),
             ));
