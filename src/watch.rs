@@ -1,5 +1,6 @@
 //! A look from outside into long work: progress, and whether to stop.
 
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// Hears of progress and may ask to stop. Both are called often and return at once.
@@ -19,6 +20,11 @@ pub trait Watch: Sync {
 pub struct Quiet;
 
 impl Watch for Quiet {}
+
+/// Goes on until then: for work that hears of no watch.
+pub fn until(end: Instant) -> ControlFlow<()> {
+    if Instant::now() < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
 
 /// Another watch that also asks to stop when a time budget is used up.
 pub struct Budget<'a> {

@@ -7,6 +7,7 @@ use num_traits::{One, Zero};
 
 use crate::lcp::dyadic::{WholeRows, rational};
 use crate::lcp::polyhedron::{GoOn, Polyhedron, State};
+use crate::lcp::rational_solve::rank_modulo_prime;
 use crate::model::pair::Law;
 
 use super::numbers::ContactNumbers;
@@ -214,6 +215,12 @@ fn with_exact_kernel(system: &ContactSystem, stored: Vec<Vec<BigRational>>) -> V
     let Some((telling, motion)) = telling_joints(&system.kernel) else {
         return stored;
     };
+    let mut whole = WholeRows::default();
+    stored.iter().for_each(|row| whole.push_rational(row));
+    // Its own digits may have the kernel already.
+    if rank_modulo_prime(&whole.rows) + system.kernel.ncols() == k {
+        return stored;
+    }
     let others: Vec<usize> = (0..k).filter(|j| !telling.contains(j)).collect();
     // T over all joints, one row for each of N.
     let t: Vec<Vec<BigRational>> = others

@@ -23,7 +23,7 @@ pub mod critical;
 pub(crate) mod doubled;
 pub mod enumerate;
 pub mod exact_check;
-mod exact_system;
+pub(crate) mod exact_system;
 pub mod file_data;
 pub mod given;
 pub mod load_path;

@@ -11,7 +11,8 @@
 //! sums with the bounds of their rounding prove them (method §4, "Rays"). Where a part is confined
 //! on both sides no motion has room everywhere: then the inequalities that must hold as equations are found, solved in
 //! rationals, and every sign that has no room is evaluated exactly. A linear program only *proposes*; no verified
-//! motion, no certificate.
+//! motion, no certificate. Of a system that a file gives, the motions are exact, and so is a last linear program
+//! ([`super::exact_certificate`]).
 
 use std::time::{Duration, Instant};
 
@@ -19,6 +20,7 @@ use nalgebra::DVector;
 use num_rational::BigRational;
 use num_traits::Zero;
 
+use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved, exact, nearest};
 use super::motions::{Entry, FreeMotions, Rounded};
 use crate::contact::numbers::ContactNumbers;
@@ -94,7 +96,11 @@ pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeM
     let mut problem =
         Problem { system, motions, bounds, work, scale, end: Instant::now() + BUDGET, out_of_time: false };
     let certificate = problem.with_room().or_else(|| problem.confined());
-    Search { certificate, out_of_time: problem.out_of_time }
+    if certificate.is_some() {
+        return Search { certificate, out_of_time: false };
+    }
+    let exactly = certify_exactly(system, numbers, problem.end);
+    Search { out_of_time: problem.out_of_time || exactly.out_of_time, ..exactly }
 }
 
 /// ζ_n − side · f ζ_τ ≥ 0 of a pair.

@@ -2,6 +2,7 @@
 
 pub mod balance;
 pub mod certificate;
+mod exact_certificate;
 mod exact_equations;
 pub mod kernel;
 pub mod loose;

@@ -63,62 +63,110 @@ pub fn solve(
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> RationalSolution {
     let k = rhs.len();
+    let Reduced { basis, particular, .. } = match reduced(matrix, rhs, progress) {
+        Ok(found) => found,
+        Err(end) => return end,
+    };
+    let rank = basis.rows.len();
+    // Rows and columns were chosen in some order: the columns are put back.
+    if rank == k {
+        return RationalSolution::Unique(spread(&particular, &basis.columns, k));
+    }
+    let consistent = holds(matrix, &basis.columns, &particular, |row| &rhs[row]);
+    RationalSolution::Singular { rank, particular: consistent.then(|| spread(&particular, &basis.columns, k)) }
+}
+
+/// A basis of {x : `matrix` x = 0} (square), exact and proved complete; `None` when stopped. `progress` as in [`solve`].
+pub fn null_space(
+    matrix: &[Vec<BigInt>],
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Option<Vec<Vec<BigRational>>> {
+    let k = matrix.len();
+    let Reduced { basis, dependent, .. } = reduced(matrix, &vec![BigInt::zero(); k], progress).ok()?;
+    let motion = |(column, combination): (usize, Quotients)| {
+        let mut x = vec![BigRational::zero(); k];
+        x[column] = BigRational::one();
+        for (&c, numerator) in basis.columns.iter().zip(combination.numerators) {
+            x[c] = -BigRational::new(numerator, combination.denominator.clone());
+        }
+        x
+    };
+    Some(dependent.into_iter().map(motion).collect())
+}
+
+/// Rank of a square matrix modulo a prime of 61 bits: never above its rank, and below it only where the prime divides a
+/// minor.
+pub fn rank_modulo_prime(matrix: &[Vec<BigInt>]) -> usize {
+    independent(matrix, PRIMES[0], &mut || true).map_or(0, |basis| basis.rows.len())
+}
+
+/// A square system by its independent rows and columns.
+struct Reduced {
+    basis: Independent,
+    /// Every other column as a combination of the chosen ones.
+    dependent: Vec<(usize, Quotients)>,
+    /// What solves the chosen rows, over the chosen columns.
+    particular: Quotients,
+}
+
+/// Whether the combination of these columns is `right` in all rows, not only in the chosen ones.
+fn holds<'a>(
+    matrix: &[Vec<BigInt>],
+    columns: &[usize],
+    solution: &Quotients,
+    right: impl Fn(usize) -> &'a BigInt,
+) -> bool {
+    (0..matrix.len()).all(|row| {
+        let sum: BigInt = columns.iter().zip(&solution.numerators).map(|(c, n)| &matrix[row][*c] * n).sum();
+        sum == right(row) * &solution.denominator
+    })
+}
+
+/// The rank is proved; the error is [`RationalSolution::Interrupted`] or [`RationalSolution::Unlucky`].
+fn reduced(
+    matrix: &[Vec<BigInt>],
+    rhs: &[BigInt],
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Reduced, RationalSolution> {
+    let k = rhs.len();
     for prime in PRIMES {
         let Some(basis) = independent(matrix, prime, &mut || progress(0.0).is_continue()) else {
-            return RationalSolution::Interrupted;
+            return Err(RationalSolution::Interrupted);
         };
-        let rank = basis.rows.len();
         // A nonzero minor modulo p is nonzero: the system of the chosen rows and columns is nonsingular.
-        let minor = |column_or_rhs: Option<usize>, row: usize| match column_or_rhs {
-            Some(column) => matrix[row][column].clone(),
-            None => rhs[row].clone(),
-        };
         let square: Vec<Vec<BigInt>> =
             basis.rows.iter().map(|row| basis.columns.iter().map(|c| matrix[*row][*c].clone()).collect()).collect();
         let lifting = match Lifting::new(square, prime, &mut || progress(0.0).is_continue()) {
-            ControlFlow::Break(()) => return RationalSolution::Interrupted,
+            ControlFlow::Break(()) => return Err(RationalSolution::Interrupted),
             ControlFlow::Continue(None) => continue,
             ControlFlow::Continue(Some(lifting)) => lifting,
         };
-        let dependent: Vec<usize> = (0..k).filter(|c| !basis.columns.contains(c)).collect();
-        let shares = (dependent.len() + 1) as f64;
-        // One solution, and every dependent column as a combination of the chosen ones.
-        let mut solved = Vec::new();
-        let targets = dependent.iter().copied().map(Some).chain(std::iter::once(None));
-        for (done, target) in targets.enumerate() {
-            let b: Vec<BigInt> = basis.rows.iter().map(|row| minor(target, *row)).collect();
-            let mut part = |share: f64| progress((done as f64 + share) / shares);
-            match lifting.solve(&b, &mut part) {
-                ControlFlow::Break(()) => return RationalSolution::Interrupted,
-                ControlFlow::Continue(None) => return RationalSolution::Unlucky,
-                ControlFlow::Continue(Some(quotients)) => solved.push((target, quotients)),
+        let columns: Vec<usize> = (0..k).filter(|c| !basis.columns.contains(c)).collect();
+        let shares = (columns.len() + 1) as f64;
+        let mut done = 0.0;
+        let mut lift = |b: Vec<BigInt>| {
+            let lifted = lifting.solve(&b, &mut |share| progress((done + share) / shares));
+            done += 1.0;
+            match lifted {
+                ControlFlow::Break(()) => Err(RationalSolution::Interrupted),
+                ControlFlow::Continue(None) => Err(RationalSolution::Unlucky),
+                ControlFlow::Continue(Some(quotients)) => Ok(quotients),
             }
+        };
+        let mut dependent = Vec::new();
+        for column in columns {
+            dependent.push((column, lift(basis.rows.iter().map(|row| matrix[*row][column].clone()).collect())?));
         }
-        // All rows, not only the chosen ones.
-        let holds = |target: Option<usize>, solution: &Quotients| {
-            (0..k).all(|row| {
-                let sum: BigInt =
-                    basis.columns.iter().zip(&solution.numerators).map(|(c, n)| &matrix[row][*c] * n).sum();
-                sum == minor(target, row) * &solution.denominator
-            })
+        let particular = lift(basis.rows.iter().map(|row| rhs[*row].clone()).collect())?;
+        let proved = |(column, solution): &(usize, Quotients)| {
+            holds(matrix, &basis.columns, solution, |row| &matrix[row][*column])
         };
-        let (Some((_, particular)), true) =
-            (solved.pop(), solved.iter().all(|(target, solution)| holds(*target, solution)))
-        else {
-            // The rank is higher than it looks modulo this prime.
-            continue;
-        };
-        if rank == k {
-            // Rows and columns were chosen in some order: put the columns back.
-            return RationalSolution::Unique(spread(&particular, &basis.columns, k));
+        // Else the rank is higher than it looks modulo this prime.
+        if dependent.iter().all(proved) {
+            return Ok(Reduced { basis, dependent, particular });
         }
-        let consistent = holds(None, &particular);
-        return RationalSolution::Singular {
-            rank,
-            particular: consistent.then(|| spread(&particular, &basis.columns, k)),
-        };
     }
-    RationalSolution::Unlucky
+    Err(RationalSolution::Unlucky)
 }
 
 fn spread(solution: &Quotients, columns: &[usize], k: usize) -> Quotients {

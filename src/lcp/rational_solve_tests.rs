@@ -103,3 +103,20 @@ fn hundred_and_twenty_unknowns() {
     assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
     std::io::Write::write_all(&mut std::io::stderr(), format!("k = {k}: {:?}\n", start.elapsed()).as_bytes()).unwrap();
 }
+
+#[test]
+fn the_null_space_is_whole_and_exact() {
+    // Rank 2: row 3 = row 1 + row 2, column 3 = 2 column 1 − column 2, column 4 = column 2 / 3.
+    let a = integers(&[&[1, 3, -1, 1], &[2, 9, -5, 3], &[3, 12, -6, 4], &[0, 0, 0, 0]]);
+    assert_eq!(rank_modulo_prime(&a), 2);
+    let basis = null_space(&a, &mut |_| ControlFlow::Continue(())).expect("not stopped");
+    assert_eq!(basis.len(), 2);
+    for x in &basis {
+        assert!(x.iter().any(|x| !x.is_zero()));
+        for row in &a {
+            let sum: BigRational = row.iter().zip(x).map(|(a, x)| BigRational::from_integer(a.clone()) * x).sum();
+            assert!(sum.is_zero());
+        }
+    }
+    assert_eq!(null_space(&a, &mut |_| ControlFlow::Break(())), None);
+}

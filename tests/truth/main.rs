@@ -121,7 +121,6 @@ fn judge_claim(problem: &Problem, answer: &Answer, count: &mut Count, text: &str
         return;
     };
     if verdict == Verdict::Undecided {
-        if let Ok(dir) = std::env::var("DUMP") {
             std::fs::write(format!("{dir}/u{}.json", count.undecided), text).unwrap();
         }
         count.undecided += 1;
