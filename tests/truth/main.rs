@@ -121,8 +121,6 @@ fn judge_claim(problem: &Problem, answer: &Answer, count: &mut Count, text: &str
         return;
     };
     if verdict == Verdict::Undecided {
-            std::fs::write(format!("{dir}/u{}.json", count.undecided), text).unwrap();
-        }
         count.undecided += 1;
         return;
     }
