@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 
-use crate::export::{history as history_json, json as json_export, mesh as mesh_export};
+use crate::export::{json as json_export, mesh as mesh_export};
 use crate::model::embedded;
 use crate::model::mesh;
 use crate::model::problem::Problems;
@@ -463,10 +463,8 @@ fn write_history(
     let nothing = || Failure::Status(4, "no answer".to_owned());
     let answer = history.answer().ok_or_else(nothing)?;
     if arguments.format == Form::Json {
-        let result = history_json::result(history, &scenario.name, session.values(), arguments.timings);
-        let text = serde_json::to_string_pretty(&session.with_probes(result.ok_or_else(nothing)?))
-            .map_err(io::Error::other)?;
-        writeln!(out, "{text}")?;
+        let result = session.result(arguments.timings).ok_or_else(nothing)?;
+        writeln!(out, "{}", json_export::pretty(&result)?)?;
     } else {
         let note = "the load history was followed, this is its end (`--at-once`: all load cases at once)";
         view::stages::write_line(out, note, style)?;

@@ -21,7 +21,7 @@ fn system(value: Value) -> Value {
 /// The whole message of a system that cannot be prepared.
 fn refusal(value: Value) -> String {
     let scenario = load_text("test", &scenario_text(system(value)), None).expect("read");
-    prepare(&scenario, &Quiet).err().expect("refused").to_string()
+    prepare(&scenario, &Quiet).expect_err("refused").to_string()
 }
 
 #[test]

@@ -133,7 +133,8 @@ fn the_result_of_a_followed_history_has_its_stages() {
     run(&mut session, &format!("export result '{}'", file.display())).expect("written");
     let result = json(&file);
     assert!(result.get("stages").is_none());
-    assert_eq!(result["stresses"].as_array().map(Vec::len), Some(6));
+    // 6 nodes and 2 elements
+    assert_eq!(result["stresses"].as_array().map(Vec::len), Some(8));
     run(&mut session, &format!("stages; export result '{}'", file.display())).expect("written");
     assert_eq!(json(&file)["stages"].as_array().map(Vec::len), Some(2));
 }

@@ -43,7 +43,15 @@ impl Diagram {
     /// Of the bar with this id; `None` if it has no forces.
     pub fn of(members: &[MemberForces], bar: &str) -> Option<Diagram> {
         let mine = members.iter().filter(|member| member.bar == bar);
-        let pieces: Vec<Piece> = mine.flat_map(|member| member.pieces.iter().copied()).collect();
+        Diagram::along(mine.flat_map(|member| member.pieces.iter().copied()).collect())
+    }
+
+    /// Of one element of a bar; distances are those from the start of the bar.
+    pub fn of_element(member: &MemberForces) -> Option<Diagram> {
+        Diagram::along(member.pieces.clone())
+    }
+
+    fn along(pieces: Vec<Piece>) -> Option<Diagram> {
         (!pieces.is_empty()).then_some(Diagram { pieces })
     }
 

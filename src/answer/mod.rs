@@ -5,3 +5,4 @@ pub mod check_plain;
 pub mod diagram;
 pub mod pairs;
 pub mod record;
+pub mod stress;

@@ -45,7 +45,7 @@ pub struct Mode {
     pub parts: Vec<PartMotion>,
 }
 
-/// Bars and plates with their nodes; loose quads are taken together where they hang together.
+/// A bar, plate, triangle or quad with its nodes.
 struct Member {
     id: String,
     nodes: Vec<usize>,
@@ -85,11 +85,12 @@ fn members(structure: &Structure) -> Vec<Member> {
     {
         named[elements.clone()].fill(true);
     }
-    for (index, element) in structure.elements.iter().enumerate() {
-        if !named[index] {
-            let first = element.nodes.first().map_or("", |&n| &structure.nodes[n].id);
-            all.push(Member { id: format!("the element at {first}"), nodes: element.nodes.clone() });
-        }
+    for (index, element) in structure.elements.iter().enumerate().filter(|(index, _)| !named[*index]) {
+        let id = match structure.element_name(index) {
+            Some(id) => format!("`{id}`"),
+            None => structure.element_in_words(index),
+        };
+        all.push(Member { id, nodes: element.nodes.clone() });
     }
     all
 }

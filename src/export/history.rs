@@ -39,5 +39,8 @@ fn stage(stage: &StageResult, cases: &[String]) -> Value {
     }
     put("dissipated", json::value(&stage.dissipated));
     put("balance", json::value(&stage.energy.map(|energy| energy.residual)));
+    if !stage.end.notes.is_empty() {
+        put("notes", json::value(&stage.end.notes));
+    }
     Value::Object(map)
 }

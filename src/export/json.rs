@@ -7,7 +7,8 @@ use std::io;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::answer::record::{Answer, OutcomeKind};
+use crate::answer::diagram::{Diagram, Internal};
+use crate::answer::record::{Answer, MemberForces, OutcomeKind};
 use crate::model::parameter::ParameterValues;
 use crate::model::problem::Problems;
 use crate::text::printable;
@@ -47,7 +48,7 @@ pub fn no_result(of_files: &[Problems]) -> Value {
 
 /// The result of one solve.
 ///
-/// A very long run keeps the records of its first pivots only; `pivot_count` then says how many there were.
+/// `notes` are remarks on the answer, where there are any. A very long run keeps the records of its first pivots only; `pivot_count` then says how many there were.
 /// After a pivot limit, a breakdown or a failed check, `failure` says why, `pairs`, `displacements`, `members`, `reactions` and
 /// `solution` are absent and `ray` is null; at a ray the displacements, members and reactions are absent; for a
 /// contact system or a bare LCP they always are. `timings` only on request: two runs of one scenario are then
@@ -95,6 +96,9 @@ pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues
             put("reactions", reactions(answer));
         }
     }
+    if !answer.notes.is_empty() {
+        put("notes", value(&answer.notes));
+    }
     put("size", value(&answer.size));
     if timings {
         put("timings", value(&answer.timings));
@@ -117,9 +121,34 @@ pub fn displacements(answer: &Answer) -> Value {
     value(&answer.displacements.as_deref().unwrap_or_default())
 }
 
-/// The member end forces as an array; empty where there are none.
+/// The member forces as an array; empty where there are none.
 pub fn members(answer: &Answer) -> Value {
-    value(&answer.members.as_deref().unwrap_or_default())
+    answer.members.iter().flatten().map(member).collect()
+}
+
+/// The forces of one element of a bar: at its ends, along it (`diagram`: polynomials in the distance from the start of
+/// each range, constant first), and the least and the largest, between the ends too. Distances are from the start of
+/// the bar.
+pub fn member(member: &MemberForces) -> Value {
+    let mut object = value(member);
+    let (Some(diagram), Value::Object(map)) = (Diagram::of_element(member), &mut object) else { return object };
+    let named = |of: &dyn Fn(Internal) -> Value| -> Map<String, Value> {
+        Internal::ALL.into_iter().map(|which| (which.symbol().to_owned(), of(which))).collect()
+    };
+    let extremes = named(&|which| {
+        let [least, largest] = diagram.extremes(which).map(|place| json!({"value": place.value, "at": place.distance}));
+        json!({"least": least, "largest": largest})
+    });
+    let pieces = diagram.pieces().iter().map(|piece| {
+        let polynomials = piece.polynomials();
+        let mut map = named(&|which| json!(polynomials[which as usize]));
+        map.insert("range".to_owned(), json!(piece.range));
+        Value::Object(map)
+    });
+    map.insert("diagram".to_owned(), pieces.collect());
+    map.insert("extremes".to_owned(), Value::Object(extremes));
+    unsign_zeros(&mut object);
+    object
 }
 
 /// The reactions as an array; empty where there are none.

@@ -75,7 +75,7 @@ fn an_answer_has_the_documented_keys() {
     assert_eq!(result["pairs"][0]["held"], Value::Null);
     assert_eq!(keys(&result["check"]), ["min_w", "min_z", "complementarity", "equilibrium", "passed"]);
     assert_eq!(keys(&result["displacements"][0]), ["node", "ux", "uy", "rz"]);
-    assert_eq!(keys(&result["members"][0]), ["bar", "element", "start", "end"]);
+    assert_eq!(keys(&result["members"][0]), ["bar", "element", "start", "end", "diagram", "extremes"]);
     assert_eq!(keys(&result["members"][0]["start"]), ["N", "Q", "M"]);
     assert_eq!(keys(&result["size"]), ["unknowns", "free", "pairs", "lcp"]);
     // −0 is no result.

@@ -12,13 +12,8 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
     let rigid = structure.rigid_elements();
     for (index, element) in structure.elements.iter().enumerate().filter(|(index, _)| !rigid[*index]) {
         if let Ok(k) = stiffness::<f64>(structure, index) {
-            let name = match structure.bars.iter().find(|bar| bar.elements.contains(&index)) {
-                Some(bar) => format!("bar {}", bar.id),
-                None => {
-                    let nodes: Vec<&str> = element.nodes.iter().map(|&node| id(node)).collect();
-                    format!("the element with the nodes {}", nodes.join(", "))
-                }
-            };
+            let bar = structure.bars.iter().find(|bar| bar.elements.contains(&index));
+            let name = bar.map_or_else(|| structure.element_in_words(index), |bar| format!("bar {}", bar.id));
             parts.push((k[(0, 0)].max(k[(1, 1)]), element.nodes[0], name));
         }
     }

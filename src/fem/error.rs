@@ -74,8 +74,10 @@ pub enum MainSystemError {
         nodes: [String; 2],
     },
     /// An element that has no stiffness because of its shape.
-    #[error("the element with the nodes {} cannot be used: {what}", .nodes.join(", "))]
+    #[error("{name} cannot be used: {what}")]
     Element {
+        /// The element, or the spring, in words.
+        name: String,
         /// Ids of its nodes.
         nodes: Vec<String>,
         /// What is wrong.

@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::decode;
+use super::decode::{self, Under};
 use super::embedded;
 use super::locate::position;
 use super::memory;
-use super::mesh::MeshFiles;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
@@ -62,7 +61,7 @@ fn load_bytes(
 
 /// Checks the text of a scenario. `path` is the file it came from: other files it names are relative to it.
 pub fn load_text(name: &str, text: &str, path: Option<&Path>) -> Result<Scenario, Problems> {
-    decode::scenario(name, text, path.map(PathBuf::from), None, MeshFiles::default())
+    decode::scenario(name, text, path.map(PathBuf::from), Under::default())
 }
 
 /// The scenario read once more, with its numbers under other values of its parameters.
@@ -70,7 +69,18 @@ pub fn load_text(name: &str, text: &str, path: Option<&Path>) -> Result<Scenario
 /// # Errors
 /// A model that these values make invalid, with the place.
 pub fn at_values(scenario: &Scenario, values: &ParameterValues) -> Result<Scenario, Problems> {
-    decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), Some(values), scenario.meshes.clone())
+    let under = Under { values: Some(values), along: None, meshes: scenario.meshes.clone() };
+    decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), under)
+}
+
+/// The scenario with the rates of its loads along a parameter in the place of their values: what the loads of every
+/// case grow by per unit of it, its factor aside.
+///
+/// # Errors
+/// A number of the loads that is no linear function of it, with the place.
+pub fn rates_along(scenario: &Scenario, values: &ParameterValues, parameter: &str) -> Result<Scenario, Problems> {
+    let under = Under { values: Some(values), along: Some(parameter), meshes: scenario.meshes.clone() };
+    decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), under)
 }
 
 /// Loads what a user names: an embedded scenario, or a file if the word holds a slash, ends in `.json` or is the

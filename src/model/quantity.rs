@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use std::fmt;
 
 use super::scenario::{Scenario, Source, Units};
+use super::structure::Structure;
 use super::words::{did_you_mean, nearest};
 
 /// What may follow a word.
@@ -241,7 +242,7 @@ pub struct Names<'s> {
     pub pairs: Vec<&'s str>,
     nodes: HashSet<&'s str>,
     bars: Vec<&'s str>,
-    plates: Vec<(&'s str, usize, usize)>,
+    structure: Option<&'s Structure>,
     cases: Vec<&'s str>,
     parameters: Vec<&'s str>,
     stages: usize,
@@ -262,12 +263,7 @@ impl<'s> Names<'s> {
                 names.pairs = structure.pairs.iter().map(|pair| pair.id.as_str()).collect();
                 names.nodes = structure.nodes.iter().map(|node| node.id.as_str()).collect();
                 names.bars = structure.bars.iter().map(|bar| bar.id.as_str()).collect();
-                let size = |rows: &[Vec<usize>]| (rows.first().map_or(0, Vec::len).saturating_sub(1), rows.len() - 1);
-                names.plates = structure
-                    .plates
-                    .iter()
-                    .map(|plate| (plate.id.as_str(), size(&plate.nodes).0, size(&plate.nodes).1))
-                    .collect();
+                names.structure = Some(structure);
                 names.cases = structure.load_cases.iter().map(|case| case.name.as_str()).collect();
             }
             Source::ContactSystem(system) => {
@@ -293,12 +289,7 @@ impl<'s> Names<'s> {
     }
 
     fn element(&self, name: &str) -> bool {
-        let Some((plate, indices)) = name.strip_suffix('}').and_then(|rest| rest.split_once('{')) else {
-            return false;
-        };
-        let Some((i, j)) = indices.split_once(',') else { return false };
-        let (Ok(i), Ok(j)) = (i.parse::<usize>(), j.parse::<usize>()) else { return false };
-        self.plates.iter().any(|(id, columns, rows)| *id == plate && i < *columns && j < *rows)
+        self.structure.is_some_and(|structure| structure.element_named(name).is_some())
     }
 }
 
@@ -378,10 +369,18 @@ pub fn read<'w>(words: &'w [String], names: &Names<'_>) -> Result<(Quantity, &'w
         Arguments::Bar => bar(entry, rest, names, None),
         Arguments::NodeOrElement => {
             let (name, rest) = argument(rest)?;
+            if names.element(name) && names.nodes.contains(name) {
+                return error(format!(
+                    "`{} {name}`: {name} is a node and an element as well; give one of them another id",
+                    entry.word
+                ));
+            }
             if names.element(name) {
                 return Ok((Quantity::ElementStress(entry.word, name.to_owned()), rest));
             }
-            node_named(name, names)?;
+            let elements = names.structure.map_or(&[][..], |structure| &structure.named_elements);
+            let elements: Vec<&str> = elements.iter().map(|(id, _)| id.as_str()).collect();
+            known_place("node or element", name, names, &elements)?;
             Ok((Quantity::NodeStress(entry.word, name.to_owned()), rest))
         }
         Arguments::Joint => {
@@ -429,15 +428,21 @@ pub fn read<'w>(words: &'w [String], names: &Names<'_>) -> Result<(Quantity, &'w
 }
 
 fn node_named(node: &str, names: &Names<'_>) -> Result<(), QuantityError> {
-    if names.nodes.contains(node) {
+    known_place("node", node, names, &[])
+}
+
+/// Refuses what is neither a node nor one of the `others`.
+fn known_place(what: &str, name: &str, names: &Names<'_>, others: &[&str]) -> Result<(), QuantityError> {
+    if names.nodes.contains(name) {
         return Ok(());
     }
-    let all: Vec<&str> = names.nodes.iter().copied().collect();
-    let near = did_you_mean(node, all.iter().copied());
-    error(match all.len() {
-        0 => format!("no node `{node}`: this scenario is no structure"),
-        _ => format!("no node `{node}`{near}"),
-    })
+    if names.nodes.is_empty() {
+        return error(format!("no {what} `{name}`: this scenario is no structure"));
+    }
+    // In order: of equally near names always the same one is told.
+    let mut all: Vec<&str> = names.nodes.iter().chain(others).copied().collect();
+    all.sort_unstable();
+    error(format!("no {what} `{name}`{}", did_you_mean(name, all)))
 }
 
 fn bar<'w>(
@@ -653,14 +658,27 @@ impl fmt::Display for Quantity {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::OnceLock;
+
     use super::*;
+    use crate::model::structure::Plate;
+
+    /// Node and quad `A`, quad `q1`, a plate `lower` of 4 × 2 elements.
+    fn structure() -> &'static Structure {
+        static STRUCTURE: OnceLock<Structure> = OnceLock::new();
+        STRUCTURE.get_or_init(|| Structure {
+            plates: vec![Plate { id: "lower".into(), elements: 0..8, nodes: vec![vec![0; 5]; 3] }],
+            named_elements: vec![("q1".into(), 8), ("A".into(), 9)],
+            ..Structure::default()
+        })
+    }
 
     fn names(probes: &[(String, Quantity)]) -> Names<'_> {
         Names {
             pairs: vec!["c1", "c2", "joint[0]", "joint[1]"],
             nodes: ["A", "B", "lower[0,8]"].into_iter().collect(),
             bars: vec!["AB"],
-            plates: vec![("lower", 4, 2)],
+            structure: Some(structure()),
             cases: vec!["pull"],
             parameters: vec!["f", "F2"],
             stages: 2,
@@ -694,8 +712,9 @@ mod tests {
             "N AB end",
             "min M AB",
             "fy B",
-            "sx A",
+            "sx B",
             "mises lower{3,1}",
+            "s1 q1",
             "limit pull",
             "safety F2",
             "critical f",
@@ -739,7 +758,9 @@ mod tests {
             ("count opne", "no state `opne` (did you mean `open`?)"),
             ("resultant c1 N", "no edge contact `c1`"),
             ("resultant joint M", "takes N, T or e"),
-            ("mises lower{4,0}", "no node `lower{4,0}`"),
+            ("mises lower{4,0}", "no node or element `lower{4,0}`"),
+            ("mises A", "A is a node and an element as well"),
+            ("mises q2", "no node or element `q2`"),
             ("stage 3 x_n c1", "there are stages 1 to 2"),
             ("limit puls", "did you mean `pull`?"),
         ] {

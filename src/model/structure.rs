@@ -298,6 +298,21 @@ pub enum Load {
     },
 }
 
+impl Load {
+    /// Whether it is no load at all.
+    pub fn is_nothing(&self) -> bool {
+        match self {
+            Load::Nodal { force, moment, .. } | Load::BarPoint { force, moment, .. } => {
+                *force == [0.0; 2] && *moment == 0.0
+            }
+            Load::Line { value, .. } => *value == [[0.0; 2]; 2],
+            Load::Body { value, .. } => *value == [0.0; 2],
+            Load::Settlement { value, .. } => *value == 0.0,
+            Load::FreeStrain { strain, curvature, .. } => *strain == 0.0 && *curvature == 0.0,
+        }
+    }
+}
+
 /// A named load case: `factor` × the sum of its loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadCase {
@@ -333,6 +348,8 @@ pub struct Structure {
     pub plates: Vec<Plate>,
     /// The meshes.
     pub meshes: Vec<MeshElements>,
+    /// Id and index of every element that the author named by itself: triangles and quads, in increasing order.
+    pub named_elements: Vec<(String, usize)>,
     /// Held components, without repetition.
     pub supports: Vec<Support>,
     /// Ties.
@@ -373,11 +390,57 @@ impl Structure {
     }
 
     /// The element `ID#TAG` of a mesh.
-    pub fn mesh_element(&self, name: &str) -> Option<usize> {
+    fn mesh_element(&self, name: &str) -> Option<usize> {
         let (id, tag) = name.split_once('#')?;
         let mesh = self.meshes.iter().find(|mesh| mesh.id == id)?;
         let tag: u64 = tag.parse().ok()?;
         let index = mesh.tags.iter().position(|known| *known == tag)?;
         Some(mesh.elements.start + index)
+    }
+
+    /// The element that a name means: `lower{i,j}` of a plate, `ID#TAG` of a mesh, or the id of an element of its own.
+    pub fn element_named(&self, name: &str) -> Option<usize> {
+        if let Some((_, element)) = self.named_elements.iter().find(|(id, _)| id == name) {
+            return Some(*element);
+        }
+        if let Some(element) = self.mesh_element(name) {
+            return Some(element);
+        }
+        let (id, indices) = name.strip_suffix('}')?.split_once('{')?;
+        let (i, j) = indices.split_once(',')?;
+        let (i, j): (usize, usize) = (i.parse().ok()?, j.parse().ok()?);
+        let plate = self.plates.iter().find(|plate| plate.id == id)?;
+        let columns = plate.columns();
+        let index = plate.elements.start + j.checked_mul(columns)?.checked_add(i)?;
+        (i < columns && plate.elements.contains(&index)).then_some(index)
+    }
+
+    /// The name of a membrane element as [`Structure::element_named`] takes it.
+    pub fn element_name(&self, element: usize) -> Option<String> {
+        if let Ok(at) = self.named_elements.binary_search_by_key(&element, |(_, index)| *index) {
+            return Some(self.named_elements[at].0.clone());
+        }
+        if let Some(mesh) = self.meshes.iter().find(|mesh| mesh.elements.contains(&element)) {
+            return Some(format!("{}#{}", mesh.id, mesh.tags[element - mesh.elements.start]));
+        }
+        let plate = self.plates.iter().find(|plate| plate.elements.contains(&element))?;
+        let k = element - plate.elements.start;
+        Some(format!("{}{{{},{}}}", plate.id, k % plate.columns(), k / plate.columns()))
+    }
+
+    /// An element in words: `the element q1`; by its nodes where it has no name.
+    pub fn element_in_words(&self, element: usize) -> String {
+        if let Some(name) = self.element_name(element) {
+            return format!("the element {name}");
+        }
+        let nodes: Vec<&str> = self.elements[element].nodes.iter().map(|&node| self.nodes[node].id.as_str()).collect();
+        format!("the element with the nodes {}", nodes.join(", "))
+    }
+}
+
+impl Plate {
+    /// How many elements lie side by side along its length.
+    pub fn columns(&self) -> usize {
+        self.nodes.first().map_or(0, |row| row.len().saturating_sub(1))
     }
 }

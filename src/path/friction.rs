@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::change::{Change, changes, sentence};
-use super::rate::{fixed_place, number_rates, rate, rate_lcp};
+use super::rate::{number_rates, place_beside_laws, rate, rate_lcp};
 use super::start::{PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
@@ -152,7 +152,7 @@ pub fn trace(
 ) -> Result<FrictionPath, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
     let mixed = |why: String| PathError::Mixed { name: name.to_owned(), why };
-    if let Some(why) = fixed_place(scenario, name) {
+    if let Some(why) = place_beside_laws(scenario, name) {
         return Err(mixed(why));
     }
     let along = values.along(name);

@@ -23,8 +23,10 @@ use crate::lcp::vertex::{Basis, vertex};
 use crate::model::jet::Dependence;
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::Scenario;
+use crate::model::uses::Region;
+use crate::solve::load_rates::LoadRates;
 use crate::solve::numbers::{contact_numbers, factors};
-use crate::solve::{Prepared, Solved};
+use crate::solve::{PrepareError, Prepared, Solved};
 use crate::watch::Watch;
 
 /// What a load path varies: the factor of a case, or a parameter in which the factors of some cases are affine.
@@ -50,20 +52,22 @@ pub struct DrivenCase {
 }
 
 impl LoadParameter {
-    /// Finds a case of this name, or the cases whose factor depends on the parameter of this name.
+    /// Finds a case of this name, or the cases that depend on the parameter of this name. Where that stands in the loads
+    /// themselves, what they grow by makes cases of their own, and the geometry with those comes back too.
     ///
     /// # Errors
-    /// An unknown name; a parameter that moves something else too, or a factor in another way than a + b θ.
-    pub fn find(
+    /// An unknown name; a parameter that moves something else too, or a load in another way than a + b θ.
+    fn find(
         prepared: &Prepared,
         scenario: &Scenario,
         values: &ParameterValues,
         name: &str,
-    ) -> Result<LoadParameter, PathError> {
+    ) -> Result<(LoadParameter, Option<Arc<Prepared>>), PathError> {
         let system = prepared.system().ok_or(PathError::Plain("trace"))?;
         if let Some(case) = prepared.cases.iter().position(|(known, _)| known == name) {
             let cases = vec![DrivenCase { case, offset: 0.0, rate: 1.0 }];
-            return Ok(LoadParameter { name: name.to_owned(), cases, present: prepared.cases[case].1.value(values) });
+            let present = prepared.cases[case].1.value(values);
+            return Ok((LoadParameter { name: name.to_owned(), cases, present }, None));
         }
         let Some(present) = values.get(name).copied() else {
             return Err(PathError::Unknown { name: name.to_owned(), known: known(prepared, scenario) });
@@ -107,10 +111,49 @@ impl LoadParameter {
             };
             return Err(mixed(format!("{why}{rest}")));
         }
-        if cases.is_empty() {
+        let mut parameter = LoadParameter { name: name.to_owned(), cases, present };
+        let grown = parameter.grown(prepared, scenario, values)?;
+        if parameter.cases.is_empty() && grown.is_some() {
+            return Err(PathError::Idle(parameter.name));
+        }
+        if parameter.cases.is_empty() {
             return Err(PathError::Unknown { name: name.to_owned(), known: known(prepared, scenario) });
         }
-        Ok(LoadParameter { name: name.to_owned(), cases, present })
+        Ok((parameter, grown))
+    }
+
+    /// Adds the cases that the loads grow by along this parameter, where it stands in them.
+    fn grown(
+        &mut self,
+        prepared: &Prepared,
+        scenario: &Scenario,
+        values: &ParameterValues,
+    ) -> Result<Option<Arc<Prepared>>, PathError> {
+        let Some(place) = scenario.uses.place(&self.name, Region::Amount) else { return Ok(None) };
+        let mixed = |why: String| PathError::Mixed { name: self.name.clone(), why };
+        let LoadRates { prepared: grown, growing } =
+            prepared.load_rates(scenario, values, &self.name).map_err(|error| match error {
+                PrepareError::Problems(problems) => mixed(match problems.problems.first() {
+                    Some(first) => format!("{}: {}; {}", first.path, first.message, first.help),
+                    None => place.to_owned(),
+                }),
+                PrepareError::Interrupted => PathError::Interrupted,
+            })?;
+        let mut added = Vec::new();
+        for (k, &case) in growing.iter().enumerate() {
+            let (known, factor) = &prepared.cases[case];
+            if self.cases.iter().any(|driven| driven.case == case) {
+                return Err(mixed(format!(
+                    "it stands in the loads of case {known} ({place}) and in its factor: their product is no linear \
+                     function of it; `sweep {} A..B` varies it",
+                    self.name
+                )));
+            }
+            let rate = factor.value(values);
+            added.push(DrivenCase { case: prepared.cases.len() + k, offset: -rate * self.present, rate });
+        }
+        self.cases.extend(added);
+        Ok(Some(grown))
     }
 
     /// Puts the factors of the cases to their values at θ.
@@ -191,6 +234,8 @@ pub struct LoadPath {
     pub pivots: usize,
     /// The knots and schemes, dimensionless.
     path: Path,
+    /// The geometry with the cases that loads grow by, where the parameter stands in the loads themselves.
+    grown: Option<Arc<Prepared>>,
     contact: ContactLcp,
     start_numbers: ContactNumbers,
     all_factors: Vec<f64>,
@@ -222,8 +267,9 @@ pub fn trace(
     reach: LoadReach,
     watch: &dyn Watch,
 ) -> Result<LoadPath, PathError> {
+    let (parameter, grown) = LoadParameter::find(prepared, scenario, values, name)?;
+    let prepared = grown.as_deref().unwrap_or(prepared);
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
-    let parameter = LoadParameter::find(prepared, scenario, values, name)?;
     if let Some(to) = reach.to
         && !to.is_finite()
     {
@@ -294,6 +340,7 @@ pub fn trace(
         end,
         pivots: path.pivots,
         path,
+        grown: grown.clone(),
         contact,
         start_numbers: numbers,
         all_factors,
@@ -337,7 +384,7 @@ impl LoadPath {
         numbers
     }
 
-    /// The factors of all cases at a factor of the followed one.
+    /// The factors of all cases at a factor of the followed one; behind them those of what loads grow by.
     pub fn case_factors(&self, factor: f64) -> Vec<f64> {
         let mut all = self.all_factors.clone();
         self.parameter.drive(&mut all, factor);
@@ -366,8 +413,14 @@ impl LoadPath {
         pairs
     }
 
+    /// Whether the parameter stands in the loads themselves: other values of it need other load vectors.
+    pub fn moves_loads(&self) -> bool {
+        self.grown.is_some()
+    }
+
     /// The pairs at a factor, where the path passes it first; `None` where it does not.
     pub fn pairs_at(&self, prepared: &Prepared, factor: f64) -> Option<Vec<PairState>> {
+        let prepared = self.grown.as_deref().unwrap_or(prepared);
         let system = prepared.system()?;
         let t = self.sign * (factor - self.start);
         let knots = &self.path.knots;

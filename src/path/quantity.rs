@@ -9,6 +9,7 @@ use super::limit;
 use super::stages::History;
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{Answer, MemberForces, NodeDisplacement, PairState, Reaction};
+use crate::answer::stress::{Stress, StressPlace};
 use crate::fem::{Displacements, MainSystem, MembraneStress, NodeStress};
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::{BarPlace, Over, Quantity, ResultantPart, fits};
@@ -192,7 +193,7 @@ impl<'a> Facts<'a> {
     }
 
     /// The end of a stage, from 0.
-    fn at_stage(&self, history: &'a History, stage: usize) -> Facts<'a> {
+    pub fn at_stage(&self, history: &'a History, stage: usize) -> Facts<'a> {
         let end = &history.stages[stage];
         Facts {
             answer: Some(&end.end),
@@ -324,19 +325,17 @@ impl<'a> Facts<'a> {
             }
             Quantity::Bar(word, bar, place) => self.of_bar(word, bar, *place),
             Quantity::NodeStress(word, node) => {
-                let (structure, main) = self.structure()?;
-                let index = self.node(node)?;
-                let stresses = main.node_stresses(structure, self.displacements()?, &self.factors);
-                let found = stresses.iter().find(|stress| stress.node == index);
+                let at = self.node(node)?;
+                let found = self.node_stresses()?.into_iter().find(|stress| stress.node == at);
                 let found = found.ok_or_else(|| NoValue(format!("no plate, quad or triangle at node {node}")))?;
-                Ok(of_stress(word, found.stress))
+                Ok(Stress::new(StressPlace::Node(node.clone()), found.stress).number(word))
             }
             Quantity::ElementStress(word, name) => {
-                let (structure, main) = self.structure()?;
-                let index = element(structure, name).ok_or_else(|| NoValue(format!("no element {name}")))?;
-                let stresses = main.element_stresses(structure, self.displacements()?, &self.factors);
-                let found = stresses.iter().find(|stress| stress.element == index).ok_or_else(|| self.missing())?;
-                Ok(of_stress(word, found.stress))
+                let element = self.structure()?.0.element_named(name);
+                let element = element.ok_or_else(|| NoValue(format!("no element {name}")))?;
+                let found = self.element_stresses()?.into_iter().find(|stress| stress.element == element);
+                let found = found.ok_or_else(|| self.missing())?;
+                Ok(Stress::new(StressPlace::Element(name.clone()), found.stress).number(word))
             }
             Quantity::Load(word, name) => self.of_load(word, name),
             Quantity::Critical(parameter) => {
@@ -347,6 +346,30 @@ impl<'a> Facts<'a> {
                 found.value.ok_or_else(|| NoValue("no friction was found at which several answers are possible".into()))
             }
         }
+    }
+
+    fn node_stresses(&self) -> Result<Vec<NodeStress>, NoValue> {
+        let (structure, main) = self.structure()?;
+        Ok(main.node_stresses(structure, self.displacements()?, &self.factors))
+    }
+
+    fn element_stresses(&self) -> Result<Vec<MembraneStress>, NoValue> {
+        let (structure, main) = self.structure()?;
+        Ok(main.element_stresses(structure, self.displacements()?, &self.factors))
+    }
+
+    /// The stresses at the nodes of plates, quads and triangles, then those in the elements; empty where there are none.
+    pub fn stresses(&self) -> Vec<Stress> {
+        let (Ok((structure, _)), Ok(nodes), Ok(elements)) =
+            (self.structure(), self.node_stresses(), self.element_stresses())
+        else {
+            return Vec::new();
+        };
+        let at_nodes = nodes.into_iter().map(|at| (StressPlace::Node(structure.nodes[at.node].id.clone()), at.stress));
+        let inside = elements
+            .into_iter()
+            .filter_map(|at| Some((StressPlace::Element(structure.element_name(at.element)?), at.stress)));
+        at_nodes.chain(inside).map(|(place, stress)| Stress::new(place, stress)).collect()
     }
 
     fn plain(&self, word: &str) -> Result<Value, NoValue> {
@@ -530,17 +553,6 @@ pub struct Resultant {
     pub eccentricity: Option<f64>,
 }
 
-/// The element that `lower{i,j}` names.
-fn element(structure: &Structure, name: &str) -> Option<usize> {
-    let (id, indices) = name.strip_suffix('}')?.split_once('{')?;
-    let (i, j) = indices.split_once(',')?;
-    let (i, j): (usize, usize) = (i.parse().ok()?, j.parse().ok()?);
-    let plate = structure.plates.iter().find(|plate| plate.id == id)?;
-    let columns = plate.nodes.first()?.len() - 1;
-    let index = plate.elements.start + j * columns + i;
-    plate.elements.contains(&index).then_some(index)
-}
-
 /// A number of a pair.
 pub fn of_pair(word: &str, pair: &PairState) -> f64 {
     match word {
@@ -553,22 +565,6 @@ pub fn of_pair(word: &str, pair: &PairState) -> f64 {
         "reserve_minus" => pair.reserve_minus,
         // The only word of the table that is left.
         _ => pair.bound - pair.x_t.abs(),
-    }
-}
-
-/// The words of stresses.
-pub const STRESSES: [&str; 6] = ["sx", "sy", "sxy", "s1", "s2", "mises"];
-
-/// One number of (σ_xx, σ_yy, σ_xy, σ_zz), by its word.
-pub fn of_stress(word: &str, [x, y, xy, z]: [f64; 4]) -> f64 {
-    let (middle, radius) = (0.5 * (x + y), (0.5 * (x - y)).hypot(xy));
-    match word {
-        "sx" => x,
-        "sy" => y,
-        "sxy" => xy,
-        "s1" => middle + radius,
-        "s2" => middle - radius,
-        _ => (0.5 * ((x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2)) + 3.0 * xy * xy).sqrt(),
     }
 }
 

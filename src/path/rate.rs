@@ -27,13 +27,21 @@ pub(crate) fn number_rates(
     (numbers_by(system, &factors, &rate), factors)
 }
 
-/// Where a parameter stands apart from laws and factors, in words: those places cannot be followed. `None` if nowhere.
+/// Where a parameter stands apart from laws, factors and amounts of loads, in words: those places cannot be followed.
+/// `None` if nowhere.
 pub(crate) fn fixed_place(scenario: &Scenario, name: &str) -> Option<String> {
-    let place = |region| scenario.uses.place(name, region);
-    if let Some(path) = place(Region::Geometry) {
+    if let Some(path) = scenario.uses.place(name, Region::Geometry) {
         return Some(format!("it stands in the geometry or stiffness ({path}): `sweep {name} A..B` varies it"));
     }
-    let path = place(Region::Load).or_else(|| place(Region::Amount))?;
+    in_loads(scenario.uses.place(name, Region::Load)?, name)
+}
+
+/// The same, amounts of loads included.
+pub(crate) fn place_beside_laws(scenario: &Scenario, name: &str) -> Option<String> {
+    fixed_place(scenario, name).or_else(|| in_loads(scenario.uses.place(name, Region::Amount)?, name))
+}
+
+fn in_loads(path: &str, name: &str) -> Option<String> {
     Some(format!("it stands in the loads ({path}): `sweep {name} A..B` varies it"))
 }
 

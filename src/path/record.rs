@@ -60,7 +60,7 @@ impl PathRecord {
             .map(|(knot, (&value, pairs))| PathPlace {
                 stage: None,
                 value,
-                factors: path.case_factors(value),
+                factors: path.case_factors(value).into_iter().take(cases.len()).collect(),
                 change: path
                     .breakpoints
                     .iter()

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::rate::{fixed_place, number_rates, rate, rate_lcp};
+use super::rate::{number_rates, place_beside_laws, rate, rate_lcp};
 use super::start::{PathError, final_basis};
 use crate::answer::record::PairState;
 use crate::contact::sums::{is_still, joint_forces};
@@ -69,7 +69,7 @@ pub fn sensitivity(
     let point = vertex(&contact.lcp, &basis).ok_or_else(singular)?;
     let mut parameters = Vec::new();
     let settable = scenario.parameters.iter().filter(|(_, parameter)| parameter.formula.is_none());
-    for name in settable.map(|(name, _)| name).filter(|name| fixed_place(scenario, name).is_none()) {
+    for name in settable.map(|(name, _)| name).filter(|name| place_beside_laws(scenario, name).is_none()) {
         let (rates, factor_rates) = number_rates(prepared, system, values, name);
         let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;

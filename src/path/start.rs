@@ -40,8 +40,8 @@ pub enum PathError {
     /// A target that cannot be.
     #[error("{0}")]
     Target(String),
-    /// The case does not act on any pair.
-    #[error("load case {0} presses and pushes no contact pair: the state of the pairs does not depend on it")]
+    /// The case, or the parameter of loads, does not act on any pair.
+    #[error("{0} presses and pushes no contact pair: the state of the pairs does not depend on it")]
     Idle(String),
     /// No answer to start from.
     #[error("there is no answer to start from: at {name} = {at} the run ended {how}")]

@@ -208,7 +208,7 @@ pub enum Command {
 
     /// Follow the answer over a load or a friction coefficient: every breakpoint, exactly
     ///
-    /// NAME is a load case, the parameter of one, or a friction parameter. A load is followed from its present factor
+    /// NAME is a load case, a parameter in which the loads are linear, or a friction parameter. A load is followed from its present factor
     /// upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction up to the
     /// target, or else to the end of the slider. `plot path` and `export path` show the way afterwards.
     #[command(
@@ -228,7 +228,7 @@ pub enum Command {
     /// Find the limit of a load: its factor, the safety, how the structure collapses
     #[command(after_help = "Example:\n  limit pull\n  limit F2")]
     Limit {
-        /// Load case, or the parameter of one
+        /// Load case, or a parameter in which the loads are linear
         #[arg(value_name = "LOAD")]
         name: String,
     },

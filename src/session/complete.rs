@@ -34,6 +34,8 @@ pub struct Vocabulary {
     pub joints: Vec<String>,
     /// Probes.
     pub probes: Vec<String>,
+    /// Ids of triangles and quads.
+    pub elements: Vec<String>,
     /// Load combinations.
     pub combinations: Vec<String>,
 }
@@ -59,12 +61,13 @@ pub struct Completion {
 impl Session {
     /// The names that can be completed now.
     pub fn vocabulary(&self) -> Vocabulary {
-        let (nodes, bars) = match &self.scenario().source {
+        let (nodes, bars, elements) = match &self.scenario().source {
             Source::Structure(structure) => (
                 structure.nodes.iter().map(|node| node.id.clone()).collect(),
                 structure.bars.iter().map(|bar| bar.id.clone()).collect(),
+                structure.named_elements.iter().map(|(id, _)| id.clone()).collect(),
             ),
-            _ => (Vec::new(), Vec::new()),
+            _ => (Vec::new(), Vec::new(), Vec::new()),
         };
         let pairs = match &self.scenario().source {
             Source::Structure(structure) => structure.pairs.iter().map(|pair| pair.id.clone()).collect(),
@@ -80,6 +83,7 @@ impl Session {
             pairs,
             nodes,
             bars,
+            elements,
             cases: match &self.scenario().source {
                 Source::Structure(structure) => structure.load_cases.iter().map(|case| case.name.clone()).collect(),
                 Source::ContactSystem(system) => system.loads.iter().map(|load| load.name.clone()).collect(),
@@ -430,6 +434,7 @@ mod tests {
             cases: vec!["pull".into()],
             joints: vec!["joint".into()],
             probes: vec!["nozzle moment".into()],
+            elements: vec!["q1".into()],
             combinations: vec!["ULS1".into()],
         }
     }

@@ -14,8 +14,8 @@ use crate::path::grid::{Axis, Grid, GridError, POINTS};
 use crate::path::limit;
 use crate::path::load::{self, LoadReach};
 use crate::path::merge::Shards;
-use crate::path::quantity::{Facts, OnPath};
-use crate::path::rate::fixed_place;
+use crate::path::quantity::{Facts, NoValue, OnPath};
+use crate::path::rate::place_beside_laws;
 use crate::path::record::{Followed, PathPlace, PathRecord};
 use crate::path::sensitivity::sensitivity;
 use crate::path::start::PathError;
@@ -230,7 +230,7 @@ impl Session {
         }
         if let Some(name) = parameter
             && let Some(refusal) =
-                self.now.scenario.refusal(name, 0.0).or_else(|| fixed_place(&self.now.scenario, name))
+                self.now.scenario.refusal(name, 0.0).or_else(|| place_beside_laws(&self.now.scenario, name))
         {
             return Err(CommandError::Refused(format!("no derivatives with respect to {name}: {refusal}")));
         }
@@ -247,6 +247,9 @@ impl Session {
     }
 
     /// What quantities are read from at a place of a path.
+    ///
+    /// # Errors
+    /// Values under which there is no model.
     pub(super) fn with_place<T>(
         &self,
         prepared: &Prepared,
@@ -254,13 +257,17 @@ impl Session {
         place: &PathPlace,
         watch: &dyn Watch,
         read: impl FnOnce(&Facts<'_>) -> T,
-    ) -> T {
+    ) -> Result<T, NoValue> {
         let mut values = self.now.values.clone();
         if path.followed != Followed::Stages && values.contains_key(&path.name) {
             values.insert(path.name.clone(), place.value);
         }
+        // Where the parameter stands in the loads themselves, each place has load vectors of its own.
+        let renewed =
+            prepared.renewed(&self.now.scenario, &values, watch).map_err(|error| NoValue(error.to_string()))?;
+        let prepared = renewed.as_ref().map_or(prepared, |(there, _)| there);
         let factors = if place.factors.is_empty() { factors(prepared, &values) } else { place.factors.clone() };
-        read(&Facts::of_state(&self.now.scenario, prepared, &values, factors, &place.pairs, watch))
+        Ok(read(&Facts::of_state(&self.now.scenario, prepared, &values, factors, &place.pairs, watch)))
     }
 
     /// The values of a quantity at the places of a path; `None` where it has none.
@@ -272,7 +279,7 @@ impl Session {
         watch: &dyn Watch,
     ) -> Vec<Option<f64>> {
         let number = |facts: &Facts<'_>| facts.value(quantity).ok()?.number();
-        path.places.iter().map(|place| self.with_place(prepared, path, place, watch, number)).collect()
+        path.places.iter().map(|place| self.with_place(prepared, path, place, watch, number).ok().flatten()).collect()
     }
 
     /// The table of `trace … of`: as JSON and as rows.

@@ -2,14 +2,13 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::export::json as json_export;
+use crate::export::{history as history_export, json as json_export};
 use crate::model::quantity::{self, Arguments, Names, Quantity, WORDS};
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
 use crate::view::style::Style;
 use crate::watch::{Quiet, Watch};
 
-use super::exports::tables::stress_rows;
 use super::{CommandError, Output, Session};
 
 impl Session {
@@ -92,38 +91,44 @@ impl Session {
         self.names().joints().into_iter().filter_map(|joint| facts.resultant(joint)).collect()
     }
 
-    /// The present answer as `solve --format json` prints it; `None` while there is none.
+    /// The present answer, or the load history that was followed, as `solve --format json` prints it; `None` while there
+    /// is none.
     pub fn result(&self, timings: bool) -> Option<Json> {
-        let answer = self.answer()?;
-        let result = json_export::result(answer, &self.now.scenario.name, &self.now.values, timings);
-        Some(self.with_probes(result))
+        let (name, values) = (&self.now.scenario.name, &self.now.values);
+        let mut result = match &self.followed {
+            Some(history) => history_export::result(history, name, values, timings)?,
+            None => json_export::result(self.answer()?, name, values, timings),
+        };
+        let is_answer = self.quantity_answer().is_some_and(crate::answer::record::Answer::is_answer);
+        self.with_facts(&Quiet, |facts| {
+            self.add_quantities(&mut result, facts, is_answer);
+            let stages = result.get_mut("stages").and_then(Json::as_array_mut);
+            let Some((history, stages)) = self.followed.as_ref().zip(stages) else { return };
+            for (number, stage) in stages.iter_mut().enumerate() {
+                let is_answer = history.stages[number].end.is_answer();
+                self.add_quantities(stage, &facts.at_stage(history, number), is_answer);
+            }
+        });
+        Some(result)
     }
 
-    /// A result with the probes, resultants and stresses of what quantities mean now, and its notes.
-    pub fn with_probes(&self, mut result: Json) -> Json {
-        let answer = self.quantity_answer();
-        let is_answer = answer.is_some_and(crate::answer::record::Answer::is_answer);
-        let (probes, resultants, stresses) = self.with_facts(&Quiet, |facts| {
-            let resultants = if is_answer { self.resultants(facts) } else { Vec::new() };
-            let stresses = if is_answer { stress_rows(facts).unwrap_or_default() } else { Vec::new() };
-            (self.probe_values(facts), resultants, stresses)
-        });
-        let notes = answer.map_or(&[][..], |answer| &answer.notes);
-        if let Json::Object(object) = &mut result {
-            if !probes.is_empty() {
-                object.insert("probes".into(), Json::Object(probes));
-            }
-            if !resultants.is_empty() {
-                object.insert("resultants".into(), json!(resultants));
-            }
-            if !stresses.is_empty() {
-                object.insert("stresses".into(), json_export::without_signed_zeros(stresses.into()));
-            }
-            if !notes.is_empty() {
-                object.insert("notes".into(), json!(notes));
-            }
+    /// Adds the probes, resultants and stresses of a state to its result.
+    fn add_quantities(&self, result: &mut Json, facts: &Facts<'_>, is_answer: bool) {
+        let Json::Object(object) = result else { return };
+        let probes = self.probe_values(facts);
+        if !probes.is_empty() {
+            object.insert("probes".into(), Json::Object(probes));
         }
-        result
+        if !is_answer {
+            return;
+        }
+        let (resultants, stresses) = (self.resultants(facts), facts.stresses());
+        if !resultants.is_empty() {
+            object.insert("resultants".into(), json!(resultants));
+        }
+        if !stresses.is_empty() {
+            object.insert("stresses".into(), json_export::without_signed_zeros(json!(stresses)));
+        }
     }
 }
 
@@ -163,7 +168,8 @@ pub(super) fn next_names(given: &[String], vocabulary: &super::complete::Vocabul
     match (entry.arguments, after) {
         (Arguments::Pair, []) if over => pairs(),
         (Arguments::Pair, []) => vocabulary.pairs.clone(),
-        (Arguments::Node | Arguments::NodeOrElement, []) => vocabulary.nodes.clone(),
+        (Arguments::Node, []) => vocabulary.nodes.clone(),
+        (Arguments::NodeOrElement, []) => vocabulary.nodes.iter().chain(&vocabulary.elements).cloned().collect(),
         (Arguments::Bar, []) => vocabulary.bars.clone(),
         (Arguments::Bar, [_]) if !over => fixed(&["at", "start", "end"]),
         (Arguments::Joint, []) => vocabulary.joints.clone(),

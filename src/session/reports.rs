@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use crate::answer::record::{Answer, PlainSolution, Reaction};
+use crate::export::json as json_export;
 use crate::model::scenario::Source;
 use crate::view;
 use crate::view::number::{short, with_unit};
@@ -267,7 +268,7 @@ impl Session {
                 members
                     .iter()
                     .filter(|member| bar.is_none_or(|bar| member.bar == bar))
-                    .map(|member| json!(member))
+                    .map(json_export::member)
                     .collect()
             },
             |out, style| {

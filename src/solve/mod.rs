@@ -22,6 +22,7 @@ pub mod explain;
 mod history_answer;
 pub mod judge;
 mod ladder;
+pub mod load_rates;
 pub mod numbers;
 mod plain;
 pub mod plain_answers;

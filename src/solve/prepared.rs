@@ -1,6 +1,7 @@
 //! What depends on geometry, stiffness and loads alone: factorization, R, RF per load case. Reused for every change of
 //! laws and load factors; a change of a number in the loads or in the geometry computes what it must anew.
 
+use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -66,6 +67,12 @@ pub struct Prepared {
     pub condense_seconds: f64,
     /// Seconds for everything here.
     pub seconds: f64,
+}
+
+impl fmt::Debug for Prepared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Prepared").field("cases", &self.cases).finish_non_exhaustive()
+    }
 }
 
 /// Why a scenario cannot be prepared.
@@ -284,7 +291,11 @@ impl Prepared {
     }
 
     /// RF anew with the kept factorization; `scenario` was read under `values`. `None` where the sources do not match.
-    fn with_loads(&self, scenario: &Scenario, values: &ParameterValues) -> Result<Option<Prepared>, PrepareError> {
+    pub(super) fn with_loads(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+    ) -> Result<Option<Prepared>, PrepareError> {
         let start = Instant::now();
         let geometry = match (&*self.geometry, &scenario.source) {
             (Geometry::Structure { system, main, .. }, Source::Structure(structure)) => {

@@ -6,6 +6,7 @@ mod friction;
 mod hertz;
 mod history;
 mod load;
+mod load_amounts;
 mod random;
 mod session;
 mod stages;

@@ -97,7 +97,7 @@ fn an_edge_settles_without_strain() {
         near_all(node, &displacement(&answer, node)[..2], &[0.02, -0.04], 1e-13);
     }
     let scenario = stickslip::model::load::load_text("test", &scenario_text(model(-0.03)), None).unwrap();
-    let error = stickslip::solve::prepare(&scenario, &stickslip::watch::Quiet).err().expect("unequal settlements");
+    let error = stickslip::solve::prepare(&scenario, &stickslip::watch::Quiet).expect_err("unequal settlements");
     assert!(error.to_string().contains("by different amounts"), "{error}");
 }
 

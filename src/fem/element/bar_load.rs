@@ -153,6 +153,20 @@ impl Piece {
         ]
     }
 
+    /// N, Q and M as polynomials in the distance from the start of the piece: coefficients of its powers from 0 on,
+    /// without zeros at the end.
+    pub fn polynomials(&self) -> [Vec<f64>; 3] {
+        let length = self.range[1] - self.range[0];
+        let slope = |i: usize| (self.q[1][i] - self.q[0][i]) / length;
+        let [n, q, m] = self.start;
+        let (qx, qy) = (self.q[0][0], self.q[0][1]);
+        let all = [vec![n, -qx, -0.5 * slope(0)], vec![q, qy, 0.5 * slope(1)], vec![m, q, 0.5 * qy, slope(1) / 6.0]];
+        all.map(|mut powers| {
+            powers.truncate(powers.iter().rposition(|c| *c != 0.0).map_or(1, |last| last + 1));
+            powers
+        })
+    }
+
     /// Places where N (0), Q (1) or M (2) may be largest or smallest: the ends and where the derivative vanishes.
     pub fn candidates(&self, which: usize) -> Vec<f64> {
         let [from, to] = self.range;

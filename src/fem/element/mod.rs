@@ -75,6 +75,7 @@ const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 pub fn stiffness<T: Real>(structure: &Structure, index: usize) -> Result<Stiffness<T>, MainSystemError> {
     let element = &structure.elements[index];
     let refuse = |what: String| MainSystemError::Element {
+        name: structure.element_in_words(index),
         nodes: element.nodes.iter().map(|&node| structure.nodes[node].id.clone()).collect(),
         what,
     };
@@ -116,8 +117,10 @@ pub fn stiffness<T: Real>(structure: &Structure, index: usize) -> Result<Stiffne
 /// A stiffness too large or small for numbers.
 pub fn check_spring(structure: &Structure, spring: &Spring) -> Result<(), MainSystemError> {
     if spring.stiffness != 0.0 && !STIFFNESSES.contains(&spring.stiffness) {
+        let nodes: Vec<String> = spring.nodes().into_iter().map(|node| structure.nodes[node].id.clone()).collect();
         return Err(MainSystemError::Element {
-            nodes: spring.nodes().into_iter().map(|node| structure.nodes[node].id.clone()).collect(),
+            name: format!("the spring at {}", nodes.join(" and ")),
+            nodes,
             what: beyond("stiffness", spring.stiffness, &STIFFNESSES, "use other units"),
         });
     }

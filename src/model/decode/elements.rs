@@ -57,7 +57,9 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
     for (list, read) in [("triangles", triangle as ReadElement), ("quads", quad)] {
         for (index, cursor) in entries(fields, list).into_iter().enumerate() {
             if let Some((id, element)) = read(builder, cursor) {
-                builder.single_elements.entry(id).or_insert(builder.structure.elements.len());
+                let at = builder.structure.elements.len();
+                builder.single_elements.entry(id).or_insert(at);
+                builder.structure.named_elements.push((id.to_owned(), at));
                 builder.structure.elements.push(element);
                 builder.places.elements.push(format!("{list}[{index}]").into());
             }

@@ -70,14 +70,20 @@ const STRUCTURE: [&str; 16] = [
 /// Keys of the other two sources.
 const OTHER_SOURCES: [&str; 2] = ["contact_system", "lcp"];
 
-/// Checks the text of a scenario under the parameter values of the file, or those given; `meshes` are not read again.
-pub fn scenario(
-    name: &str,
-    text: &str,
-    path: Option<PathBuf>,
-    values: Option<&ParameterValues>,
-    meshes: MeshFiles,
-) -> Result<Scenario, Problems> {
+/// What a text is read for.
+#[derive(Clone, Default)]
+pub struct Under<'a> {
+    /// Values of the parameters; without them those of the file.
+    pub values: Option<&'a ParameterValues>,
+    /// The parameter along which the numbers of [`Region::Amount`](crate::model::uses::Region::Amount) are read as
+    /// rates, in the place of their values.
+    pub along: Option<&'a str>,
+    /// Mesh files that were read already.
+    pub meshes: MeshFiles,
+}
+
+/// Checks the text of a scenario.
+pub fn scenario(name: &str, text: &str, path: Option<PathBuf>, mut under: Under<'_>) -> Result<Scenario, Problems> {
     let document = Document::parse(text).map_err(|error| {
         let (line, column) = position(text, error.offset);
         Problems {
@@ -92,8 +98,9 @@ pub fn scenario(
             more: 0,
         }
     })?;
-    let reading = Reading { path: path.clone(), meshes: RefCell::new(meshes), ..Reading::default() };
-    let decoded = read(Cursor::root(&document, &reading), name, text, path, values);
+    let meshes = RefCell::new(std::mem::take(&mut under.meshes));
+    let reading = Reading { path: path.clone(), meshes, ..Reading::default() };
+    let decoded = read(Cursor::root(&document, &reading), name, text, path, &under);
     let parameters = reading.parameters.into_inner().unwrap_or_default();
     match (reading.findings.into_problems(name, &document), decoded) {
         (None, Some(mut scenario)) => {
@@ -113,13 +120,7 @@ pub fn scenario(
     }
 }
 
-fn read(
-    root: Cursor<'_>,
-    name: &str,
-    text: &str,
-    path: Option<PathBuf>,
-    values: Option<&ParameterValues>,
-) -> Option<Scenario> {
+fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: &Under<'_>) -> Option<Scenario> {
     let known: Vec<&'static str> = COMMON.iter().chain(&STRUCTURE).chain(&OTHER_SOURCES).copied().collect();
     let fields = root.fields(&known)?;
     format(&fields);
@@ -132,7 +133,7 @@ fn read(
     let _ = fields.optional("$schema").map(Cursor::string);
     if let Some(cursor) = fields.optional("parameters") {
         // Nothing has asked for them before.
-        let _ = root.reading.parameters.set(parameters::read(cursor, values));
+        let _ = root.reading.parameters.set(parameters::read(cursor, under));
     }
     let solver = fields.optional("solver");
     let rules = solver.and_then(rules).unwrap_or_default();

@@ -6,8 +6,9 @@ use jsonc_parser::common::Ranged;
 use super::reader::Cursor;
 use super::words::{is_id, quoted};
 use crate::model::expression::Expression;
-use crate::model::jet::Jet;
-use crate::model::parameter::Number;
+use crate::model::jet::{Dependence, Jet};
+use crate::model::parameter::{Along, Number};
+use crate::model::uses::Region;
 
 /// Numbers beyond this are refused: their squares must stay finite.
 const LARGEST: f64 = 1e150;
@@ -15,7 +16,7 @@ const LARGEST: f64 = 1e150;
 const LITERAL: &str = "write a plain number, like 0.5 or 2e8";
 const NUMBER: &str = "write a number, like 0.5 or 2e8, the name of a parameter or an expression, like \"2*F + 1\"";
 
-impl Cursor<'_> {
+impl<'d> Cursor<'d> {
     /// A finite number, written out.
     pub fn literal(self) -> Option<f64> {
         match self.value {
@@ -83,6 +84,11 @@ impl Cursor<'_> {
         }
     }
 
+    /// Where the number here is read as its rate along a parameter: that parameter, and what the others do along it.
+    fn along(self) -> Option<(&'d str, &'d Along)> {
+        self.parameters().along().filter(|_| self.region == Region::Amount)
+    }
+
     fn is_written_plainly(self) -> bool {
         matches!(self.value, Value::StringLit(string) if string.range.end - string.range.start == string.value.len() + 2)
     }
@@ -96,6 +102,15 @@ impl Cursor<'_> {
     /// The value of a number that stands here; `None`, and nothing reported, where a parameter in it is wrong itself.
     pub fn value_of(self, number: &Number) -> Option<f64> {
         let parameters = self.parameters();
+        if let Some((name, along)) = self.along() {
+            let jet = number.along(along);
+            if jet.dependence == Dependence::Nonlinear {
+                let message = format!("{} is no linear function of {name}", self.quoted());
+                self.problem(message, format!("`sweep {name} A..B` varies it"));
+                return None;
+            }
+            return Some(jet.rate);
+        }
         let value = match number {
             Number::Value(value) => return Some(*value),
             Number::Parameter(name) => parameters.value(name)?,
@@ -158,7 +173,7 @@ impl Cursor<'_> {
     /// A finite number that passes `is_right`; `expected` completes "… must be".
     pub fn number_that(self, what: &str, expected: &str, is_right: impl Fn(f64) -> bool) -> Option<f64> {
         let value = self.number()?;
-        if is_right(value) {
+        if is_right(value) || self.along().is_some() {
             return Some(value);
         }
         self.problem(

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
+use super::Under;
 use super::reader::{Cursor, Entry, Fields};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::expression::Expression;
-use crate::model::parameter::{Formulas, Parameter, ParameterValues};
+use crate::model::parameter::{Along, Formulas, Parameter, ParameterValues};
 
 /// Names that other words of the program's language already are.
 const RESERVED: [&str; 8] = ["auto", "covering", "tie-break", "engine", "facets", "cone", "geometry", "pi"];
@@ -19,6 +20,8 @@ pub struct Parameters {
     /// `None` where the definition itself is wrong.
     known: IndexMap<String, Option<Parameter>>,
     values: ParameterValues,
+    /// Where rates are read: the parameter and what all of them do along it.
+    along: Option<(String, Along)>,
 }
 
 impl Parameters {
@@ -36,6 +39,11 @@ impl Parameters {
     pub fn value(&self, name: &str) -> Option<f64> {
         self.known.get(name)?.as_ref()?;
         self.values.get(name).copied()
+    }
+
+    /// The parameter along which amounts are read as rates, and what the others do along it.
+    pub fn along(&self) -> Option<(&str, &Along)> {
+        self.along.as_ref().map(|(name, along)| (name.as_str(), along))
     }
 
     /// The formulas among them.
@@ -56,8 +64,8 @@ struct Draft<'d> {
     expression: Expression,
 }
 
-/// Reads `parameters`. Their values are `given`, or else those of the file.
-pub fn read(cursor: Cursor<'_>, given: Option<&ParameterValues>) -> Parameters {
+/// Reads `parameters`.
+pub fn read(cursor: Cursor<'_>, under: &Under<'_>) -> Parameters {
     let mut parameters = Parameters::default();
     let Some(entries) = cursor.entries() else {
         return parameters;
@@ -84,11 +92,12 @@ pub fn read(cursor: Cursor<'_>, given: Option<&ParameterValues>) -> Parameters {
     }
     let values = parameters.known.iter().filter_map(|(name, parameter)| {
         let file = parameter.as_ref()?.value;
-        Some((name.clone(), given.and_then(|given| given.get(name)).copied().unwrap_or(file)))
+        Some((name.clone(), under.values.and_then(|given| given.get(name)).copied().unwrap_or(file)))
     });
     let values: IndexMap<String, f64> = values.collect();
     let formulas = in_order(&drafts, &mut parameters.known);
     parameters.values = ParameterValues::with_formulas(values, Arc::new(formulas));
+    parameters.along = under.along.map(|name| (name.to_owned(), parameters.values.along(name)));
     for draft in &drafts {
         let Some(parameter) = parameters.known.get_mut(draft.name) else { continue };
         let value = parameters.values.get(draft.name).copied();

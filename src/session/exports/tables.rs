@@ -6,11 +6,9 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use crate::answer::record::Answer;
+use crate::answer::stress::StressPlace;
 use crate::export::table::{Table, unfolded};
-use crate::export::{atomic, csv, history as history_export, json as json_export, path as path_export};
-use crate::fem::NodeStress;
-use crate::path::quantity::{Facts, NoValue, STRESSES, of_stress};
-use crate::path::stages::History;
+use crate::export::{atomic, csv, json as json_export, path as path_export};
 use crate::session::command::Export;
 use crate::session::{CommandError, Format, Output, Session};
 
@@ -73,7 +71,10 @@ impl Session {
             Export::Members => json_export::members(&self.shown(what)?),
             Export::Reactions => json_export::reactions(&self.shown(what)?),
             Export::Path => json!(self.need_path()?),
-            Export::Result => self.whole_result()?,
+            Export::Result => {
+                self.need_quantities()?;
+                self.result(false).unwrap_or_default()
+            }
             Export::Stresses => Value::Array(self.stresses(io)?),
             Export::Resultants => self.resultants_json(io)?,
             Export::Stages => self.stages_json()?,
@@ -131,24 +132,14 @@ impl Session {
         }
     }
 
-    /// The result as `solve --format json` prints it: of the history where one was followed.
-    fn whole_result(&self) -> Result<Value, CommandError> {
-        self.need_quantities()?;
-        let of_history = |history: &History| {
-            history_export::result(history, &self.now.scenario.name, &self.now.values, false)
-                .map(|result| self.with_probes(result))
-        };
-        Ok(match &self.followed {
-            Some(history) => of_history(history),
-            None => self.result(false),
-        }
-        .unwrap_or_default())
-    }
-
     fn stresses(&self, io: &Output<'_>) -> Result<Vec<Value>, CommandError> {
-        self.need_quantities()?;
-        let rows = self.with_facts(io.watch, stress_rows);
-        let rows = rows.map_err(|reason| CommandError::Refused(format!("no stresses: {reason}")))?;
+        let answer = self.need_quantities()?;
+        if !answer.is_answer() {
+            return Err(self.none("stresses", answer));
+        }
+        let all = self.with_facts(io.watch, |facts| facts.stresses());
+        let at_nodes = all.iter().filter(|stress| matches!(stress.place, StressPlace::Node(_)));
+        let rows: Vec<Value> = at_nodes.map(|stress| json!(stress)).collect();
         if rows.is_empty() {
             return Err(CommandError::Refused(
                 "no stresses: the structure has no plates, quads or triangles".to_owned(),
@@ -187,18 +178,6 @@ impl Session {
         }
         Ok(report)
     }
-}
-
-/// The stresses at the nodes of membranes, by their words.
-pub(in crate::session) fn stress_rows(facts: &Facts<'_>) -> Result<Vec<Value>, NoValue> {
-    let field = facts.field()?;
-    let row = |at: &NodeStress| {
-        let mut row = Map::new();
-        row.insert("node".to_owned(), field.structure.nodes[at.node].id.clone().into());
-        row.extend(STRESSES.iter().map(|word| ((*word).to_owned(), of_stress(word, at.stress).into())));
-        Value::Object(row)
-    };
-    Ok(field.node_stresses.iter().map(row).collect())
 }
 
 /// The report of a command.

@@ -79,7 +79,8 @@ impl Session {
             if io.watch.stop() {
                 return Err(CommandError::Interrupted);
             }
-            self.with_place(prepared, path, place, io.watch, |facts| write(facts, &file(number)))?;
+            self.with_place(prepared, path, place, io.watch, |facts| write(facts, &file(number)))
+                .map_err(|reason| CommandError::Refused(format!("export: {reason}")))??;
         }
         Ok(moments.into_iter().map(time).collect())
     }
