@@ -6,6 +6,8 @@ pub mod balance;
 pub mod laws;
 pub mod systems;
 
+use std::path::Path;
+
 use serde_json::Value;
 use stickslip::answer::record::{Answer, OutcomeKind, PairState, RayClass, State};
 use stickslip::model::embedded;
@@ -38,6 +40,15 @@ impl Case {
     /// A scenario from its JSON text.
     pub fn text(text: &str) -> Case {
         let scenario = load_text("test", text, None).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let prepared = prepare(&scenario, &Quiet).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        Case { scenario, prepared }
+    }
+
+    /// A scenario from a JSON value that names files in a folder.
+    pub fn in_folder(value: Value, folder: &Path) -> Case {
+        let text = scenario_text(value);
+        let path = folder.join("scenario.json");
+        let scenario = load_text("test", &text, Some(&path)).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let prepared = prepare(&scenario, &Quiet).unwrap_or_else(|e| panic!("{e}\n{text}"));
         Case { scenario, prepared }
     }

@@ -112,31 +112,33 @@ fn material() -> Value {
     json!({ "E": E, "nu": NU })
 }
 
-/// Plain and incompatible quads, triangles of three and of six nodes (sides straight, and bent inside), in both planes.
+/// Plain and incompatible quads, triangles of three and of six nodes, quads of eight (sides straight, and bent inside), in
+/// both planes.
 #[test]
 fn quads_and_triangles() {
     const NAMES: [&str; 4] = ["bottom", "right", "top", "left"];
     const NORMALS: [[f64; 2]; 4] = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
+    let folder = tempfile::tempdir().expect("a place");
     for kind in Kind::ALL {
         for (seed, plane) in ["stress", "strain", "stress"].into_iter().enumerate() {
             let grid = Grid::new(kind, SIZE, [4, 3], 0.25, seed as u64);
             let boundary: Vec<(String, [f64; 2])> =
                 grid.boundary().into_iter().map(|node| (node.clone(), grid.place(&node))).collect();
             for field in fields() {
-                let mut scenario = grid.scenario(THICKNESS, plane, material());
+                let mut scenario = grid.scenario(THICKNESS, plane, material(), folder.path());
                 by_displacements(&mut scenario, &boundary, field);
-                let case = Case::json(scenario);
+                let case = Case::in_folder(scenario, folder.path());
                 check(&format!("{kind:?}, displacements"), &case, &case.solve(&[]), field, plane);
 
-                let mut scenario = grid.scenario(THICKNESS, plane, material());
+                let mut scenario = grid.scenario(THICKNESS, plane, material(), folder.path());
                 for (name, edge) in NAMES.into_iter().zip(&grid.edges) {
                     scenario["edges"][name] = json!(edge);
                 }
                 let edges = [0, 1, 2, 3].map(|k| (NAMES[k], NORMALS[k]));
                 let corner = |node: &str| (node.to_owned(), grid.place(node));
-                let [first, second] = [corner("n0_0"), corner("n4_0")];
+                let [first, second] = [[0, 0], [4, 0]].map(|at| corner(&kind.corner(at)));
                 by_tractions(&mut scenario, edges, [&first, &second], (field, plane));
-                let case = Case::json(scenario);
+                let case = Case::in_folder(scenario, folder.path());
                 check(&format!("{kind:?}, tractions"), &case, &case.solve(&[]), field, plane);
             }
         }

@@ -1,10 +1,12 @@
 //! Distorted grids of every membrane element, as entries of a scenario.
 
+use std::path::Path;
+
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Map, Value, json};
 
-/// Elements that a scenario can name.
+/// Elements of a scenario; those of eight nodes come from a mesh in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Plain,
@@ -13,22 +15,41 @@ pub enum Kind {
     T6,
     /// With bent sides inside.
     T6Bent,
+    Q8,
+    Q8Bent,
 }
 
 impl Kind {
-    pub const ALL: [Kind; 5] = [Kind::Plain, Kind::Incompatible, Kind::T3, Kind::T6, Kind::T6Bent];
+    pub const ALL: [Kind; 7] =
+        [Kind::Plain, Kind::Incompatible, Kind::T3, Kind::T6, Kind::T6Bent, Kind::Q8, Kind::Q8Bent];
 
     fn is_quadratic(self) -> bool {
-        matches!(self, Kind::T6 | Kind::T6Bent)
+        matches!(self, Kind::T6 | Kind::T6Bent) || self.is_from_file()
+    }
+
+    fn is_from_file(self) -> bool {
+        matches!(self, Kind::Q8 | Kind::Q8Bent)
+    }
+
+    /// A corner of the grid; its own tag in a file.
+    pub fn corner(self, [i, j]: [usize; 2]) -> String {
+        if self.is_from_file() { format!("g/{}", 1 + i + 100 * j) } else { format!("n{i}_{j}") }
+    }
+
+    fn middle_of(self, [[i, j], [k, l]]: [[usize; 2]; 2]) -> String {
+        if self.is_from_file() { format!("g/{}", 10_001 + i + k + 200 * (j + l)) } else { format!("m{i}_{j}_{k}_{l}") }
     }
 }
 
 /// A grid on [0, size] with `divisions` columns and rows.
 pub struct Grid {
-    pub nodes: Map<String, Value>,
+    kind: Kind,
+    nodes: Map<String, Value>,
     /// Entries of `triangles` and of `quads`.
-    pub triangles: Vec<Value>,
-    pub quads: Vec<Value>,
+    triangles: Vec<Value>,
+    quads: Vec<Value>,
+    /// Nodes of the elements of a file.
+    eights: Vec<Vec<String>>,
     /// Nodes of the four edges in order, counter-clockwise from the lower left corner.
     pub edges: [Vec<String>; 4],
 }
@@ -49,15 +70,21 @@ impl Grid {
                 *place = [moved(i, 0, shake), moved(j, 1, shake)];
             }
         }
-        let mut grid =
-            Grid { nodes: Map::new(), triangles: Vec::new(), quads: Vec::new(), edges: [const { Vec::new() }; 4] };
-        let name = |[i, j]: [usize; 2]| format!("n{i}_{j}");
+        let mut grid = Grid {
+            kind,
+            nodes: Map::new(),
+            triangles: Vec::new(),
+            quads: Vec::new(),
+            eights: Vec::new(),
+            edges: [const { Vec::new() }; 4],
+        };
+        let name = |at: [usize; 2]| kind.corner(at);
         for (j, row) in places.iter().enumerate() {
             for (i, place) in row.iter().enumerate() {
                 grid.nodes.insert(name([i, j]), json!(place));
             }
         }
-        let bend = if kind == Kind::T6Bent { 0.05 } else { 0.0 };
+        let bend = if matches!(kind, Kind::T6Bent | Kind::Q8Bent) { 0.05 } else { 0.0 };
         for j in 0..divisions[1] {
             for i in 0..divisions[0] {
                 let corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
@@ -65,6 +92,14 @@ impl Grid {
                     let element = if kind == Kind::Plain { "plain" } else { "incompatible" };
                     let nodes = corners.map(name);
                     grid.quads.push(json!({ "id": format!("q{i}_{j}"), "nodes": nodes, "element": element }));
+                    continue;
+                }
+                if kind.is_from_file() {
+                    let mut nodes = corners.map(name).to_vec();
+                    for k in 0..4 {
+                        nodes.push(grid.middle(&places, [corners[k], corners[(k + 1) % 4]], divisions, bend));
+                    }
+                    grid.eights.push(nodes);
                     continue;
                 }
                 let halves = if (i + j) % 2 == 0 { [[0, 1, 2], [0, 2, 3]] } else { [[0, 1, 3], [1, 2, 3]] };
@@ -109,7 +144,7 @@ impl Grid {
     ) -> String {
         ends.sort_unstable();
         let [a, b] = ends;
-        let id = format!("m{}_{}_{}_{}", a[0], a[1], b[0], b[1]);
+        let id = self.kind.middle_of(ends);
         let [p, q] = ends.map(|[i, j]| places[j][i]);
         let outside = |c: usize, last: usize| a[c] == b[c] && (a[c] == 0 || a[c] == last);
         let bend = if outside(0, columns) || outside(1, rows) { 0.0 } else { bend };
@@ -118,8 +153,16 @@ impl Grid {
         id
     }
 
-    /// The entries completed by what all elements have in common.
-    pub fn scenario(&self, thickness: f64, plane: &str, material: Value) -> Value {
+    /// The entries completed by what all elements have in common; a mesh is written into `folder`.
+    pub fn scenario(&self, thickness: f64, plane: &str, material: Value, folder: &Path) -> Value {
+        if self.kind.is_from_file() {
+            std::fs::write(folder.join("grid.inp"), self.file()).expect("written");
+            return json!({
+                "materials": { "m": material },
+                "meshes": [{ "id": "g", "file": "grid.inp",
+                             "materials": { "*": { "material": "m", "thickness": thickness, "plane": plane } } }],
+            });
+        }
         let complete = |elements: &[Value]| -> Vec<Value> {
             let mut elements = elements.to_vec();
             for element in &mut elements {
@@ -144,5 +187,21 @@ impl Grid {
     /// Nodes on the edges, each once.
     pub fn boundary(&self) -> Vec<String> {
         self.edges.iter().flat_map(|edge| edge[1..].to_vec()).collect()
+    }
+
+    /// The elements of eight nodes as Abaqus writes them.
+    fn file(&self) -> String {
+        let tag = |node: &str| node.trim_start_matches("g/").to_owned();
+        let mut text = String::from("*NODE\n");
+        for node in self.nodes.keys() {
+            let [x, y] = self.place(node);
+            text.push_str(&format!("{}, {x:?}, {y:?}\n", tag(node)));
+        }
+        text.push_str("*ELEMENT, TYPE=CPS8\n");
+        for (k, nodes) in self.eights.iter().enumerate() {
+            let tags: Vec<String> = nodes.iter().map(|node| tag(node)).collect();
+            text.push_str(&format!("{}, {}\n", k + 1, tags.join(", ")));
+        }
+        text
     }
 }
