@@ -95,13 +95,14 @@ const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 impl EdgeSide {
-    fn nodes(&self) -> impl Iterator<Item = usize> {
+    /// Its nodes along the edge.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> + use<> {
         let [a, b] = self.ends;
         [Some(a), self.middle, Some(b)].into_iter().flatten()
     }
 
     /// Shape functions and their derivatives at t = 0 … 1, in the order of [`nodes`](Self::nodes).
-    fn shape(&self, t: f64) -> ([f64; 3], [f64; 3]) {
+    pub fn shape(&self, t: f64) -> ([f64; 3], [f64; 3]) {
         match self.middle {
             None => ([1.0 - t, t, 0.0], [-1.0, 1.0, 0.0]),
             Some(_) => (
@@ -112,7 +113,7 @@ impl EdgeSide {
     }
 
     /// Position and its derivative at t.
-    fn at(&self, nodes: &[Node], t: f64) -> ([f64; 2], [f64; 2]) {
+    pub fn at(&self, nodes: &[Node], t: f64) -> ([f64; 2], [f64; 2]) {
         let (n, d) = self.shape(t);
         let (mut position, mut tangent) = ([0.0; 2], [0.0; 2]);
         for (i, node) in self.nodes().enumerate() {
@@ -125,7 +126,7 @@ impl EdgeSide {
     }
 
     /// Length from its first node to t.
-    fn length_to(&self, nodes: &[Node], t: f64) -> f64 {
+    pub fn length_to(&self, nodes: &[Node], t: f64) -> f64 {
         GAUSS
             .iter()
             .map(|(x, w)| {
@@ -136,7 +137,7 @@ impl EdgeSide {
     }
 
     /// Unit normal out of the body for a tangent along the edge.
-    fn outward(&self, [dx, dy]: [f64; 2]) -> [f64; 2] {
+    pub fn outward(&self, [dx, dy]: [f64; 2]) -> [f64; 2] {
         let length = dx.hypot(dy);
         let sign = if self.reversed { -1.0 } else { 1.0 };
         [sign * dy / length, -sign * dx / length]

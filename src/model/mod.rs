@@ -1,7 +1,7 @@
 //! What the user describes: scenario file → checked scenario. No linear algebra.
 //!
 //! `load` (text) → `locate` (tree with places) → `decode` (typed, all problems in one pass; `grid`, `edge` make
-//! plates) → `scenario` (what everything later works on).
+//! plates, `mortar` joins edges) → `scenario` (what everything later works on).
 
 mod decode;
 pub mod edge;
@@ -13,6 +13,7 @@ pub mod load;
 pub mod locate;
 pub(crate) mod memory;
 pub mod mesh;
+pub mod mortar;
 pub mod pair;
 pub mod parameter;
 pub mod problem;

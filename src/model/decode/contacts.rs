@@ -6,18 +6,12 @@ use std::sync::Arc;
 use super::elements::entries;
 use super::law::{self, LawKind, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
-use super::structure::{Builder, Spot};
-use super::words::nearest;
+use super::sides::{self, Sides};
+use super::structure::Builder;
 use crate::model::memory;
 use crate::model::pair::{JointDirection, Pair, joints};
 use crate::model::parameter::Number;
 use crate::model::structure::EdgeContact;
-
-/// The word for the ground in `against`.
-const GROUND: &str = "ground";
-
-/// Two edges lie on each other if every node is this near its partner, relative to the length of the edge.
-const NEAR: f64 = 1e-6;
 
 /// Reads `contacts`. `None` if their matrix would be too large to go on.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
@@ -37,8 +31,9 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
 }
 
 fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair>> {
-    let fields = cursor
-        .fields(&["id", "node", "edge", "against", "normal", "law", "friction", "cohesion", "gap", "bound", "skip"])?;
+    let fields = cursor.fields(&[
+        "id", "node", "edge", "against", "normal", "law", "friction", "cohesion", "gap", "bound", "skip", "method",
+    ])?;
     let id = fields.required("id").and_then(|cursor| {
         let id = cursor.string()?;
         builder.register(cursor.place(), id, "contact");
@@ -63,8 +58,8 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             );
             None
         }
-        (None, Some(edge)) => edge_sides(builder, &fields, edge.value()),
-        (Some(node), None) => node_sides(builder, &fields, node),
+        (None, Some(edge)) => sides::of_edge(builder, &fields, edge.value()),
+        (Some(node), None) => sides::of_node(builder, &fields, node),
         (None, None) => {
             cursor.problem(
                 "missing key `node` or `edge`",
@@ -74,8 +69,11 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         }
     };
     let sides = sides.filter(|sides| !is_within_a_body(builder, cursor, sides));
-    let count = sides.as_ref().map(|sides| sides.pairs.len());
-    let numbers = law_numbers(&fields, law, count, is_edge);
+    if !is_edge {
+        fields.refuse(&["method"], |key| format!("`{key}` belongs to contacts of an `edge`"), "remove it");
+    }
+    let count = sides.as_ref().map(|sides| sides.nodes.len());
+    let numbers = law_numbers(&fields, law, sides.as_ref(), is_edge);
     let skipped = fields
         .entry("skip")
         .map(|entry| {
@@ -88,41 +86,31 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         })
         .unwrap_or(Some(HashSet::new()));
     let (id, law, sides, numbers, skipped) = (id?, law?, sides?, numbers?, skipped?);
-    let pairs = sides.pairs.iter().enumerate().filter(|(index, _)| !skipped.contains(index)).map(
-        |(index, &(node, against))| Pair {
+    let kept = sides.weights.iter().enumerate().filter(|(index, _)| !skipped.contains(index));
+    let pairs = kept.filter_map(|(index, weights)| {
+        Some(Pair {
             id: if is_edge { format!("{id}[{index}]") } else { id.to_string() },
-            node,
-            weights: Pair::of_nodes(node, against),
+            node: sides.nodes[index],
+            weights: weights.clone()?,
             normal: sides.normals[index],
             slides_on_ground: false,
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
-        },
-    );
+        })
+    });
     let pairs = pairs.collect();
     if is_edge {
-        let nodes = sides.pairs.iter().map(|(node, _)| *node).collect();
-        builder.structure.edge_contacts.push(EdgeContact { id: id.to_owned(), nodes });
+        builder.structure.edge_contacts.push(EdgeContact { id: id.to_owned(), nodes: sides.nodes });
     }
     Some(pairs)
 }
 
-fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
-    !builder.nodes.contains_key(word) && nearest(word, [GROUND]).is_some()
-}
-
-/// The two sides of a contact: (node, against) of each pair, skipped ones included, and its normal.
-struct Sides {
-    pairs: Vec<(usize, Option<usize>)>,
-    normals: Vec<[f64; 2]>,
-}
-
-/// Reports a pair whose two nodes move as one.
+/// Reports a pair whose nodes move as one.
 fn is_within_a_body<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, sides: &Sides) -> bool {
-    let body = |node: usize| builder.body_of.get(&node);
-    let mut sides = sides.pairs.iter();
-    let within = sides.find_map(|&(node, against)| {
-        let both = body(node)?;
-        (body(against?) == Some(both)).then_some((node, against?, *both))
+    let body = |node: usize| builder.body_of.get(&node).copied();
+    let within = sides.weights.iter().flatten().find_map(|weights| {
+        let both = body(weights[0].0)?;
+        let are_one = weights.len() > 1 && weights.iter().all(|(node, _)| body(*node) == Some(both));
+        are_one.then_some((weights[0].0, weights[1].0, both))
     });
     let Some((node, against, both)) = within else {
         return false;
@@ -137,141 +125,6 @@ fn is_within_a_body<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, sides: &Sides
         "remove the contact, or make two bodies",
     );
     true
-}
-
-fn node_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
-    let node = builder.node(at);
-    let normal = fields.required("normal").and_then(|cursor| cursor.direction("normal"));
-    let against = fields.required("against").and_then(|cursor| match cursor.string()? {
-        GROUND => Some(None),
-        word if is_misspelt_ground(builder, word) => {
-            cursor.unknown("node", word, &[GROUND]);
-            None
-        }
-        _ => Some(Some((cursor, builder.node(cursor)?))),
-    })?;
-    let node = node?;
-    if let Some((cursor, other)) = against
-        && other == node
-    {
-        cursor.problem(
-            format!("the node \"{}\" is in contact with itself", builder.node_id(node)),
-            "name two different nodes, or \"ground\"",
-        );
-        return None;
-    }
-    Some(Sides { pairs: vec![(node, against.map(|(_, other)| other))], normals: vec![normal?] })
-}
-
-fn edge_sides<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
-    let edge = builder.edge(at);
-    let normal = match fields.optional("normal") {
-        Some(cursor) => Some(cursor.direction("normal")?),
-        None => None,
-    };
-    let against = fields.required("against")?;
-    let edge = edge?;
-    let nodes = &builder.structure.nodes;
-    if against.string()? == GROUND {
-        let normals = match normal {
-            Some(normal) => vec![normal; edge.nodes.len()],
-            // Subtracting from 0 turns −0 into 0.
-            None => edge.outward_normals(nodes).into_iter().map(|outward| outward.map(|n| 0.0 - n)).collect(),
-        };
-        // The last node of a closed edge is the first.
-        let pairs: Vec<(usize, Option<usize>)> = edge.distinct_nodes().iter().map(|&node| (node, None)).collect();
-        return Some(Sides { normals: normals[..pairs.len()].to_vec(), pairs });
-    }
-    if is_misspelt_ground(builder, against.string()?) {
-        against.unknown("edge", against.string()?, &[GROUND]);
-        return None;
-    }
-    let other = match builder.spot(against)? {
-        Spot::Edge(edge) => edge,
-        Spot::Node(_) => {
-            against.problem(
-                format!("expected an edge or \"ground\", found the node {}", against.quoted()),
-                "an edge meets an edge with as many nodes, or the ground",
-            );
-            return None;
-        }
-    };
-    if other == edge {
-        against.problem(
-            format!("the edge {} is in contact with itself", against.quoted()),
-            "name two different edges, or \"ground\"",
-        );
-        return None;
-    }
-    let reversed = partners(builder, at, against, edge.distinct_nodes(), other.distinct_nodes())?;
-    let mut partners = other.distinct_nodes().to_vec();
-    let mut normals = match normal {
-        Some(normal) => vec![normal; partners.len()],
-        None => other.outward_normals(nodes)[..partners.len()].to_vec(),
-    };
-    if reversed {
-        partners.reverse();
-        normals.reverse();
-    }
-    let pairs = edge.distinct_nodes().iter().copied().zip(partners.into_iter().map(Some)).collect();
-    Some(Sides { pairs, normals })
-}
-
-/// Whether the other edge runs the other way; each of its nodes must be at the place of its partner.
-fn partners<'d>(
-    builder: &Builder<'d>,
-    at: Cursor<'d>,
-    against: Cursor<'d>,
-    nodes: &[usize],
-    others: &[usize],
-) -> Option<bool> {
-    let mut others = others.to_vec();
-    if others.len() != nodes.len() {
-        against.problem(
-            format!(
-                "the edges do not match: {} has {} nodes, {} has {}",
-                at.quoted(),
-                nodes.len(),
-                against.quoted(),
-                others.len()
-            ),
-            "give both plates the same grid lines along the joint",
-        );
-        return None;
-    }
-    let place = |node: usize| builder.structure.nodes[node].position;
-    let distance = |a: usize, b: usize| {
-        let (a, b) = (place(a), place(b));
-        (b[0] - a[0]).hypot(b[1] - a[1])
-    };
-    // Edges have at least two nodes.
-    let near = NEAR * distance(nodes[0], nodes[nodes.len() - 1]);
-    // Of two plates turned towards each other one counts its edge the other way round.
-    let mut reversed = false;
-    if distance(nodes[0], others[0]) > near && distance(nodes[0], others[others.len() - 1]) <= near {
-        others.reverse();
-        reversed = true;
-    }
-    for (&node, &other) in nodes.iter().zip(&others) {
-        // A repeated node is the shared corner of two edges of one plate.
-        if node == other || distance(node, other) > near {
-            let (a, b) = (place(node), place(other));
-            against.problem(
-                format!(
-                    "the edges do not match: \"{}\" is at ({}, {}), its partner \"{}\" at ({}, {})",
-                    builder.node_id(node),
-                    a[0],
-                    a[1],
-                    builder.node_id(other),
-                    b[0],
-                    b[1]
-                ),
-                "every node must be at the place of its partner; an initial gap is given by `gap`, not by the geometry",
-            );
-            return None;
-        }
-    }
-    Some(reversed)
 }
 
 fn refuse_foreign_numbers(fields: &Fields<'_>, law: LawKind) {
@@ -291,9 +144,10 @@ fn refuse_foreign_numbers(fields: &Fields<'_>, law: LawKind) {
 fn law_numbers(
     fields: &Fields<'_>,
     law: Option<LawKind>,
-    count: Option<usize>,
+    sides: Option<&Sides>,
     is_edge: bool,
 ) -> Option<HashMap<&'static str, Vec<Number>>> {
+    let count = sides.map(|sides| sides.nodes.len());
     let mut numbers = HashMap::new();
     let mut is_right = true;
     for (key, _) in NUMBERS {
@@ -309,7 +163,10 @@ fn law_numbers(
             None if cursor.is_list() => continue,
             None => 1,
         };
-        let values = if is_edge {
+        let values = if key == "gap" && sides::is_geometry(cursor) {
+            // Without sides there is nothing to measure, and that was said.
+            sides.and_then(|sides| geometry(cursor, sides))
+        } else if is_edge {
             per_pair(cursor, key, count, true)
         } else {
             law::number(cursor, key).map(|number| vec![number])
@@ -322,6 +179,14 @@ fn law_numbers(
         }
     }
     is_right.then_some(numbers)
+}
+
+/// The gaps as the two sides are drawn; 0 where there is no pair.
+fn geometry(cursor: Cursor<'_>, sides: &Sides) -> Option<Vec<Number>> {
+    if sides.gaps.is_none() {
+        cursor.problem("there is no distance to the ground in the geometry", "give the gap as a number");
+    }
+    Some(sides.gaps.as_ref()?.iter().map(|gap| Number::Value(*gap)).collect())
 }
 
 fn skipped(cursor: Cursor<'_>, count: Option<usize>) -> Option<HashSet<usize>> {

@@ -19,6 +19,7 @@ mod parameters;
 mod plates;
 mod reader;
 mod rigid;
+mod sides;
 mod single_elements;
 mod stages;
 mod structure;

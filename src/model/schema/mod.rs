@@ -290,6 +290,13 @@ enum PerPair {
     Each(Vec<Number>),
 }
 
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum Method {
+    Nodes,
+    Mortar,
+}
+
 /// Frictional contact of a node or of the nodes of an edge
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -311,12 +318,14 @@ struct Contact {
     friction: Option<PerPair>,
     /// Cohesion c ≥ 0
     cohesion: Option<PerPair>,
-    /// Gap g; negative: an interference
+    /// Gap g; negative: an interference; "geometry": the distance of the two sides as they are drawn
     gap: Option<PerPair>,
     /// Friction bound r_f ≥ 0 of the law `bound`
     bound: Option<PerPair>,
     /// Indices of an edge without contact
     skip: Option<Vec<u32>>,
+    /// How two edges meet: node by node, or by mortar where the nodes do not match; if left out as the nodes ask for
+    method: Option<Method>,
 }
 
 /// Contact stiffness matrix and contact load vectors

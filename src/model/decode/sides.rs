@@ -1,0 +1,316 @@
+//! The two sides of a contact: which nodes meet which, along which normals, how far apart.
+
+use super::reader::{Cursor, Fields};
+use super::structure::{Builder, Spot};
+use super::words::nearest;
+use crate::model::edge::Edge;
+use crate::model::mortar::{self, MortarError};
+use crate::model::pair::Pair;
+
+/// The word for the ground in `against`.
+const GROUND: &str = "ground";
+
+/// Two edges lie on each other if every node is this near its partner, relative to the length of the edge.
+const NEAR: f64 = 1e-6;
+
+/// The nodes of a contact in their order, those without a pair included.
+pub struct Sides {
+    pub nodes: Vec<usize>,
+    /// Which nodes move against each other at each of them, see [`Pair::weights`]; `None` where nothing is opposite.
+    pub weights: Vec<Option<Vec<(usize, f64)>>>,
+    pub normals: Vec<[f64; 2]>,
+    /// Distances of the two sides along the normals as they are drawn; `None` against the ground.
+    pub gaps: Option<Vec<f64>>,
+}
+
+/// How the pairs of two edges are made.
+#[derive(Clone, Copy, PartialEq)]
+enum Method {
+    /// Of nodes at the same place.
+    Nodes,
+    /// Of a node and what lies opposite.
+    Mortar,
+}
+
+impl Method {
+    const WORDS: [(&'static str, Method); 2] = [("nodes", Method::Nodes), ("mortar", Method::Mortar)];
+}
+
+impl Sides {
+    fn new<'d>(
+        builder: &Builder<'d>,
+        nodes: Vec<usize>,
+        weights: Vec<Option<Vec<(usize, f64)>>>,
+        normals: Vec<[f64; 2]>,
+    ) -> Sides {
+        let place = |node: usize| builder.structure.nodes[node].position;
+        let distance = |(weights, n): (&Option<Vec<(usize, f64)>>, &[f64; 2])| {
+            let weights = weights.iter().flatten();
+            // Differences from the own node: coordinates may be large beside a gap.
+            let own = weights.clone().next().map_or([0.0; 2], |&(node, _)| place(node));
+            let terms = weights.map(|&(node, weight)| {
+                let at = place(node);
+                weight * (n[0] * (at[0] - own[0]) + n[1] * (at[1] - own[1]))
+            });
+            terms.sum::<f64>()
+        };
+        let gaps = weights.iter().zip(&normals).map(distance).collect();
+        Sides { nodes, weights, normals, gaps: Some(gaps) }
+    }
+
+    fn on_ground(nodes: Vec<usize>, normals: Vec<[f64; 2]>) -> Sides {
+        let weights = nodes.iter().map(|&node| Some(Pair::of_nodes(node, None))).collect();
+        Sides { nodes, weights, normals, gaps: None }
+    }
+}
+
+/// Whether a `gap` is to be read from the geometry.
+pub fn is_geometry(cursor: Cursor<'_>) -> bool {
+    cursor.is_string() && cursor.string() == Some("geometry")
+}
+
+fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
+    !builder.nodes.contains_key(word) && nearest(word, [GROUND]).is_some()
+}
+
+/// Of one node against another one or the ground.
+pub fn of_node<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
+    let node = builder.node(at);
+    let normal = fields.required("normal").and_then(|cursor| cursor.direction("normal"));
+    let against = fields.required("against").and_then(|cursor| match cursor.string()? {
+        GROUND => Some(None),
+        word if is_misspelt_ground(builder, word) => {
+            cursor.unknown("node", word, &[GROUND]);
+            None
+        }
+        _ => Some(Some((cursor, builder.node(cursor)?))),
+    })?;
+    let node = node?;
+    if let Some((cursor, other)) = against
+        && other == node
+    {
+        cursor.problem(
+            format!("the node \"{}\" is in contact with itself", builder.node_id(node)),
+            "name two different nodes, or \"ground\"",
+        );
+        return None;
+    }
+    let normals = vec![normal?];
+    Some(match against {
+        None => Sides::on_ground(vec![node], normals),
+        Some((_, other)) => Sides::new(builder, vec![node], vec![Some(Pair::of_nodes(node, Some(other)))], normals),
+    })
+}
+
+/// Of an edge against another one or the ground.
+pub fn of_edge<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
+    let edge = builder.edge(at);
+    let normal = match fields.optional("normal") {
+        Some(cursor) => Some(cursor.direction("normal")?),
+        None => None,
+    };
+    let method = match fields.optional("method") {
+        Some(cursor) => Some(cursor.choice(&Method::WORDS)?),
+        None => None,
+    };
+    let against = fields.required("against")?;
+    let edge = edge?;
+    if against.string()? == GROUND {
+        fields.refuse(&["method"], |key| format!("`{key}` belongs to contacts of two edges"), "remove it");
+        let nodes = edge.distinct_nodes().to_vec();
+        let inward = || edge.outward_normals(&builder.structure.nodes).into_iter().map(turned);
+        let normals = normal.map_or_else(|| inward().take(nodes.len()).collect(), |normal| vec![normal; nodes.len()]);
+        return Some(Sides::on_ground(nodes, normals));
+    }
+    if is_misspelt_ground(builder, against.string()?) {
+        against.unknown("edge", against.string()?, &[GROUND]);
+        return None;
+    }
+    let other = match builder.spot(against)? {
+        Spot::Edge(edge) => edge,
+        Spot::Node(_) => {
+            against.problem(
+                format!("expected an edge or \"ground\", found the node {}", against.quoted()),
+                "an edge meets another edge, or the ground",
+            );
+            return None;
+        }
+    };
+    if other == edge {
+        against.problem(
+            format!("the edge {} is in contact with itself", against.quoted()),
+            "name two different edges, or \"ground\"",
+        );
+        return None;
+    }
+    let two = TwoEdges { builder, at, against, edge: &edge, other: &other, apart: gap_of(fields) == Gap::Geometry };
+    match (two.partners(), method) {
+        (Ok(reversed), None | Some(Method::Nodes)) => two.of_nodes(reversed, normal),
+        (Err(mismatch), Some(Method::Nodes)) => {
+            let (message, help) = two.in_words(mismatch);
+            against.problem(format!("the edges do not match: {message}"), help);
+            None
+        }
+        _ => two.mortar(normal, gap_of(fields) == Gap::None),
+    }
+}
+
+#[derive(PartialEq)]
+enum Gap {
+    None,
+    Number,
+    Geometry,
+}
+
+fn gap_of(fields: &Fields<'_>) -> Gap {
+    match fields.optional("gap") {
+        None => Gap::None,
+        Some(cursor) if is_geometry(cursor) => Gap::Geometry,
+        Some(_) => Gap::Number,
+    }
+}
+
+/// Subtracting from 0 turns −0 into 0.
+fn turned(normal: [f64; 2]) -> [f64; 2] {
+    normal.map(|n| 0.0 - n)
+}
+
+/// Why two edges do not match node by node.
+enum Mismatch {
+    Count,
+    Place { node: usize, partner: usize },
+}
+
+struct TwoEdges<'a, 'd> {
+    builder: &'a Builder<'d>,
+    at: Cursor<'d>,
+    against: Cursor<'d>,
+    edge: &'a Edge,
+    other: &'a Edge,
+    /// Whether partners may be apart along the normal.
+    apart: bool,
+}
+
+impl TwoEdges<'_, '_> {
+    fn place(&self, node: usize) -> [f64; 2] {
+        self.builder.structure.nodes[node].position
+    }
+
+    /// Whether the other edge runs the other way; each node must be at the place of its partner.
+    fn partners(&self) -> Result<bool, Mismatch> {
+        let (nodes, mut others) = (self.edge.distinct_nodes(), self.other.distinct_nodes().to_vec());
+        if others.len() != nodes.len() {
+            return Err(Mismatch::Count);
+        }
+        let distance = |[dx, dy]: [f64; 2]| dx.hypot(dy);
+        let difference = |a: usize, b: usize| {
+            let (a, b) = (self.place(a), self.place(b));
+            [b[0] - a[0], b[1] - a[1]]
+        };
+        // Edges have at least two nodes.
+        let near = NEAR * distance(difference(nodes[0], nodes[nodes.len() - 1]));
+        let mut normals = self.other.outward_normals(&self.builder.structure.nodes);
+        normals.truncate(others.len());
+        let off = |a: usize, b: usize, n: [f64; 2]| {
+            let [dx, dy] = difference(a, b);
+            if self.apart { (dx * n[1] - dy * n[0]).abs() } else { distance([dx, dy]) }
+        };
+        // Of two plates turned towards each other one counts its edge the other way round.
+        let last = others.len() - 1;
+        let reversed =
+            off(nodes[0], others[0], normals[0]) > near && off(nodes[0], others[last], normals[last]) <= near;
+        if reversed {
+            others.reverse();
+            normals.reverse();
+        }
+        for ((&node, &partner), normal) in nodes.iter().zip(&others).zip(normals) {
+            // A repeated node is the shared corner of two edges of one plate.
+            if node == partner || off(node, partner, normal) > near {
+                return Err(Mismatch::Place { node, partner });
+            }
+        }
+        Ok(reversed)
+    }
+
+    fn in_words(&self, mismatch: Mismatch) -> (String, &'static str) {
+        match mismatch {
+            Mismatch::Count => {
+                let (nodes, others) = (self.edge.distinct_nodes().len(), self.other.distinct_nodes().len());
+                let (at, against) = (self.at.quoted(), self.against.quoted());
+                (
+                    format!("{at} has {nodes} nodes, {against} has {others}"),
+                    "give both sides the same nodes along the joint, or \"method\": \"mortar\"",
+                )
+            }
+            Mismatch::Place { node, partner } => {
+                let (a, b) = (self.place(node), self.place(partner));
+                let (node, partner) = (self.builder.node_id(node), self.builder.node_id(partner));
+                let message =
+                    format!("\"{node}\" is at ({}, {}), its partner \"{partner}\" at ({}, {})", a[0], a[1], b[0], b[1]);
+                (
+                    message,
+                    "every node must be at the place of its partner; \"gap\": \"geometry\" lets them be apart along the normal, \"method\": \"mortar\" beside each other",
+                )
+            }
+        }
+    }
+
+    fn of_nodes(&self, reversed: bool, normal: Option<[f64; 2]>) -> Option<Sides> {
+        let nodes = self.edge.distinct_nodes();
+        let mut partners = self.other.distinct_nodes().to_vec();
+        let mut normals = match normal {
+            Some(normal) => vec![normal; partners.len()],
+            None => self.other.outward_normals(&self.builder.structure.nodes)[..partners.len()].to_vec(),
+        };
+        if reversed {
+            partners.reverse();
+            normals.reverse();
+        }
+        let weights = nodes.iter().zip(partners).map(|(&node, partner)| Some(Pair::of_nodes(node, Some(partner))));
+        Some(Sides::new(self.builder, nodes.to_vec(), weights.collect(), normals))
+    }
+
+    /// `must_touch`: no gap is given, so that the edges have to lie on each other.
+    fn mortar(&self, normal: Option<[f64; 2]>, must_touch: bool) -> Option<Sides> {
+        let nodes = &self.builder.structure.nodes;
+        let (at, against) = (self.at.quoted(), self.against.quoted());
+        let id = |node: usize| self.builder.node_id(node);
+        let (message, help) = match mortar::weights(self.edge, self.other, nodes) {
+            Ok(weights) => {
+                let normals = match normal {
+                    Some(normal) => vec![normal; weights.len()],
+                    None => self.edge.outward_normals(nodes).into_iter().take(weights.len()).map(turned).collect(),
+                };
+                let sides = Sides::new(self.builder, self.edge.distinct_nodes().to_vec(), weights, normals);
+                let room = NEAR * self.edge.length(nodes)
+                    + mortar::chord_error(self.edge, nodes)
+                    + mortar::chord_error(self.other, nodes);
+                let far = sides.gaps.iter().flatten().zip(&sides.nodes).find(|(gap, _)| gap.abs() > room);
+                match far.filter(|_| must_touch) {
+                    None => return Some(sides),
+                    Some((gap, &node)) => (
+                        format!(
+                            "the edges {at} and {against} do not touch: \"{}\" is {gap:.3e} away along the normal",
+                            id(node)
+                        ),
+                        "give the gap: \"gap\": \"geometry\", or a number (0 if it is to count as closed)",
+                    ),
+                }
+            }
+            Err(MortarError::Apart) => (
+                format!("the edges {at} and {against} do not face each other"),
+                "name the edges of two bodies that lie opposite each other",
+            ),
+            Err(MortarError::Shared(node)) => (
+                format!("the edges {at} and {against} have the node \"{}\" in common", id(node)),
+                "each body needs nodes of its own along the joint",
+            ),
+            Err(MortarError::Between([a, b])) => (
+                format!("the edge {against} begins and ends between \"{}\" and \"{}\" of {at}", id(a), id(b)),
+                "exchange `edge` and `against`: the pairs belong to the finer one",
+            ),
+        };
+        self.against.problem(message, help);
+        None
+    }
+}
