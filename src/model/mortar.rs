@@ -21,6 +21,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use super::edge::{Edge, EdgeSide};
+use super::pair::Weights;
 use super::structure::Node;
 
 /// Five Gauss points on (0, 1): exact to degree 9.
@@ -60,7 +61,7 @@ pub enum MortarError {
 ///
 /// # Errors
 /// See [`MortarError`].
-pub fn weights(edge: &Edge, other: &Edge, nodes: &[Node]) -> Result<Vec<Option<Vec<(usize, f64)>>>, MortarError> {
+pub fn weights(edge: &Edge, other: &Edge, nodes: &[Node]) -> Result<Vec<Option<Weights>>, MortarError> {
     if let Some(&shared) = edge.nodes.iter().find(|node| other.nodes.contains(node)) {
         return Err(MortarError::Shared(shared));
     }
@@ -81,7 +82,7 @@ pub fn weights(edge: &Edge, other: &Edge, nodes: &[Node]) -> Result<Vec<Option<V
         let free: Vec<usize> = facing.into_iter().filter(|&k| corners[at(k)].is_none()).collect();
         mortar.add_side(side, cuts, &free, &mut rows);
     }
-    let finished: Vec<Option<Vec<(usize, f64)>>> = (0..edge.distinct_nodes().len())
+    let finished: Vec<Option<Weights>> = (0..edge.distinct_nodes().len())
         .map(|k| match corners[k] {
             _ if !supported[k] => None,
             Some(partner) => Some(vec![(edge.nodes[k], 1.0), (partner, -1.0)]),
@@ -131,7 +132,7 @@ struct Row {
 
 impl Row {
     /// Divided so that the weights of the own edge sum to 1, that of `node` alone where a corner takes its share.
-    fn finish(&self, node: usize, corners: &[Option<usize>], edge: &Edge) -> Option<Vec<(usize, f64)>> {
+    fn finish(&self, node: usize, corners: &[Option<usize>], edge: &Edge) -> Option<Weights> {
         let partner = |k: usize| edge.nodes.iter().position(|&other| other == k).and_then(|k| corners[k]);
         let size: f64 = self.own.iter().filter(|(k, _)| partner(**k).is_none()).map(|(_, weight)| weight).sum();
         if size <= 0.0 {

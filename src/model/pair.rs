@@ -48,6 +48,9 @@ impl Law {
     }
 }
 
+/// Nodes with their weights in a mutual displacement.
+pub type Weights = Vec<(usize, f64)>;
+
 /// A contact pair of a structure.
 ///
 /// With the mutual displacement z = Σ weight·u of its nodes: z_n = n·z > 0 when the two sides part, z_τ = t·z.
@@ -59,7 +62,7 @@ pub struct Pair {
     pub node: usize,
     /// The nodes that move against each other, `node` first, with their weights: 1 on the second side and −1 on the
     /// first, in sum where several nodes of an edge stand for a side; nothing on the first side for the ground (u = 0).
-    pub weights: Vec<(usize, f64)>,
+    pub weights: Weights,
     /// Unit normal n, from `against` to `node`.
     pub normal: [f64; 2],
     /// Whether friction acts against the firm ground although the first side is a node: the ground of a foundation
@@ -71,7 +74,7 @@ pub struct Pair {
 
 impl Pair {
     /// The weights of a node against another one, or against the ground.
-    pub fn of_nodes(node: usize, against: Option<usize>) -> Vec<(usize, f64)> {
+    pub fn of_nodes(node: usize, against: Option<usize>) -> Weights {
         [Some((node, 1.0)), against.map(|against| (against, -1.0))].into_iter().flatten().collect()
     }
 

@@ -5,7 +5,7 @@ use super::structure::{Builder, Spot};
 use super::words::nearest;
 use crate::model::edge::Edge;
 use crate::model::mortar::{self, MortarError};
-use crate::model::pair::Pair;
+use crate::model::pair::{Pair, Weights};
 
 /// The word for the ground in `against`.
 const GROUND: &str = "ground";
@@ -17,7 +17,7 @@ const NEAR: f64 = 1e-6;
 pub struct Sides {
     pub nodes: Vec<usize>,
     /// Which nodes move against each other at each of them, see [`Pair::weights`]; `None` where nothing is opposite.
-    pub weights: Vec<Option<Vec<(usize, f64)>>>,
+    pub weights: Vec<Option<Weights>>,
     pub normals: Vec<[f64; 2]>,
     /// Distances of the two sides along the normals as they are drawn; `None` against the ground.
     pub gaps: Option<Vec<f64>>,
@@ -40,11 +40,11 @@ impl Sides {
     fn new<'d>(
         builder: &Builder<'d>,
         nodes: Vec<usize>,
-        weights: Vec<Option<Vec<(usize, f64)>>>,
+        weights: Vec<Option<Weights>>,
         normals: Vec<[f64; 2]>,
     ) -> Sides {
         let place = |node: usize| builder.structure.nodes[node].position;
-        let distance = |(weights, n): (&Option<Vec<(usize, f64)>>, &[f64; 2])| {
+        let distance = |(weights, n): (&Option<Weights>, &[f64; 2])| {
             let weights = weights.iter().flatten();
             // Differences from the own node: coordinates may be large beside a gap.
             let own = weights.clone().next().map_or([0.0; 2], |&(node, _)| place(node));
