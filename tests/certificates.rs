@@ -69,7 +69,10 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> (ContactSystem, ContactNumber
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
     numbers.set_load(DVector::from_fn(k, |i, _| f64::from(rng.random_range(if i < m { -1..=3 } else { -2..=2 }))));
     let loads = vec![JointLoad::exactly("load".into(), numbers.load.clone())];
-    (ContactSystem { pairs, stiffness, loads, rounded: true, kernel, corrected: None, file: None }, numbers)
+    (
+        ContactSystem { pairs, stiffness, loads, rounded: true, kernel, corrected: None, force_form: None, file: None },
+        numbers,
+    )
 }
 
 #[test]

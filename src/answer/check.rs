@@ -23,7 +23,11 @@ pub fn check_contact(
 ) -> Check {
     let forces: Vec<Sum> = (0..system.joint_count()).map(|joint| state.sum(joint)).collect();
     let mut check = Check { equilibrium, ..Check::default() };
-    let share = |joint: usize| displacement_share(system, &state.z, &forces, joint);
+    let (unknowns, responses) = state.in_forms(system);
+    let share = |joint: usize| match system.is_forced(joint) {
+        true => responses[joint].share().abs(),
+        false => displacement_share(system, &unknowns, &responses, joint),
+    };
     let mut couple = |x: Sum, z: f64, share: f64| {
         check.min_w = check.min_w.min(x.share());
         check.min_z = check.min_z.min(if z < 0.0 { -share } else { 0.0 });

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::record::{PairState, State};
 use crate::contact::complementarity::ContactLcp;
+use crate::contact::force_form::unknowns;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::sums::{StateForces, Sum, is_still, state_forces};
 use crate::contact::system::ContactSystem;
@@ -20,6 +21,8 @@ pub struct JointState {
     pub force: DVector<f64>,
     /// Sum of the magnitudes of the terms of each λ.
     pub terms: DVector<f64>,
+    /// The same of the z of joints in force form; 0 for the others, whose z is the unknown.
+    pub z_terms: DVector<f64>,
     /// What the equations of a file leave over; see [`StateForces`].
     pub left: Vec<Sum>,
     /// z_τ of the frictionless pairs, where the file tells it.
@@ -29,7 +32,7 @@ pub struct JointState {
 }
 
 impl JointState {
-    /// The state of displacements z, those that are rounding set to 0.
+    /// The state of displacements z, those that are rounding set to 0. For joints in force form forces stand in `z`.
     pub fn at(system: &ContactSystem, numbers: &ContactNumbers, mut z: DVector<f64>, p: f64) -> JointState {
         let mut forces = state_forces(system, numbers, &z);
         let still: Vec<usize> =
@@ -40,7 +43,27 @@ impl JointState {
         }
         let StateForces { joints, left, slips } = forces;
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(joints.len(), joints.iter().map(pick));
-        JointState { z, force: read(|sum| sum.value), terms: read(|sum| sum.magnitude), left, slips, p }
+        let (mut force, mut terms) = (read(|sum| sum.value), read(|sum| sum.magnitude));
+        let mut z_terms = DVector::zeros(z.len());
+        for joint in (0..z.len()).filter(|&joint| system.is_forced(joint)) {
+            (force[joint], terms[joint], z_terms[joint]) = (z[joint], z[joint].abs(), terms[joint]);
+            z[joint] = joints[joint].cleaned();
+        }
+        JointState { z, force, terms, z_terms, left, slips, p }
+    }
+
+    /// The unknowns and what answers to them, in the forms that the joints have.
+    pub fn in_forms(&self, system: &ContactSystem) -> (DVector<f64>, Vec<Sum>) {
+        let (mut unknowns, mut responses) = (self.z.clone(), Vec::with_capacity(self.z.len()));
+        for joint in 0..self.z.len() {
+            if system.is_forced(joint) {
+                unknowns[joint] = self.force[joint];
+                responses.push(Sum { value: self.z[joint], magnitude: self.z_terms[joint] });
+            } else {
+                responses.push(self.sum(joint));
+            }
+        }
+        (unknowns, responses)
     }
 
     /// λ of a joint with the magnitudes of its terms.
@@ -56,7 +79,10 @@ pub fn joint_state(
     contact: &ContactLcp,
     point: &Point,
 ) -> JointState {
-    let z = contact.joint_displacements(system, &point.z) * contact.length_unit;
+    let z = match system.force_form {
+        Some(_) => unknowns(system, Some(numbers), contact, &point.z),
+        None => contact.joint_displacements(system, &point.z) * contact.length_unit,
+    };
     JointState::at(system, numbers, z, point.p * contact.force_unit)
 }
 

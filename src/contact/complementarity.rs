@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::force_form;
 use super::numbers::ContactNumbers;
 use super::sums::joint_forces;
 use super::system::ContactSystem;
@@ -32,6 +33,15 @@ pub enum Couple {
     Plus,
     /// (x⁻, z⁻).
     Minus,
+}
+
+/// What a variable is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A contact force or a reserve.
+    Force,
+    /// A mutual displacement.
+    Displacement,
 }
 
 /// A row of the whole LCP: which pair, which couple.
@@ -88,6 +98,8 @@ pub struct ContactLcp {
     pub plus_row: Vec<Option<usize>>,
     /// Likewise for x⁻.
     pub minus_row: Vec<Option<usize>>,
+    /// Of each row of the whole LCP: whether its w is the displacement and its z the force ([`force_form`]).
+    pub swapped: Vec<bool>,
 }
 
 /// Largest power of two not above `value`; 1 for zero.
@@ -131,6 +143,9 @@ pub fn contact_lcp_like(
     numbers: &ContactNumbers,
     covering: Covering,
 ) -> Result<ContactLcp, CoveringError> {
+    if system.force_form.is_some() {
+        return force_form::contact_lcp(system, numbers, covering);
+    }
     let constants = joint_forces(system, numbers, &DVector::zeros(system.joint_count()));
     // What cancels to rounding is no load.
     let load: Vec<f64> = constants.iter().map(|sum| sum.cleaned()).collect();
@@ -244,6 +259,7 @@ pub fn contact_lcp_like(
     Ok(ContactLcp {
         lcp: Arc::new(lcp),
         friction: numbers.friction.clone(),
+        swapped: vec![false; rows.len()],
         rows,
         force_unit,
         length_unit,
@@ -268,16 +284,37 @@ impl ContactLcp {
 
     /// Name of a variable: `p`, `x_n[c1]`, `x+[c1]`, `z-[c1]`.
     pub fn name(&self, variable: Variable, system: &ContactSystem) -> String {
-        let (letter, row) = match variable {
-            Variable::P => return "p".to_owned(),
-            Variable::W(row) => ('x', row),
-            Variable::Z(row) => ('z', row),
-        };
-        self.rows[row].name(letter, system)
+        match self.quantity(variable) {
+            None => "p".to_owned(),
+            Some((row, Quantity::Force)) => self.rows[row].name('x', system),
+            Some((row, Quantity::Displacement)) => self.rows[row].name('z', system),
+        }
     }
 
-    /// z over the joints (z_n, z_τ = z⁺ − z⁻) of a point or direction, dimensionless.
+    /// Row of a variable and what it is; `None` for p.
+    pub fn quantity(&self, variable: Variable) -> Option<(usize, Quantity)> {
+        let (row, is_force) = match variable {
+            Variable::P => return None,
+            Variable::W(row) => (row, !self.swapped[row]),
+            Variable::Z(row) => (row, self.swapped[row]),
+        };
+        Some((row, if is_force { Quantity::Force } else { Quantity::Displacement }))
+    }
+
+    /// User's value = dimensionless × this.
+    pub fn unit(&self, variable: Variable) -> f64 {
+        match self.quantity(variable) {
+            Some((_, Quantity::Displacement)) => self.length_unit,
+            _ => self.force_unit,
+        }
+    }
+
+    /// z over the joints (z_n, z_τ = z⁺ − z⁻) of a point or direction, dimensionless. With joints in force form: of a
+    /// direction.
     pub fn joint_displacements(&self, system: &ContactSystem, z: &[f64]) -> DVector<f64> {
+        if system.force_form.is_some() {
+            return force_form::motion(system, self, z) / self.length_unit;
+        }
         let mut joints = DVector::zeros(system.joint_count());
         for (row, meaning) in self.rows.iter().enumerate() {
             match (meaning.couple, system.pairs[meaning.pair].tangential) {
@@ -292,16 +329,16 @@ impl ContactLcp {
 
     /// (d_n, d_τ) of a pair; 0 where it has no such row.
     pub fn covering_of(&self, pair: usize) -> (f64, f64) {
-        let read = |row: Option<usize>| row.map_or(0.0, |row| self.lcp.covering[row]);
+        let covers = |row: &usize| !self.swapped[*row];
+        let read = |row: Option<usize>| row.filter(covers).map_or(0.0, |row| self.lcp.covering[row]);
         (read(self.normal_row[pair]), read(self.plus_row[pair]))
     }
 
     /// A point in the user's units.
     pub fn in_units(&self, point: &Point) -> Point {
-        Point {
-            z: point.z.iter().map(|z| z * self.length_unit).collect(),
-            w: point.w.iter().map(|w| w * self.force_unit).collect(),
-            p: point.p * self.force_unit,
-        }
+        let scaled = |values: &[f64], variable: fn(usize) -> Variable| {
+            values.iter().enumerate().map(|(row, value)| value * self.unit(variable(row))).collect()
+        };
+        Point { z: scaled(&point.z, Variable::Z), w: scaled(&point.w, Variable::W), p: point.p * self.force_unit }
     }
 }

@@ -146,7 +146,8 @@ fn from_stiffness(
     let file = (!rows.released.is_empty()).then(|| Arc::new(rows.data(data, false, given, factor)));
     let loads = joint_loads(given, &stiffness, file.as_deref())?;
     let rounded = file.is_some();
-    let system = ContactSystem { pairs: pairs(given), stiffness, loads, rounded, kernel, corrected, file };
+    let system =
+        ContactSystem { pairs: pairs(given), stiffness, loads, rounded, kernel, corrected, force_form: None, file };
     Ok((system, remarks))
 }
 
@@ -270,6 +271,7 @@ fn from_compliance(
         rounded: true,
         kernel: DMatrix::zeros(k, 0),
         corrected: None,
+        force_form: None,
         file: Some(Arc::new(file)),
     };
     Ok((system, Vec::new()))

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::complementarity::{ContactLcp, contact_lcp, load_with_gaps};
+use super::force_form::constants;
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
+use super::whole::fixed_bound;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::vertex::{Basis, vertex};
@@ -35,6 +37,14 @@ pub fn path_lcp(system: &ContactSystem, numbers: &ContactNumbers, increment: &DV
         Ok(contact) => contact,
         Err(_) => unreachable!("covering ones fits all numbers"),
     };
+    if system.force_form.is_some() {
+        let fixed: Vec<f64> = (0..system.pairs.len()).map(|pair| fixed_bound(system, numbers, pair)).collect();
+        let mut lcp = MirroredLcp::clone(&contact.lcp);
+        lcp.q = constants(system, &contact, &load_with_gaps(system, numbers), &fixed);
+        lcp.covering = constants(system, &contact, increment, &vec![0.0; fixed.len()]);
+        contact.lcp = Arc::new(lcp);
+        return contact;
+    }
     let unit = contact.force_unit;
     let load = load_with_gaps(system, numbers);
     let mut lcp = MirroredLcp::clone(&contact.lcp);

@@ -25,6 +25,7 @@ pub mod enumerate;
 pub mod exact_check;
 pub(crate) mod exact_system;
 pub mod file_data;
+pub mod force_form;
 pub mod given;
 pub mod load_path;
 pub mod numbers;

@@ -24,6 +24,9 @@ const GOOD: f64 = NOISE / 8.0;
 
 /// The point with the rows of its released joints put right; as it is where they are, or where no step helps.
 pub fn refined(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: Point) -> Point {
+    if system.force_form.is_some() {
+        return point;
+    }
     let mut best = point;
     let mut left = worst(&rows(system, numbers, contact, &best, false), &released(&best));
     for _ in 0..ROUNDS {

@@ -48,7 +48,7 @@ pub fn sharpen(
     basis: &Basis,
     point: Point,
 ) -> Point {
-    if system.kernel.ncols() == 0 {
+    if system.kernel.ncols() == 0 || system.force_form.is_some() {
         return point;
     }
     let rows = balanced_rows(system, numbers, contact, &point);

@@ -54,7 +54,7 @@ fn root(system: &ContactSystem, joint: usize) -> f64 {
     system.stiffness[(joint, joint)].max(0.0).sqrt()
 }
 
-/// λ = R (z − (g, 0)) + RF over the joints. Where R is [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik|
+/// λ = R (z − (g, 0)) + RF over the joints; of joints in force form z is λ and λ is z. Where R is [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik|
 /// in the magnitudes.
 pub fn joint_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<Sum> {
     state_forces(system, numbers, z).joints
@@ -74,6 +74,9 @@ pub struct StateForces {
 /// [`joint_forces`] with what else a file says.
 pub fn state_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> StateForces {
     let mut forces = StateForces { joints: condensed_forces(system, numbers, z), left: Vec::new(), slips: None };
+    if system.force_form.is_some() {
+        return forces;
+    }
     if let (Some(file), Some(load)) = (&system.file, &numbers.file_load) {
         let (mut moved, mut sizes) = (z.clone(), z.abs());
         for (i, gap) in numbers.gap.iter().enumerate() {
@@ -98,16 +101,26 @@ fn condensed_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVecto
         .collect();
     let mut scaled = 0.0;
     for k in 0..system.joint_count() {
-        let gap = numbers.gap.get(k).copied().unwrap_or(0.0);
+        let mut gap = numbers.gap.get(k).copied().unwrap_or(0.0);
+        if system.is_forced(k) {
+            // The displacement is what comes out.
+            forces[k] = forces[k].plus(1.0, Sum::exactly(gap));
+            gap = 0.0;
+        }
         // The distance open and the gap cancel each other: each is a term of its own.
         let (moved, size) = (z[k] - gap, z[k].abs() + gap.abs());
         if size == 0.0 {
             continue;
         }
         let column = system.stiffness.column(k);
-        if system.rounded {
+        if system.rounded && !system.is_forced(k) {
             scaled += root(system, k) * size;
-            forces.iter_mut().zip(column.iter()).for_each(|(force, entry)| force.value += entry * moved);
+            for (i, (force, entry)) in forces.iter_mut().zip(column.iter()).enumerate() {
+                force.value += entry * moved;
+                if system.is_forced(i) {
+                    force.magnitude += entry.abs() * size;
+                }
+            }
         } else {
             for (force, entry) in forces.iter_mut().zip(column.iter()) {
                 force.value += entry * moved;
@@ -116,7 +129,8 @@ fn condensed_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVecto
         }
     }
     if scaled > 0.0 {
-        forces.iter_mut().enumerate().for_each(|(i, force)| force.magnitude += root(system, i) * scaled);
+        let felt = forces.iter_mut().enumerate().filter(|(i, _)| !system.is_forced(*i));
+        felt.for_each(|(i, force)| force.magnitude += root(system, i) * scaled);
     }
     forces
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::file_data::FileData;
+use super::force_form::ForceForm;
 
 use crate::model::pair::Law;
 
@@ -48,7 +49,7 @@ pub struct ContactSystem {
     /// The m pairs.
     pub pairs: Vec<ContactPair>,
     /// R, k × k, symmetric, positive semidefinite: what answers are checked against. Of a structure its kernel is exact
-    /// (method §4, "Zero"); of a file it stands as given.
+    /// (method §4, "Zero"); of a file it stands as given. With a [`ForceForm`] the mixed matrix of both forms.
     pub stiffness: DMatrix<f64>,
     /// RF per load case.
     pub loads: Vec<JointLoad>,
@@ -59,6 +60,8 @@ pub struct ContactSystem {
     pub kernel: DMatrix<f64>,
     /// R with the kernel exact, where that differs from `stiffness`: what the pivots work on.
     pub corrected: Option<DMatrix<f64>>,
+    /// The joints whose force is the unknown, where joints repeat one another; `None` where all are independent.
+    pub force_form: Option<ForceForm>,
     /// The data of a file that R and RF were made from; `None` where they are the data, and for a structure.
     pub file: Option<Arc<FileData>>,
 }
@@ -72,6 +75,30 @@ impl ContactSystem {
     /// Number k of joints.
     pub fn joint_count(&self) -> usize {
         self.stiffness.nrows()
+    }
+
+    /// Whether the force of a joint is the unknown.
+    pub fn is_forced(&self, joint: usize) -> bool {
+        self.force_form.as_ref().is_some_and(|form| form.joints[joint])
+    }
+
+    /// Why `command`, which works on R alone, cannot be used; `None` where all joints are independent.
+    pub fn refusal(&self, command: &str) -> Option<String> {
+        let form = self.force_form.as_ref()?;
+        let felt = |joint: usize| form.self_stress.row(joint).amax() > 0.0;
+        let of_pair = |(i, pair): &(usize, &ContactPair)| felt(*i) || pair.tangential.is_some_and(felt);
+        let ids: Vec<&str> = self.pairs.iter().enumerate().filter(of_pair).map(|(_, pair)| pair.id.as_str()).collect();
+        let (named, more) = ids.split_at(ids.len().min(6));
+        let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+        Some(format!(
+            "`{command}` needs joints that are independent of one another; those of {}{more} repeat one another",
+            named.join(", ")
+        ))
+    }
+
+    /// A load vector without the displacements that stand in it for joints in force form.
+    pub fn forces_of(&self, load: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(load.len(), |joint, _| if self.is_forced(joint) { 0.0 } else { load[joint] })
     }
 
     /// R with its kernel exact: what the LCP is written from.

@@ -118,7 +118,11 @@ fn constants_with<T: Scalar>(
     (0..system.joint_count())
         .map(|i| {
             let load = T::from_f64(numbers.load[i]);
-            gaps.iter().fold(load, |sum, (k, gap)| sum.sub(&stiffness(i, *k).mul(gap)))
+            gaps.iter().fold(load, |sum, (k, gap)| match system.is_forced(*k) {
+                false => sum.sub(&stiffness(i, *k).mul(gap)),
+                true if *k == i => sum.add(gap),
+                true => sum,
+            })
         })
         .collect()
 }

@@ -31,6 +31,7 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
         kernel: DMatrix::zeros(2 * m, 0),
         rounded: false,
         corrected: None,
+        force_form: None,
         file: None,
         loads: Vec::new(),
         stiffness,

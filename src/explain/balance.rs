@@ -82,6 +82,7 @@ pub fn balanced_multiples(
     varied: &DVector<f64>,
     seconds: f64,
 ) -> Multiples {
+    let (fixed, varied) = (&system.forces_of(fixed), &system.forces_of(varied));
     let size = fixed.amax().max(varied.amax());
     if motions.count() == 0 || size == 0.0 {
         return Multiples::Between([f64::NEG_INFINITY, f64::INFINITY]);
@@ -119,7 +120,8 @@ pub fn is_balanced(
     motions: &FreeMotions,
     seconds: f64,
 ) -> Option<bool> {
-    let size = numbers.load.amax();
+    let (load, terms) = (system.forces_of(&numbers.load), system.forces_of(&numbers.load_terms));
+    let size = load.amax();
     if motions.count() == 0 || size == 0.0 {
         return Some(true);
     }
@@ -127,7 +129,7 @@ pub fn is_balanced(
     // question itself, which next to a limit has no room for an answer.
     let Forces { mut program, balance } = forces(system, numbers, motions, size);
     let mut left_over = Vec::new();
-    for (mut row, work) in balance.into_iter().zip(motions.work(&numbers.load, &numbers.load_terms)) {
+    for (mut row, work) in balance.into_iter().zip(motions.work(&load, &terms)) {
         for sign in [1.0, -1.0] {
             let left = program.variable(1.0);
             program.at_most(vec![(left, -1.0)], 0.0);

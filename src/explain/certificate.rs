@@ -87,7 +87,7 @@ pub(super) fn bounds(system: &ContactSystem, numbers: &ContactNumbers) -> Vec<Bo
 
 /// Looks for a certificate.
 pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotions) -> Search {
-    let work = motions.work(&numbers.load, &numbers.load_terms);
+    let work = motions.work(&system.forces_of(&numbers.load), &system.forces_of(&numbers.load_terms));
     let scale = work.iter().fold(0.0, |a: f64, work| a.max(work.value.abs()));
     if scale == 0.0 {
         return Search::default();

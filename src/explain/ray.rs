@@ -111,7 +111,8 @@ pub fn classify(
         && joints.amax() <= 1e-9 * largest_z
     {
         let pair = (0..system.pairs.len()).find(|&i| {
-            let grows = |row: Option<usize>| row.is_some_and(|row| ray.z[row] > 0.5 * largest_z);
+            let grows =
+                |row: Option<usize>| row.is_some_and(|row| !contact.swapped[row] && ray.z[row] > 0.5 * largest_z);
             grows(contact.plus_row[i]) && grows(contact.minus_row[i])
         });
         if pair.is_some() {
@@ -124,11 +125,13 @@ pub fn classify(
     direction.iter_mut().filter(|z| z.abs() <= 1e-11).for_each(|z| *z = 0.0);
     let kernel = releasable_kernel(system);
     if kernel.ncols() == 0 {
-        return (direction, RayClass::Fault, None);
+        // Joints that repeat one another may demand what no displacement gives: then no answer need exist.
+        let class = if system.force_form.is_some() { RayClass::NoEquilibrium } else { RayClass::Fault };
+        return (direction, class, None);
     }
     let inside = &kernel * (kernel.transpose() * &direction);
     let costs_nothing = direction.amax() > 0.0 && (&inside - &direction).norm() <= NO_ENERGY * direction.norm();
-    let (power, terms) = power(&numbers.load, &inside);
+    let (power, terms) = power(&system.forces_of(&numbers.load), &inside);
     let class = if costs_nothing && power > NO_POWER * terms { RayClass::Mechanism } else { RayClass::NoEquilibrium };
     (direction, class, None)
 }
@@ -149,8 +152,9 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
             .iter()
             .zip(cases)
             .map(|(load, (case, factor))| {
-                let (power, _) = power(&load.vector, &direction);
-                let noise = power.abs() <= 1e-12 * load.vector.amax();
+                let forces = system.forces_of(&load.vector);
+                let (power, _) = power(&forces, &direction);
+                let noise = power.abs() <= 1e-12 * forces.amax();
                 CasePower { case: case.clone(), factor: *factor, power: if noise { 0.0 } else { factor * power } }
             })
             .collect()
@@ -224,7 +228,7 @@ pub fn full_report(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, 
 pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> {
     let Subject { system, numbers, .. } = *subject;
     let pairs = system.pairs.len();
-    if pairs > MOST_PAIRS {
+    if pairs > MOST_PAIRS || system.force_form.is_some() {
         return None;
     }
     let most = MOST_STEPS / (2 * pairs as u64).pow(3).max(1);

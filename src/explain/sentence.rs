@@ -2,7 +2,7 @@
 
 use super::words::{list, short};
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
-use crate::contact::complementarity::{ContactLcp, Couple};
+use crate::contact::complementarity::{ContactLcp, Couple, Quantity};
 use crate::contact::system::ContactSystem;
 use crate::lcp::trace::Pivot;
 use crate::lcp::variable::Variable;
@@ -35,6 +35,13 @@ struct Scheme {
 /// The records of a contact run; p in the user's units.
 pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSystem) -> Vec<PivotRecord> {
     let mut schemes = vec![Scheme { open: false, tangential: Tangential::Stick }; system.pairs.len()];
+    // What a run starts from: the joints on, those in force form off.
+    for meaning in contact.rows.iter().zip(&contact.swapped).filter(|(_, swapped)| **swapped).map(|(row, _)| row) {
+        match meaning.couple {
+            Couple::Normal => schemes[meaning.pair].open = true,
+            _ => schemes[meaning.pair].tangential = Tangential::Plus,
+        }
+    }
     pivots
         .iter()
         .map(|pivot| {
@@ -63,11 +70,8 @@ pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSys
 
 /// Applies the entering variable to the working scheme.
 fn turn(schemes: &mut [Scheme], entering: Variable, contact: &ContactLcp, system: &ContactSystem) -> Option<Turned> {
-    let (row, released) = match entering {
-        Variable::P => return None,
-        Variable::Z(row) => (row, true),
-        Variable::W(row) => (row, false),
-    };
+    let (row, quantity) = contact.quantity(entering)?;
+    let released = quantity == Quantity::Displacement;
     let meaning = contact.rows[row];
     let scheme = &mut schemes[meaning.pair];
     let frictionless = matches!(system.pairs[meaning.pair].law, Law::Frictionless { .. });
@@ -113,8 +117,13 @@ impl Sentence<'_> {
                 .collect();
             let tied = if others.is_empty() { String::new() } else { format!(" (tied with {})", list(&others)) };
             return format!(
-                "p enters at {}, the least that keeps every pair closed and sticking; {}{tied}",
+                "p enters at {}, the least {}; {}{tied}",
                 short(self.after),
+                if self.contact.swapped.contains(&true) {
+                    "under which every pair obeys its law before any joint is turned"
+                } else {
+                    "that keeps every pair closed and sticking"
+                },
                 self.limit(pivot.leaving, schemes)
             );
         };
@@ -142,11 +151,10 @@ impl Sentence<'_> {
 
     /// What happens to the leaving variable.
     fn limit(&self, leaving: Variable, schemes: &[Scheme]) -> String {
-        let (row, force) = match leaving {
-            Variable::P => return "nothing more is needed".to_owned(),
-            Variable::W(row) => (row, true),
-            Variable::Z(row) => (row, false),
+        let Some((row, quantity)) = self.contact.quantity(leaving) else {
+            return "nothing more is needed".to_owned();
         };
+        let force = quantity == Quantity::Force;
         let meaning = self.contact.rows[row];
         let pair = &self.system.pairs[meaning.pair].id;
         let open = schemes[meaning.pair].open;

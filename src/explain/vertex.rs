@@ -41,8 +41,7 @@ impl Naming<'_> {
     /// User's value = dimensionless × this.
     pub fn unit(&self, variable: Variable) -> f64 {
         match (self, variable) {
-            (Naming::Contact(contact, _), Variable::Z(_)) => contact.length_unit,
-            (Naming::Contact(contact, _), _) => contact.force_unit,
+            (Naming::Contact(contact, _), variable) => contact.unit(variable),
             (Naming::Plain(..), _) => 1.0,
         }
     }

@@ -14,7 +14,8 @@ use super::dof::{Dofs, root};
 use super::doubled::Real;
 use super::error::{DependentJoint, Holder, MainSystemError, OverConstraint};
 use super::joint_rows::{JointReduction, JointRow, holders};
-use crate::model::pair::Joint;
+use super::repeated::{Repeated, by_preference};
+use crate::model::pair::{Joint, JointDirection};
 use crate::model::structure::{Component, Load, Structure};
 
 /// One base dof in terms of v and z.
@@ -75,11 +76,49 @@ pub struct Elimination {
 }
 
 impl Elimination {
-    /// Eliminates supports, ties, rigid bodies, then the joints.
+    /// The joints that repeat others.
     ///
     /// # Errors
-    /// Bodies that supports and ties hold more often than they can move; all joints that depend on supports, ties, bodies
-    /// and earlier joints.
+    /// Bodies that supports and ties hold more often than they can move; all joints that supports, ties and bodies alone
+    /// hold.
+    pub fn repeated(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Vec<Repeated>, MainSystemError> {
+        let classes = classes(structure, dofs, joints.len());
+        let mut reduction = JointReduction::default();
+        let bodies = body_rows(structure, dofs);
+        let beyond_settled = joints.len() + classes.settled.len();
+        reduce_bodies(structure, dofs, &classes, &bodies, beyond_settled, &mut reduction)
+            .map_err(MainSystemError::OverConstrained)?;
+        let (mut repeated, mut held) = (Vec::new(), Vec::new());
+        for index in by_preference(structure, joints) {
+            let joint = &joints[index];
+            let Err(row) = reduction.add(JointRow::new(index, joint, dofs, &classes)) else { continue };
+            if let Some(joint) = Repeated::of(index, &row, joints.len()) {
+                repeated.push(joint);
+                continue;
+            }
+            let mut holders = holders(structure, dofs, joints, &classes, &row, joint);
+            let involved = row.joints.keys().filter_map(|row| (*row as usize).checked_sub(beyond_settled));
+            for id in involved.map(|row| &structure.rigid[bodies[row].body].id) {
+                let holder = Holder::Body { id: id.clone() };
+                if !holders.contains(&holder) {
+                    holders.push(holder);
+                }
+            }
+            held.push(DependentJoint {
+                pair: joint.pair,
+                pair_id: structure.pairs[joint.pair].id.clone(),
+                direction: joint.direction,
+                holders,
+            });
+        }
+        held.sort_by_key(|joint| (joint.direction == JointDirection::Tangential, joint.pair));
+        if held.is_empty() { Ok(repeated) } else { Err(MainSystemError::DependentJoints(held)) }
+    }
+
+    /// Eliminates supports, ties, rigid bodies, then the joints, which are independent.
+    ///
+    /// # Errors
+    /// Bodies that supports and ties hold more often than they can move.
     pub fn new(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Elimination, MainSystemError> {
         let classes = classes(structure, dofs, joints.len());
         let Classes { class, held, settled, .. } = &classes;
@@ -91,28 +130,10 @@ impl Elimination {
         reduce_bodies(structure, dofs, &classes, &bodies, beyond_settled, &mut reduction)
             .map_err(MainSystemError::OverConstrained)?;
         let free = (0..dofs.count()).filter(|&dof| is_class(dof)).count() - bodies.len();
-        let mut dependent = Vec::new();
         for (index, joint) in joints.iter().enumerate() {
-            let row = JointRow::new(index, joint, dofs, &classes);
-            if let Err(row) = reduction.add(row) {
-                let mut holders = holders(structure, dofs, joints, &classes, &row, joint);
-                let involved = row.joints.keys().filter_map(|row| (*row as usize).checked_sub(beyond_settled));
-                for id in involved.map(|row| &structure.rigid[bodies[row].body].id) {
-                    let holder = Holder::Body { id: id.clone() };
-                    if !holders.contains(&holder) {
-                        holders.push(holder);
-                    }
-                }
-                dependent.push(DependentJoint {
-                    pair: joint.pair,
-                    pair_id: structure.pairs[joint.pair].id.clone(),
-                    direction: joint.direction,
-                    holders,
-                });
-            }
-        }
-        if !dependent.is_empty() {
-            return Err(MainSystemError::DependentJoints(dependent));
+            // Joints that repeat others were taken out before.
+            let added = reduction.add(JointRow::new(index, joint, dofs, &classes));
+            debug_assert!(added.is_ok(), "joints {added:?} are independent");
         }
 
         // Number the classes that are left, then write out the rows.

@@ -47,7 +47,7 @@ impl MainSystem {
                 *force -= T::from(*factor) * T::from(*f);
             }
         }
-        for (joint, lambda) in std::iter::zip(&self.joints, lambda.iter()) {
+        for (joint, lambda) in std::iter::zip(&self.all_joints, lambda.iter()) {
             self.each_term(joint, |dof, a| forces[dof] -= T::from(a) * T::from(*lambda));
         }
         self.elimination.take_out_body_forces(&mut forces);
@@ -55,7 +55,7 @@ impl MainSystem {
     }
 
     /// Calls `visit(dof, a)` with the terms of a row of B.
-    fn each_term(&self, joint: &Joint, mut visit: impl FnMut(usize, f64)) {
+    pub(super) fn each_term(&self, joint: &Joint, mut visit: impl FnMut(usize, f64)) {
         for (node, a) in &joint.terms {
             for (component, a) in std::iter::zip([Component::X, Component::Y], a) {
                 if let Some(dof) = self.dofs.of(*node, component) {
@@ -133,7 +133,7 @@ impl MainSystem {
                 *sum += (factor * f).abs();
             }
         }
-        for (joint, lambda) in std::iter::zip(&self.joints, lambda.iter()) {
+        for (joint, lambda) in std::iter::zip(&self.all_joints, lambda.iter()) {
             self.each_term(joint, |dof, a| sums[dof] += (a * lambda).abs());
         }
         sums

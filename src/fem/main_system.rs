@@ -25,6 +25,7 @@ use super::loads::{load_vectors, settlements};
 use super::loose::{Motion, loose_motions};
 use super::order::Places;
 use super::refinement::{Refinement, Verdict};
+use super::repeated::Repeated;
 use super::sparse::SymmetricSparse;
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
@@ -92,7 +93,14 @@ pub struct Seconds {
 pub struct MainSystem {
     pub(super) dofs: Dofs,
     pub(super) elimination: Elimination,
+    /// The joints that R is made of.
     pub(super) joints: Vec<Joint>,
+    /// All joints of the structure.
+    pub(super) all_joints: Vec<Joint>,
+    /// Index among all joints of each one of `joints`.
+    independent: Vec<usize>,
+    /// The other joints.
+    repeated: Vec<Repeated>,
     /// K on the base dofs.
     pub(super) k: Arc<SymmetricSparse>,
     /// F per load case on the base dofs.
@@ -127,15 +135,21 @@ impl fmt::Debug for MainSystem {
 }
 
 impl MainSystem {
-    /// Assembles, factorizes and condenses the structure to its joints.
+    /// Assembles, factorizes and condenses the structure to its joints; those that [repeat](Repeated) others are left out
+    /// of R, RF and the kernel.
     ///
     /// # Errors
-    /// Bodies held too often, dependent joints, a mechanism, an element without shape, a moment where nothing turns, too large,
+    /// Bodies held too often, joints held by supports, ties and bodies, a mechanism, an element without shape, a moment
+    /// where nothing turns, too large,
     /// interrupted: see [`MainSystemError`].
-    pub fn new(structure: &Structure, joints: &[Joint], watch: &dyn Watch) -> Result<MainSystem, MainSystemError> {
+    pub fn new(structure: &Structure, all_joints: &[Joint], watch: &dyn Watch) -> Result<MainSystem, MainSystemError> {
         let clock = Instant::now();
         watch.progress(&format!("assembling {} elements", structure.elements.len()), 0.0);
         let dofs = Dofs::new(structure);
+        let repeated = Elimination::repeated(structure, &dofs, all_joints)?;
+        let is_repeated = |index: &usize| repeated.iter().any(|repeated| repeated.joint == *index);
+        let independent: Vec<usize> = (0..all_joints.len()).filter(|index| !is_repeated(index)).collect();
+        let joints: &[Joint] = &independent.iter().map(|&index| all_joints[index].clone()).collect::<Vec<_>>();
         let elimination = Elimination::new(structure, &dofs, joints)?;
         let f = load_vectors(structure, &dofs)?;
         let settled = settlements(structure, &dofs, &elimination)?;
@@ -168,6 +182,9 @@ impl MainSystem {
             dofs,
             elimination,
             joints: joints.to_vec(),
+            all_joints: all_joints.to_vec(),
+            independent,
+            repeated,
             k: Arc::new(k),
             f,
             settled,
@@ -404,7 +421,50 @@ impl MainSystem {
         self.z = extended;
     }
 
-    /// R, k × k: rows and columns in the order of the joints; exactly symmetric, R Z = 0 to rounding.
+    /// Index among all joints of each joint that R is made of, ascending.
+    pub fn independent(&self) -> &[usize] {
+        &self.independent
+    }
+
+    /// The other joints.
+    pub fn repeated(&self) -> &[Repeated] {
+        &self.repeated
+    }
+
+    /// z of the [repeated](Self::repeated) joints under each load case per unit factor where no independent joint moves:
+    /// what supports that settle make of them.
+    pub fn repeated_offsets(&self) -> Vec<Vec<f64>> {
+        let of = |settled: &Option<Vec<f64>>, joint: usize| {
+            let Some(settled) = settled else { return 0.0 };
+            let mut z = 0.0;
+            self.each_term(&self.all_joints[joint], |dof, a| z += a * settled[dof]);
+            z
+        };
+        self.settled.iter().map(|case| self.repeated.iter().map(|joint| of(case, joint.joint)).collect()).collect()
+    }
+
+    /// Largest difference of a repeated joint's z from B u, as a share of the terms of that row.
+    pub fn compatibility_residual(&self, u: &Displacements, z: &DVector<f64>) -> f64 {
+        let share = |joint: usize| {
+            let (mut rest, mut size) = (z[joint], z[joint].abs());
+            for (node, a) in &self.all_joints[joint].terms {
+                for (a, u) in std::iter::zip(a, &u.0[*node]) {
+                    rest -= a * u;
+                    size += (a * u).abs();
+                }
+            }
+            if rest == 0.0 { 0.0 } else { rest.abs() / size }
+        };
+        self.repeated.iter().map(|repeated| share(repeated.joint)).fold(0.0, f64::max)
+    }
+
+    /// The entries of the independent joints of a vector over all joints.
+    fn of_independent(&self, z: &DVector<f64>) -> DVector<f64> {
+        assert_eq!(z.len(), self.all_joints.len(), "a z for every joint");
+        DVector::from_iterator(self.independent.len(), self.independent.iter().map(|&joint| z[joint]))
+    }
+
+    /// R, k × k: rows and columns in the order of the independent joints; exactly symmetric, R Z = 0 to rounding.
     pub fn stiffness(&self) -> &DMatrix<f64> {
         &self.r
     }
@@ -422,7 +482,7 @@ impl MainSystem {
 
     /// How much of each of the motions is in a motion of the joints, as far as it lies in the kernel.
     pub fn amounts(&self, z: &DVector<f64>) -> DVector<f64> {
-        &self.coefficients * (self.z.transpose() * z)
+        &self.coefficients * (self.z.transpose() * self.of_independent(z))
     }
 
     /// RF per load case and unit factor, in the order of the joints.
@@ -442,12 +502,13 @@ impl MainSystem {
             .collect()
     }
 
-    /// u under Σ factor·F and the mutual displacements `z` of the joints (the whole mutual displacement B u: with
-    /// an initial gap g it is z_n − g).
+    /// u under Σ factor·F and the mutual displacements `z` of all joints (the whole mutual displacement B u: with
+    /// an initial gap g it is z_n − g); those of repeated joints follow from the others.
     ///
     /// # Panics
     /// If there are not as many factors as load cases and as many z as joints.
     pub fn displacements(&self, factors: &[f64], z: &DVector<f64>) -> Displacements {
+        let z = &self.of_independent(z);
         if let Some(k) = &self.doubled {
             let refinement = Refinement { dofs: &self.dofs, k, elimination: &self.elimination, factor: &self.factor };
             let f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_default();

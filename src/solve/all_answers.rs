@@ -139,6 +139,9 @@ impl Prepared {
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => system,
         };
+        if let Some(refusal) = system.refusal("enumerate") {
+            return Err(QuestionError::Refused(refusal));
+        }
         too_many("contact pairs", system.pair_count(), MOST_PAIRS)?;
         let factors = factors(self, values);
         let numbers = contact_numbers(system, &factors, values);
@@ -250,6 +253,9 @@ impl Prepared {
         let Some(system) = self.system() else {
             return refused("a bare LCP has no friction".to_owned());
         };
+        if let Some(refusal) = system.refusal("critical") {
+            return refused(refusal);
+        }
         let along = values.along(parameter);
         let frictions = || {
             system.pairs.iter().filter_map(|pair| match &pair.law {
@@ -363,6 +369,9 @@ impl Prepared {
                 })
             }
             (Trace::Contact { numbers, .. }, Some(system)) => {
+                if let Some(refusal) = system.refusal("check exact") {
+                    return Err(QuestionError::Refused(refusal));
+                }
                 let scheme = final_scheme(solved);
                 let check = exact_check(system, numbers, &scheme, &mut |share| {
                     watch.progress("exact check", share);

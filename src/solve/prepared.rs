@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::contact::force_form::{Dependence, Repeats, with_repeated};
 use crate::contact::given::{GivenError, given_system, with_loads};
 use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
 use crate::fem::{MainSystem, MainSystemError};
@@ -225,6 +226,11 @@ fn joint_loads(structure: &Structure, main: &MainSystem) -> Vec<JointLoad> {
         .collect()
 }
 
+fn dependence(main: &MainSystem) -> Dependence<'_> {
+    let repeated = main.repeated().iter().map(|one| Repeats { joint: one.joint, terms: &one.terms }).collect();
+    Dependence { independent: main.independent(), repeated, offsets: main.repeated_offsets() }
+}
+
 fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
     let joints = joints(&structure.pairs);
     let main =
@@ -251,9 +257,13 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         rounded: true,
         kernel: main.kernel().clone(),
         corrected: None,
+        force_form: None,
         file: None,
     };
     system.settle();
+    if !main.repeated().is_empty() {
+        system = with_repeated(system, &dependence(&main));
+    }
     let seconds = main.timings();
     Ok(Prepared {
         geometry: Arc::new(Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }),
@@ -301,7 +311,8 @@ impl Prepared {
             (Geometry::Structure { system, main, .. }, Source::Structure(structure)) => {
                 let main =
                     main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
-                let system = ContactSystem { loads: joint_loads(structure, &main), ..system.clone() };
+                let loads = dependence(&main).loads(joint_loads(structure, &main));
+                let system = ContactSystem { loads, ..system.clone() };
                 Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }
             }
             (Geometry::Contact { system, remarks }, Source::ContactSystem(given)) => {

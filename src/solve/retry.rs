@@ -150,7 +150,7 @@ impl Job<'_> {
             let [covering, tie_break, _] = Rules::default().words();
             ladder.gave_up(&covering, &tie_break, ENUMERATION, EXACT_BUDGET);
         }
-        let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact;
+        let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact && self.system.force_form.is_none();
         let budget = if class == Some(RayClass::Mechanism) { MECHANISM_BUDGET } else { EXACT_BUDGET };
         for rules in if try_rules { retries(exact) } else { Vec::new() } {
             if rules.tie_break != self.rules.tie_break && ladder.would_repeat(&rules.covering.to_string(), rules.engine)

@@ -220,6 +220,9 @@ impl Prepared {
             }
             Engine::Tableau => run_tableau(&contact.lcp, rule, watch),
             Engine::Exact => {
+                if let Some(refusal) = system.refusal("engine exact") {
+                    return Err(SolveError::Value(refusal));
+                }
                 if system.pairs.len() > EXACT_PAIRS {
                     return Err(SolveError::TooLargeForExact {
                         what: "contact pairs",
@@ -385,7 +388,8 @@ impl Prepared {
         let mut equilibrium = None;
         if let Geometry::Structure { main, structure, .. } = &*self.geometry {
             let u = main.displacements(factors, &dislocation(numbers, &state.z));
-            equilibrium = Some(main.equilibrium_residual(structure, &u, &state.force, factors));
+            let compatibility = main.compatibility_residual(&u, &dislocation(numbers, &state.z));
+            equilibrium = Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, factors));
             answer.members = self.members(&u, factors);
             answer.reactions = self.reactions(&u, &state.force, factors);
             answer.displacements = Some(named(structure, &u));

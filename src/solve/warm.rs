@@ -133,6 +133,9 @@ impl Kept {
     /// ends before the target, no scheme held, or `watch` asked to stop); what was kept is of no use then. The caller
     /// runs the fresh check on what it makes of the answer.
     pub fn follow(&mut self, system: &ContactSystem, to: &ContactNumbers, watch: &dyn Watch) -> Option<WarmPoint> {
+        if system.force_form.is_some() {
+            return None;
+        }
         let length_unit = self.contact.length_unit;
         let change: Vec<f64> = to.friction.iter().zip(&self.contact.friction).map(|(to, from)| to - from).collect();
         if change.iter().zip(&to.friction).any(|(change, f)| change.abs() > FRICTION_REACH * f) {

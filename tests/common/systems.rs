@@ -28,6 +28,7 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> (C
         loads: vec![JointLoad::exactly("load".into(), load)],
         rounded: false,
         corrected: None,
+        force_form: None,
         file: None,
         kernel: DMatrix::zeros(2 * m, 0),
     };

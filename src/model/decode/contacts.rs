@@ -9,7 +9,7 @@ use super::reader::{Cursor, Fields};
 use super::sides::{self, Sides};
 use super::structure::Builder;
 use crate::model::memory;
-use crate::model::pair::{JointDirection, Pair, joints};
+use crate::model::pair::Pair;
 use crate::model::parameter::Number;
 use crate::model::structure::EdgeContact;
 
@@ -26,7 +26,6 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
         builder.places.pairs.resize(builder.structure.pairs.len(), place);
     }
     refuse_too_many(&sources)?;
-    report_repeated_joints(builder, &sources);
     Some(())
 }
 
@@ -226,66 +225,4 @@ fn refuse_too_many(sources: &[(Cursor<'_>, usize)]) -> Option<()> {
         "use fewer nodes along the joint, here first",
     );
     None
-}
-
-/// Two nodes have two relative displacements; a third joint between them, or two along one line, would make the
-/// joints dependent. Reported once for each contact entry.
-fn report_repeated_joints(builder: &Builder<'_>, sources: &[(Cursor<'_>, usize)]) {
-    let pairs = &builder.structure.pairs;
-    let mut entry_of = Vec::with_capacity(pairs.len());
-    for (entry, (_, count)) in sources.iter().enumerate() {
-        entry_of.resize(entry_of.len() + count, entry);
-    }
-    let mut reported = HashSet::new();
-    // Of each two nodes: the directions that have a joint, and its pair.
-    type Directions = Vec<([f64; 2], usize)>;
-    let mut taken: HashMap<(usize, Option<usize>), Directions> = HashMap::new();
-    // By pair, so that the later entry of the file is the one that repeats.
-    let mut all = joints(pairs);
-    all.sort_by_key(|joint| joint.pair);
-    for joint in all {
-        let pair = &pairs[joint.pair];
-        let key = match pair.weights[..] {
-            [(node, _)] => (node, None),
-            [(node, _), (against, _)] => (node.min(against), Some(node.max(against))),
-            // Every pair of edges that do not match has a node of its own.
-            _ => continue,
-        };
-        let direction = match joint.direction {
-            JointDirection::Normal => pair.normal,
-            JointDirection::Tangential => pair.tangent(),
-        };
-        let earlier = taken.entry(key).or_default();
-        let parallel =
-            earlier.iter().find(|(other, _)| (direction[0] * other[1] - direction[1] * other[0]).abs() < 1e-9);
-        let repeated = match (parallel, &earlier[..]) {
-            (Some((_, first)), _) => Some(*first),
-            (None, [_, (_, second), ..]) => Some(*second),
-            _ => None,
-        };
-        let entry = entry_of[joint.pair];
-        match repeated {
-            Some(first) if reported.insert(entry) => {
-                let against = match pair.weights.get(1) {
-                    Some((against, _)) => format!("\"{}\"", builder.node_id(*against)),
-                    None => "the ground".into(),
-                };
-                sources[entry].0.problem(
-                    format!(
-                        "the {} joint of \"{}\" repeats a relative displacement that \"{}\" has already (\"{}\" against {against})",
-                        match joint.direction {
-                            JointDirection::Normal => "normal",
-                            JointDirection::Tangential => "tangential",
-                        },
-                        pair.id,
-                        pairs[first].id,
-                        builder.node_id(pair.node),
-                    ),
-                    "remove one of the two, use `skip`, make them `frictionless` with different normals, or split the node",
-                );
-            }
-            Some(_) => {}
-            None => earlier.push((direction, joint.pair)),
-        }
-    }
 }

@@ -72,6 +72,9 @@ pub fn follow_factors(
     watch: &dyn Watch,
 ) -> Result<History, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
+    if let Some(refusal) = system.refusal("stages") {
+        return Err(PathError::Missing(refusal));
+    }
     let none = vec![0.0; prepared.cases.len()];
     let numbers = contact_numbers(system, &none, values);
     Walk::start(prepared, Laws { system, numbers: &numbers }, watch)?.follow(targets)

@@ -387,6 +387,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
         whole_size: rows.len(),
     };
     ContactLcp {
+        swapped: vec![false; rows.len()],
         lcp: Arc::new(lcp),
         friction: laws.numbers.friction.clone(),
         rows,

@@ -311,7 +311,9 @@ impl<'a> Walk<'a> {
 
     fn state(&self) -> JointState {
         let (z, force, terms) = (&self.standing.z, &self.standing.force, self.standing.force_sizes());
-        JointState { z: z.clone(), force: force.clone(), terms: terms.clone(), left: Vec::new(), slips: None, p: 0.0 }
+        let z_terms = DVector::zeros(z.len());
+        let (z, force, terms) = (z.clone(), force.clone(), terms.clone());
+        JointState { z, force, terms, z_terms, left: Vec::new(), slips: None, p: 0.0 }
     }
 
     /// The pairs where it stands.
