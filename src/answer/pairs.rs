@@ -6,6 +6,7 @@ use super::record::{PairState, State};
 use crate::contact::complementarity::ContactLcp;
 use crate::contact::force_form::unknowns;
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::self_stress::least_norm;
 use crate::contact::sums::{StateForces, Sum, is_still, state_forces};
 use crate::contact::system::ContactSystem;
 use crate::contact::whole::{fixed_bound, friction};
@@ -29,6 +30,19 @@ pub struct JointState {
     pub slips: Option<DVector<f64>>,
     /// p.
     pub p: f64,
+    /// Pairs whose forces the motion leaves undetermined: theirs are those of least norm.
+    pub free: Vec<usize>,
+}
+
+/// What a force in force form is known to a few ε of: the sums it goes into, each as far as it feels it.
+fn known_to(system: &ContactSystem, responses: &[Sum], joint: usize) -> f64 {
+    let column = system.stiffness.column(joint);
+    let any_force = (0..column.len()).any(|i| column[i] != 0.0 && !system.is_forced(i));
+    let felt = column.iter().zip(responses).enumerate().filter(|(i, _)| !any_force || !system.is_forced(*i));
+    let (sum, size) = felt.fold((0.0, 0.0), |(sum, size), (_, (entry, response))| {
+        (sum + entry.abs() * response.magnitude, size + entry * entry)
+    });
+    if size > 0.0 { sum / size } else { 0.0 }
 }
 
 impl JointState {
@@ -45,11 +59,23 @@ impl JointState {
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(joints.len(), joints.iter().map(pick));
         let (mut force, mut terms) = (read(|sum| sum.value), read(|sum| sum.magnitude));
         let mut z_terms = DVector::zeros(z.len());
-        for joint in (0..z.len()).filter(|&joint| system.is_forced(joint)) {
-            (force[joint], terms[joint], z_terms[joint]) = (z[joint], z[joint].abs(), terms[joint]);
-            z[joint] = joints[joint].cleaned();
+        let forced: Vec<usize> = (0..z.len()).filter(|&joint| system.is_forced(joint)).collect();
+        for &joint in &forced {
+            (force[joint], terms[joint], z_terms[joint]) =
+                (z[joint], known_to(system, &joints, joint).max(z[joint].abs()), terms[joint]);
         }
-        JointState { z, force, terms, z_terms, left, slips, p }
+        forced.into_iter().for_each(|joint| z[joint] = joints[joint].cleaned());
+        JointState { z, force, terms, z_terms, left, slips, p, free: Vec::new() }
+    }
+
+    /// The state with the forces of least norm among those of its motion.
+    fn with_least_norm(mut self, system: &ContactSystem, numbers: &ContactNumbers) -> JointState {
+        let mut forces: Vec<Sum> = (0..self.z.len()).map(|joint| self.sum(joint)).collect();
+        self.free = least_norm(system, numbers, &self.z, &mut forces);
+        for (joint, force) in forces.iter().enumerate() {
+            (self.force[joint], self.terms[joint]) = (force.value, force.magnitude);
+        }
+        self
     }
 
     /// The unknowns and what answers to them, in the forms that the joints have.
@@ -83,7 +109,8 @@ pub fn joint_state(
         Some(_) => unknowns(system, Some(numbers), contact, &point.z),
         None => contact.joint_displacements(system, &point.z) * contact.length_unit,
     };
-    JointState::at(system, numbers, z, point.p * contact.force_unit)
+    let state = JointState::at(system, numbers, z, point.p * contact.force_unit);
+    if point.p == 0.0 { state.with_least_norm(system, numbers) } else { state }
 }
 
 /// The pairs at a vertex. With p > 0 the forces include the covering (method §4): x_n = λ_n + d_n p, bound =

@@ -32,6 +32,7 @@ pub mod numbers;
 pub mod pivoted;
 pub mod refine;
 pub mod scheme_word;
+pub mod self_stress;
 pub mod sharpen;
 pub mod sums;
 pub mod system;

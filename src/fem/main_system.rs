@@ -443,17 +443,18 @@ impl MainSystem {
         self.settled.iter().map(|case| self.repeated.iter().map(|joint| of(case, joint.joint)).collect()).collect()
     }
 
-    /// Largest difference of a repeated joint's z from B u, as a share of the terms of that row.
+    /// Largest difference of a repeated joint's z from B u, as a share of the displacements of its nodes. Nodes at rest
+    /// have the rounding of the largest displacement.
     pub fn compatibility_residual(&self, u: &Displacements, z: &DVector<f64>) -> f64 {
+        let length = |u: &[f64; 3]| u[0].hypot(u[1]);
+        let rounding = 64.0 * f64::EPSILON * u.0.iter().map(length).fold(0.0, f64::max);
         let share = |joint: usize| {
             let (mut rest, mut size) = (z[joint], z[joint].abs());
             for (node, a) in &self.all_joints[joint].terms {
-                for (a, u) in std::iter::zip(a, &u.0[*node]) {
-                    rest -= a * u;
-                    size += (a * u).abs();
-                }
+                rest -= std::iter::zip(a, &u.0[*node]).map(|(a, u)| a * u).sum::<f64>();
+                size += length(&u.0[*node]);
             }
-            if rest == 0.0 { 0.0 } else { rest.abs() / size }
+            if rest.abs() <= rounding { 0.0 } else { rest.abs() / size }
         };
         self.repeated.iter().map(|repeated| share(repeated.joint)).fold(0.0, f64::max)
     }

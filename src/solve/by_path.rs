@@ -45,7 +45,9 @@ impl Prepared {
         factors: &[f64],
         watch: &dyn Watch,
     ) -> Result<AlongLoad, SolveError> {
-        if numbers.gap.iter().any(|gap| *gap > 0.0) {
+        // Joints in force form start from gaps that fit, so none may be forced either.
+        let forced = system.force_form.is_some();
+        if numbers.gap.iter().any(|gap| *gap > 0.0 || forced && *gap != 0.0) {
             return Ok(AlongLoad::NotTried);
         }
         let mut rest = numbers.clone();

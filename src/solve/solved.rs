@@ -25,7 +25,7 @@ use crate::contact::system::ContactSystem;
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::ray::{self, RayReport};
 use crate::explain::sentence;
-use crate::explain::words::short;
+use crate::explain::words::{list, short};
 use crate::fem::Displacements;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
@@ -373,6 +373,14 @@ impl Prepared {
         factors: &[f64],
         state: &JointState,
     ) {
+        if !state.free.is_empty() {
+            let ids: Vec<String> = state.free.iter().map(|&pair| system.pairs[pair].id.clone()).collect();
+            answer.notes.push(format!(
+                "joints of {} repeat one another: their displacements and what they carry together are certain, how they \
+                 share it is not; shown are the forces of least norm that obey the laws",
+                list(&ids)
+            ));
+        }
         let equilibrium = self.recover(answer, numbers, factors, state);
         judge(answer, check_contact(system, numbers, state, equilibrium));
     }

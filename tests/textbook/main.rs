@@ -18,6 +18,7 @@ mod method;
 mod plates;
 mod random_structures;
 mod rigid;
+mod repeated_joints;
 mod settlements;
 mod slope;
 mod springs;

@@ -313,7 +313,7 @@ impl<'a> Walk<'a> {
         let (z, force, terms) = (&self.standing.z, &self.standing.force, self.standing.force_sizes());
         let z_terms = DVector::zeros(z.len());
         let (z, force, terms) = (z.clone(), force.clone(), terms.clone());
-        JointState { z, force, terms, z_terms, left: Vec::new(), slips: None, p: 0.0 }
+        JointState { z, force, terms, z_terms, left: Vec::new(), slips: None, p: 0.0, free: Vec::new() }
     }
 
     /// The pairs where it stands.

@@ -1,0 +1,291 @@
+//! The forces of joints that repeat one another: of all that the laws admit under a given motion, those of least norm.
+//!
+//! Self-stress S μ moves nothing, so a state knows its forces up to that. What an answer shows is, cluster by cluster of
+//! pairs that self-stress connects,
+//!
+//! ```text
+//!     min ½ |λ|²,   λ = λ₀ + S μ
+//!     open:   λ_n = 0                              slipping ±:  λ_τ = ∓ (f λ_n + c)
+//!     closed: λ_n ≥ 0                              sticking:    |λ_τ| ≤ f λ_n + c
+//! ```
+//! a convex quadratic program of a few unknowns. What must hold as equations is taken out by a basis of the rest, and the
+//! conditions of Karush, Kuhn and Tucker of what is left are an LCP with a positive semidefinite matrix, which Lemke's
+//! algorithm solves.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::numbers::ContactNumbers;
+use super::sums::Sum;
+use super::system::ContactSystem;
+use super::whole::{fixed_bound, friction};
+use crate::lcp::driver::run;
+use crate::lcp::lemke::SchemeEngine;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::Outcome;
+use crate::lcp::problem::{Lcp, NOISE, Scale};
+use crate::lcp::ratio_test::TieRule;
+use crate::lcp::vertex::vertex;
+use crate::model::pair::Law;
+
+/// Pivots after which the forces are left as they were found.
+const PIVOTS: usize = 10_000;
+
+/// Puts the forces of least norm in the place of `forces`, with the magnitudes of their terms; z as in the state, exact
+/// zeros where nothing moves. Returns the pairs whose forces are not determined by the motion.
+pub fn least_norm(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    z: &DVector<f64>,
+    forces: &mut [Sum],
+) -> Vec<usize> {
+    let Some(form) = &system.force_form else {
+        return Vec::new();
+    };
+    let mut free = Vec::new();
+    for pairs in clusters(system, &form.self_stress) {
+        let cluster = Cluster { system, numbers, z, pairs };
+        free.extend(cluster.settle(&form.self_stress, forces));
+    }
+    free.sort_unstable();
+    free
+}
+
+fn joints_of(system: &ContactSystem, pair: usize) -> impl Iterator<Item = usize> {
+    std::iter::once(pair).chain(system.pairs[pair].tangential)
+}
+
+/// Groups of pairs that self-stress connects.
+fn clusters(system: &ContactSystem, self_stress: &DMatrix<f64>) -> Vec<Vec<usize>> {
+    let m = system.pairs.len();
+    let mut group: Vec<usize> = (0..m).collect();
+    for stress in self_stress.column_iter() {
+        let felt: Vec<usize> = (0..m).filter(|&i| joints_of(system, i).any(|joint| stress[joint] != 0.0)).collect();
+        let Some(&first) = felt.first() else { continue };
+        let (joined, into): (Vec<usize>, usize) = (felt.iter().map(|&i| group[i]).collect(), group[first]);
+        group.iter_mut().filter(|own| joined.contains(own)).for_each(|own| *own = into);
+    }
+    let mut clusters: Vec<Vec<usize>> = vec![Vec::new(); m];
+    (0..m).for_each(|i| clusters[group[i]].push(i));
+    clusters.retain(|pairs| {
+        pairs.iter().any(|&i| joints_of(system, i).any(|joint| self_stress.row(joint).iter().any(|s| *s != 0.0)))
+    });
+    clusters
+}
+
+/// Pairs that self-stress connects, in a state.
+struct Cluster<'a> {
+    system: &'a ContactSystem,
+    numbers: &'a ContactNumbers,
+    z: &'a DVector<f64>,
+    pairs: Vec<usize>,
+}
+
+/// A combination of joint forces, Σ factor·λ + constant.
+struct Combination {
+    terms: Vec<(usize, f64)>,
+    constant: f64,
+}
+
+impl Combination {
+    fn of(&self, vector: impl Fn(usize) -> f64) -> f64 {
+        self.terms.iter().map(|&(joint, factor)| factor * vector(joint)).sum()
+    }
+}
+
+impl Cluster<'_> {
+    /// What must be zero and what must not be negative.
+    fn laws(&self) -> (Vec<Combination>, Vec<Combination>) {
+        let (mut zero, mut positive) = (Vec::new(), Vec::new());
+        for &i in &self.pairs {
+            let pair = &self.system.pairs[i];
+            let open = !matches!(pair.law, Law::Bound { .. }) && self.z[i] > 0.0;
+            let normal = || Combination { terms: vec![(i, 1.0)], constant: 0.0 };
+            if open {
+                zero.push(normal());
+            } else if !matches!(pair.law, Law::Bound { .. }) {
+                positive.push(normal());
+            }
+            let Some(joint) = pair.tangential else { continue };
+            let f = if open { 0.0 } else { friction(self.system, self.numbers, i) };
+            let constant = fixed_bound(self.system, self.numbers, i);
+            let reserve = |side: f64| {
+                let mut terms = vec![(joint, side)];
+                terms.extend((f > 0.0).then_some((i, f)));
+                Combination { terms, constant }
+            };
+            if f == 0.0 && constant == 0.0 {
+                zero.push(Combination { terms: vec![(joint, 1.0)], constant: 0.0 });
+                continue;
+            }
+            let slip = self.z[joint];
+            match (slip > 0.0, slip < 0.0) {
+                (true, _) => zero.push(reserve(1.0)),
+                (_, true) => zero.push(reserve(-1.0)),
+                _ => positive.extend([reserve(1.0), reserve(-1.0)]),
+            }
+        }
+        (zero, positive)
+    }
+
+    /// Puts the forces of least norm in their place; the pairs whose forces could be others.
+    fn settle(&self, self_stress: &DMatrix<f64>, forces: &mut [Sum]) -> Vec<usize> {
+        let joints: Vec<usize> = self.pairs.iter().flat_map(|&pair| joints_of(self.system, pair)).collect();
+        let columns: Vec<usize> = (0..self_stress.ncols())
+            .filter(|&column| joints.iter().any(|&joint| self_stress[(joint, column)] != 0.0))
+            .collect();
+        let (zero, positive) = self.laws();
+        let rows = DMatrix::from_fn(zero.len(), columns.len(), |a, b| zero[a].of(|j| self_stress[(j, columns[b])]));
+        let Some(basis) = null_basis(&rows, columns.len()) else {
+            return Vec::new();
+        };
+        let stress = DMatrix::from_fn(joints.len(), columns.len(), |a, b| self_stress[(joints[a], columns[b])]);
+        let free = &stress * basis;
+        let place = |joint: usize| joints.iter().position(|own| *own == joint);
+        let Some(change) = shortest(&free, &|joint| forces[joint].value, &joints, &positive, &place) else {
+            return Vec::new();
+        };
+        for (a, &joint) in joints.iter().enumerate() {
+            let added = Sum { value: change.by[a], magnitude: change.sizes[a] };
+            forces[joint] = forces[joint].plus(1.0, added);
+        }
+        // What a law stops stands exactly at its limit.
+        for &row in &change.at_limit {
+            if let [(joint, _)] = positive[row].terms[..]
+                && positive[row].constant == 0.0
+            {
+                forces[joint].value = 0.0;
+            }
+        }
+        let moved = |&pair: &usize| {
+            joints_of(self.system, pair).filter_map(place).any(|a| free.row(a).amax() > NOISE * stress.row(a).amax())
+        };
+        self.pairs.iter().copied().filter(moved).collect()
+    }
+}
+
+/// Orthonormal basis of what rows take to zero; `None` where that is nothing.
+fn null_basis(rows: &DMatrix<f64>, columns: usize) -> Option<DMatrix<f64>> {
+    if rows.nrows() == 0 {
+        return (columns > 0).then(|| DMatrix::identity(columns, columns));
+    }
+    // Square it up: the decomposition gives as many right vectors as there are rows otherwise.
+    let padded = rows.clone().resize_vertically(rows.nrows().max(columns), 0.0);
+    let svd = padded.svd(false, true);
+    let v_t = svd.v_t?;
+    let least = NOISE * columns as f64 * svd.singular_values.max();
+    let free: Vec<DVector<f64>> =
+        (0..columns).filter(|&k| svd.singular_values[k] <= least).map(|k| v_t.row(k).transpose()).collect();
+    (!free.is_empty()).then(|| DMatrix::from_columns(&free))
+}
+
+/// What is added to the forces of the joints.
+struct Change {
+    by: Vec<f64>,
+    /// Magnitudes of its terms.
+    sizes: Vec<f64>,
+    /// The inequalities that stop it.
+    at_limit: Vec<usize>,
+}
+
+/// The ν that makes λ₀ + Q ν shortest under g·λ + constant ≥ 0: with ν = P⁻¹ (Qᵀ Gᵀ y − Qᵀ λ₀), P = Qᵀ Q, the slacks and
+/// the multipliers y are w and z of an LCP.
+fn shortest(
+    free: &DMatrix<f64>,
+    force: &dyn Fn(usize) -> f64,
+    joints: &[usize],
+    positive: &[Combination],
+    place: &dyn Fn(usize) -> Option<usize>,
+) -> Option<Change> {
+    let start = DVector::from_iterator(joints.len(), joints.iter().map(|&joint| force(joint)));
+    let inverse = (free.transpose() * free).try_inverse()?;
+    let rows: Vec<DVector<f64>> = positive
+        .iter()
+        .map(|row| DVector::from_fn(free.ncols(), |b, _| row.of(|j| place(j).map_or(0.0, |a| free[(a, b)]))))
+        .collect();
+    let shortest = -(&inverse * (free.transpose() * &start));
+    let solve = |multipliers: &[(usize, f64)]| {
+        let pull = multipliers.iter().fold(DVector::zeros(free.ncols()), |sum, (row, y)| sum + &rows[*row] * *y);
+        &shortest + &inverse * pull
+    };
+    let slack = |row: usize, nu: &DVector<f64>| positive[row].of(force) + positive[row].constant + rows[row].dot(nu);
+    let n = positive.len();
+    let size = (0..n).map(|row| slack(row, &shortest).abs()).fold(0.0, f64::max);
+    let mut multipliers: Vec<(usize, f64)> = Vec::new();
+    if size > 0.0 && (0..n).any(|row| slack(row, &shortest) < -NOISE * size) {
+        let matrix: Vec<Vec<f64>> =
+            (0..n).map(|a| (0..n).map(|b| rows[a].dot(&(&inverse * &rows[b]))).collect()).collect();
+        let q: Vec<f64> = (0..n).map(|row| slack(row, &shortest) / size).collect();
+        let lcp = Lcp { covering: vec![1.0; n], scale: Scale::plain(&matrix), matrix, q };
+        let lcp = Arc::new(MirroredLcp::plain(&lcp));
+        let rule = TieRule::Lexicographic((0..n).collect());
+        let mut engine = SchemeEngine::new(Arc::clone(&lcp), rule);
+        let found = run(&mut engine, PIVOTS, &mut |_| ControlFlow::Continue(()));
+        if !matches!(found.outcome, Outcome::Normal { .. }) {
+            return None;
+        }
+        let point = vertex(&lcp, &found.pivots.basis()).unwrap_or(found.point);
+        multipliers = point.z.iter().enumerate().filter(|(_, y)| **y > 0.0).map(|(row, y)| (row, y * size)).collect();
+    }
+    let nu = solve(&multipliers);
+    let terms = |a: usize| free.row(a).iter().zip(nu.iter()).map(|(q, nu)| q * nu).collect::<Vec<f64>>();
+    Some(Change {
+        by: (0..joints.len()).map(|a| terms(a).iter().sum()).collect(),
+        sizes: (0..joints.len()).map(|a| terms(a).iter().map(|term| term.abs()).sum()).collect(),
+        at_limit: multipliers.into_iter().map(|(row, _)| row).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::force_form::ForceForm;
+    use crate::contact::whole::tests::{coulomb, plain};
+
+    /// Two opposed pairs at one node: their normals and their tangents are opposed.
+    fn guide() -> ContactSystem {
+        let mut system = coulomb(DMatrix::zeros(4, 4));
+        let self_stress = DMatrix::from_row_slice(4, 2, &[1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0]);
+        system.force_form = Some(ForceForm { joints: vec![false, true, false, true], self_stress });
+        system
+    }
+
+    fn settled(f: f64, z: [f64; 4], forces: [f64; 4]) -> ([f64; 4], Vec<usize>) {
+        let mut sums = forces.map(Sum::exactly);
+        let free = least_norm(&guide(), &plain(f, &[0.0; 4]), &DVector::from_row_slice(&z), &mut sums);
+        (sums.map(|sum| sum.value), free)
+    }
+
+    #[test]
+    fn a_guide_is_pressed_on_one_side_only() {
+        // x_1 − x_2 = 3 and x_τ1 − x_τ2 = 1: without inequalities (1.5, −1.5); x_2 ≥ 0 makes it (3, 0), and with that
+        // x_τ2 = 0.
+        assert_eq!(settled(0.5, [0.0; 4], [5.0, 2.0, 1.5, 0.5]), ([3.0, 0.0, 1.0, 0.0], vec![0, 1]));
+    }
+
+    #[test]
+    fn a_guide_that_must_hold_more_is_wedged_no_more_than_that() {
+        // f = 1/2, x_1 − x_2 = 2, x_τ1 − x_τ2 = 4 = T: |x_τ1| + |x_τ2| ≤ f (x_1 + x_2) wants x_1 + x_2 ≥ 8: (5, 3), and
+        // x_τ = (5/2, −3/2).
+        let (forces, free) = settled(0.5, [0.0; 4], [12.0, 10.0, 4.0, 0.0]);
+        for (found, expected) in forces.iter().zip([5.0, 3.0, 2.5, -1.5]) {
+            assert!((found - expected).abs() < 1e-14, "{forces:?}");
+        }
+        assert_eq!(free, [0, 1]);
+    }
+
+    #[test]
+    fn an_open_side_leaves_nothing_to_choose() {
+        let forces = [3.0, 0.0, 1.0, 0.0];
+        assert_eq!(settled(0.5, [0.0, 0.1, 0.0, 0.0], forces), (forces, vec![]));
+    }
+
+    #[test]
+    fn what_slips_stays_at_its_bound() {
+        // x_τ1 = −x_1/2, x_τ2 = x_2/2 (they slip against each other's sense): x_τ1 − x_τ2 = −(x_1 + x_2)/2 fixes the sum.
+        let forces = [5.0, 2.0, -2.5, 1.0];
+        assert_eq!(settled(0.5, [0.0, 0.0, 1.0, -1.0], forces), (forces, vec![]));
+    }
+}

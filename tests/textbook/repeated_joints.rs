@@ -1,0 +1,282 @@
+//! Joints that repeat one another: guides with two opposed pairs at one node, corners where blocks meet.
+//!
+//! ```text
+//!     ▽ g₂                                ┌────┬────┐
+//!   ══●───────────▒   guide: k = 3EI/L³,  │ a  │ b  │   T corner: head joint a|b on two bed joints
+//!     △ g₁            k_a = EA/L          └────┴────┘
+//! ```
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde_json::{Value, json};
+use stickslip::answer::record::{Answer, OutcomeKind, State};
+
+use crate::common::balance::{imbalance, incompatibility, nodal_imbalance};
+use crate::common::laws::violation;
+use crate::common::*;
+
+const EA: f64 = 500.0;
+const EI: f64 = 1000.0;
+const L: f64 = 10.0;
+
+/// A cantilever turned by some angle with a guide at its tip.
+fn guide(angle: f64) -> Case {
+    let (sin, cos) = angle.sin_cos();
+    let turn = |x: f64, y: f64| json!([cos * x - sin * y, sin * x + cos * y]);
+    let pair = |id: &str, n: f64, gap: &str| json!({ "id": id, "node": "B", "against": "ground", "normal": turn(0.0, n), "friction": "f", "gap": gap });
+    Case::json(json!({
+        "parameters": { "P": 1, "T": 0, "f": 0.3, "g1": 0.01, "g2": 0.02 },
+        "materials": { "m": { "E": 1, "nu": 0 } },
+        "sections": { "s": { "area": EA, "inertia": EI } },
+        "nodes": { "A": turn(0.0, 0.0), "B": turn(L, 0.0) },
+        "bars": [{ "id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s" }],
+        "supports": [{ "at": "A", "fixed": ["x", "y", "r"] }],
+        "contacts": [pair("low", 1.0, "g1"), pair("up", -1.0, "g2")],
+        "loads": {
+            "press": { "factor": "P", "items": [{ "point": { "at": "B", "force": turn(0.0, -1.0) } }] },
+            "pull": { "factor": "T", "items": [{ "point": { "at": "B", "force": turn(1.0, 0.0) } }] }
+        }
+    }))
+}
+
+/// With clearances: the tip moves by P/k until a side closes; that side carries P − k g, and holds an axial force up to
+/// f times that; the rest stretches the bar.
+#[test]
+fn guide_with_clearances() {
+    let (k, k_a) = (3.0 * EI / L.powi(3), EA / L);
+    let (g1, g2, f) = (0.01, 0.02, 0.3);
+    for angle in [0.0, 0.5, 2.2, -1.1] {
+        let case = guide(angle);
+        for (p, t) in
+            [(1.0, 0.0), (1.0, 0.2), (1.0, 0.5), (1.0, -0.5), (-1.0, 0.2), (-1.0, 0.7), (0.02, 0.3), (0.0, -0.3)]
+        {
+            let answer = case.solve(&[("P", p), ("T", t)]);
+            is_answer(&answer);
+            let [low, up] = &answer.pairs[..] else { panic!() };
+            let (x_low, x_up) = (f64::max(p - k * g1, 0.0), f64::max(-p - k * g2, 0.0));
+            let down = (p / k).clamp(-g2, g1);
+            let held = f * (x_low + x_up);
+            let slip = (t.abs() - held).max(0.0) * t.signum() / k_a;
+            let what = format!("P = {p}, T = {t}, angle {angle}");
+            near(&what, low.x_n, x_low, 1e-12, 1.0);
+            near(&what, up.x_n, x_up, 1e-12, 1.0);
+            near(&what, low.z_n, g1 - down, 1e-12, g1);
+            near(&what, up.z_n, g2 + down, 1e-12, g2);
+            near(&what, low.z_t, slip, 1e-12, 0.01);
+            near(&what, up.z_t, -slip, 1e-12, 0.01);
+            // Friction against the motion: −T or −f x along t, which is opposite on the two sides.
+            let friction = t.signum() * t.abs().min(held);
+            near(&what, low.x_t - up.x_t, -friction, 1e-12, 1.0);
+        }
+    }
+}
+
+/// Without clearance the sides share what presses: x_low − x_up = P, and of least norm is (P, 0). The axial force is held up
+/// to f P; beyond, the bar stretches by (T − f P)/k_a.
+#[test]
+fn guide_without_clearance() {
+    let case = guide(0.0);
+    for (p, t) in [(1.0, 0.2), (1.0, 0.5), (-2.0, 0.5), (-2.0, -0.9), (0.0, 0.5)] {
+        let answer = case.solve(&[("P", p), ("T", t), ("g1", 0.0), ("g2", 0.0)]);
+        is_answer(&answer);
+        let [low, up] = &answer.pairs[..] else { panic!() };
+        near("x_low", low.x_n, p.max(0.0), 1e-12, 1.0);
+        near("x_up", up.x_n, (-p).max(0.0), 1e-12, 1.0);
+        near("z", low.z_n.max(up.z_n), 0.0, 1e-12, 0.01);
+        let slip = (t.abs() - 0.3 * p.abs()).max(0.0) * t.signum() / (EA / L);
+        near("slip", low.z_t, slip, 1e-12, 0.01);
+        near("slip", up.z_t, -slip, 1e-12, 0.01);
+    }
+    let answer = case.solve(&[("P", 1.0), ("T", 0.2), ("g1", 0.0), ("g2", 0.0)]);
+    assert!(
+        answer.notes.iter().any(|note| note.contains("low and up") && note.contains("least norm")),
+        "{:?}",
+        answer.notes
+    );
+}
+
+/// Sides nearer to each other than the node is wide: no displacement opens both.
+#[test]
+fn guide_with_interference_has_no_answer() {
+    let case = guide(0.3);
+    let answer = case.solve(&[("g1", -0.03), ("g2", 0.02)]);
+    assert_eq!(answer.outcome, OutcomeKind::Ray);
+    // With room for both it is the guide with clearances moved: the low side pushes the tip up by 0.01.
+    let answer = case.solve(&[("g1", -0.01), ("g2", 0.02)]);
+    is_answer(&answer);
+    near("x_low", answer.pairs[0].x_n, 1.0 + 3.0 * EI / L.powi(3) * 0.01, 1e-12, 1.0);
+    near("z_up", answer.pairs[1].z_n, 0.01, 1e-12, 0.01);
+}
+
+/// Two stiff blocks side by side on the ground: at the foot of their head joint three pairs meet, six joints on four
+/// relative displacements.
+fn corner(friction: f64) -> Case {
+    let block = |id: &str, x: f64| {
+        json!({ "id": id, "origin": [x, 0], "size": [1, 1], "divisions": [2, 2],
+                "thickness": 1, "material": "m", "plane": "stress" })
+    };
+    Case::json(json!({
+        "parameters": { "W": 1, "H": 0, "f": friction },
+        "materials": { "m": { "E": 1e4, "nu": 0 } },
+        "plates": [block("a", 0.0), block("b", 1.0)],
+        "contacts": [
+            { "id": "bed_a", "edge": "a.bottom", "against": "ground", "friction": "f" },
+            { "id": "bed_b", "edge": "b.bottom", "against": "ground", "friction": "f" },
+            { "id": "head", "edge": "b.left", "against": "a.right", "friction": "f" }
+        ],
+        "loads": {
+            "weight": { "factor": "W", "items": [{ "traction": { "edge": "a.top", "value": [0, -1] } },
+                                                 { "traction": { "edge": "b.top", "value": [0, -1] } }] },
+            "push": { "factor": "H", "items": [{ "point": { "at": "a[0,1]", "force": [1, 0] } }] }
+        }
+    }))
+}
+
+fn sum(answer: &Answer, prefix: &str, read: impl Fn(&stickslip::answer::record::PairState) -> f64) -> f64 {
+    answer.pairs.iter().filter(|pair| pair.id.starts_with(prefix)).map(read).sum()
+}
+
+#[test]
+fn corner_of_two_blocks() {
+    let case = corner(0.2);
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    for bed in ["bed_a", "bed_b"] {
+        near(bed, sum(&answer, bed, |pair| pair.x_n), 1.0, 1e-11, 1.0);
+    }
+    // ν = 0: every column stands alone, the head joint carries nothing and what an edge node bears is its share.
+    for (pair, share) in answer.pairs.iter().zip([0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.0, 0.0, 0.0]) {
+        near(&pair.id, pair.x_n, share, 1e-11, 1.0);
+    }
+    // Pushed, both slide where H = f · 2 W.
+    let answer = case.solve(&[("H", 0.4 * (1.0 - 1e-6))]);
+    is_answer(&answer);
+    near("beds", sum(&answer, "bed", |pair| pair.x_n), 2.0, 1e-11, 1.0);
+    near("friction", sum(&answer, "bed", |pair| pair.x_t), -0.4 * (1.0 - 1e-6), 1e-11, 1.0);
+    let answer = case.solve(&[("H", 0.4 * (1.0 + 1e-6))]);
+    let ray = mechanism(&answer);
+    for pair in ray.direction.pairs().iter().filter(|pair| pair.pair.starts_with("bed")) {
+        near("z̄_τ", pair.z_t, 1.0, 1e-6, 1.0);
+    }
+}
+
+/// A cross: four blocks on fixed feet meet in one point; eight joints on six relative displacements.
+#[test]
+fn cross_of_four_blocks() {
+    let block = |id: &str, x: f64, y: f64| {
+        json!({ "id": id, "origin": [x, y], "size": [1, 1], "divisions": [1, 1],
+                "thickness": 1, "material": "m", "plane": "stress" })
+    };
+    let joint =
+        |id: &str, edge: &str, against: &str| json!({ "id": id, "edge": edge, "against": against, "friction": 0.5 });
+    let case = Case::json(json!({
+        "materials": { "m": { "E": 1e4, "nu": 0.0 } },
+        "plates": [block("c", 0.0, 0.0), block("d", 1.0, 0.0), block("a", 0.0, 1.0), block("b", 1.0, 1.0)],
+        "supports": [{ "at": "c.bottom", "fixed": ["x", "y"] }, { "at": "d.bottom", "fixed": ["x", "y"] }],
+        "contacts": [joint("ac", "a.bottom", "c.top"), joint("bd", "b.bottom", "d.top"),
+                     joint("ab", "b.left", "a.right"),
+                     { "id": "cd", "edge": "d.left", "against": "c.right", "friction": 0.5, "skip": [0] }],
+        "loads": { "w": { "items": [{ "traction": { "edge": "a.top", "value": [0, -2] } },
+                                    { "traction": { "edge": "b.top", "value": [0, -1] } }] } }
+    }));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    near("ac", sum(&answer, "ac", |pair| pair.x_n) - sum(&answer, "ab", |pair| pair.x_t), 2.0, 1e-11, 1.0);
+    near("bd", sum(&answer, "bd", |pair| pair.x_n) + sum(&answer, "ab", |pair| pair.x_t), 1.0, 1e-11, 1.0);
+    near("laws", violation(&case.scenario, &case.scenario.parameter_values(), &answer), 0.0, 1e-11, 1.0);
+}
+
+/// A frame of a few nodes, some with several pairs against the ground and against each other.
+fn random(seed: u64, friction: f64, soft: Option<f64>) -> Value {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut number = |low: f64, high: f64| rng.random_range(low..high);
+    let mut nodes = serde_json::Map::new();
+    for (i, (x, y)) in [(0.0, 0.0), (1.0, 0.2), (2.0, 0.1), (1.0, 0.2), (0.2, 1.0)].into_iter().enumerate() {
+        nodes.insert(format!("n{i}"), json!([x, y]));
+    }
+    let bar = |a: usize, b: usize| json!({ "id": format!("b{a}{b}"), "nodes": [format!("n{a}"), format!("n{b}")], "material": "m", "section": "s" });
+    let mut contacts = Vec::new();
+    let (mut springs, mut extra) = (Vec::new(), 0);
+    let mut pair = |node: usize, against: Option<usize>, angle: f64, gap: f64| {
+        let mut other = against.map_or("ground".to_owned(), |against| format!("n{against}"));
+        if let Some(stiffness) = soft {
+            // A spring in series: a node of its own between the two sides.
+            let own = format!("s{extra}");
+            extra += 1;
+            nodes.insert(own.clone(), nodes[&format!("n{node}")].clone());
+            for direction in [[1, 0], [0, 1]] {
+                springs.push(match against {
+                    None => json!({ "at": own, "direction": direction, "stiffness": stiffness }),
+                    Some(_) => json!({ "between": [own, other], "direction": direction, "stiffness": stiffness }),
+                });
+            }
+            other = own;
+        }
+        contacts.push(json!({ "id": format!("c{}", contacts.len()), "node": format!("n{node}"), "against": other,
+                              "normal": [angle.cos(), angle.sin()], "friction": friction, "gap": gap }));
+    };
+    let angle = number(0.0, 6.3);
+    // A guide, three pairs round a node, and a node that meets another one which meets the same ground.
+    pair(2, None, angle, number(0.0, 0.02));
+    pair(2, None, angle + std::f64::consts::PI, number(0.0, 0.02));
+    for k in 0..3 {
+        pair(4, None, 2.1 * k as f64 + number(-0.2, 0.2), number(0.0, 0.02));
+    }
+    let up = number(0.5, 2.5);
+    pair(1, Some(3), up, 0.0);
+    pair(1, None, up, number(0.0, 0.01));
+    pair(3, None, up, 0.0);
+    let load = |node: usize, number: &mut dyn FnMut(f64, f64) -> f64| json!({ "point": { "at": format!("n{node}"), "force": [number(-1.0, 1.0), number(-1.0, 1.0)] } });
+    let items: Vec<Value> = (1..5).map(|node| load(node, &mut number)).collect();
+    json!({
+        "materials": { "m": { "E": 100.0, "nu": 0.2 } },
+        "sections": { "s": { "area": 1.0, "inertia": 0.1 } },
+        "nodes": nodes,
+        "bars": [bar(0, 1), bar(1, 2), bar(0, 3), bar(0, 4)],
+        "supports": [{ "at": "n0", "fixed": ["x", "y", "r"] }],
+        "contacts": contacts, "springs": springs,
+        "loads": { "w": { "items": items } }
+    })
+}
+
+/// Answers balance, fit their displacements and obey the laws, each judged from what is reported; without friction, where
+/// the displacements are unique, stiff springs between the sides come as near to them as they are stiff.
+#[test]
+fn random_frames_with_repeated_joints() {
+    let mut answers = 0;
+    for seed in 0..60 {
+        let friction = [0.0, 0.2, 0.5][(seed % 3) as usize];
+        let case = Case::json(random(seed, friction, None));
+        let values = case.scenario.parameter_values();
+        let answer = case.solve(&[]);
+        if answer.outcome == OutcomeKind::Ray {
+            assert!(friction > 0.0, "seed {seed}: {:?}", answer.ray);
+            continue;
+        }
+        is_answer(&answer);
+        answers += 1;
+        assert!(violation(&case.scenario, &values, &answer) < 1e-10, "seed {seed}");
+        assert!(imbalance(&case.scenario, &values, &answer) < 1e-10, "seed {seed}");
+        assert!(nodal_imbalance(&case.scenario, &values, &answer) < 1e-9, "seed {seed}");
+        assert!(incompatibility(&case.scenario, &values, &answer) < 1e-10, "seed {seed}");
+        if friction > 0.0 {
+            continue;
+        }
+        let largest = answer.pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.z_n.abs()));
+        let off = |stiffness: f64| {
+            let sprung = Case::json(random(seed, friction, Some(stiffness))).solve(&[]);
+            is_answer(&sprung);
+            let z = answer.pairs.iter().zip(&sprung.pairs).map(|(a, b)| (a.z_n - b.z_n).abs());
+            z.fold(0.0, f64::max) / largest
+        };
+        let (soft, stiff) = (off(1e6), off(1e8));
+        assert!(soft < 1e-3 && stiff < 1e-5, "seed {seed}: {soft} {stiff}");
+    }
+    assert!(answers >= 55, "{answers} answers");
+}
+
+#[test]
+fn states_of_a_guide() {
+    let answer = guide(0.0).solve(&[("P", 1.0)]);
+    assert_eq!(states(&answer), [State::Stick, State::Open]);
+}
