@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         rounded: false,
         kernel: DMatrix::zeros(2, 0),
         corrected: None,
+        force_form: None,
         file: None,
     };
     let numbers = ContactNumbers {
