@@ -236,16 +236,21 @@ fn what_holds_a_body_too_often_is_named() {
     for word in ["the tie of n0 and m0 in x", "the tie of n1 and m1 in x", "the rigid body body1"] {
         assert!(text.contains(word), "{text}");
     }
-    // Three normal joints under one body.
-    let (mut model, nodes) = bar();
+}
+
+/// Three normal joints under one body: the third repeats the others, u₃ = u₁ + 3 (u₂ − u₁).
+#[test]
+fn joints_under_a_body_repeat_one_another() {
+    let mut model = Model::default();
+    let nodes = [0.0, 1.0, 3.0].map(|x| model.node(&format!("n{x}"), x, 0.0));
+    model.rigid(&nodes);
+    model.support(nodes[0], "x");
     for node in nodes {
         model.pair(node, None, [0.0, 1.0], frictionless());
     }
-    assert_eq!(
-        words(&model),
-        "the normal joint of c3 is already held by the normal joint of c1, the normal joint of c2 and the rigid body \
-         body1: use `skip` or split the node"
-    );
+    let system = model.try_solve().unwrap();
+    let [repeated] = system.repeated() else { panic!("one joint repeats the others") };
+    assert_eq!((repeated.joint, &repeated.terms[..]), (2, &[(0, -2.0), (1, 3.0)][..]));
 }
 
 /// A block of stiff elements with all its nodes in a body, on soft springs: what the elements are made of is nothing to
