@@ -419,11 +419,13 @@ pub fn append_elements<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>,
 
 /// The two nodes of a line, as indices into the mesh.
 type Ends = [usize; 2];
+/// A line as a bar runs along it, with its index in the mesh and what it is made of.
+type Along<'l> = (Ends, &'l (u32, ElementKind));
 
 /// A chain of lines is one bar `ID.GROUP` from left to right; otherwise every line is a bar `ID#TAG`.
 fn append_bars<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, group: &Lines<'d>) {
     let mesh = &outline.mesh;
-    let lines: Vec<(Ends, &(u32, ElementKind))> = group
+    let lines: Vec<Along> = group
         .lines
         .iter()
         .map(|line| {
@@ -433,7 +435,7 @@ fn append_bars<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, group: 
         .collect();
     let segments: Vec<Ends> = lines.iter().map(|(ends, _)| *ends).collect();
     let chain = chains(&segments).ok().and_then(|found| <[Vec<usize>; 1]>::try_from(found).ok());
-    let bars: Vec<(String, Vec<(Ends, &(u32, ElementKind))>)> = match chain {
+    let bars: Vec<(String, Vec<Along>)> = match chain {
         Some([chain]) => {
             let of: HashMap<Ends, &(u32, ElementKind)> =
                 lines.iter().flat_map(|&([a, b], line)| [([a, b], line), ([b, a], line)]).collect();
