@@ -344,7 +344,7 @@ pub enum Command {
         #[arg(value_name = "EXPECTATION", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
-    /// Write results, the mesh with its results, or the LCP, to a file
+    /// Write tables, pictures, the mesh with its results, or the LCP, to a file
     ///
     /// Tables go to .csv or .json: `export WHAT [OF] FILE`, where OF are the quantities of `quantities` and `envelope`, or
     /// the parameter of `sensitivity`. A table is what the command shows, at the pivot chosen by `step`, after `stages`
@@ -355,13 +355,17 @@ pub enum Command {
     /// 4 closed) and the vectors of force, friction and slip. `export vtu FILE.pvd` is a series, of the moments of the
     /// history after `stages`, else of the pivots: FILE-0000.vtu, FILE-0001.vtu … stand beside it.
     ///
+    /// Pictures go to .svg: `slip`, `force`, `gap` and `pressure` of the state shown or at pivots that are named; `moment`,
+    /// `shear` and `axial` of all bars on the structure, or of the bar that is named; `path` as `plot path` draws it, with
+    /// the same words.
+    ///
     /// `export lcp` writes M, q and the covering d, in the units of the scenario: to .json as a scenario of this program,
     /// or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a scenario reads M back with
     /// `"M": { "file": "FILE.mtx" }`.
     ///
     /// A file that is there is replaced, whole or not at all; never the scenario itself.
     #[command(
-        after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export result answer.json\n  export lcp beam-lcp.json"
+        after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export structure beam.svg\n  export path force c6 c5 path.svg\n  export result answer.json\n  export lcp beam-lcp.json"
     )]
     Export {
         /// What to write
@@ -522,6 +526,26 @@ pub enum Export {
     Result,
     /// The structure with its results, for ParaView
     Vtu,
+    /// Picture: the structure with the states of its pairs, deformed
+    Structure,
+    /// Picture: the collapse mode of a ray
+    Mode,
+    /// Picture: slip along the contact zone
+    Slip,
+    /// Picture: friction force within its bound
+    Force,
+    /// Picture: distance open
+    Gap,
+    /// Picture: compressive force
+    Pressure,
+    /// Picture: p over the pivots
+    P,
+    /// Picture: bending moments
+    Moment,
+    /// Picture: shear forces
+    Shear,
+    /// Picture: normal forces
+    Axial,
     /// The LCP for other solvers: a scenario of its own (.json) or Matrix Market (.mtx)
     Lcp,
 }

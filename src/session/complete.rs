@@ -328,6 +328,13 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             all.extend(match what {
                 "quantities" | "envelope" => plain(&quantities::next_names(of, vocabulary)),
                 "sensitivity" => parameters(),
+                "moment" | "shear" | "axial" => plain(&vocabulary.bars),
+                "slip" | "force" | "gap" | "pressure" => fixed(&["first", "last"]),
+                "path" => {
+                    let mut all = plain(&vocabulary.pairs);
+                    all.extend(fixed(&["slip", "force", "gap", "pressure"]));
+                    all
+                }
                 _ => Vec::new(),
             });
             all

@@ -24,6 +24,7 @@ use crate::path::sweep_file::{SweepFileError, run_to_file};
 use crate::solve::numbers::factors;
 use crate::solve::{Prepared, Solved};
 use crate::view;
+use crate::view::plot::chart::Chart;
 use crate::view::plot::zone::Quantity as Zone;
 use crate::watch::Watch;
 
@@ -361,16 +362,35 @@ impl Session {
         Ok(())
     }
 
-    /// `plot path [QUANTITY] [PAIRS]`.
+    /// `plot path [QUANTITY] [PAIRS]`, `plot path QUANTITY`.
     pub(super) fn plot_path(&self, of: &[String], height: usize, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (chart, along) = self.path_chart(of, io.watch)?;
         let path = self.need_path()?;
+        let report = || along.map_or_else(|| json!(path), |along| along_json(path, &along));
+        io.report(report, |out, style| Chart { height, ..chart }.write(out, style))?;
+        Ok(())
+    }
+
+    /// The chart of what was followed last; the quantities in it, where it is not of the numbers of pairs.
+    pub(super) fn path_chart(
+        &self,
+        of: &[String],
+        watch: &dyn Watch,
+    ) -> Result<(Chart, Option<Vec<OnPath>>), CommandError> {
+        let path = self.need_path()?;
+        let units = &self.now.scenario.units;
         let (quantity, names) = match of.split_first() {
             Some((word, rest)) if word == "slip" => (Zone::Slip, rest),
             Some((word, rest)) if word == "force" => (Zone::Force, rest),
             Some((word, rest)) if word == "gap" => (Zone::Gap, rest),
             Some((word, rest)) if word == "pressure" => (Zone::Pressure, rest),
             Some((word, _)) if !path.places.iter().any(|place| place.pairs.iter().any(|pair| pair.id == *word)) => {
-                return self.plot_along(path, of, height, io);
+                let quantities = self.quantities(of)?;
+                let Some(prepared) = &self.now.prepared else {
+                    return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
+                };
+                let along = self.report_along(prepared, path, &quantities, watch)?;
+                return Ok((view::plot::path::drawing_along(path, &along, units), Some(along)));
             }
             _ => (Zone::Slip, of),
         };
@@ -389,33 +409,7 @@ impl Session {
         if pairs.is_empty() {
             pairs = busiest(path, &ids);
         }
-        let units = &self.now.scenario.units;
-        io.report(
-            || json!(path),
-            |out, style| view::plot::path::write(out, path, quantity, &pairs, units, height, style),
-        )?;
-        Ok(())
-    }
-
-    /// `plot path QUANTITY`.
-    fn plot_along(
-        &self,
-        path: &PathRecord,
-        words: &[String],
-        height: usize,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let quantities = self.quantities(words)?;
-        let Some(prepared) = &self.now.prepared else {
-            return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
-        };
-        let along = self.report_along(prepared, path, &quantities, io.watch)?;
-        let units = &self.now.scenario.units;
-        io.report(
-            || along_json(path, &along),
-            |out, style| view::plot::path::write_along(out, path, &along, units, height, style),
-        )?;
-        Ok(())
+        Ok((view::plot::path::drawing(path, quantity, &pairs, units), None))
     }
 
     pub(super) fn need_path(&self) -> Result<&PathRecord, CommandError> {

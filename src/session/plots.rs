@@ -1,15 +1,19 @@
 //! `plot`: what is drawn of the state shown, and at which pivots.
 
+use std::path::Path;
+
 use serde_json::{Value, json};
 
 use crate::answer::diagram::Internal;
-use crate::answer::record::{NodeDisplacement, PairState};
+use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PivotRecord};
+use crate::model::structure::Structure;
+use crate::view::plot::chart::Chart;
 use crate::view::plot::diagram;
+use crate::view::plot::scene::{Magnification, Picture};
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
-use crate::view::style::Style;
 
-use super::command::Picture;
+use super::command::Picture as Wanted;
 use super::{CommandError, Output, Session};
 
 /// Lines of a plot if the user names none.
@@ -21,7 +25,7 @@ impl Session {
     /// `plot PICTURE [OF] [--at PIVOTS] [--width N] [--height N]`.
     pub(super) fn plot(
         &self,
-        picture: Picture,
+        picture: Wanted,
         at: &[String],
         width: Option<u16>,
         height: Option<u16>,
@@ -34,8 +38,8 @@ impl Session {
         }
         let height = height.map(usize::from);
         let most = match picture {
-            Picture::Moment | Picture::Shear | Picture::Axial => 1,
-            Picture::Path => usize::MAX,
+            Wanted::Moment | Wanted::Shear | Wanted::Axial => 1,
+            Wanted::Path => usize::MAX,
             _ => 0,
         };
         let bar = of.first().map(String::as_str);
@@ -45,20 +49,20 @@ impl Session {
             )))
         } else {
             match picture {
-                Picture::Slip => self.plot_zone(Quantity::Slip, at, height, io),
-                Picture::Force => self.plot_zone(Quantity::Force, at, height, io),
-                Picture::Gap => self.plot_zone(Quantity::Gap, at, height, io),
-                Picture::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
+                Wanted::Slip => self.plot_zone(Quantity::Slip, at, height, io),
+                Wanted::Force => self.plot_zone(Quantity::Force, at, height, io),
+                Wanted::Gap => self.plot_zone(Quantity::Gap, at, height, io),
+                Wanted::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
                 _ if !at.is_empty() => Err(CommandError::Refused(
                     "plot: `--at` belongs to slip, force, gap and pressure; use `step` for the others".into(),
                 )),
-                Picture::P => self.plot_p(height, io),
-                Picture::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
-                Picture::Structure => self.plot_structure(height, io),
-                Picture::Mode => self.plot_mode(height, io),
-                Picture::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
-                Picture::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
-                Picture::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
+                Wanted::P => self.plot_p(height, io),
+                Wanted::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
+                Wanted::Structure => self.plot_structure(height, io),
+                Wanted::Mode => self.plot_mode(height, io),
+                Wanted::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
+                Wanted::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
+                Wanted::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
             }
         };
         io.style = saved;
@@ -72,29 +76,29 @@ impl Session {
         height: Option<usize>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
+        let states = self.zone_states(at)?;
+        io.report(
+            || states.iter().map(|(label, pairs)| json!({"at": label, "pairs": pairs})).collect(),
+            |out, style| {
+                let chart = zone::drawing(quantity, &borrowed(&states), &self.now.scenario.units);
+                Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)
+            },
+        )?;
+        Ok(())
+    }
+
+    /// The pairs that a plot over the contact zone shows, each with its title: those shown, or those at some pivots.
+    pub(super) fn zone_states(&self, at: &[String]) -> Result<Vec<(String, Vec<PairState>)>, CommandError> {
         let answer = self.need_answer()?;
         if answer.pairs.is_empty() {
             return Err(CommandError::Refused("nothing to plot: there are no contact pairs in this answer".into()));
         }
-        let mut states: Vec<(String, Vec<PairState>)> = Vec::new();
         if at.is_empty() {
             let label = self.position.map_or(String::new(), crate::view::pivots::title);
-            states.push((label, self.pairs()));
-        } else {
-            let last = answer.pivot_count.checked_sub(1);
-            for word in at {
-                states.push(self.pairs_named(word, last)?);
-            }
+            return Ok(vec![(label, self.pairs())]);
         }
-        let borrowed: Vec<(&str, &[PairState])> =
-            states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect();
-        io.report(
-            || states.iter().map(|(label, pairs)| json!({"at": label, "pairs": pairs})).collect(),
-            |out, style| {
-                zone::write(out, quantity, &borrowed, &self.now.scenario.units, height.unwrap_or(HEIGHT), style)
-            },
-        )?;
-        Ok(())
+        let last = answer.pivot_count.checked_sub(1);
+        at.iter().map(|word| self.pairs_named(word, last)).collect()
     }
 
     /// The pairs at a pivot named `first`, `last` or by its number.
@@ -122,55 +126,67 @@ impl Session {
     }
 
     fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        if answer.pivots.is_empty() {
-            return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
-        }
+        let pivots = self.some_pivots()?;
         io.report(
-            || answer.pivots.iter().map(|pivot| json!([pivot.step, pivot.p])).collect(),
+            || pivots.iter().map(|pivot| json!([pivot.step, pivot.p])).collect(),
             |out, style| {
-                trace::write(
-                    out,
-                    &answer.pivots,
-                    self.position,
-                    &self.now.scenario.units,
-                    height.unwrap_or(HEIGHT),
-                    style,
-                )
+                let units = &self.now.scenario.units;
+                trace::write(out, pivots, self.position, units, height.unwrap_or(HEIGHT), style)
             },
         )?;
         Ok(())
     }
 
+    pub(super) fn some_pivots(&self) -> Result<&[PivotRecord], CommandError> {
+        let pivots = &self.need_answer()?.pivots;
+        if pivots.is_empty() {
+            return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
+        }
+        Ok(pivots)
+    }
+
     fn plot_structure(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        self.need_answer()?;
-        let structure = self.structure().ok_or_else(not_a_structure)?;
-        let displacements = self.displacements();
-        let pairs = self.pairs();
-        let title = match self.position {
-            Some(step) => format!("{} at {}", self.now.scenario.name, crate::view::pivots::title(step)),
-            None => self.now.scenario.name.clone(),
-        };
-        let drawn = |out: &mut dyn std::io::Write, style: &Style| {
-            structure::write(
-                out,
-                &structure::Picture {
-                    title: &title,
-                    structure,
-                    displacements: displacements.as_deref(),
-                    pairs: Some(&pairs),
-                    magnification: structure::Magnification::Auto,
-                    height: height.unwrap_or(STRUCTURE_HEIGHT),
-                },
-                style,
-            )
-        };
-        io.report(|| json!({"displacements": displacements, "pairs": pairs}), drawn)?;
+        let shown = self.shape()?;
+        io.report(
+            || json!({"displacements": shown.displacements, "pairs": shown.pairs}),
+            |out, style| structure::write(out, &shown.picture(height.unwrap_or(STRUCTURE_HEIGHT)), style),
+        )?;
         Ok(())
     }
 
     /// The motion of the structure along the ray.
     fn plot_mode(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let shown = self.mode_shape()?;
+        io.report(
+            || json!({"displacements": shown.displacements}),
+            |out, style| structure::write(out, &shown.picture(height.unwrap_or(STRUCTURE_HEIGHT)), style),
+        )?;
+        Ok(())
+    }
+
+    /// The name of the scenario without folders, for titles.
+    pub(super) fn short_name(&self) -> &str {
+        let name = self.now.scenario.name.as_str();
+        Path::new(name).file_name().and_then(|name| name.to_str()).unwrap_or(name)
+    }
+
+    /// The structure as it is shown.
+    pub(super) fn shape(&self) -> Result<Shape<'_>, CommandError> {
+        self.need_answer()?;
+        let title = match self.position {
+            Some(step) => format!("{} at {}", self.short_name(), crate::view::pivots::title(step)),
+            None => self.short_name().to_owned(),
+        };
+        Ok(Shape {
+            title,
+            structure: self.structure().ok_or_else(not_a_structure)?,
+            displacements: self.displacements(),
+            pairs: Some(self.pairs()),
+        })
+    }
+
+    /// The motion along the ray.
+    pub(super) fn mode_shape(&self) -> Result<Shape<'_>, CommandError> {
         self.need_answer()?;
         let structure = self.structure().ok_or_else(not_a_structure)?;
         let mode = self
@@ -181,29 +197,32 @@ impl Session {
             .ok_or_else(|| {
                 CommandError::Refused("no mode to draw: the run did not end in a motion that costs no energy".into())
             })?;
-        let displacements: Vec<NodeDisplacement> = structure
+        let displacements = structure
             .nodes
             .iter()
             .zip(&mode.displacements)
             .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
             .collect();
-        let title = format!("{}: collapse mode", self.now.scenario.name);
-        let drawn = |out: &mut dyn std::io::Write, style: &Style| {
-            structure::write(
-                out,
-                &structure::Picture {
-                    title: &title,
-                    structure,
-                    displacements: Some(&displacements),
-                    pairs: None,
-                    magnification: structure::Magnification::Auto,
-                    height: height.unwrap_or(STRUCTURE_HEIGHT),
-                },
-                style,
-            )
+        let title = format!("{}: collapse mode", self.short_name());
+        Ok(Shape { title, structure, displacements: Some(displacements), pairs: None })
+    }
+
+    /// The forces of the bars and the bars that are meant: the one named, or all.
+    pub(super) fn bars(&self, bar: Option<&str>) -> Result<(&[MemberForces], Vec<&str>), CommandError> {
+        let answer = self.need_answer()?;
+        let structure = self.structure().ok_or_else(not_a_structure)?;
+        let Some(members) = &answer.members else {
+            return Err(CommandError::Refused("no member forces: there is no answer".into()));
         };
-        io.report(|| json!({"displacements": displacements}), drawn)?;
-        Ok(())
+        let names = || structure.bars.iter().map(|bar| bar.id.as_str());
+        match bar {
+            Some(bar) => match names().find(|name| *name == bar) {
+                Some(name) => Ok((members, vec![name])),
+                None => Err(CommandError::Refused(super::selection::no_such("bar", bar, names()))),
+            },
+            None if structure.bars.is_empty() => Err(CommandError::Refused("the structure has no bars".into())),
+            None => Ok((members, names().collect())),
+        }
     }
 
     fn plot_diagram(
@@ -213,25 +232,10 @@ impl Session {
         height: Option<usize>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let answer = self.need_answer()?;
-        let structure = self.structure().ok_or_else(not_a_structure)?;
-        let Some(members) = &answer.members else {
-            return Err(CommandError::Refused("no member forces: there is no answer".into()));
-        };
-        let names = || structure.bars.iter().map(|bar| bar.id.as_str());
-        let bars: Vec<&str> = match bar {
-            Some(bar) if names().any(|name| name == bar) => vec![bar],
-            Some(bar) => {
-                return Err(CommandError::Refused(super::selection::no_such("bar", bar, names())));
-            }
-            None => names().collect(),
-        };
-        let Some(bar) = bars.first().copied() else {
-            return Err(CommandError::Refused("the structure has no bars".into()));
-        };
-        if bars.len() > 1 {
+        let (members, bars) = self.bars(bar)?;
+        let &[bar] = &bars[..] else {
             return Err(CommandError::Refused(format!("plot: of which bar? One of {}", bars.join(", "))));
-        }
+        };
         io.report(
             || {
                 let points = diagram::series(members, bar, force).map(|series| series.points);
@@ -244,6 +248,32 @@ impl Session {
         )?;
         Ok(())
     }
+}
+
+/// A structure with what is shown on it.
+pub(super) struct Shape<'a> {
+    pub(super) title: String,
+    pub(super) structure: &'a Structure,
+    pub(super) displacements: Option<Vec<NodeDisplacement>>,
+    pub(super) pairs: Option<Vec<PairState>>,
+}
+
+impl Shape<'_> {
+    /// Its picture, so many rows high.
+    pub(super) fn picture(&self, height: usize) -> Picture<'_> {
+        Picture {
+            title: &self.title,
+            structure: self.structure,
+            displacements: self.displacements.as_deref(),
+            pairs: self.pairs.as_deref(),
+            magnification: Magnification::Auto,
+            height,
+        }
+    }
+}
+
+fn borrowed(states: &[(String, Vec<PairState>)]) -> Vec<(&str, &[PairState])> {
+    states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect()
 }
 
 fn not_a_structure() -> CommandError {

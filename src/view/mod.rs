@@ -26,6 +26,7 @@ pub mod stages;
 pub mod status;
 pub mod style;
 pub mod summary;
+pub mod svg;
 pub mod sweep;
 pub mod table;
 pub mod tableau;

@@ -185,7 +185,7 @@ proptest! {
         height in 0..40usize,
         style in style(),
     ) {
-        use structure::{Magnification, Picture};
+        use crate::view::plot::scene::{Magnification, Picture};
         let mut moved = beam_structure();
         for (node, place) in moved.nodes.iter_mut().zip(&places) {
             // A checked structure has finite coordinates.
@@ -225,12 +225,12 @@ proptest! {
 #[test]
 fn an_empty_structure_draws_nothing() {
     let empty = crate::model::structure::Structure::default();
-    let picture = structure::Picture {
+    let picture = crate::view::plot::scene::Picture {
         title: "empty",
         structure: &empty,
         displacements: Some(&[]),
         pairs: None,
-        magnification: structure::Magnification::Auto,
+        magnification: crate::view::plot::scene::Magnification::Auto,
         height: 10,
     };
     let style = Style::default();

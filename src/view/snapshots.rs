@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::plot::{diagram, structure, trace, zone};
+use super::plot::{diagram, scene, structure, trace, zone};
 use super::sample::{beam, beam_ray, beam_structure, cantilever, plates, scenario, units};
 use super::style::Style;
 use super::*;
@@ -67,12 +67,12 @@ fn pictures(style: &Style) -> String {
         let forces = last.members.as_deref().unwrap_or_default();
         let drawn = diagram::Drawing { members: forces, bar: "AF", force: Internal::Axial, height: 8 };
         diagram::write(&mut out, &drawn, &units, style)?;
-        let picture = structure::Picture {
+        let picture = scene::Picture {
             title: "beam",
             structure: &bar,
             displacements: last.displacements.as_deref(),
             pairs: Some(&last.pairs),
-            magnification: structure::Magnification::Auto,
+            magnification: scene::Magnification::Auto,
             height: 16,
         };
         structure::write(&mut out, &picture, style)?;
@@ -83,12 +83,12 @@ fn pictures(style: &Style) -> String {
             let drawn = diagram::Drawing { members: &forces, bar: "AF", force, height: 9 };
             diagram::write(&mut out, &drawn, &units, style)?;
         }
-        let picture = structure::Picture {
+        let picture = scene::Picture {
             title: "cantilever",
             structure: &held,
             displacements: Some(&moved),
             pairs: None,
-            magnification: structure::Magnification::Auto,
+            magnification: scene::Magnification::Auto,
             height: 16,
         };
         structure::write_with_loads(&mut out, &picture, &values, style)?;
@@ -115,12 +115,12 @@ fn pictures(style: &Style) -> String {
                 ..last.pairs[0].clone()
             })
             .collect();
-        let picture = structure::Picture {
+        let picture = scene::Picture {
             title: "plates",
             structure: &plates,
             displacements: Some(&moved),
             pairs: Some(&states),
-            magnification: structure::Magnification::Auto,
+            magnification: scene::Magnification::Auto,
             height: 20,
         };
         structure::write(&mut out, &picture, style)

@@ -2,6 +2,7 @@
 //! says.
 
 mod lcp;
+mod pictures;
 pub(super) mod tables;
 mod vtu;
 
@@ -29,15 +30,16 @@ impl Session {
                 "{file} must end in {fitting}: `help export` says what goes where"
             )));
         }
-        if let Some(word) = of.first().filter(|_| !what.has_arguments()) {
+        if let Some(word) = of.get(what.most_words(ending)) {
             return Err(CommandError::Refused(format!(
-                "export: `{word}` makes no sense here; only the name of the file"
+                "export: `{word}` makes no sense here; `help export` says what does"
             )));
         }
         self.spare_scenario(path)?;
         match what {
             Export::Lcp => return self.export_lcp(path, io),
             Export::Vtu => self.export_vtu(path, ending == "pvd", io),
+            _ if ending == "svg" => self.export_picture(what, of, path, io.watch),
             _ => self.export_table(what, of, path, ending == "csv", io),
         }?;
         Ok(io.say(&format!("wrote {}", path.display()))?)
@@ -61,12 +63,23 @@ impl Export {
             Export::Result | Export::Summary => &["json"],
             Export::Vtu => &["vtu", "pvd"],
             Export::Lcp => &["json", "mtx"],
+            Export::Path => &["csv", "json", "svg"],
+            Export::Structure | Export::Mode | Export::Slip | Export::Force | Export::Gap | Export::Pressure => {
+                &["svg"]
+            }
+            Export::P | Export::Moment | Export::Shear | Export::Axial => &["svg"],
             _ => &["csv", "json"],
         }
     }
 
-    /// Whether words may stand between it and the file.
-    fn has_arguments(self) -> bool {
-        matches!(self, Export::Quantities | Export::Envelope | Export::Sensitivity)
+    /// How many words may stand between it and the file.
+    fn most_words(self, ending: &str) -> usize {
+        match self {
+            Export::Quantities | Export::Envelope => usize::MAX,
+            Export::Slip | Export::Force | Export::Gap | Export::Pressure => usize::MAX,
+            Export::Path if ending == "svg" => usize::MAX,
+            Export::Sensitivity | Export::Moment | Export::Shear | Export::Axial => 1,
+            _ => 0,
+        }
     }
 }

@@ -94,13 +94,10 @@ impl Session {
             Export::Envelope => report(io, |io| self.envelope(of, io))?,
             Export::Answers => report(io, |io| self.enumerate(None, io))?,
             Export::Compare => report(io, |io| self.compare(io))?,
-            Export::Sensitivity if of.len() > 1 => {
-                return Err(CommandError::Refused("export: one parameter at most, and the file".to_owned()));
-            }
             Export::Sensitivity => report(io, |io| self.sensitivity(of.first().map(String::as_str), io))?,
             Export::Summary => report(io, |io| self.summary(io))?,
-            // these have formats of their own
-            Export::Vtu | Export::Lcp => Value::Null,
+            // the others have formats of their own
+            _ => Value::Null,
         })
     }
 

@@ -10,9 +10,8 @@ use crate::tui::app::{PERIOD, Pane, State};
 use crate::view::number::short;
 use crate::view::plot::canvas::{Canvas, Stroke};
 use crate::view::plot::chart::{dotted, range};
-use crate::view::plot::structure::{
-    GRID_PITCH, Magnification, arrows, factor, grid_pitch, lines, load_signs, nodal, pair_sign, support_sign, supported,
-};
+use crate::view::plot::scene::{Magnification, arrows, factor, lines, nodal, supported};
+use crate::view::plot::structure::{GRID_PITCH, grid_pitch, load_signs, pair_sign, support_sign, support_word};
 use crate::view::plot::zone::zone;
 use crate::view::style::Role;
 
@@ -272,7 +271,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         view.place((position[0] + factor * u[0], position[1] + factor * u[1]))
     };
     for (node, held) in supported(structure) {
-        let (sign, word) = support_sign(held, look.ascii);
+        let (sign, word) = (support_sign(held, look.ascii), support_word(held));
         let (x, y) = at(node);
         if view.holds((x, y)) {
             canvas.put(x, y, sign, Role::Muted);

@@ -309,13 +309,7 @@ impl Ticks {
             // All zero: a scale of no size would divide by zero; only its 0 is named.
             return Ticks { low: -1.0, high: 1.0, values: vec![0.0] };
         }
-        let rough = (high - low) / count.max(1) as f64;
-        let power = 10f64.powi(rough.log10().floor() as i32);
-        let step = [1.0, 2.0, 5.0, 10.0]
-            .into_iter()
-            .map(|factor| factor * power)
-            .find(|step| *step >= rough * (1.0 - 1e-9))
-            .unwrap_or(10.0 * power);
+        let step = round_step((high - low) / count.max(1) as f64);
         let first = (low / step + 1e-9).floor() as i64;
         let last = (high / step - 1e-9).ceil() as i64;
         Ticks {
@@ -324,6 +318,23 @@ impl Ticks {
             values: (first..=last).map(|i| i as f64 * step).collect(),
         }
     }
+}
+
+/// The least of 1, 2 or 5 × 10^k that is not less than `rough`.
+fn round_step(rough: f64) -> f64 {
+    let power = 10f64.powi(rough.log10().floor() as i32);
+    let steps = [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power);
+    steps.into_iter().find(|step| *step >= rough * (1.0 - 1e-9)).unwrap_or(10.0 * power)
+}
+
+/// Round places between two values, at most about `count`; none where they are too close to tell apart.
+pub fn round_places(low: f64, high: f64, count: usize) -> Vec<f64> {
+    if high - low < TINY {
+        return Vec::new();
+    }
+    let step = round_step((high - low) / count.max(1) as f64);
+    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+    (first..=last).map(|i| i as f64 * step).collect()
 }
 
 /// A line into which texts are put where nothing stands yet.

@@ -66,15 +66,30 @@ pub struct Drawing<'a> {
 /// Draws the force along a bar and names its extremes; says so where there is no such bar.
 pub fn write(out: &mut dyn Write, drawing: &Drawing<'_>, units: &Units, style: &Style) -> io::Result<()> {
     let Drawing { members, bar, force, height } = *drawing;
-    let Some(series) = series(members, bar, force) else {
+    let (Some(chart), Some(diagram)) = (chart(members, bar, force, units), Diagram::of(members, bar)) else {
         let text = format!("no member forces of a bar {bar}");
         return writeln!(out, "{}", style.fit(&style.text(&text), style.width));
     };
-    let (name, unit) = match force {
+    Chart { height, ..chart }.write(out, style)?;
+    for line in style.wrap(&extremes(&diagram, force, units), style.width) {
+        writeln!(out, "{line}")?;
+    }
+    Ok(())
+}
+
+/// Name of an internal force in a title, and its unit.
+pub fn name(force: Internal, units: &Units) -> (&'static str, Option<String>) {
+    match force {
         Internal::Axial => ("Normal force N", force_unit(units)),
         Internal::Shear => ("Shear force Q", force_unit(units)),
         Internal::Moment => ("Bending moment M", moment_unit(units)),
-    };
+    }
+}
+
+/// The chart of the force along a bar; `None` if there are no forces of such a bar.
+pub fn chart(members: &[MemberForces], bar: &str, force: Internal, units: &Units) -> Option<Chart> {
+    let series = series(members, bar, force)?;
+    let (name, unit) = name(force, units);
     let mut title = format!("{name} along {bar}");
     if let Some(unit) = &unit {
         title.push_str(&format!(" [{unit}]"));
@@ -89,7 +104,7 @@ pub fn write(out: &mut dyn Write, drawing: &Drawing<'_>, units: &Units, style: &
         .map(|(first, last)| vec![(first.0, "start".to_owned()), (last.0, "end".to_owned())]);
     let nodes = Series { label: String::new(), points: node_points(members, bar, &series) };
     let curve = |series: Series, line: Line| Curve { series, number: 0, line };
-    Chart {
+    Some(Chart {
         title,
         curves: vec![curve(series, Line::Plain), curve(nodes, Line::Points)],
         names: joints.unwrap_or_default(),
@@ -97,12 +112,6 @@ pub fn write(out: &mut dyn Write, drawing: &Drawing<'_>, units: &Units, style: &
         abscissa: format!("along {bar}"),
         unit: length_unit(units),
         inverted: force == Internal::Moment,
-        height,
-    }
-    .write(out, style)?;
-    let Some(bar) = Diagram::of(members, bar) else { return Ok(()) };
-    for line in style.wrap(&extremes(&bar, force, units), style.width) {
-        writeln!(out, "{line}")?;
-    }
-    Ok(())
+        ..Chart::default()
+    })
 }

@@ -5,6 +5,7 @@ pub mod canvas;
 pub mod chart;
 pub mod diagram;
 pub mod path;
+pub mod scene;
 pub mod structure;
 pub mod trace;
 pub mod zone;

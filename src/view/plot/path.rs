@@ -1,7 +1,5 @@
 //! Slip or force of chosen pairs over the load or friction, breakpoints marked; hysteresis loops of a history.
 
-use std::io::{self, Write};
-
 use super::Series;
 use super::chart::{Chart, Curve, Line};
 use super::zone::Quantity;
@@ -10,7 +8,6 @@ use crate::model::scenario::Units;
 use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
 use crate::view::number::{denoised, largest};
-use crate::view::style::Style;
 use crate::view::{force_unit, length_unit};
 
 fn read(quantity: Quantity, pair: &PairState) -> f64 {
@@ -58,16 +55,8 @@ fn abscissa(path: &PathRecord) -> (Option<usize>, String) {
     (case, over)
 }
 
-/// Draws a quantity of the pairs (indices) over what was followed.
-pub fn write(
-    out: &mut dyn Write,
-    path: &PathRecord,
-    quantity: Quantity,
-    pairs: &[usize],
-    units: &Units,
-    height: usize,
-    style: &Style,
-) -> io::Result<()> {
+/// The chart of a quantity of the pairs (indices) over what was followed.
+pub fn drawing(path: &PathRecord, quantity: Quantity, pairs: &[usize], units: &Units) -> Chart {
     let (case, over) = abscissa(path);
     let (what, unit) = match quantity {
         Quantity::Slip => ("slip z_τ", length_unit(units)),
@@ -89,21 +78,12 @@ pub fn write(
         curves,
         values: true,
         abscissa: over,
-        height,
         ..Chart::default()
     }
-    .write(out, style)
 }
 
-/// Draws quantities over what was followed, breakpoints marked.
-pub fn write_along(
-    out: &mut dyn Write,
-    path: &PathRecord,
-    along: &[OnPath],
-    units: &Units,
-    height: usize,
-    style: &Style,
-) -> io::Result<()> {
+/// The chart of quantities over what was followed.
+pub fn drawing_along(path: &PathRecord, along: &[OnPath], units: &Units) -> Chart {
     let (case, over) = abscissa(path);
     let abscissas = path.abscissas(case);
     let mut curves = Vec::new();
@@ -124,8 +104,6 @@ pub fn write_along(
         curves,
         values: true,
         abscissa: over,
-        height,
         ..Chart::default()
     }
-    .write(out, style)
 }

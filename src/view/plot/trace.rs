@@ -29,6 +29,11 @@ pub fn write(
     height: usize,
     style: &Style,
 ) -> io::Result<()> {
+    Chart { height, ..drawing(pivots, current, units) }.write(out, style)
+}
+
+/// The chart of p over the pivots.
+pub fn drawing(pivots: &[PivotRecord], current: Option<usize>, units: &Units) -> Chart {
     let unit = force_unit(units).filter(|_| of_contact(pivots));
     let series = p_series("", pivots);
     let mut curves = vec![Curve { series: series.clone(), number: 0, line: Line::Marked }];
@@ -48,8 +53,7 @@ pub fn write(
         },
         curves,
         names: pivots.iter().map(|pivot| (pivot.step as f64, pivot.step.to_string())).collect(),
-        height,
+        abscissa: "pivot".into(),
         ..Chart::default()
     }
-    .write(out, style)
 }

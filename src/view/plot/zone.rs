@@ -97,6 +97,11 @@ pub fn write(
     height: usize,
     style: &Style,
 ) -> io::Result<()> {
+    Chart { height, ..drawing(quantity, states, units) }.write(out, style)
+}
+
+/// The chart of `quantity` for one or several states of the same pairs.
+pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Units) -> Chart {
     let (name, unit) = match quantity {
         Quantity::Slip => ("Slip z_τ", length_unit(units)),
         Quantity::Force => ("Friction force x_τ and its bound ±(f x_n + c)", force_unit(units)),
@@ -126,14 +131,14 @@ pub fn write(
         }
     }
     let pairs = states.first().map_or(&[][..], |(_, pairs)| pairs);
-    let mut chart = chart(name, unit, curves, pairs, units, height);
+    let mut chart = chart(name, unit, curves, pairs, units);
     // A single state is named in the title, several in the legend.
     if let [(label, _)] = states
         && !label.is_empty()
     {
         chart.title.push_str(&format!(" · {label}"));
     }
-    chart.write(out, style)
+    chart
 }
 
 /// Draws the direction of a ray, z̄_n and z̄_τ (largest 1), over the zone of `pairs`.
@@ -157,17 +162,10 @@ pub fn mode(
         .map(|(number, series)| Curve { series, number, line: Line::Marked })
         .collect();
     let title = format!("Direction of the ray: {}", ray.mode);
-    chart(&title, None, curves, pairs, units, height).write(out, style)
+    Chart { height, ..chart(&title, None, curves, pairs, units) }.write(out, style)
 }
 
-fn chart(
-    name: &str,
-    unit: Option<String>,
-    curves: Vec<Curve>,
-    pairs: &[PairState],
-    units: &Units,
-    height: usize,
-) -> Chart {
+fn chart(name: &str, unit: Option<String>, curves: Vec<Curve>, pairs: &[PairState], units: &Units) -> Chart {
     let title = match unit {
         Some(unit) => format!("{name} [{unit}]"),
         None => name.to_owned(),
@@ -181,7 +179,6 @@ fn chart(
         values: zone.is_length,
         abscissa: "along the contact zone".into(),
         unit: length_unit(units),
-        inverted: false,
-        height,
+        ..Chart::default()
     }
 }

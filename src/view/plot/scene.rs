@@ -1,0 +1,329 @@
+//! What a picture of a structure shows, in the coordinates of the model: drawn with characters by `structure`, as SVG
+//! by `view::svg`.
+
+use std::collections::HashMap;
+
+use super::chart::range;
+use crate::answer::record::{NodeDisplacement, PairState, State};
+use crate::model::edge::Sides;
+use crate::model::pair::Pair;
+use crate::model::parameter::ParameterValues;
+use crate::model::structure::{Element, ElementKind, Load, Structure};
+use crate::view::number::short;
+
+/// By how much displacements are enlarged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Magnification {
+    /// So that the largest one is about a tenth of the model.
+    #[default]
+    Auto,
+    /// By this factor.
+    Factor(f64),
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    /// Title.
+    pub title: &'a str,
+    /// The structure.
+    pub structure: &'a Structure,
+    /// Its displacements; the undeformed shape is drawn dotted beside the deformed one.
+    pub displacements: Option<&'a [NodeDisplacement]>,
+    /// States of its contact pairs, in the order of the structure; without them the pairs are marked as such.
+    pub pairs: Option<&'a [PairState]>,
+    /// Magnification of the displacements.
+    pub magnification: Magnification,
+    /// Most rows of the drawing; a flat structure takes fewer.
+    pub height: usize,
+}
+
+/// Straight pieces of a bent frame element.
+const PIECES: usize = 8;
+
+/// u of every node of the structure: (u_x, u_y, rotation), 0 where the list has no such node.
+pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[f64; 3]> {
+    let by_id: HashMap<&str, &NodeDisplacement> = displacements.iter().map(|node| (node.node.as_str(), node)).collect();
+    structure
+        .nodes
+        .iter()
+        .map(|node| by_id.get(node.id.as_str()).map_or([0.0; 3], |u| [u.ux, u.uy, u.rz]))
+        .map(|u| u.map(|u| if u.is_finite() { u } else { 0.0 }))
+        .collect()
+}
+
+/// The factor by which displacements are drawn: the one asked for, or 1, 2 or 5 × 10^k so that the largest becomes
+/// at most a tenth of the model's larger side; 1 where nothing moves.
+pub fn factor(structure: &Structure, u: &[[f64; 3]], magnification: Magnification) -> f64 {
+    if let Magnification::Factor(factor) = magnification {
+        return if factor.is_finite() { factor } else { 1.0 };
+    }
+    let side = |axis: usize| {
+        let (low, high) = range(structure.nodes.iter().map(|node| node.position[axis]));
+        (high - low).max(0.0)
+    };
+    let size = side(0).max(side(1));
+    let largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+    let rough = 0.1 * size / largest;
+    if !(rough.is_finite() && rough > 0.0) {
+        return 1.0;
+    }
+    let power = 10f64.powi(rough.log10().floor() as i32);
+    let nice = [5.0, 2.0, 1.0].into_iter().map(|digit| digit * power).find(|nice| *nice <= rough).unwrap_or(power);
+    if nice.is_finite() && nice > 0.0 { nice } else { 1.0 }
+}
+
+/// Lines of the structure in the plane, displaced by `factor` × u: bars (bent as the element bends), plate outlines,
+/// single quads; plate grids apart, because they are drawn only where there is room.
+#[derive(Clone, Debug)]
+pub struct Lines {
+    /// Bars, outlines, quads.
+    pub outline: Vec<Vec<(f64, f64)>>,
+    /// Inner grid lines of the plates.
+    pub grid: Vec<Vec<(f64, f64)>>,
+    /// Corners of the membranes.
+    pub faces: Vec<Vec<(f64, f64)>>,
+}
+
+/// See [`Lines`].
+pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
+    let at = |node: usize| -> (f64, f64) {
+        let position = structure.nodes.get(node).map_or([0.0; 2], |n| n.position);
+        let u = u.get(node).copied().unwrap_or_default();
+        (position[0] + factor * u[0], position[1] + factor * u[1])
+    };
+    let mut outline = Vec::new();
+    let mut grid = Vec::new();
+    let plates = structure.plates.iter().map(|plate| &plate.elements);
+    let own: Vec<_> = plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)).collect();
+    let in_plate = |index: usize| own.iter().any(|elements| elements.contains(&index));
+    let mut faces = Vec::new();
+    for (index, element) in structure.elements.iter().enumerate() {
+        if matches!(element.kind, ElementKind::Membrane { .. }) {
+            faces.push(element.ring().map(at).collect());
+        }
+        match &element.kind {
+            ElementKind::Truss { .. } => {
+                outline.push(element.nodes.iter().map(|&node| at(node)).collect());
+            }
+            ElementKind::Frame { hinges, .. } => {
+                outline.push(bent(structure, element, *hinges, u, factor));
+            }
+            ElementKind::Membrane { .. } if in_plate(index) => {}
+            ElementKind::Membrane { .. } => {
+                let ring = element.ring().chain(element.nodes.first().copied());
+                outline.push(ring.map(at).collect());
+            }
+        }
+    }
+    for mesh in &structure.meshes {
+        for (side, is_inside) in Sides::of(&structure.elements[mesh.elements.clone()]).all() {
+            let [a, b] = side.ends;
+            let line = [Some(a), side.middle, Some(b)].into_iter().flatten().map(at).collect();
+            if is_inside { grid.push(line) } else { outline.push(line) }
+        }
+    }
+    for plate in &structure.plates {
+        let last = plate.nodes.len().saturating_sub(1);
+        for (j, row) in plate.nodes.iter().enumerate() {
+            let line: Vec<_> = row.iter().map(|&node| at(node)).collect();
+            if j == 0 || j == last {
+                outline.push(line);
+            } else {
+                grid.push(line);
+            }
+        }
+        let columns = plate.nodes.iter().map(Vec::len).min().unwrap_or(0);
+        for i in 0..columns {
+            let line: Vec<_> = plate.nodes.iter().map(|row| at(row[i])).collect();
+            if i == 0 || i + 1 == columns {
+                outline.push(line);
+            } else {
+                grid.push(line);
+            }
+        }
+    }
+    Lines { outline, grid, faces }
+}
+
+/// Shape of a frame element: linear along it, cubic across it; at a hinge its end turns freely.
+fn bent(structure: &Structure, element: &Element, hinges: [bool; 2], u: &[[f64; 3]], factor: f64) -> Vec<(f64, f64)> {
+    let &[a, b] = &element.nodes[..] else {
+        return Vec::new();
+    };
+    let (Some(start), Some(end)) = (structure.nodes.get(a), structure.nodes.get(b)) else {
+        return Vec::new();
+    };
+    let (p, q) = (start.position, end.position);
+    let (ua, ub) = (u.get(a).copied().unwrap_or_default(), u.get(b).copied().unwrap_or_default());
+    let length = (q[0] - p[0]).hypot(q[1] - p[1]);
+    if length <= 0.0 || !length.is_finite() {
+        return vec![(p[0], p[1])];
+    }
+    let (c, s) = ((q[0] - p[0]) / length, (q[1] - p[1]) / length);
+    let axial = |u: [f64; 3]| c * u[0] + s * u[1];
+    let across = |u: [f64; 3]| -s * u[0] + c * u[1];
+    let chord = (across(ub) - across(ua)) / length;
+    // End rotations; without a moment at an end: θ₁ = 3/2 chord − θ₂/2.
+    let (turn_a, turn_b) = match hinges {
+        [false, false] => (ua[2], ub[2]),
+        [true, false] => (1.5 * chord - 0.5 * ub[2], ub[2]),
+        [false, true] => (ua[2], 1.5 * chord - 0.5 * ua[2]),
+        [true, true] => (chord, chord),
+    };
+    let straight = (across(ua), across(ub), turn_a, turn_b) == (0.0, 0.0, 0.0, 0.0);
+    let pieces = if straight { 1 } else { PIECES };
+    (0..=pieces)
+        .map(|i| {
+            let t = i as f64 / pieces as f64;
+            let along = axial(ua) + t * (axial(ub) - axial(ua));
+            let v = (1.0 - 3.0 * t * t + 2.0 * t * t * t) * across(ua)
+                + (3.0 * t * t - 2.0 * t * t * t) * across(ub)
+                + length * (t - 2.0 * t * t + t * t * t) * turn_a
+                + length * (t * t * t - t * t) * turn_b;
+            let x = p[0] + t * (q[0] - p[0]) + factor * (c * along - s * v);
+            let y = p[1] + t * (q[1] - p[1]) + factor * (s * along + c * v);
+            (x, y)
+        })
+        .collect()
+}
+
+/// Where a load acts and in which direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrow {
+    /// The node, or the ends of the element.
+    pub nodes: Vec<usize>,
+    /// Sum of all cases, each by its factor.
+    pub force: [f64; 2],
+}
+
+/// Forces on nodes and elements, all cases added up; those that cancel out are left out.
+pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow> {
+    let mut arrows: Vec<Arrow> = Vec::new();
+    let mut places: HashMap<Vec<usize>, usize> = HashMap::new();
+    for case in &structure.load_cases {
+        let factor = case.factor.value(parameters);
+        for load in &case.loads {
+            let at = |element: usize| structure.elements.get(element).map(|element| element.nodes.clone());
+            let (nodes, force) = match load {
+                Load::Nodal { node, force, .. } => (Some(vec![*node]), *force),
+                Load::Line { element, value: [a, b], .. } => (at(*element), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]),
+                Load::BarPoint { element, force, .. } => (at(*element), *force),
+                // They act everywhere, or along no direction.
+                Load::Body { .. } | Load::FreeStrain { .. } | Load::Settlement { .. } => continue,
+            };
+            let Some(nodes) = nodes else { continue };
+            let place = *places.entry(nodes.clone()).or_insert_with(|| {
+                arrows.push(Arrow { nodes, force: [0.0; 2] });
+                arrows.len() - 1
+            });
+            arrows[place].force[0] += factor * force[0];
+            arrows[place].force[1] += factor * force[1];
+        }
+    }
+    let size = |arrow: &Arrow| arrow.force[0].hypot(arrow.force[1]);
+    let most = arrows.iter().map(size).fold(0.0, f64::max);
+    arrows.retain(|arrow| size(arrow) > 1e-9 * most);
+    arrows
+}
+
+/// What a picture shows, in the coordinates of the model: the same for characters and for SVG.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Title, with the magnification where there are displacements.
+    pub title: String,
+    /// By how much the displacements are enlarged.
+    pub factor: f64,
+    /// Whether anything is displaced.
+    pub is_deformed: bool,
+    /// The undeformed structure.
+    pub before: Lines,
+    /// The structure as displaced.
+    pub now: Lines,
+    /// Supported nodes and how many components of each are held.
+    pub supports: Vec<((f64, f64), usize)>,
+    /// The contact pairs.
+    pub pairs: Vec<PairMark>,
+    /// Loads: where they act and which force.
+    pub loads: Vec<((f64, f64), [f64; 2])>,
+    /// Least and largest x and y of all of it; `None` where there is nothing to draw.
+    pub bounds: Option<[[f64; 2]; 2]>,
+}
+
+/// A contact pair in a picture.
+#[derive(Clone, Debug)]
+pub struct PairMark {
+    /// Its place, displaced.
+    pub place: (f64, f64),
+    /// Its id.
+    pub id: String,
+    /// Its state; `None` where none is shown.
+    pub state: Option<State>,
+    /// Unit tangent t.
+    pub tangent: [f64; 2],
+}
+
+impl Scene {
+    /// The scene of a picture, with an arrow for each load.
+    pub fn new(picture: &Picture<'_>, arrows: &[Arrow]) -> Scene {
+        let structure = picture.structure;
+        let rest = vec![[0.0; 3]; structure.nodes.len()];
+        let u = picture.displacements.map(|displacements| nodal(structure, displacements));
+        let moved = u.as_ref().unwrap_or(&rest);
+        let factor = factor(structure, moved, picture.magnification);
+        let mut title = picture.title.to_owned();
+        if u.is_some() {
+            title.push_str(&format!(" · displacements × {}", short(factor)));
+        }
+        let (before, now) = (lines(structure, &rest, 0.0), lines(structure, moved, factor));
+        let all = || {
+            let outlines = before.outline.iter().chain(&now.outline).flatten().copied();
+            let nodes = structure.nodes.iter().map(|n| (n.position[0], n.position[1]));
+            outlines.chain(nodes).filter(|(x, y)| x.is_finite() && y.is_finite())
+        };
+        let (left, right) = range(all().map(|(x, _)| x));
+        let (bottom, top) = range(all().map(|(_, y)| y));
+        let bounds = all().next().map(|_| [[left, right], [bottom, top]]);
+        let at = |node: usize| {
+            let position = structure.nodes.get(node).map_or([0.0; 2], |n| n.position);
+            let u = moved.get(node).copied().unwrap_or_default();
+            (position[0] + factor * u[0], position[1] + factor * u[1])
+        };
+        let middle = |nodes: &[usize]| {
+            let sum = nodes.iter().map(|&node| at(node)).fold((0.0, 0.0), |sum, at| (sum.0 + at.0, sum.1 + at.1));
+            let count = nodes.len().max(1) as f64;
+            (sum.0 / count, sum.1 / count)
+        };
+        let mark = |(index, pair): (usize, &Pair)| PairMark {
+            place: at(pair.node),
+            id: pair.id.clone(),
+            state: picture.pairs.and_then(|states| states.get(index)).map(|state| state.state),
+            tangent: pair.tangent(),
+        };
+        Scene {
+            title,
+            factor,
+            is_deformed: moved.iter().any(|u| *u != [0.0; 3]) && factor != 0.0,
+            supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
+            pairs: structure.pairs.iter().enumerate().map(mark).collect(),
+            loads: arrows.iter().map(|arrow| (middle(&arrow.nodes), arrow.force)).collect(),
+            before,
+            now,
+            bounds,
+        }
+    }
+}
+
+/// Nodes with supports and how many components each holds.
+pub fn supported(structure: &Structure) -> Vec<(usize, usize)> {
+    let mut held: Vec<(usize, usize)> = Vec::new();
+    let mut place: HashMap<usize, usize> = HashMap::new();
+    for support in &structure.supports {
+        let index = *place.entry(support.node).or_insert_with(|| {
+            held.push((support.node, 0));
+            held.len() - 1
+        });
+        held[index].1 += 1;
+    }
+    held
+}

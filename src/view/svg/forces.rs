@@ -1,0 +1,149 @@
+//! Member forces drawn along the bars of a structure: moments on the tension side.
+
+use super::structure::{AROUND, Place, draw_lines};
+use super::{Anchor, BLACK, COLOURS, Caption, Drawing, SMALL};
+use crate::answer::diagram::{Diagram, Internal};
+use crate::answer::record::MemberForces;
+use crate::model::structure::{Bar, Structure};
+use crate::view::number::{denoised, largest, short};
+use crate::view::plot::diagram::series;
+use crate::view::plot::scene::Scene;
+
+/// Height of the largest ordinate.
+const ORDINATE: f64 = 60.0;
+
+/// A bar as a line: where a distance from its start is, and the direction of +y there.
+struct Axis {
+    /// (distance of the start, place of the start, unit vector along, length) of each element.
+    elements: Vec<(f64, [f64; 2], [f64; 2], f64)>,
+}
+
+impl Axis {
+    fn of(structure: &Structure, bar: &Bar) -> Axis {
+        let mut from = 0.0;
+        let mut elements = Vec::new();
+        for element in structure.elements[bar.elements.clone()].iter() {
+            let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+            elements.push((from, a, [(b[0] - a[0]) / length, (b[1] - a[1]) / length], length));
+            from += length;
+        }
+        Axis { elements }
+    }
+
+    /// The place at a distance; `late` takes the element after a node that lies there.
+    fn at(&self, distance: f64, late: bool) -> ((f64, f64), (f64, f64)) {
+        let begun = |start: f64| if late { start <= distance } else { start < distance };
+        let element = self.elements.iter().rev().find(|(start, ..)| begun(*start)).or(self.elements.first());
+        let &(start, a, [c, s], _) = element.unwrap_or(&(0.0, [0.0; 2], [1.0, 0.0], 0.0));
+        let along = distance - start;
+        ((a[0] + along * c, a[1] + along * s), (-s, c))
+    }
+}
+
+/// Which forces are drawn.
+pub struct Bars<'a> {
+    /// The structure.
+    pub structure: &'a Structure,
+    /// Its forces.
+    pub members: &'a [MemberForces],
+    /// Ids of the bars.
+    pub bars: &'a [&'a str],
+    /// N, Q or M.
+    pub force: Internal,
+}
+
+/// The figure; `unit` is that of lengths.
+pub fn figure(scene: &Scene, of: &Bars<'_>, unit: Option<&str>, caption: &Caption) -> String {
+    let Bars { structure, members, bars, force } = *of;
+    let mut drawing = Drawing::new(caption);
+    let Some(bounds) = scene.bounds else {
+        drawing.paragraph("nothing to draw", SMALL, "", BLACK);
+        return drawing.finish();
+    };
+    let place = Place::new(&drawing, bounds, AROUND + ORDINATE);
+    let end = drawing.y + (bounds[1][1] - bounds[1][0]) * place.scale + 2.0 * (AROUND + ORDINATE);
+    draw_lines(&mut drawing, scene, &place);
+    let drawn: Vec<(&Bar, Vec<(f64, f64)>)> = structure
+        .bars
+        .iter()
+        .filter(|bar| bars.contains(&bar.id.as_str()))
+        .filter_map(|bar| Some((bar, series(members, &bar.id, force)?.points)))
+        .collect();
+    let most = largest(drawn.iter().flat_map(|(_, points)| points.iter().map(|(_, value)| *value)));
+    // positive moments on the −y side, where their tension is
+    let side = if force == Internal::Moment { -1.0 } else { 1.0 };
+    let mut labels: Vec<Label> = Vec::new();
+    for (bar, points) in &drawn {
+        let axis = Axis::of(structure, bar);
+        let ordinate = |distance: f64, value: f64, late: bool| {
+            let (at, (nx, ny)) = axis.at(distance, late);
+            let (x, y) = place.at(at);
+            let height = if most > 0.0 { side * denoised(value, most) / most * ORDINATE } else { 0.0 };
+            ((x, y), (x + height * nx, y - height * ny))
+        };
+        let ends: Vec<_> = points
+            .iter()
+            .enumerate()
+            // of two values at one place the second belongs to what comes after it
+            .map(|(i, &(s, value))| ordinate(s, value, i > 0 && points[i - 1].0 == s || i == 0))
+            .collect();
+        let shape: Vec<(f64, f64)> =
+            ends.iter().map(|(_, tip)| *tip).chain(ends.iter().rev().map(|(foot, _)| *foot)).collect();
+        let words: Vec<String> = shape.iter().map(|(x, y)| format!("{},{}", super::px(*x), super::px(*y))).collect();
+        let colour = COLOURS[0];
+        drawing.put(&format!(
+            "<polygon points=\"{}\" fill=\"{colour}\" fill-opacity=\"0.15\" stroke=\"{colour}\" stroke-width=\"1.3\" \
+             stroke-linejoin=\"round\"/>",
+            words.join(" ")
+        ));
+        if let Some(diagram) = Diagram::of(members, &bar.id) {
+            for extreme in diagram.extremes(force) {
+                let value = denoised(extreme.value, most);
+                // a constant one is named in its middle
+                let constant =
+                    diagram.extremes(force).iter().all(|other| denoised(other.value - extreme.value, most) == 0.0);
+                let distance = if constant { 0.5 * diagram.length() } else { extreme.distance };
+                if value != 0.0 {
+                    let (foot, tip) = ordinate(distance, value, false);
+                    labels.push(Label { foot, tip, value });
+                }
+            }
+        }
+    }
+    name_extremes(&mut drawing, labels);
+    drawing.y = end;
+    place.scale_bar(&mut drawing, unit);
+    drawing.finish()
+}
+
+/// An ordinate that is named.
+struct Label {
+    foot: (f64, f64),
+    tip: (f64, f64),
+    value: f64,
+}
+
+/// Writes the values beyond the tips of their ordinates, the largest first: where there is no room the small ones stay
+/// out. What meets with the same value is named once.
+fn name_extremes(drawing: &mut Drawing, mut labels: Vec<Label>) {
+    labels.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
+    let mut named: Vec<((f64, f64), String)> = Vec::new();
+    for Label { foot, tip, value } in labels {
+        let text = short(value);
+        let (x, y) = tip;
+        if named.iter().any(|((other_x, other_y), other)| *other == text && (x - other_x).hypot(y - other_y) < 3.0) {
+            continue;
+        }
+        let (dx, dy) = (tip.0 - foot.0, tip.1 - foot.1);
+        let (at, anchor) = match (dx.abs() > dy.abs(), dx > 0.0, dy > 0.0) {
+            (true, true, _) => ((x + 6.0, y + 4.0), Anchor::Start),
+            (true, false, _) => ((x - 6.0, y + 4.0), Anchor::End),
+            (false, _, true) => ((x, y + 15.0), Anchor::Middle),
+            (false, _, false) => ((x, y - 5.0), Anchor::Middle),
+        };
+        if drawing.text_if_free(at, &text, anchor, BLACK) {
+            named.push((tip, text));
+        }
+    }
+}

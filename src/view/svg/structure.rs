@@ -1,0 +1,222 @@
+//! The structure with its supports, the states of its pairs, its loads and its deformed shape.
+
+use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FACE, FAINT, GREY, MARGIN, SMALL, Sign, WIDTH, points};
+use crate::answer::record::State;
+use crate::view::number::{short, with_unit};
+use crate::view::plot::chart::round_places;
+use crate::view::plot::scene::Scene;
+use crate::view::plot::structure::support_word;
+
+/// Most height of the structure itself.
+const HEIGHT: f64 = 420.0;
+/// Room around the structure for arrows, signs and names.
+pub(super) const AROUND: f64 = 46.0;
+/// Grid lines closer than this are left out.
+const GRID: f64 = 5.0;
+
+/// The place of the model in a figure.
+pub(super) struct Place {
+    left: f64,
+    top: f64,
+    /// Of the model: least x, largest y.
+    corner: (f64, f64),
+    /// px per unit of length.
+    pub(super) scale: f64,
+    /// Height of the whole area.
+    height: f64,
+}
+
+impl Place {
+    /// Below what is drawn already; `room` is kept free around the structure.
+    pub(super) fn new(drawing: &Drawing, bounds: [[f64; 2]; 2], room: f64) -> Place {
+        let [[left, right], [bottom, top]] = bounds;
+        let (wide, high) = ((right - left).max(0.0), (top - bottom).max(0.0));
+        let width = WIDTH - 2.0 * MARGIN - 2.0 * room;
+        let scale = f64::min(width / wide, HEIGHT / high);
+        let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
+        Place {
+            left: 0.5 * (WIDTH - wide * scale),
+            top: drawing.y + room,
+            corner: (left, top),
+            scale,
+            height: high * scale + 2.0 * room,
+        }
+    }
+
+    /// From the model to the figure.
+    pub(super) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (self.left + (x - self.corner.0) * self.scale, self.top + (self.corner.1 - y) * self.scale)
+    }
+
+    pub(super) fn all(&self, lines: &[Vec<(f64, f64)>]) -> Vec<Vec<(f64, f64)>> {
+        lines.iter().map(|line| line.iter().map(|&point| self.at(point)).collect()).collect()
+    }
+
+    /// A length of the model, drawn as long as it is.
+    pub(super) fn scale_bar(&self, drawing: &mut Drawing, unit: Option<&str>) {
+        let most = 120.0 / self.scale;
+        let Some(&length) = round_places(0.0, most, 2).last().filter(|length| **length > 0.0) else { return };
+        let (x, y) = (WIDTH - MARGIN - length * self.scale, drawing.y);
+        drawing.line((x, y), (WIDTH - MARGIN, y), BLACK, 1.5, "");
+        for x in [x, WIDTH - MARGIN] {
+            drawing.line((x, y - 4.0), (x, y + 4.0), BLACK, 1.5, "");
+        }
+        let label = with_unit(&short(length), unit);
+        drawing.text((x - 8.0, y + 4.0), &label, SMALL, Anchor::End, BLACK, "");
+    }
+}
+
+/// The sign of a pair; a slip points along its tangent, (x, y) in the figure.
+pub(super) fn pair(drawing: &mut Drawing, at: (f64, f64), state: Option<State>, tangent: (f64, f64), radius: f64) {
+    let (x, y) = at;
+    let r = radius;
+    match state {
+        Some(State::Stick) => drawing.circle(at, r, COLOURS[0], COLOURS[0]),
+        Some(State::Open) => drawing.circle(at, r, "#ffffff", BLACK),
+        Some(State::Closed) => {
+            let square = [(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)];
+            drawing.polygon(&square, COLOURS[2], COLOURS[2]);
+        }
+        Some(slip) => {
+            let sign = if slip == State::SlipPlus { 1.3 * r } else { -1.3 * r };
+            let (c, s) = (sign * tangent.0, sign * tangent.1);
+            let tip = (x + c, y + s);
+            let wings =
+                [(x - 0.7 * c - 0.8 * s, y - 0.7 * s + 0.8 * c), (x - 0.7 * c + 0.8 * s, y - 0.7 * s - 0.8 * c)];
+            drawing.polygon(&[tip, wings[0], wings[1]], COLOURS[1], COLOURS[1]);
+        }
+        None => drawing.circle(at, 0.7 * r, "#ffffff", COLOURS[0]),
+    }
+}
+
+/// The sign of a support that holds so many components, under its node.
+pub(super) fn support(drawing: &mut Drawing, (x, y): (f64, f64), held: usize, r: f64) {
+    match held {
+        3.. => {
+            let square = [(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)];
+            drawing.polygon(&square, FAINT, BLACK);
+            drawing.line((x - r, y + r), (x + r, y - r), BLACK, 1.0, "");
+        }
+        2 => drawing.polygon(&[(x, y - 0.4 * r), (x + r, y + 1.4 * r), (x - r, y + 1.4 * r)], "#ffffff", BLACK),
+        _ => drawing.polygon(&[(x, y - r), (x + 0.8 * r, y), (x, y + r), (x - 0.8 * r, y)], "#ffffff", BLACK),
+    }
+}
+
+/// The figure; `unit` is that of lengths.
+pub fn figure(scene: &Scene, unit: Option<&str>, caption: &Caption) -> String {
+    let mut drawing = Drawing::new(caption);
+    let Some(bounds) = scene.bounds else {
+        drawing.paragraph("nothing to draw", SMALL, "", BLACK);
+        return drawing.finish();
+    };
+    let place = Place::new(&drawing, bounds, AROUND);
+    let top = drawing.y;
+    draw_lines(&mut drawing, scene, &place);
+    let mut legend = Vec::new();
+    let note = |legend: &mut Vec<(Sign, String)>, sign: Sign, word: &str| {
+        if !legend.iter().any(|(known, _)| *known == sign) {
+            legend.push((sign, word.to_owned()));
+        }
+    };
+    let radius = sign_radius(scene, &place);
+    for &(at, held) in &scene.supports {
+        support(&mut drawing, place.at(at), held, radius);
+        drawing.take(place.at(at), 1.5 * radius);
+        note(&mut legend, Sign::Support(held), support_word(held));
+    }
+    draw_loads(&mut drawing, scene, &place, bounds);
+    for mark in &scene.pairs {
+        let at = place.at(mark.place);
+        pair(&mut drawing, at, mark.state, (mark.tangent[0], -mark.tangent[1]), radius);
+        drawing.take(at, 1.4 * radius);
+        note(&mut legend, Sign::Pair(mark.state), mark.state.map_or("contact pair", State::word));
+    }
+    name_pairs(&mut drawing, scene, &place);
+    if !scene.loads.is_empty() {
+        note(&mut legend, Sign::Load, "load");
+    }
+    if scene.is_deformed {
+        note(&mut legend, Sign::Undeformed, "undeformed");
+    }
+    drawing.y = top + place.height;
+    place.scale_bar(&mut drawing, unit);
+    drawing.y += 4.0;
+    drawing.legend(&legend);
+    drawing.finish()
+}
+
+/// Membranes as faces, their inner grid where there is room, bars and outlines; the undeformed ones dashed.
+pub(super) fn draw_lines(drawing: &mut Drawing, scene: &Scene, place: &Place) {
+    let faces: String =
+        place.all(&scene.now.faces).iter().map(|face| format!("M{}Z", points(face))).collect::<Vec<_>>().concat();
+    if !faces.is_empty() {
+        drawing.put(&format!("<path d=\"{faces}\" fill=\"{FACE}\"/>"));
+    }
+    if scene.is_deformed {
+        drawing.lines(&place.all(&scene.before.outline), GREY, 1.0, "stroke-dasharray=\"4 3\"");
+    }
+    let close = |line: &Vec<(f64, f64)>| {
+        line.windows(2).any(|ends| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1) < GRID)
+    };
+    let grid = place.all(&scene.now.grid);
+    if !grid.iter().any(close) {
+        drawing.lines(&grid, FAINT, 0.7, "");
+    }
+    drawing.lines(&place.all(&scene.now.outline), BLACK, 2.0, "");
+}
+
+/// Signs shrink where pairs or supports stand close together.
+fn sign_radius(scene: &Scene, place: &Place) -> f64 {
+    let closest = |places: Vec<(f64, f64)>| {
+        let gaps = places.windows(2).map(|ends| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1));
+        gaps.filter(|gap| *gap > 0.0).fold(f64::INFINITY, f64::min)
+    };
+    let pairs = closest(scene.pairs.iter().map(|pair| place.at(pair.place)).collect());
+    let supports = closest(scene.supports.iter().map(|(at, _)| place.at(*at)).collect());
+    (0.42 * pairs.min(supports)).clamp(2.0, 5.5)
+}
+
+/// An arrow for each load, as long as the root of its share of the largest: from outside to its place, or from there
+/// where it pulls away from the structure.
+fn draw_loads(drawing: &mut Drawing, scene: &Scene, place: &Place, [x, y]: [[f64; 2]; 2]) {
+    let size = |force: &[f64; 2]| force[0].hypot(force[1]);
+    let most = scene.loads.iter().map(|(_, force)| size(force)).fold(0.0, f64::max);
+    let middle = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
+    for (at, force) in &scene.loads {
+        let share = (size(force) / most).sqrt();
+        let (length, apart) = (10.0 + 22.0 * share, 7.0);
+        let (c, s) = (force[0] / size(force), -force[1] / size(force));
+        let here = place.at(*at);
+        let outward = (at.0 - middle.0) * force[0] + (at.1 - middle.1) * force[1];
+        // how far from the middle along the force, in px: a pull at the very end leads away from the structure
+        let pulls = outward / size(force) * place.scale > 0.25 * WIDTH;
+        let (from, to) = if pulls { (apart, apart + length) } else { (-apart - length, -apart) };
+        let on_line = |distance: f64| (here.0 + distance * c, here.1 + distance * s);
+        drawing.arrow(on_line(from), on_line(to), BLACK);
+        for step in 0..=4 {
+            drawing.take(on_line(from + (to - from) * f64::from(step) / 4.0), 4.0);
+        }
+    }
+}
+
+/// The names of all pairs or, where they do not all find room, of the first and the last.
+fn name_pairs(drawing: &mut Drawing, scene: &Scene, place: &Place) {
+    let name = |drawing: &mut Drawing, index: usize| {
+        let mark = &scene.pairs[index];
+        let (x, y) = place.at(mark.place);
+        let places = [
+            ((x, y + 22.0), Anchor::Middle),
+            ((x, y - 13.0), Anchor::Middle),
+            ((x + 11.0, y + 4.0), Anchor::Start),
+            ((x - 11.0, y + 4.0), Anchor::End),
+        ];
+        places.into_iter().any(|(at, anchor)| drawing.text_if_free(at, &mark.id, anchor, GREY))
+    };
+    let mut named = drawing.clone();
+    if (0..scene.pairs.len()).all(|index| name(&mut named, index)) {
+        *drawing = named;
+    } else {
+        name(drawing, 0);
+        name(drawing, scene.pairs.len() - 1);
+    }
+}
