@@ -185,6 +185,7 @@ impl Prepared {
         if let Geometry::Contact { remarks, .. } = &*self.geometry {
             solved.answer.notes.extend(remarks.iter().cloned());
         }
+        solved.answer.notes.extend(scenario.notes.iter().cloned());
         if !scenario.stages.is_empty() {
             solved.answer.notes.push(
                 "every load case acts at once with its factor: the load history of the scenario was not followed \

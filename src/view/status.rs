@@ -322,7 +322,7 @@ pub fn write(
             ));
         }
     }
-    for (i, note) in scenario.notes.iter().chain(&answer.notes).enumerate() {
+    for (i, note) in answer.notes.iter().enumerate() {
         rows.push((if i == 0 { "notes" } else { "" }, note.clone()));
     }
     if !parameters.is_empty() {

@@ -14,7 +14,7 @@ use super::assemble::{RawGroup, RawMembers, RawMesh};
 use super::{MeshProblem, Place, Shape};
 use crate::model::words::quoted;
 use cards::{Card, Cards, Keyword, number, whole};
-use sets::Sets;
+use sets::{Sets, bare};
 use types::ElementType;
 
 /// What the data lines that come next belong to.
@@ -366,9 +366,9 @@ impl Reader<'_> {
         if surface.of_nodes {
             let mut tags = Vec::new();
             for (of, _, place) in &surface.items {
-                match (whole(of), self.node_sets.find(of)) {
-                    (Some(tag), _) if self.mesh.node(tag).is_some() => tags.push(tag),
-                    (None, Some(set)) => tags.extend(&node_sets[set]),
+                match (self.node_sets.find(of), whole(bare(of))) {
+                    (None, Some(tag)) if self.mesh.node(tag).is_some() => tags.push(tag),
+                    (Some(set), _) => tags.extend(&node_sets[set]),
                     _ => return Err(unknown("node or node set", of, *place)),
                 }
             }
@@ -376,9 +376,9 @@ impl Reader<'_> {
         }
         let mut sides = Vec::new();
         for (of, face, place) in &surface.items {
-            let tags = match (whole(of), self.element_sets.find(of)) {
-                (Some(tag), _) if element_of.contains_key(&tag) => vec![tag],
-                (None, Some(set)) => element_sets[set].clone(),
+            let tags = match (self.element_sets.find(of), whole(bare(of))) {
+                (None, Some(tag)) if element_of.contains_key(&tag) => vec![tag],
+                (Some(set), _) => element_sets[set].clone(),
                 _ => return Err(unknown("element or element set", of, *place)),
             };
             for tag in tags {

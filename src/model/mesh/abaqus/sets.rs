@@ -6,6 +6,9 @@ use super::cards::{Cards, unquoted, whole};
 use super::{MeshProblem, Place};
 use crate::model::words::{did_you_mean, quoted};
 
+/// Members of all sets together: more would not be a mesh but a claim on memory.
+const MOST_MEMBERS: usize = 20_000_000;
+
 /// What a line of a set names.
 enum Entry {
     One(u64, Place),
@@ -44,10 +47,9 @@ pub struct Members<'a> {
     pub of_elements: NodesOf<'a>,
 }
 
-/// A name without the instance before it.
-fn bare(name: &str) -> &str {
-    let name = unquoted(name);
-    name.rsplit_once('.').map_or(name, |(_, name)| name)
+/// A name or number without the instance before it: `Part-1-1.17`.
+pub fn bare(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(_, name)| unquoted(name))
 }
 
 impl Sets {
@@ -91,9 +93,9 @@ impl Sets {
     ) -> Result<(), MeshProblem> {
         let named = fields.iter().filter(|field| !field.is_empty());
         if !generate {
-            self.all[set].entries.extend(named.map(|field| match whole(bare(field)) {
+            self.all[set].entries.extend(named.map(|field| match whole(field) {
                 Some(tag) => Entry::One(tag, place),
-                None => Entry::Set(bare(field).to_owned(), place),
+                None => Entry::Set(field.clone(), place),
             }));
             return Ok(());
         }
@@ -123,64 +125,64 @@ impl Sets {
     pub fn resolved(&self, members: &Members<'_>, cards: &Cards<'_>) -> Result<Vec<Vec<u64>>, MeshProblem> {
         let mut done: Vec<Option<Vec<u64>>> = Vec::new();
         done.resize_with(self.all.len(), || None);
+        let mut on_path = vec![false; self.all.len()];
+        let mut total = 0;
         for set in 0..self.all.len() {
-            self.resolve(set, members, cards, &mut done)?;
+            // Without recursion: a file may chain any number of sets. Each on the path with the entry it waits for.
+            let mut path = vec![(set, 0)];
+            while let Some((set, from)) = path.pop() {
+                if done[set].is_some() {
+                    continue;
+                }
+                on_path[set] = true;
+                if let Some((entry, part)) = self.unfinished(set, from, &done, &on_path, cards)? {
+                    path.extend([(set, entry), (part, 0)]);
+                    continue;
+                }
+                let numbers = self.numbers(set, members, cards, &done)?;
+                total += numbers.len();
+                if total > MOST_MEMBERS {
+                    let Set { name, place, .. } = &self.all[set];
+                    let message = format!("{} \"{name}\": all sets together have too many members", self.what);
+                    return Err(cards.problem(*place, message, "remove sets that are not needed"));
+                }
+                done[set] = Some(numbers);
+                on_path[set] = false;
+            }
         }
         Ok(done.into_iter().map(Option::unwrap_or_default).collect())
     }
 
-    /// Resolves a set and those it is made of, without recursion: a file may chain any number of them.
-    fn resolve(
+    /// The first entry from `from` on that is a set which is not done, and that set.
+    fn unfinished(
         &self,
-        start: usize,
-        members: &Members<'_>,
+        set: usize,
+        from: usize,
+        done: &[Option<Vec<u64>>],
+        on_path: &[bool],
         cards: &Cards<'_>,
-        done: &mut [Option<Vec<u64>>],
-    ) -> Result<(), MeshProblem> {
-        let mut path = vec![start];
-        let mut on_path = vec![false; self.all.len()];
-        on_path[start] = true;
-        while let Some(&set) = path.last() {
-            if done[set].is_some() {
-                path.pop();
-                continue;
-            }
-            let Set { name, entries, .. } = &self.all[set];
-            let mut waits = None;
-            for entry in entries {
-                let Entry::Set(other, place) = entry else { continue };
-                let Some(&index) = self.by_name.get(&other.to_uppercase()) else {
-                    let known = self.all.iter().map(|set| set.name.as_str());
-                    return Err(cards.problem(
-                        *place,
-                        format!(
-                            "{} \"{name}\" names the set {}, which is not there{}",
-                            self.what,
-                            quoted(other),
-                            did_you_mean(other, known)
-                        ),
-                        "define it, or correct the name",
-                    ));
-                };
-                if done[index].is_none() {
-                    if on_path[index] {
-                        let message = format!("{} \"{name}\" contains itself through \"{other}\"", self.what);
-                        return Err(cards.problem(*place, message, "remove one of the two from the other"));
-                    }
-                    waits = Some(index);
-                    break;
+    ) -> Result<Option<(usize, usize)>, MeshProblem> {
+        let Set { name, entries, .. } = &self.all[set];
+        for (at, entry) in entries.iter().enumerate().skip(from) {
+            let Entry::Set(other, place) = entry else { continue };
+            let Some(index) = self.find(other) else {
+                if whole(bare(other)).is_some() {
+                    continue;
                 }
+                let near = did_you_mean(other, self.all.iter().map(|set| set.name.as_str()));
+                let message =
+                    format!("{} \"{name}\" names the set {}, which is not there{near}", self.what, quoted(other));
+                return Err(cards.problem(*place, message, "define it, or correct the name"));
+            };
+            if done[index].is_none() {
+                if on_path[index] {
+                    let message = format!("{} \"{name}\" contains itself through {}", self.what, quoted(other));
+                    return Err(cards.problem(*place, message, "remove one of the two from the other"));
+                }
+                return Ok(Some((at, index)));
             }
-            if let Some(index) = waits {
-                on_path[index] = true;
-                path.push(index);
-                continue;
-            }
-            done[set] = Some(self.numbers(set, members, cards, done)?);
-            on_path[set] = false;
-            path.pop();
         }
-        Ok(())
+        Ok(None)
     }
 
     /// The numbers of a set whose parts are done.
@@ -194,19 +196,7 @@ impl Sets {
         let mut numbers = Vec::new();
         for entry in &self.all[set].entries {
             match entry {
-                Entry::One(tag, place) => {
-                    if members.sorted.binary_search(tag).is_err() {
-                        return Err(cards.problem(
-                            *place,
-                            format!(
-                                "{} \"{}\" names {tag}, which the file does not have",
-                                self.what, self.all[set].name
-                            ),
-                            "remove it from the set, or save the mesh as a whole",
-                        ));
-                    }
-                    numbers.push(*tag);
-                }
+                Entry::One(tag, place) => numbers.push(self.known(set, *tag, *place, members, cards)?),
                 // Numbers between that the file leaves out are no members.
                 Entry::Range { first, last, step } => {
                     let from = members.sorted.partition_point(|tag| tag < first);
@@ -214,10 +204,11 @@ impl Sets {
                     let within = members.sorted[from..to].iter();
                     numbers.extend(within.filter(|tag| (**tag - first).is_multiple_of(*step)));
                 }
-                Entry::Set(other, _) => {
-                    let index = self.by_name.get(&other.to_uppercase());
-                    numbers.extend(index.and_then(|index| done[*index].as_ref()).into_iter().flatten());
-                }
+                Entry::Set(other, place) => match (self.find(other), whole(bare(other))) {
+                    (Some(index), _) => numbers.extend(done[index].as_ref().into_iter().flatten()),
+                    (None, Some(tag)) => numbers.push(self.known(set, tag, *place, members, cards)?),
+                    (None, None) => {}
+                },
                 Entry::OfElements(other, place) => numbers.extend((members.of_elements)(other, *place)?),
             }
         }
@@ -226,8 +217,25 @@ impl Sets {
         Ok(numbers)
     }
 
-    /// The index of a set by its name.
+    /// A number, if the file has what it means.
+    fn known(
+        &self,
+        set: usize,
+        tag: u64,
+        place: Place,
+        members: &Members<'_>,
+        cards: &Cards<'_>,
+    ) -> Result<u64, MeshProblem> {
+        if members.sorted.binary_search(&tag).is_ok() {
+            return Ok(tag);
+        }
+        let message = format!("{} \"{}\" names {tag}, which the file does not have", self.what, self.all[set].name);
+        Err(cards.problem(place, message, "remove it from the set, or save the mesh as a whole"))
+    }
+
+    /// The index of a set by its name, with or without an instance before it.
     pub fn find(&self, name: &str) -> Option<usize> {
-        self.by_name.get(&bare(name).to_uppercase()).copied()
+        let find = |name: &str| self.by_name.get(&name.to_uppercase()).copied();
+        find(unquoted(name)).or_else(|| find(bare(name)))
     }
 }
