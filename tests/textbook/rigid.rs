@@ -2,7 +2,10 @@
 
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, State, Verdict};
+use stickslip::model::load::load_text;
 use stickslip::path::stages::follow;
+use stickslip::session::{Output, Session};
+use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
 use crate::common::*;
@@ -339,4 +342,35 @@ fn settlements_and_histories_of_bodies() {
         assert!(stage.end.check.passed && energy.residual < 1e-12, "{energy:?}");
     }
     assert_eq!(history.stages.len(), 3);
+}
+
+/// The height of the portal as a slider: a new K, and the sway F h³/6EI of pinned heads at the new height.
+#[test]
+fn a_body_follows_its_coordinates_live() {
+    let text = scenario_text(json!({
+        "parameters": { "h": { "value": 3, "min": 1, "max": 6 } },
+        "materials": { "m": { "E": 1, "nu": 0.2 } },
+        "sections": { "s": { "area": EA, "inertia": EI } },
+        "nodes": { "a": [0, 0], "b": [0, "h"], "c": [4, 0], "d": [4, "h"], "tip": [6, "h + 1/2"] },
+        "bars": [{ "id": "left", "nodes": ["a", "b"], "material": "m", "section": "s", "hinges": ["end"] },
+                 { "id": "right", "nodes": ["c", "d"], "material": "m", "section": "s", "hinges": ["end"] }],
+        "supports": [{ "at": "a", "fixed": ["x", "y", "r"] }, { "at": "c", "fixed": ["x", "y", "r"] }],
+        "rigid": [{ "id": "cap", "nodes": ["b", "d"], "about": "tip" }],
+        "loads": { "sway": { "items": [{ "point": { "at": "d", "force": [5, 0] } }] } }
+    }));
+    let scenario = load_text("portal", &text, None).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut session = Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"));
+    for height in [3.0_f64, 4.0, 2.5] {
+        let sway = 5.0 * height.powi(3) / (6.0 * EI);
+        for command in [
+            format!("set h {height}"),
+            format!("expect ux b = {sway:e} ± 1e-13"),
+            format!("expect ux tip = {sway:e} ± 1e-13"),
+        ] {
+            let mut out = Vec::new();
+            let style = Style { width: 100, color: false, ascii: false };
+            let mut io = Output::text(&mut out, style, &Quiet);
+            session.execute(&command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
+        }
+    }
 }

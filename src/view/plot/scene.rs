@@ -74,14 +74,14 @@ pub fn factor(structure: &Structure, u: &[[f64; 3]], magnification: Magnificatio
 }
 
 /// Lines of the structure in the plane, displaced by `factor` × u: bars (bent as the element bends), plate outlines,
-/// single quads; plate grids apart, because they are drawn only where there is room.
+/// single quads, hulls of rigid bodies; plate grids apart, because they are drawn only where there is room.
 #[derive(Clone, Debug)]
 pub struct Lines {
     /// Bars, outlines, quads.
     pub outline: Vec<Vec<(f64, f64)>>,
     /// Inner grid lines of the plates.
     pub grid: Vec<Vec<(f64, f64)>>,
-    /// Corners of the membranes.
+    /// Corners of the membranes and of the hulls.
     pub faces: Vec<Vec<(f64, f64)>>,
 }
 
@@ -143,7 +143,34 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
             }
         }
     }
+    for body in &structure.rigid {
+        let ring = hull(body.nodes.iter().map(|&node| at(node)).collect());
+        faces.push(ring[..ring.len() - 1].to_vec());
+        outline.push(ring);
+    }
     Lines { outline, grid, faces }
+}
+
+/// Convex hull as a closed line (Andrew's monotone chain).
+fn hull(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut ring: Vec<(f64, f64)> = Vec::new();
+    for way in [points.clone(), points.into_iter().rev().collect()] {
+        // The way back begins where the way there ended.
+        ring.pop();
+        let from = ring.len();
+        for point in way {
+            let turns_right = |ring: &[(f64, f64)]| match ring[from..] {
+                [.., a, b] => (b.0 - a.0) * (point.1 - a.1) - (b.1 - a.1) * (point.0 - a.0) <= 0.0,
+                _ => false,
+            };
+            while turns_right(&ring) {
+                ring.pop();
+            }
+            ring.push(point);
+        }
+    }
+    ring
 }
 
 /// Shape of a frame element: linear along it, cubic across it; at a hinge its end turns freely.
@@ -326,4 +353,19 @@ pub fn supported(structure: &Structure) -> Vec<(usize, usize)> {
         held[index].1 += 1;
     }
     held
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hull;
+
+    /// A square with points on its sides and inside, and three points on a line.
+    #[test]
+    fn hulls_are_closed_and_have_no_more_than_the_corners() {
+        let square = [(0.0, 0.0), (1.0, 1.0), (0.5, 0.0), (0.0, 1.0), (0.5, 0.4), (1.0, 0.0), (1.0, 0.5)];
+        assert_eq!(hull(square.to_vec()), [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)]);
+        let line = [(2.0, 2.0), (0.0, 0.0), (1.0, 1.0)];
+        assert_eq!(hull(line.to_vec()), [(0.0, 0.0), (2.0, 2.0), (0.0, 0.0)]);
+        assert_eq!(hull(vec![(1.0, 1.0), (1.0, 1.0)]).first(), Some(&(1.0, 1.0)));
+    }
 }
