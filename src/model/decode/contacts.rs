@@ -107,9 +107,10 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
 fn is_within_a_body<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, sides: &Sides) -> bool {
     let body = |node: usize| builder.body_of.get(&node).copied();
     let within = sides.weights.iter().flatten().find_map(|weights| {
-        let both = body(weights[0].0)?;
-        let are_one = weights.len() > 1 && weights.iter().all(|(node, _)| body(*node) == Some(both));
-        are_one.then_some((weights[0].0, weights[1].0, both))
+        let [(node, _), others @ ..] = &weights[..] else { return None };
+        let both = body(*node)?;
+        let (against, _) = others.first()?;
+        others.iter().all(|(other, _)| body(*other) == Some(both)).then_some((*node, *against, both))
     });
     let Some((node, against, both)) = within else {
         return false;
