@@ -78,8 +78,8 @@ enum Command {
     /// Find every problem in scenario files, solving nothing; list what a mesh file holds
     ///
     /// Also names the parts that only contact holds, with their motions: where those are not wanted, a support is missing.
-    /// Of a mesh (.msh, .inp): nodes, elements, groups with lengths and areas, the boundary by direction where there are no
-    /// groups of lines, and the worst element. Quality is the least sine of a corner's angle (of triangles by that of 60°):
+    /// Of a mesh (.msh, .inp): nodes, elements, groups with lengths and areas, the boundary by direction, and the
+    /// worst element. Quality is the least sine of a corner's angle (of triangles by that of 60°):
     /// 1 is best, 0 degenerate.
     Check {
         /// Files, embedded scenarios or meshes; `-` reads a scenario from stdin

@@ -8,8 +8,7 @@ use super::table::{Cell, Column, Row, Table};
 use crate::model::mesh::overview::Overview;
 use crate::model::mesh::{Mesh, Shape};
 
-/// Writes nodes, elements, groups with their lengths and areas, the boundary by direction where there are no groups of
-/// lines, and the worst element.
+/// Writes nodes, elements, groups with their lengths and areas, the boundary by direction, and the worst element.
 pub fn write(out: &mut dyn Write, name: &str, mesh: &Mesh, overview: &Overview, style: &Style) -> io::Result<()> {
     let mut say = |text: String| -> io::Result<()> {
         for line in style.wrap(&style.text(&text), style.width) {
@@ -45,11 +44,15 @@ pub fn write(out: &mut dyn Write, name: &str, mesh: &Mesh, overview: &Overview, 
         let lengths = largest(overview.boundary.iter().map(|edge| edge.length));
         let mut table =
             Table::new(vec![Column::words("boundary"), Column::count("nodes"), Column::numbers("length", None)]);
-        for edge in &overview.boundary {
+        const LISTED: usize = 40;
+        for edge in overview.boundary.iter().take(LISTED) {
             let length = in_column(edge.length, lengths);
             table.rows.push(Row::new(vec![edge.name.as_str().into(), edge.nodes.to_string().into(), length.into()]));
         }
         table.write(out, style)?;
+        if overview.boundary.len() > LISTED {
+            writeln!(out, "and {} more pieces", overview.boundary.len() - LISTED)?;
+        }
     }
     Ok(())
 }

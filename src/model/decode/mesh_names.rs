@@ -85,9 +85,9 @@ impl MeshPart {
         }
     }
 
-    /// An edge of a mesh without groups of lines: the part of the boundary that looks one way.
+    /// The part of the outer boundary that looks one way.
     fn by_direction(&self, cursor: Cursor<'_>, name: &str) -> Option<Edge> {
-        if self.mesh.has_edge_groups() {
+        if self.is_nearly_a_group(name) {
             self.unknown_group(cursor, name);
             return None;
         }
@@ -108,6 +108,11 @@ impl MeshPart {
         None
     }
 
+    /// Whether a group has this name in other letters: then the direction is hardly what is meant.
+    fn is_nearly_a_group(&self, name: &str) -> bool {
+        self.mesh.groups.iter().any(|group| group.name.eq_ignore_ascii_case(name))
+    }
+
     fn names(&self, names: &[&str]) -> String {
         let names: Vec<String> = names.iter().map(|name| format!("\"{}.{name}\"", self.id)).collect();
         listed(&names.iter().map(String::as_str).collect::<Vec<_>>())
@@ -121,7 +126,7 @@ impl MeshPart {
             .filter(|group| !matches!(group.members, Members::Areas(_)))
             .map(|group| group.name.as_str())
             .collect();
-        if !self.mesh.has_edge_groups() {
+        if known.is_empty() {
             known.extend(self.boundary.facing().iter().map(|facing| facing.name.as_str()));
         }
         let file = &self.mesh.files[0];
@@ -179,7 +184,7 @@ impl MeshPart {
                 }
                 (Err(_), _) => self.used_of(&self.boundary.nodes_of_sides(group)),
             },
-            None if self.mesh.has_edge_groups() => return None,
+            None if self.is_nearly_a_group(name) => return None,
             None => {
                 let pieces = self.boundary.facing().iter().filter(|facing| DIRECTIONS[facing.direction] == name);
                 pieces.flat_map(|facing| self.in_structure(&facing.edge).nodes).collect()

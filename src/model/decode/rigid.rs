@@ -31,7 +31,7 @@ fn body<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<RigidBody> 
             None
         }
         (None, Some(at)) => {
-            let nodes = builder.nodes_at(at.value());
+            let nodes = builder.edge_nodes_at(at.value());
             nodes.map(|nodes| nodes.into_iter().map(|node| (node, at.value())).collect())
         }
         (nodes, None) => nodes.or_else(|| fields.required("nodes")).and_then(|at| listed_nodes(builder, at)),

@@ -251,6 +251,14 @@ impl<'d> Builder<'d> {
         })
     }
 
+    /// All nodes of an edge or a set; a single node is reported.
+    pub fn edge_nodes_at(&self, cursor: Cursor<'d>) -> Option<Vec<usize>> {
+        match self.nodes_at(cursor)? {
+            nodes if nodes.len() > 1 => Some(nodes),
+            _ => self.edge(cursor).map(|edge| edge.nodes),
+        }
+    }
+
     fn plate(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<usize> {
         let plate = self.plates.get(id).copied();
         if plate.is_none() && !self.broken.contains(id) {

@@ -69,14 +69,7 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
             at.key_problem("`at` cannot stand beside `nodes`", "give the nodes, or an edge whose nodes are all tied");
             None
         }
-        (None, Some(at)) => {
-            let nodes = builder.nodes_at(at.value());
-            match nodes {
-                // One node is no edge: reported.
-                Some(nodes) if nodes.len() < 2 => builder.edge(at.value()).map(|edge| edge.nodes),
-                nodes => nodes,
-            }
-        }
+        (None, Some(at)) => builder.edge_nodes_at(at.value()),
         (nodes, None) => {
             let nodes = nodes.or_else(|| fields.required("nodes"));
             nodes.and_then(|at| tied_nodes(builder, at))

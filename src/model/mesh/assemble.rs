@@ -108,7 +108,7 @@ impl RawMesh {
                 let first = self.nodes[*first.get() as usize].place;
                 Err(self.problem(
                     place,
-                    format!("node {tag} is there twice{}", self.first_at(first)),
+                    format!("duplicate node {tag}{}", self.first_at(first)),
                     "every node has a number of its own: renumber one of the two",
                 ))
             }
@@ -314,7 +314,7 @@ fn resolved(raw: &RawMesh) -> Result<(Vec<MeshElement>, Vec<u32>), Vec<MeshProbl
             (Some(other), _) => faults.add("tag", || {
                 raw.problem(
                     place,
-                    format!("element {tag} is there twice{}", raw.first_at(elements[other as usize].place)),
+                    format!("duplicate element {tag}{}", raw.first_at(elements[other as usize].place)),
                     "every element has a number of its own: renumber one of the two",
                 )
             }),
@@ -358,7 +358,7 @@ fn in_one_plane(raw: &RawMesh, elements: &[MeshElement]) -> Result<(), Vec<MeshP
                 raw.problem(
                     element.place,
                     format!(
-                        "element {} is not in the plane of the mesh: its node {} has z = {}, node {} has z = {plane}",
+                        "element {} lies outside the plane of the mesh: its node {} has z = {}, node {} has z = {plane}",
                         element.tag,
                         raw.nodes[node as usize].tag,
                         position(node)[2],

@@ -217,15 +217,6 @@ impl Mesh {
         let [x, y, _] = self.nodes[node as usize].position;
         [x, y]
     }
-
-    /// Whether some group can be an edge; otherwise the boundary is named by direction.
-    pub fn has_edge_groups(&self) -> bool {
-        self.groups.iter().any(|group| match &group.members {
-            Members::Lines(_) | Members::Sides(_) => true,
-            Members::NodeSet(nodes) => nodes.len() > 1,
-            Members::Points(_) | Members::Areas(_) => false,
-        })
-    }
 }
 
 /// Whether a file name has the ending of a mesh.

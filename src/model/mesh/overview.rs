@@ -20,7 +20,7 @@ pub struct Overview {
     pub area: f64,
     /// The groups in the order of the file.
     pub groups: Vec<GroupView>,
-    /// The boundary by direction, where no group is an edge.
+    /// The boundary by direction.
     pub boundary: Vec<EdgeView>,
     /// The worst area.
     pub worst: Option<Worst>,
@@ -96,8 +96,7 @@ impl Overview {
                 Worst { tag: element.tag, quality, place: mesh.at(element.place) }
             });
         let groups = mesh.groups.iter().map(|group| view(group, mesh, &boundary, &nodes, &area)).collect();
-        let edges = if mesh.has_edge_groups() { &[][..] } else { boundary.facing() };
-        let edges = edges.iter().map(|facing| EdgeView {
+        let edges = boundary.facing().iter().map(|facing| EdgeView {
             name: facing.name.clone(),
             nodes: facing.edge.nodes.len(),
             length: facing.edge.length(&nodes),

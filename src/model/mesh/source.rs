@@ -155,6 +155,12 @@ impl<'a> Source<'a> {
     }
 
     fn unreadable(&self, what: &str, expected: &str, found: &[u8]) -> MeshProblem {
+        if found.starts_with(b"$") {
+            return self.problem(
+                format!("{} comes in {}, before {what}", shown(found), self.item),
+                "the section has fewer entries than its count says, or is cut off: save or copy the mesh again",
+            );
+        }
         self.problem(
             format!("{what} of {}: expected {expected}, found {}", self.item, shown(found)),
             "correct the file, or save the mesh again",
