@@ -231,19 +231,13 @@ fn what_cannot_be_exported_is_refused() {
     assert_eq!(left.len(), 2, "{left:?}");
 }
 
-/// The embedded structures, each at each of its pivots: whatever can be exported is, and nothing panics.
+/// The embedded structures, at the end and at the first pivot: whatever can be exported is, and nothing panics.
 #[test]
 fn embedded_structures_are_exported() {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, _) in embedded::list() {
         let mut session = Session::new(embedded::load(name).expect("embedded"), &Quiet).expect("solved");
-        for line in [
-            "export vtu x.vtu",
-            "export vtu x.pvd",
-            "export pairs x.csv",
-            "export result x.json",
-            "step first; export vtu x.vtu",
-        ] {
+        for line in ["export vtu x.vtu", "export pairs x.csv", "export result x.json", "step first; export vtu x.vtu"] {
             let line = line.replace(" x.", &format!(" {}/x.", folder.path().display()));
             if let Err(error) = run(&mut session, &line) {
                 assert!(matches!(error, CommandError::Refused(_)), "{name}: {line}: {error}");
@@ -403,5 +397,78 @@ fn moments_are_drawn_on_the_structure_and_along_a_bar() {
     for (line, message) in [("export axial foo", "foo"), ("export axial post stay", "`stay` makes no sense")] {
         let error = run(&mut session, &format!("{line} '{}'", file.display())).expect_err(line).to_string();
         assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn a_report_holds_everything_and_is_the_same_each_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut session, _) = open(folder.path());
+    let [html, again, markdown] = ["r.html", "again.html", "r.md"].map(|name| folder.path().join(name));
+    for file in [&html, &again, &markdown] {
+        run(&mut session, &format!("export report '{}'", file.display())).expect("written");
+    }
+    let text = fs::read_to_string(&html).expect("a file");
+    assert_eq!(text, fs::read_to_string(&again).expect("a file"));
+    let headings: Vec<&str> =
+        tags_of_html(&text).into_iter().filter(|tag| tag.name == "h2").map(|tag| tag.text).collect();
+    assert_eq!(
+        headings,
+        [
+            "Parameters",
+            "Loads",
+            "Answer",
+            "Check",
+            "Figures",
+            "Contact pairs",
+            "Probes",
+            "Resultants of the edge contacts",
+            "Reactions",
+            "Member forces",
+            "Displacements",
+            "Load history",
+            "Load combinations"
+        ]
+    );
+    assert_eq!(text.matches("<svg ").count(), text.matches("<figure>").count());
+    assert!(text.contains(&format!("stickslip {}", env!("CARGO_PKG_VERSION"))) && text.contains("<td>ULS</td>"));
+    // no file beside it, none from elsewhere
+    assert!(!text.contains("src=") && !text.contains("href="), "{text}");
+    let text = fs::read_to_string(&markdown).expect("a file");
+    let figures: Vec<&str> = text.split("](<").skip(1).filter_map(|rest| rest.split(">)").next()).collect();
+    assert!(figures.contains(&"r-structure.svg"), "{figures:?}");
+    for figure in figures {
+        check_picture(figure, &fs::read_to_string(folder.path().join(figure)).expect("a figure"));
+    }
+    // a date only where it is asked for
+    run(&mut session, &format!("export report date '{}'", again.display())).expect("written");
+    let dated = fs::read_to_string(&again).expect("a file");
+    assert!(dated.contains(" · 2") && dated.len() > fs::read_to_string(&html).expect("a file").len());
+    assert!(run(&mut session, &format!("export report today '{}'", again.display())).is_err());
+    // the figures mean the history where the tables do
+    run(&mut session, &format!("set H 49; stages; export report '{}'", html.display())).expect("written");
+    assert!(
+        fs::read_to_string(&html).expect("a file").contains("post.json · at the end of stage 2 of the load history")
+    );
+    run(&mut session, &format!("load '{}'; export report '{}'", hostile(folder.path()), html.display()))
+        .expect("written");
+    tags_of_html(&fs::read_to_string(&html).expect("a file"));
+}
+
+/// The tags of HTML whose void elements are closed for the purpose.
+fn tags_of_html(text: &str) -> Vec<Tag<'_>> {
+    let body = text.split_once("<body>").expect("a body").1.split_once("</body>").expect("its end").0;
+    tags(body)
+}
+
+#[test]
+fn every_embedded_scenario_has_a_report() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("r.html");
+    for (name, _) in embedded::list() {
+        let mut session = Session::new(embedded::load(name).expect("embedded"), &Quiet).expect("solved");
+        run(&mut session, &format!("export report '{}'", file.display()))
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        tags_of_html(&fs::read_to_string(&file).expect("a file"));
     }
 }

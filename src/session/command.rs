@@ -344,11 +344,14 @@ pub enum Command {
         #[arg(value_name = "EXPECTATION", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
-    /// Write tables, pictures, the mesh with its results, or the LCP, to a file
+    /// Write tables, pictures, a report, the mesh with its results, or the LCP, to a file
     ///
     /// Tables go to .csv or .json: `export WHAT [OF] FILE`, where OF are the quantities of `quantities` and `envelope`, or
     /// the parameter of `sensitivity`. A table is what the command shows, at the pivot chosen by `step`, after `stages`
     /// at the end of the history.
+    ///
+    /// `export report FILE.html` is one file with its figures, `FILE.md` has them beside it as FILE-structure.svg and so
+    /// on. It bears no date, so that the same answer gives the same file; `export report date FILE` adds it.
     ///
     /// `export vtu FILE.vtu` is the state shown for ParaView: the nodes with displacement, rotation and stress, the
     /// elements with stress or N, Q, M, and a vertex for each pair with its state (0 open, 1 stick, 2 slip+, 3 slip-,
@@ -365,7 +368,7 @@ pub enum Command {
     ///
     /// A file that is there is replaced, whole or not at all; never the scenario itself.
     #[command(
-        after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export structure beam.svg\n  export path force c6 c5 path.svg\n  export result answer.json\n  export lcp beam-lcp.json"
+        after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export structure beam.svg\n  export report beam.html\n  export path force c6 c5 path.svg\n  export result answer.json\n  export lcp beam-lcp.json"
     )]
     Export {
         /// What to write
@@ -524,6 +527,8 @@ pub enum Export {
     Summary,
     /// The whole result as `solve --format json` prints it
     Result,
+    /// The scenario, its answer, tables and figures: one file of HTML, or Markdown
+    Report,
     /// The structure with its results, for ParaView
     Vtu,
     /// Picture: the structure with the states of its pairs, deformed

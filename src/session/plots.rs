@@ -89,14 +89,14 @@ impl Session {
 
     /// The pairs that a plot over the contact zone shows, each with its title: those shown, or those at some pivots.
     pub(super) fn zone_states(&self, at: &[String]) -> Result<Vec<(String, Vec<PairState>)>, CommandError> {
-        let answer = self.need_answer()?;
+        let answer = self.need_quantities()?;
         if answer.pairs.is_empty() {
             return Err(CommandError::Refused("nothing to plot: there are no contact pairs in this answer".into()));
         }
         if at.is_empty() {
-            let label = self.position.map_or(String::new(), crate::view::pivots::title);
-            return Ok(vec![(label, self.pairs())]);
+            return Ok(vec![(self.shown_place().unwrap_or_default(), self.quantity_pairs())]);
         }
+        let answer = self.need_answer()?;
         let last = answer.pivot_count.checked_sub(1);
         at.iter().map(|word| self.pairs_named(word, last)).collect()
     }
@@ -172,17 +172,22 @@ impl Session {
 
     /// The structure as it is shown.
     pub(super) fn shape(&self) -> Result<Shape<'_>, CommandError> {
-        self.need_answer()?;
-        let title = match self.position {
-            Some(step) => format!("{} at {}", self.short_name(), crate::view::pivots::title(step)),
+        self.need_quantities()?;
+        let title = match self.shown_place() {
+            Some(place) => format!("{} · {place}", self.short_name()),
             None => self.short_name().to_owned(),
         };
         Ok(Shape {
             title,
             structure: self.structure().ok_or_else(not_a_structure)?,
-            displacements: self.displacements(),
-            pairs: Some(self.pairs()),
+            displacements: self.quantity_displacements(),
+            pairs: Some(self.quantity_pairs()),
         })
+    }
+
+    /// Where the state shown stands, if it is not the answer itself.
+    fn shown_place(&self) -> Option<String> {
+        self.history_place().or_else(|| Some(crate::view::pivots::title(self.position?)))
     }
 
     /// The motion along the ray.
@@ -209,7 +214,7 @@ impl Session {
 
     /// The forces of the bars and the bars that are meant: the one named, or all.
     pub(super) fn bars(&self, bar: Option<&str>) -> Result<(&[MemberForces], Vec<&str>), CommandError> {
-        let answer = self.need_answer()?;
+        let answer = self.need_quantities()?;
         let structure = self.structure().ok_or_else(not_a_structure)?;
         let Some(members) = &answer.members else {
             return Err(CommandError::Refused("no member forces: there is no answer".into()));

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::number::residual;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::Answer;
+use crate::answer::record::{Answer, Check};
 
 /// Writes the figures of the check and what each means; without an answer it says that nothing was checked.
 pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<()> {
@@ -14,7 +14,13 @@ pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<
         let text = style.fit("nothing to check: there is no answer", style.width);
         return writeln!(out, "{text}");
     }
-    let check = &answer.check;
+    table(&answer.check).write(out, style)?;
+    let (word, role) = if answer.check.passed { ("passed", Role::Good) } else { ("FAILED", Role::Bad) };
+    writeln!(out, "{}", style.paint(role, word))
+}
+
+/// The table that is written.
+pub fn table(check: &Check) -> Table {
     let mut table = Table::new(vec![
         Column::words("check"),
         Column::numbers("relative", None),
@@ -29,7 +35,5 @@ pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<
     if let Some(equilibrium) = check.equilibrium {
         push("equilibrium", equilibrium, "residual of K u = F + Bᵀλ");
     }
-    table.write(out, style)?;
-    let (word, role) = if check.passed { ("passed", Role::Good) } else { ("FAILED", Role::Bad) };
-    writeln!(out, "{}", style.paint(role, word))
+    table
 }

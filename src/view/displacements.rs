@@ -14,6 +14,11 @@ pub fn write(out: &mut dyn Write, displacements: &[NodeDisplacement], units: &Un
     if displacements.is_empty() {
         return writeln!(out, "{}", style.fit("no nodes", style.width));
     }
+    table(displacements, units).write(out, style)
+}
+
+/// The table that is written.
+pub fn table(displacements: &[NodeDisplacement], units: &Units) -> Table {
     let length = length_unit(units);
     let rotations = displacements.iter().any(|node| node.rz != 0.0);
     let mut table =
@@ -34,5 +39,5 @@ pub fn write(out: &mut dyn Write, displacements: &[NodeDisplacement], units: &Un
         }
         table.rows.push(Row::new(cells));
     }
-    table.write(out, style)
+    table
 }

@@ -27,6 +27,18 @@ pub fn write(
         };
         return writeln!(out, "{}", style.fit(&style.text(&text), style.width));
     }
+    table(&chosen, units).write(out, style)?;
+    let Some(diagram) = bar.and_then(|bar| Diagram::of(members, bar)) else { return Ok(()) };
+    for which in Internal::ALL {
+        for line in style.wrap(&extremes(&diagram, which, units), style.width) {
+            writeln!(out, "{line}")?;
+        }
+    }
+    Ok(())
+}
+
+/// The table that is written of some elements.
+pub fn table(chosen: &[&MemberForces], units: &Units) -> Table {
     let force = force_unit(units);
     let mut table = Table::new(vec![
         Column::words("bar"),
@@ -39,7 +51,7 @@ pub fn write(
     let ends = |member: &&MemberForces| [member.start, member.end];
     let forces = largest(chosen.iter().flat_map(ends).flat_map(|end| [end.n, end.q]));
     let moments = largest(chosen.iter().flat_map(ends).map(|end| end.m));
-    for member in &chosen {
+    for member in chosen {
         for (word, end) in [("start", member.start), ("end", member.end)] {
             let first = word == "start";
             table.rows.push(Row::new(vec![
@@ -52,14 +64,7 @@ pub fn write(
             ]));
         }
     }
-    table.write(out, style)?;
-    let Some(diagram) = bar.and_then(|bar| Diagram::of(members, bar)) else { return Ok(()) };
-    for which in Internal::ALL {
-        for line in style.wrap(&extremes(&diagram, which, units), style.width) {
-            writeln!(out, "{line}")?;
-        }
-    }
-    Ok(())
+    table
 }
 
 /// `M: largest 12.5 kN m at 2.1 m, least 0 kN m at 0 m`: between the nodes too.

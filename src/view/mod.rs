@@ -21,6 +21,7 @@ pub mod plot;
 pub mod quantities;
 pub mod ray;
 pub mod reactions;
+pub mod report;
 pub mod sensitivity;
 pub mod stages;
 pub mod status;

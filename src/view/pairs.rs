@@ -25,6 +25,11 @@ pub fn write(out: &mut dyn Write, pairs: &[PairState], units: &Units, style: &St
     if pairs.is_empty() {
         return writeln!(out, "{}", style.fit("no contact pairs", style.width));
     }
+    table(pairs, units).write(out, style)
+}
+
+/// The table that is written.
+pub fn table(pairs: &[PairState], units: &Units) -> Table {
     let (force, length) = (force_unit(units), length_unit(units));
     let friction = pairs.iter().any(|pair| pair.law != "frictionless");
     let mut columns = vec![
@@ -59,5 +64,5 @@ pub fn write(out: &mut dyn Write, pairs: &[PairState], units: &Units, style: &St
         }
         table.rows.push(Row::new(cells));
     }
-    table.write(out, style)
+    table
 }

@@ -13,6 +13,11 @@ pub fn write(out: &mut dyn Write, scenario: &Scenario, values: &ParameterValues,
     if scenario.parameters.is_empty() {
         return writeln!(out, "{}", style.fit("no parameters", style.width));
     }
+    table(scenario, values).write(out, style)
+}
+
+/// The table that is written.
+pub fn table(scenario: &Scenario, values: &ParameterValues) -> Table {
     let changed = |name: &str, parameter: &Parameter| {
         values.get(name).is_some_and(|value| value.to_bits() != parameter.value.to_bits())
     };
@@ -40,7 +45,7 @@ pub fn write(out: &mut dyn Write, scenario: &Scenario, values: &ParameterValues,
         cells.push(Cell::from(parameter.about.clone().unwrap_or_default()));
         table.rows.push(Row::new(cells));
     }
-    table.write(out, style)
+    table
 }
 
 /// `0 … 400 by 10`, or the formula.

@@ -21,6 +21,13 @@ pub fn write(
     if reactions.is_empty() {
         return writeln!(out, "{}", style.fit("no supports and no springs", style.width));
     }
+    table(reactions, units).write(out, style)?;
+    let moment = with_unit(&short(about_origin), moment_unit(units).as_deref());
+    writeln!(out, "{}", style.fit(&style.text(&format!("moment of all of them about (0, 0): {moment}")), style.width))
+}
+
+/// The table that is written, with the sums.
+pub fn table(reactions: &[Reaction], units: &Units) -> Table {
     let force = force_unit(units);
     let moments = reactions.iter().any(|reaction| reaction.m != 0.0);
     let mut table =
@@ -46,7 +53,5 @@ pub fn write(
         // Moments at different places do not add up to anything.
         push("sum", fx, fy, None);
     }
-    table.write(out, style)?;
-    let moment = with_unit(&short(about_origin), moment_unit(units).as_deref());
-    writeln!(out, "{}", style.fit(&style.text(&format!("moment of all of them about (0, 0): {moment}")), style.width))
+    table
 }

@@ -11,6 +11,31 @@ use crate::path::stages::{History, HistoryEnd};
 
 /// Writes a row per stage: its factors, pivots, changes, largest slip and slip increment, energy.
 pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Style) -> io::Result<()> {
+    table(history, units).write(out, style)?;
+    let role = match history.end {
+        HistoryEnd::Complete => Role::Muted,
+        HistoryEnd::Limit { .. } => Role::Warning,
+    };
+    for line in style.wrap(&style.text(&history.end_sentence()), style.width) {
+        writeln!(out, "{}", style.paint(role, &line))?;
+    }
+    for (index, stage) in history.stages.iter().enumerate() {
+        for moment in stage.moments.iter().filter(|moment| moment.jump) {
+            let text = format!(
+                "stage {}: the structure jumps at {} of it; its energy balance does not close there",
+                index + 1,
+                short(moment.t)
+            );
+            for line in style.wrap(&text, style.width) {
+                writeln!(out, "{}", style.paint(Role::Warning, &line))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The table that is written.
+pub fn table(history: &History, units: &Units) -> Table {
     let mut columns = vec![Column::count("stage")];
     columns.extend(history.cases.iter().map(|case| Column::numbers(case, None)));
     columns.extend([
@@ -48,27 +73,7 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
         ]);
         table.rows.push(Row::new(cells));
     }
-    table.write(out, style)?;
-    let role = match history.end {
-        HistoryEnd::Complete => Role::Muted,
-        HistoryEnd::Limit { .. } => Role::Warning,
-    };
-    for line in style.wrap(&style.text(&history.end_sentence()), style.width) {
-        writeln!(out, "{}", style.paint(role, &line))?;
-    }
-    for (index, stage) in history.stages.iter().enumerate() {
-        for moment in stage.moments.iter().filter(|moment| moment.jump) {
-            let text = format!(
-                "stage {}: the structure jumps at {} of it; its energy balance does not close there",
-                index + 1,
-                short(moment.t)
-            );
-            for line in style.wrap(&text, style.width) {
-                writeln!(out, "{}", style.paint(Role::Warning, &line))?;
-            }
-        }
-    }
-    Ok(())
+    table
 }
 
 /// Writes the way through stage `index` (from 0): its moments and what changes at each, then the pairs at its end.

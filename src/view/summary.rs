@@ -60,23 +60,29 @@ impl Summary {
     }
 }
 
+/// The table of the resultants of edge contacts.
+pub fn resultants_table(resultants: &[Resultant], units: &Units) -> Table {
+    let force = force_unit(units);
+    let mut table = Table::new(vec![
+        Column::words("joint"),
+        Column::numbers("N", force.clone()),
+        Column::numbers("T", force),
+        Column::numbers("e", length_unit(units)),
+    ]);
+    for one in resultants {
+        let e = one.eccentricity.map_or("no force".to_owned(), short);
+        let cells = [one.joint.clone(), short(one.normal), short(one.tangential), e];
+        table.rows.push(Row::new(cells.into_iter().map(Cell::from).collect()));
+    }
+    table
+}
+
 /// Writes all of it, parts that are empty left out.
 pub fn write(out: &mut dyn Write, summary: &Summary, units: &Units, style: &Style) -> io::Result<()> {
-    let (force, length) = (force_unit(units), length_unit(units));
+    let force = force_unit(units);
     let head = |out: &mut dyn Write, text: &str| writeln!(out, "{}", style.paint(Role::Header, text));
     if !summary.resultants.is_empty() {
-        let mut table = Table::new(vec![
-            Column::words("joint"),
-            Column::numbers("N", force.clone()),
-            Column::numbers("T", force.clone()),
-            Column::numbers("e", length.clone()),
-        ]);
-        for one in &summary.resultants {
-            let e = one.eccentricity.map_or("no force".to_owned(), short);
-            let cells = [one.joint.clone(), short(one.normal), short(one.tangential), e];
-            table.rows.push(Row::new(cells.into_iter().map(Cell::from).collect()));
-        }
-        table.write(out, style)?;
+        resultants_table(&summary.resultants, units).write(out, style)?;
     }
     if !summary.peaks.is_empty() {
         head(out, "largest")?;

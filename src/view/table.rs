@@ -20,9 +20,9 @@ pub enum Align {
 /// One column.
 #[derive(Clone, Debug)]
 pub struct Column {
-    head: String,
-    unit: Option<String>,
-    align: Align,
+    pub(super) head: String,
+    pub(super) unit: Option<String>,
+    pub(super) align: Align,
     rank: u8,
 }
 
@@ -52,7 +52,7 @@ impl Column {
 /// Text of a cell and its colour.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    text: String,
+    pub(super) text: String,
     role: Role,
 }
 

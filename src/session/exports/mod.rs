@@ -3,6 +3,7 @@
 
 mod lcp;
 mod pictures;
+mod report;
 pub(super) mod tables;
 mod vtu;
 
@@ -38,6 +39,7 @@ impl Session {
         self.spare_scenario(path)?;
         match what {
             Export::Lcp => return self.export_lcp(path, io),
+            Export::Report => self.export_report(of, path, io),
             Export::Vtu => self.export_vtu(path, ending == "pvd", io),
             _ if ending == "svg" => self.export_picture(what, of, path, io.watch),
             _ => self.export_table(what, of, path, ending == "csv", io),
@@ -62,6 +64,7 @@ impl Export {
         match self {
             Export::Result | Export::Summary => &["json"],
             Export::Vtu => &["vtu", "pvd"],
+            Export::Report => &["html", "md"],
             Export::Lcp => &["json", "mtx"],
             Export::Path => &["csv", "json", "svg"],
             Export::Structure | Export::Mode | Export::Slip | Export::Force | Export::Gap | Export::Pressure => {
@@ -78,7 +81,7 @@ impl Export {
             Export::Quantities | Export::Envelope => usize::MAX,
             Export::Slip | Export::Force | Export::Gap | Export::Pressure => usize::MAX,
             Export::Path if ending == "svg" => usize::MAX,
-            Export::Sensitivity | Export::Moment | Export::Shear | Export::Axial => 1,
+            Export::Sensitivity | Export::Report | Export::Moment | Export::Shear | Export::Axial => 1,
             _ => 0,
         }
     }

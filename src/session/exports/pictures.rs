@@ -111,7 +111,7 @@ impl Session {
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
             about.push(format!("{}{more}", named[..named.len().min(MOST_PARAMETERS)].join(", ")));
         }
-        about.extend(self.answer().map(|answer| match (&answer.ray, answer.outcome) {
+        about.extend(self.quantity_answer().map(|answer| match (&answer.ray, answer.outcome) {
             (Some(ray), OutcomeKind::Ray) => format!("ray: {}", class_word(ray.class)),
             (_, outcome) => outcome_word(outcome).to_owned(),
         }));

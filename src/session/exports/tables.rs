@@ -178,7 +178,7 @@ impl Session {
 }
 
 /// The report of a command.
-fn report(
+pub(super) fn report(
     io: &Output<'_>,
     command: impl FnOnce(&mut Output<'_>) -> Result<(), CommandError>,
 ) -> Result<Value, CommandError> {

@@ -47,7 +47,7 @@ pub fn figure(chart: &Chart, caption: &Caption, note: &str) -> String {
         return drawing.finish();
     }
     let ticks = Ticks::new(points().map(|&(_, y)| y), 6);
-    let labels: Vec<String> = ticks.values.iter().map(|&value| short(value)).collect();
+    let labels = labels(&ticks.values);
     let gutter = labels.iter().map(|label| width_of(label, SMALL)).fold(0.0, f64::max);
     let (left, right) = (MARGIN + gutter + 12.0, WIDTH - MARGIN - 12.0);
     let (top, bottom) = (drawing.y + 8.0, drawing.y + 8.0 + HEIGHT);
@@ -90,6 +90,18 @@ pub fn figure(chart: &Chart, caption: &Caption, note: &str) -> String {
     drawing.finish()
 }
 
+/// Values of a scale, all with the same power of ten.
+fn labels(values: &[f64]) -> Vec<String> {
+    let plain: Vec<String> = values.iter().map(|&value| short(value + 0.0)).collect();
+    let powers = plain.iter().filter_map(|label| label.split_once('e')?.1.parse::<i32>().ok());
+    let Some(power) = powers.max() else { return plain };
+    let scaled = |value: &f64| match short(value / 10f64.powi(power)) {
+        zero if zero == "0" => zero,
+        number => format!("{number}e{power}"),
+    };
+    values.iter().map(scaled).collect()
+}
+
 fn draw_curve(drawing: &mut Drawing, curve: &Curve, place: &dyn Fn((f64, f64)) -> (f64, f64)) {
     let colour = COLOURS[curve.number % COLOURS.len()];
     let finite = curve.series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
@@ -129,11 +141,12 @@ fn name_abscissas(drawing: &mut Drawing, chart: &Chart, (first, last): (f64, f64
     if chart.values && last > first {
         drawing.y += if chart.names.is_empty() { 20.0 } else { 17.0 };
         let y = drawing.y;
-        for value in round_places(first, last, 8) {
+        let places = round_places(first, last, 8);
+        for (value, label) in places.iter().copied().zip(labels(&places)) {
             if chart.names.is_empty() {
                 drawing.line((to_x(value), bottom), (to_x(value), bottom + 4.0), BLACK, 1.0, "");
             }
-            drawing.text_if_free((to_x(value), y), &short(value + 0.0), Anchor::Middle, GREY);
+            drawing.text_if_free((to_x(value), y), &label, Anchor::Middle, GREY);
         }
     }
     if !chart.abscissa.is_empty() {

@@ -3,7 +3,6 @@
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FACE, FAINT, GREY, MARGIN, SMALL, Sign, WIDTH, points};
 use crate::answer::record::State;
 use crate::view::number::{short, with_unit};
-use crate::view::plot::chart::round_places;
 use crate::view::plot::scene::Scene;
 use crate::view::plot::structure::support_word;
 
@@ -24,6 +23,8 @@ pub(super) struct Place {
     pub(super) scale: f64,
     /// Height of the whole area.
     height: f64,
+    /// Whether it is a single point.
+    has_no_size: bool,
 }
 
 impl Place {
@@ -40,6 +41,7 @@ impl Place {
             corner: (left, top),
             scale,
             height: high * scale + 2.0 * room,
+            has_no_size: wide.max(high) <= 0.0,
         }
     }
 
@@ -54,8 +56,12 @@ impl Place {
 
     /// A length of the model, drawn as long as it is.
     pub(super) fn scale_bar(&self, drawing: &mut Drawing, unit: Option<&str>) {
-        let most = 120.0 / self.scale;
-        let Some(&length) = round_places(0.0, most, 2).last().filter(|length| **length > 0.0) else { return };
+        if self.has_no_size {
+            return;
+        }
+        let most = 150.0 / self.scale;
+        let power = 10f64.powi(most.log10().floor() as i32);
+        let length = [5.0, 2.0].into_iter().map(|digit| digit * power).find(|length| *length <= most).unwrap_or(power);
         let (x, y) = (WIDTH - MARGIN - length * self.scale, drawing.y);
         drawing.line((x, y), (WIDTH - MARGIN, y), BLACK, 1.5, "");
         for x in [x, WIDTH - MARGIN] {
