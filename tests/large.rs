@@ -197,6 +197,7 @@ fn errors_of_a_long_walk(n: usize, pivots: usize) -> (f64, f64) {
         scale: Scale {
             row: matrix.diagonal().map(f64::sqrt).as_slice().to_vec(),
             column: matrix.diagonal().map(f64::sqrt).as_slice().to_vec(),
+            load: None,
         },
         whole_size: n,
     };

@@ -18,7 +18,7 @@ use super::system::ContactSystem;
 use super::whole::{joint_constants, rows};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::Point;
-use crate::lcp::problem::Scale;
+use crate::lcp::problem::{NOISE, Scale};
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::variable::Variable;
 use crate::model::pair::Law;
@@ -163,14 +163,17 @@ pub fn contact_lcp_like(
         Law::Bound { .. } => numbers.bound[pair],
         _ => numbers.cohesion[pair],
     };
-    // Largest |q| of all rows.
+    // Largest |q| of all rows, and of their loads alone.
     let mut largest = 0f64;
+    let mut largest_load = 0f64;
     for &i in &normals {
         largest = largest.max(load[i].abs());
+        largest_load = largest_load.max(load[i].abs());
     }
     for &(i, joint) in &tangentials {
         let bound = friction_of(i) * load[i] + extra(i);
         largest = largest.max((bound + load[joint]).abs()).max((bound - load[joint]).abs());
+        largest_load = largest_load.max((friction_of(i) * load[i]).abs()).max(load[joint].abs());
     }
     let force_unit = power_of_two(largest);
     let length_unit = force_unit / stiffness_unit;
@@ -220,7 +223,10 @@ pub fn contact_lcp_like(
         let f = friction_of(i);
         let bound_law = matches!(pairs[i].law, Law::Bound { .. });
         let constant = extra(i) / force_unit;
-        q[row] = load[joint] / force_unit + f * (load[i] / force_unit) + constant;
+        let terms = [load[joint] / force_unit, f * (load[i] / force_unit), constant];
+        let sum: f64 = terms.iter().sum();
+        let noise = NOISE * terms.iter().map(|term| term.abs()).sum::<f64>();
+        q[row] = if sum.abs() <= noise { 0.0 } else { sum };
         d[row] = match (bound_law, covering) {
             (true, _) | (_, Covering::Ones) => 1.0,
             (_, Covering::Cohesive) => 1.0 + f,
@@ -253,7 +259,11 @@ pub fn contact_lcp_like(
         covering: d,
         whole: (0..count).collect(),
         mirrors,
-        scale: Scale { row: row_scale, column: (0..count).map(|row| column_scale[joint_of(row)]).collect() },
+        scale: Scale {
+            row: row_scale,
+            column: (0..count).map(|row| column_scale[joint_of(row)]).collect(),
+            load: (largest_load > 0.0).then_some(largest_load / force_unit),
+        },
         whole_size: rows.len(),
     };
     Ok(ContactLcp {

@@ -163,7 +163,10 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
         .collect();
     let cover = rows.iter().map(|row| covering_entry::<T>(input, *row, covering)).collect();
     let root = |i: usize| system.stiffness[(i, i)].max(0.0).sqrt();
+    let load = combinations.iter().flat_map(|(terms, _)| terms);
+    let load = load.map(|(i, factor)| (factor.to_f64() * constants[*i].to_f64()).abs()).fold(0.0, f64::max);
     let scale = Scale {
+        load: (load > 0.0).then_some(load),
         row: rows
             .iter()
             .map(|row| match row.couple {

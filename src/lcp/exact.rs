@@ -197,7 +197,7 @@ impl<'a> Exact<'a> {
                     return failed();
                 };
                 let Point { z, w, p } = self.rationals(&moving);
-                let small = self.lcp.q.iter().map(|q| Scalar::to_f64(q).abs()).fold(0.0, f64::max) * MARGINAL;
+                let small = self.lcp.load_size() * MARGINAL;
                 let at = BigRational::new_raw(vertex.p.clone(), vertex.denominator.clone());
                 if !vertex.holds() || !moving.holds() || Scalar::to_f64(&at) <= 0.5 * small {
                     return failed();

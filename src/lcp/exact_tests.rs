@@ -11,7 +11,12 @@ use crate::watch::Quiet;
 
 fn problem(m: Vec<Vec<BigRational>>, q: Vec<BigRational>) -> Lcp<BigRational> {
     let n = q.len();
-    Lcp { matrix: m, q, covering: vec![Scalar::one(); n], scale: Scale { row: vec![1.0; n], column: vec![1.0; n] } }
+    Lcp {
+        matrix: m,
+        q,
+        covering: vec![Scalar::one(); n],
+        scale: Scale { row: vec![1.0; n], column: vec![1.0; n], load: None },
+    }
 }
 
 #[test]

@@ -88,7 +88,7 @@ impl SchemeEngine {
 
     /// The end where nothing goes on but p is as good as zero: an answer.
     fn at_limit_of_p(&self) -> Option<Outcome> {
-        (self.stand.p() <= MARGINAL * self.stand.lcp.q.amax()).then_some(Outcome::Normal { marginal: true })
+        (self.stand.p() <= MARGINAL * self.stand.lcp.load_size()).then_some(Outcome::Normal { marginal: true })
     }
 
     /// The end where no row blocks the entering variable of column c.
@@ -104,17 +104,18 @@ impl SchemeEngine {
     /// The entry of p (pivot 0), or the trivial end.
     fn start(&mut self) -> Step<f64> {
         let lcp = Arc::clone(&self.stand.lcp);
-        // q and d of all rows, mirrors included.
+        // q and d of all rows, mirrors included. q itself is data, a mirror's is a sum that carries its rounding.
         let mut rows: Vec<(Local, bool, f64, f64)> =
             (0..lcp.size()).map(|i| (Local::W(i), false, lcp.q[i], lcp.covering[i])).collect();
         for (i, mirror) in lcp.mirrors.iter().enumerate() {
             if let Some(mirror) = mirror {
                 let (q, d) = lcp.mirror_start(i, mirror);
-                rows.push((Local::W(i), true, q, d));
+                let normal = mirror.normal.map_or(0.0, |n| 2.0 * mirror.friction * lcp.q[n].abs());
+                let noise = NOISE * (normal + mirror.constant + lcp.q[i].abs());
+                rows.push((Local::W(i), true, if q.abs() <= noise { 0.0 } else { q }, d));
             }
         }
-        let largest = rows.iter().map(|row| row.2.abs()).fold(0.0, f64::max);
-        let negative: Vec<_> = rows.iter().filter(|row| row.2 < -NOISE * largest).collect();
+        let negative: Vec<_> = rows.iter().filter(|row| row.2 < 0.0).collect();
         if negative.is_empty() {
             return self.end(Outcome::Trivial);
         }

@@ -80,6 +80,11 @@ impl MirroredLcp {
         }
     }
 
+    /// Size of the load: see [`Scale::load`].
+    pub fn load_size(&self) -> f64 {
+        self.scale.load.unwrap_or_else(|| self.q.amax())
+    }
+
     /// n(i) and f_i of a row that is coupled to a normal force.
     pub(crate) fn coupling(&self, i: usize) -> Option<(usize, f64)> {
         let mirror = self.mirrors[i].as_ref()?;

@@ -1,10 +1,12 @@
 //! The whole LCP written out: w = M z + q + d p, w ≥ 0, z ≥ 0, wᵀz = 0.
 
+use super::scalar::Scalar;
+
 /// A value or rate counts as zero below this multiple of its natural size (method §4, "Zero"), see [`Scale`].
 pub const NOISE: f64 = 256.0 * f64::EPSILON;
 /// Rounds of equilibration: the logarithms of the factors come twice as near in each.
 const EQUILIBRATIONS: usize = 8;
-/// p at a ray at most this multiple of the largest |q| is a normal end, flagged marginal.
+/// p at a ray at most this multiple of the size of the load is a normal end, flagged marginal.
 pub const MARGINAL: f64 = 1e-12;
 
 /// Sizes against which rounding noise is judged: the response (M Δz)_i counts as zero when it is at most
@@ -18,6 +20,9 @@ pub struct Scale {
     pub row: Vec<f64>,
     /// One entry per column of the LCP.
     pub column: Vec<f64>,
+    /// Size of what has to be balanced, where q holds other numbers besides: a friction bound of 1e15 is no load. What
+    /// is left of p is judged against it; without one, against the largest |q|.
+    pub load: Option<f64>,
 }
 
 impl Scale {
@@ -25,7 +30,7 @@ impl Scale {
     /// other units of single rows and columns change no decision (Ruiz's equilibration in the largest norm, 2001).
     pub fn plain(matrix: &[Vec<f64>]) -> Scale {
         let n = matrix.len();
-        let mut scale = Scale { row: vec![1.0; n], column: vec![1.0; n] };
+        let mut scale = Scale { row: vec![1.0; n], column: vec![1.0; n], load: None };
         let largest = |entries: &mut dyn Iterator<Item = f64>| entries.fold(0.0, |a: f64, b| a.max(b.abs()));
         for _ in 0..EQUILIBRATIONS {
             let rows: Vec<f64> =
@@ -62,5 +67,13 @@ impl<T> Lcp<T> {
     /// Number n of complementary couples.
     pub fn size(&self) -> usize {
         self.q.len()
+    }
+}
+
+impl<T: Scalar> Lcp<T> {
+    /// Size of the load: see [`Scale::load`].
+    pub fn load_size(&self) -> f64 {
+        let largest = || self.q.iter().map(|q| q.to_f64().abs()).fold(0.0, f64::max);
+        self.scale.load.unwrap_or_else(largest)
     }
 }

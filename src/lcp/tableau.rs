@@ -60,7 +60,7 @@ pub struct Tableau<T> {
     ended: Option<Outcome<T>>,
     /// Typical d_i / row_i: what a unit of p weighs against scaled displacements.
     weight_of_p: f64,
-    largest_q: f64,
+    load: f64,
 }
 
 impl<T: Scalar> Tableau<T> {
@@ -92,7 +92,7 @@ impl<T: Scalar> Tableau<T> {
             pivots: PivotLog::default(),
             ended: None,
             weight_of_p: if high > 0.0 { (low * high).sqrt() } else { 1.0 },
-            largest_q: lcp.q.iter().map(|q| q.to_f64().abs()).fold(0.0, f64::max),
+            load: lcp.load_size(),
             lcp: lcp.clone(),
         }
     }
@@ -217,7 +217,7 @@ impl<T: Scalar> Tableau<T> {
     /// The end where nothing goes on but p is as good as zero: an answer.
     fn at_limit_of_p(&self) -> Option<Outcome<T>> {
         let p = self.p_value();
-        (p.to_f64() <= MARGINAL * self.largest_q).then(|| Outcome::Normal { marginal: !p.is_zero() })
+        (p.to_f64() <= MARGINAL * self.load).then(|| Outcome::Normal { marginal: !p.is_zero() })
     }
 
     fn ray(&self, column: usize) -> Outcome<T> {

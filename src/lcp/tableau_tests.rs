@@ -20,6 +20,7 @@ fn lcp<T: Scalar>(m: &[Vec<f64>], q: &[f64], d: &[f64]) -> Lcp<T> {
         scale: Scale {
             row: m.iter().map(|row| row.iter().fold(0.0, |a: f64, x| a.max(x.abs()))).collect(),
             column: vec![1.0; q.len()],
+            load: None,
         },
     }
 }

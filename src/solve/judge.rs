@@ -40,7 +40,11 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
         matrix: vec![Vec::new(); n],
         q: vec![0.0; n],
         covering: vec![0.0; n],
-        scale: Scale { row: vec![0.0; n], column: columns.iter().map(|&(j, _)| lcp.scale.column[j]).collect() },
+        scale: Scale {
+            row: vec![0.0; n],
+            column: columns.iter().map(|&(j, _)| lcp.scale.column[j]).collect(),
+            load: lcp.scale.load,
+        },
     };
     let matrix = lcp.matrix();
     for i in 0..lcp.size() {

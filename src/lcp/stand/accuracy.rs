@@ -40,7 +40,7 @@ impl Stand {
     /// displacements are much larger than the load and cancel.
     pub(crate) fn blur(&self) -> f64 {
         let row = self.lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let load = self.lcp.q.amax().max(f64::MIN_POSITIVE);
+        let load = self.lcp.load_size().max(f64::MIN_POSITIVE);
         ROUNDING * row * self.size_of(&self.dictionary.value) / load
     }
 

@@ -383,6 +383,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
                 })
                 .collect(),
             column: primary.iter().map(|row| scales[row.joint]).collect(),
+            load: None,
         },
         whole_size: rows.len(),
     };
