@@ -129,8 +129,8 @@ pub struct Attempt {
     pub engine: String,
     /// How it ended.
     pub outcome: OutcomeKind,
-    /// Pivots that it made, where that is known.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Pivots that it made, where that is known; told in words only.
+    #[serde(skip)]
     pub pivots: Option<usize>,
     /// Which limit it reached, where that is no ray and no answer; where a path ended.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -5,7 +5,7 @@
 //! pairs not yet decided; deciding a pair eliminates its one or two displacements, and a sign that fails for all
 //! displacements of the others in their box ends the branch. The box: normals z_n ≥ 0 and, where R is positive
 //! definite, that around the ellipsoid zᵀR z ≤ −zᵀq that every answer lies in (zᵀλ ≤ 0 for every answer; q is RF −
-//! R·(g, 0)). Where balls do not cut, the signs and the box are a linear program in exact arithmetic ([`crate::lcp::polyhedron`]). Of a complete scheme it gives all answers, one or a
+//! R·(g, 0)), with proved bounds ([`super::answer_box`]). Where balls do not cut, the signs and the box are a linear program in exact arithmetic ([`crate::lcp::polyhedron`]). Of a complete scheme it gives all answers, one or a
 //! continuum with its corners and directions. Nothing is accepted or cut by a tolerance.
 
 use std::ops::ControlFlow;
@@ -183,8 +183,7 @@ impl<'a> Search<'a> {
             .iter()
             .map(|joint| if *joint < m { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, f64::INFINITY) })
             .collect();
-        let constants: Vec<f64> = exact.constants.iter().map(nearest).collect();
-        let sides = ellipsoid(system, &joints, &constants);
+        let sides = ellipsoid(&exact.stiffness, &exact.constants, &joints);
         let worth = if sides.is_some() { WORTH_BOXED } else { WORTH };
         for (bound, (low, high)) in bounds.iter_mut().zip(sides.into_iter().flatten()) {
             *bound = (bound.0.max(low), bound.1.min(high));
