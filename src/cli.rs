@@ -135,7 +135,7 @@ struct Settings {
     /// Change a parameter, as the REPL's `set` does: `--set f=0.3`, `--set F2=110%`
     #[arg(long = "set", value_name = "NAME=VALUE")]
     values: Vec<String>,
-    /// Covering vector: cohesive, ones or weight
+    /// Covering vector: cohesive, ones or weight (like the next two not for the rate problems of load histories)
     #[arg(long)]
     covering: Option<Covering>,
     /// Tie-break: lexicographic, natural, first-row or random:SEED
@@ -147,6 +147,10 @@ struct Settings {
 }
 
 impl Settings {
+    fn has_rules(&self) -> bool {
+        self.covering.is_some() || self.tie_break.is_some() || self.engine.is_some()
+    }
+
     /// The words after a `set`, setting by setting.
     fn words(&self) -> Vec<Vec<String>> {
         let rule = |name: &str, choice: Option<String>| choice.map(|choice| vec![name.to_owned(), choice]);
@@ -468,6 +472,11 @@ fn write_history(
     } else {
         let note = "the load history was followed, this is its end (`--at-once`: all load cases at once)";
         view::stages::write_line(out, note, style)?;
+        if arguments.settings.has_rules() {
+            let note = "the covering, the tie-break and the engine chosen do not reach its rate problems: they are solved \
+                        under the default rules";
+            view::stages::write_line(out, note, style)?;
+        }
         view::status::write(out, answer, scenario, session.values(), style)?;
         writeln!(out)?;
         view::stages::write(out, history, &scenario.units, style)?;

@@ -163,7 +163,7 @@ impl MainSystem {
     }
 
     /// What rounding may leave of each row.
-    fn rounding(&self, u: &Displacements, factors: &[f64]) -> Vec<f64> {
+    pub(super) fn rounding(&self, u: &Displacements, factors: &[f64]) -> Vec<f64> {
         let base = self.dofs.gather(&u.0);
         // Where supports settle u is a sum, S s and the rest, that may cancel: an open gap, say.
         let sizes: Vec<f64> = match self.settlement(factors) {

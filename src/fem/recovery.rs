@@ -144,6 +144,7 @@ impl MainSystem {
         factors: &[f64],
     ) -> Vec<Reaction> {
         let forces = self.unbalanced(u, lambda, factors);
+        let rounding = self.rounding(u, factors);
         let mut supported = vec![false; forces.len()];
         // The support that takes the forces of the unsupported nodes of a class.
         let mut taker = vec![usize::MAX; forces.len()];
@@ -157,11 +158,13 @@ impl MainSystem {
             }
         }
         let mut reaction = vec![0.0; forces.len()];
+        let mut noise = vec![0.0; forces.len()];
         for (dof, force) in forces.iter().enumerate() {
             if self.elimination.is_held(dof) {
                 // A held class has a support, hence a taker.
                 let at = if supported[dof] { dof } else { taker[self.elimination.class(dof)] };
                 reaction[at] += force;
+                noise[at] += rounding[dof];
             }
         }
         for (spring, force) in std::iter::zip(&structure.springs, self.spring_forces(structure, u)) {
@@ -180,7 +183,8 @@ impl MainSystem {
         nodes.dedup();
         let value = |node, component| {
             let dof = self.dofs.of(node, component);
-            dof.map_or(0.0, |dof| reaction[dof])
+            // What rounding leaves of the forces that meet there is no reaction.
+            dof.filter(|&dof| reaction[dof].abs() > noise[dof]).map_or(0.0, |dof| reaction[dof])
         };
         nodes
             .into_iter()

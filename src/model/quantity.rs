@@ -342,6 +342,13 @@ pub fn read<'w>(words: &'w [String], names: &Names<'_>) -> Result<(Quantity, &'w
     if let Some((name, quantity)) = names.probes.iter().find(|(name, _)| name == first) {
         return Ok((Quantity::Probe(name.clone(), Box::new(quantity.clone())), rest));
     }
+    // Typed without quotes a name with blanks comes in words.
+    let typed = words.join(" ");
+    let spaced = names.probes.iter().map(|(name, _)| name).filter(|name| name.contains(char::is_whitespace));
+    if let Some(name) = spaced.clone().find(|name| typed.starts_with(name.as_str())).filter(|_| entry(first).is_none())
+    {
+        return error(format!("unknown quantity `{first}`: a probe's name with blanks is quoted: \"{name}\""));
+    }
     let Some(entry) = entry(first) else {
         let probes = names.probes.iter().map(|(name, _)| name.as_str());
         let near = did_you_mean(first, WORDS.iter().map(|known| known.word).chain(probes));

@@ -49,7 +49,7 @@ pub enum Command {
     /// `*= 2`, `/= 2`. A value outside min … max is accepted: the range is the slider's.
     ///
     /// Rules: `set covering cohesive|ones|weight`, `set tie-break lexicographic|natural|first-row|random:SEED`,
-    /// `set engine scheme|tableau|exact`; `set auto off` stops solving after each change until `solve` or
+    /// `set engine scheme|tableau|exact`; they hold for `solve`, not for the rate problems of `stages`. `set auto off` stops solving after each change until `solve` or
     /// `set auto on`.
     #[command(after_help = "Example:\n  set F2 120\n  set F2 += 10\n  set f 110%\n  set covering weight")]
     Set {
@@ -244,6 +244,9 @@ pub enum Command {
     /// Each stage is followed event by event from where the one before ended; slips stay. With STAGE the way through
     /// that stage and the pairs at its end are shown. `plot path` draws the loops. Until the next change or `solve`,
     /// `expect` and the tables `pairs`, `displacements`, `members`, `reactions` and `check` mean the end of the history.
+    ///
+    /// The rate problems between two events are always solved under the default rules: `set covering`, `set tie-break`
+    /// and `set engine` do not reach them.
     #[command(after_help = "Example:\n  stages\n  stages 2\n  stages; plot path slip c6")]
     Stages {
         /// Number of a stage

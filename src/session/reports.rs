@@ -286,9 +286,9 @@ impl Session {
             structure.nodes.iter().map(|node| (node.id.as_str(), node.position)).collect();
         let moment = |reaction: &Reaction| {
             let [x, y] = positions.get(reaction.node.as_str()).copied().unwrap_or_default();
-            reaction.m + x * reaction.fy - y * reaction.fx
+            [reaction.m, x * reaction.fy, -y * reaction.fx]
         };
-        reactions.iter().map(moment).sum()
+        view::number::balance(reactions.iter().flat_map(moment))
     }
 
     pub(super) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {

@@ -424,9 +424,17 @@ impl Prepared {
                 for (pair, shown) in structure.pairs.iter().zip(pairs) {
                     if matches!(pair.law, Law::Frictionless { .. }) {
                         let t = pair.tangent();
-                        let along =
-                            |&(node, weight): &(usize, f64)| weight * (t[0] * u.0[node][0] + t[1] * u.0[node][1]);
-                        shown.z_t = pair.tangential_weights().iter().map(along).sum();
+                        // Both components of a displacement are as well known as the larger one.
+                        let along = |&(node, weight): &(usize, f64)| {
+                            let [x, y] = [u.0[node][0], u.0[node][1]];
+                            [weight * (t[0] * x + t[1] * y), weight.abs() * (x.abs() + y.abs())]
+                        };
+                        let [slip, terms] = pair
+                            .tangential_weights()
+                            .iter()
+                            .map(along)
+                            .fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]]);
+                        shown.z_t = if slip.abs() <= SLIP_ZERO * terms { 0.0 } else { slip };
                     }
                 }
             }
@@ -482,6 +490,9 @@ pub(super) fn judge(answer: &mut Answer, check: Check) {
         }
     }
 }
+
+/// A slip below this multiple of the displacements that it is the difference of is zero.
+const SLIP_ZERO: f64 = 16.0 * f64::EPSILON;
 
 pub(super) fn fail_check(answer: &mut Answer) {
     answer.outcome = OutcomeKind::CheckFailed;

@@ -142,6 +142,12 @@ fn written(value: f64, figures: &str, exponent: i32, power: i32) -> String {
     text
 }
 
+/// A sum; 0 where it is what rounding leaves of its terms.
+pub fn balance(terms: impl Iterator<Item = f64>) -> f64 {
+    let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
+    if sum.abs() <= crate::lcp::problem::NOISE * size { 0.0 } else { sum }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

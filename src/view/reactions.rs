@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest, short, with_unit};
+use super::number::{balance, in_column, largest, short, with_unit};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, moment_unit};
@@ -48,8 +48,8 @@ pub fn table(reactions: &[Reaction], units: &Units) -> Table {
         push(&reaction.node, reaction.fx, reaction.fy, Some(reaction.m));
     }
     if reactions.len() > 1 {
-        let fx = reactions.iter().map(|r| r.fx).sum();
-        let fy = reactions.iter().map(|r| r.fy).sum();
+        let fx = balance(reactions.iter().map(|r| r.fx));
+        let fy = balance(reactions.iter().map(|r| r.fy));
         // Moments at different places do not add up to anything.
         push("sum", fx, fy, None);
     }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::{short, with_unit};
+use super::number::{balance, short, with_unit};
 use super::quantities::shown;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
@@ -56,7 +56,8 @@ pub struct Safety {
 impl Summary {
     /// Σ fx and Σ fy of the reactions.
     pub fn sum_of_reactions(&self) -> [f64; 2] {
-        self.reactions.iter().fold([0.0; 2], |sum, reaction| [sum[0] + reaction.fx, sum[1] + reaction.fy])
+        let of = |component: fn(&Reaction) -> f64| balance(self.reactions.iter().map(component));
+        [of(|reaction| reaction.fx), of(|reaction| reaction.fy)]
     }
 }
 

@@ -22,6 +22,9 @@ use super::Axis;
 use super::bar_load::{BarLoad, Internal};
 use crate::fem::doubled::Real;
 
+/// A sum below this multiple of the magnitudes of its terms is zero.
+const ZERO: f64 = 16.0 * f64::EPSILON;
+
 type Matrix6<T = f64> = SMatrix<T, 6, 6>;
 type Vector6 = SVector<f64, 6>;
 
@@ -159,10 +162,18 @@ impl Frame {
     /// and the load between the nodes.
     ///
     /// N > 0 tension, Q = dM/dx, M > 0 tension on the −y side: with f the forces on the element's ends,
-    /// start (−f_x1, f_y1, −m_1), end (f_x2, −f_y2, m_2).
+    /// start (−f_x1, f_y1, −m_1), end (f_x2, −f_y2, m_2). What is no more than rounding of the terms of a force is 0.
     pub fn end_forces(&self, u: &[f64; 6], load: &BarLoad) -> [Internal; 2] {
         let local = rotation(&self.axis) * Vector6::from(*u);
-        let f = self.local_stiffness() * local - self.local_forces(load);
+        let (stiffness, loads) = (self.local_stiffness(), self.local_forces(load));
+        let mut f = stiffness * local - loads;
+        // Both components of a displacement are as well known as the larger one.
+        let sizes = Vector6::from_fn(|i, _| match i % 3 {
+            2 => u[i].abs(),
+            _ => u[i - i % 3].abs() + u[i - i % 3 + 1].abs(),
+        });
+        let terms = stiffness.abs() * sizes + loads.abs();
+        f.zip_apply(&terms, |f, terms| *f = if f.abs() <= ZERO * terms { 0.0 } else { *f });
         [[-f[0], f[1], -f[2]], [f[3], -f[4], f[5]]]
     }
 }

@@ -19,6 +19,8 @@ mod walk;
 
 pub use record::{Energy, History, HistoryEnd, Moment, StageResult};
 
+use std::time::Instant;
+
 use standing::Laws;
 use walk::Walk;
 
@@ -77,5 +79,13 @@ pub fn follow_factors(
     }
     let none = vec![0.0; prepared.cases.len()];
     let numbers = contact_numbers(system, &none, values);
-    Walk::start(prepared, Laws { system, numbers: &numbers }, watch)?.follow(targets)
+    let start = Instant::now();
+    let mut history = Walk::start(prepared, Laws { system, numbers: &numbers }, watch)?.follow(targets)?;
+    if let Some(stage) = history.stages.last_mut() {
+        let timings = &mut stage.end.timings;
+        timings.factor = prepared.factor_seconds;
+        timings.condense = prepared.condense_seconds;
+        timings.total = prepared.seconds + start.elapsed().as_secs_f64();
+    }
+    Ok(history)
 }

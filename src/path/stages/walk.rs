@@ -1,5 +1,7 @@
 //! Following: rates, next event, slips committed, rates again.
 
+use std::time::Instant;
+
 use nalgebra::DVector;
 
 use super::course::Course;
@@ -36,6 +38,8 @@ pub(super) struct Walk<'a> {
     way: Vec<(State, Option<State>)>,
     /// The last run of Lemke's algorithm, on a rate problem.
     last_run: Option<(Run, ContactLcp)>,
+    /// Time spent on rate problems.
+    lemke_seconds: f64,
 }
 
 /// The way through a stage.
@@ -67,6 +71,7 @@ impl<'a> Walk<'a> {
             gaps: own.iter().map(|gap| gap.max(0.0)).collect(),
             way: Vec::new(),
             last_run: None,
+            lemke_seconds: 0.0,
         };
         walk.way = walk.states().iter().map(|pair| (pair.state, pair.held)).collect();
         if own.iter().any(|gap| *gap < 0.0) {
@@ -106,6 +111,7 @@ impl<'a> Walk<'a> {
             stage.end.attempts.iter_mut().for_each(|attempt| attempt.outcome = kind(&run.outcome));
             stage.end.pivot_count = run.pivots.count();
             stage.end.pivots = pivot_records(run.pivots.recorded(), contact, self.laws.system);
+            stage.end.timings.lemke = self.lemke_seconds;
         }
         let cases = self.prepared.cases.iter().map(|(name, _)| name.clone()).collect();
         let mut history = History { cases, stages, end };
@@ -188,7 +194,9 @@ impl<'a> Walk<'a> {
         let Some(problem) = RateProblem::new(self.laws, &self.standing, rate) else {
             return Err(breakdown(t, "the stiffness of the open pairs is not positive definite"));
         };
+        let start = Instant::now();
         let (ended, run) = problem.solve(&self.standing, sizes, self.watch);
+        self.lemke_seconds += start.elapsed().as_secs_f64();
         way.pivots += run.pivots.count();
         self.last_run = Some((run, problem.contact.clone()));
         let rates = match ended {
