@@ -2,12 +2,13 @@
 
 mod common;
 
+use common::laws::violation;
 use common::{Case, close, is_answer, near, scenario_text};
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use stickslip::answer::record::{OutcomeKind, State};
+use stickslip::answer::record::{OutcomeKind, State, Verdict};
 use stickslip::contact::exact_check::{ExactCheck, Finding};
 use stickslip::model::load::load_text;
 use stickslip::solve::all_answers::Exactly;
@@ -180,11 +181,105 @@ fn a_compliance_answers_as_its_stiffness_and_obeys_its_own_rows() {
     assert!(moved > 60, "{moved}");
 }
 
+/// A state that obeys the laws under a singular W = G Gᵀ: (λ, z, friction, bound, gap) of m pairs.
+fn random_state(rng: &mut ChaCha8Rng, law: &[&str], f: f64, r_f: f64) -> (DVector<f64>, DVector<f64>) {
+    let m = law.len();
+    let (mut force, mut z) = (DVector::zeros(2 * m), DVector::zeros(2 * m));
+    for i in 0..m {
+        let bilateral = law[i] == "bound";
+        if !bilateral && rng.random_bool(0.3) {
+            z[i] = rng.random_range(0.0..1.0);
+            z[m + i] = rng.random_range(-1.0..1.0);
+            continue;
+        }
+        force[i] = if bilateral { rng.random_range(-1.0..1.0) } else { rng.random_range(0.0..1.0) };
+        let bound = match law[i] {
+            "coulomb" => f * force[i],
+            "bound" => r_f,
+            _ => 0.0,
+        };
+        match rng.random_range(0..3) {
+            0 => force[m + i] = bound * rng.random_range(-1.0..1.0),
+            side => {
+                let sign = if side == 1 { 1.0 } else { -1.0 };
+                (force[m + i], z[m + i]) = (-sign * bound, sign * rng.random_range(0.0..1.0));
+            }
+        }
+    }
+    (force, z)
+}
+
+/// Problems made from an answer, so that there is one; what is found obeys W and the laws, each judged by itself.
 #[test]
-fn a_compliance_that_cannot_be_inverted_is_refused_in_words() {
-    let text = refusal(json!({ "pairs": ["a"], "compliance": [[1, 1], [1, 1]], "loads": {} }));
-    assert!(text.contains("contact_system.compliance: the compliance matrix is singular: forces"), "{text}");
-    assert!(text.contains("along n of a") && text.contains("give `stiffness`"), "{text}");
+fn a_singular_compliance_is_solved_from_its_own_rows() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let (mut tried, mut answered, mut shared) = (0, 0, 0);
+    for k in 0..200 {
+        let m = 1 + k % 6;
+        let laws: &[&str] =
+            if k % 4 == 0 { &["coulomb", "frictionless", "bound"] } else { &["coulomb", "frictionless"] };
+        let law: Vec<&str> = (0..m).map(|i| laws[(i + k / 7) % laws.len()]).collect();
+        let kept: Vec<usize> = (0..2 * m).filter(|&row| row < m || law[row - m] != "frictionless").collect();
+        // As many bound normals as there are must move.
+        let rank = rng.random_range(0..kept.len()).max(law.iter().filter(|law| **law == "bound").count());
+        let whole = k % 2 == 0;
+        let g = DMatrix::from_fn(2 * m, rank, |_, _| {
+            let value: f64 = rng.random_range(-2.5..2.5);
+            if whole { value.round() } else { value }
+        });
+        let w = &g * g.transpose();
+        let (f, r_f) = ([0.2, 0.5, 0.0][k % 3], 0.3);
+        let (force, z) = random_state(&mut rng, &law, f, r_f);
+        let free = &z - &w * &force;
+        let gap: Vec<f64> = law.iter().map(|law| if *law == "bound" { 0.0 } else { 0.25 * (k % 2) as f64 }).collect();
+        let vector = DVector::from_fn(2 * m, |i, _| free[i] - if i < m { gap[i] } else { 0.0 });
+        let of = |which: &str, value: f64| -> Vec<f64> {
+            law.iter().map(|law| if *law == which { value } else { 0.0 }).collect()
+        };
+        let case = system(json!({ "pairs": (0..m).map(|i| format!("c{i}")).collect::<Vec<_>>(), "law": law,
+            "friction": of("coulomb", f), "bound": of("bound", r_f), "gap": gap, "compliance": rows(&w),
+            "loads": { "w": { "vector": vector.as_slice() } } }));
+        let text = scenario_text(case);
+        let scenario = load_text("test", &text, None).expect("a scenario");
+        let Ok(prepared) = prepare(&scenario, &Quiet) else {
+            assert!(law.contains(&"bound"));
+            continue;
+        };
+        let case = Case { scenario, prepared };
+        let answer = case.solve(&[]);
+        tried += 1;
+        if answer.ray.is_some() {
+            assert_ne!(answer.ray.as_ref().unwrap().verdict, Some(Verdict::Certified), "{k}: there is an answer");
+            continue;
+        }
+        assert!(answer.is_answer(), "{k} {law:?} {text}");
+        answered += 1;
+        shared += usize::from(answer.notes.iter().any(|note| note.contains("least norm")));
+        let pairs = &answer.pairs;
+        let lambda = DVector::from_fn(2 * m, |i, _| if i < m { pairs[i].x_n } else { pairs[i - m].x_t });
+        for i in 0..2 * m {
+            let (z, gap) = if i < m { (pairs[i].z_n, gap[i]) } else { (pairs[i - m].z_t, 0.0) };
+            let terms: f64 = w.row(i).iter().zip(lambda.iter()).map(|(w, x)| (w * x).abs()).sum();
+            let left = z - gap - vector[i] - w.row(i).transpose().dot(&lambda);
+            near(&format!("{k}: row {i} of W"), left, 0.0, 1e-12, terms + vector[i].abs() + gap + z.abs() + 1e-3);
+        }
+        let values = case.scenario.parameter_values();
+        assert!(violation(&case.scenario, &values, &answer) < 1e-11, "{k}");
+    }
+    assert!(tried > 180 && answered >= tried - 4, "{answered} of {tried}");
+    assert!(shared > 20, "{shared}");
+}
+
+#[test]
+fn a_compliance_of_one_direction() {
+    // Both joints move along one direction, so x_n + x_t counts: z_n = z_t = x_n + x_t − 2. Closed and sticking: x_n + x_t =
+    // 2 with |x_t| ≤ x_n/2; of least norm is (1, 1) without friction's bound, (4/3, 2/3) with it.
+    let case = Case::json(system(json!({ "pairs": ["a"], "friction": [0.5], "compliance": [[1, 1], [1, 1]],
+        "loads": { "w": { "vector": [-2, -2] } } })));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    near("x_n", answer.pairs[0].x_n, 4.0 / 3.0, 1e-14, 1.0);
+    near("x_t", answer.pairs[0].x_t, 2.0 / 3.0, 1e-14, 1.0);
     // The tangent of a frictionless pair carries no force: W of the others is what counts.
     let case = Case::json(system(json!({ "pairs": ["a"], "law": ["frictionless"], "compliance": [[1, 1], [1, 1]],
         "loads": { "w": { "vector": [-2, 1] } } })));
@@ -192,6 +287,10 @@ fn a_compliance_that_cannot_be_inverted_is_refused_in_words() {
     let answer = case.solve(&[]);
     is_answer(&answer);
     assert_eq!((answer.pairs[0].x_n, answer.pairs[0].z_t), (2.0, 3.0));
+    // A joint held both ways that no force moves.
+    let text =
+        refusal(json!({ "pairs": ["a"], "law": ["bound"], "bound": [1], "compliance": [[0, 0], [0, 1]], "loads": {} }));
+    assert!(text.contains("contact_system.compliance: pair a is held along n both ways"), "{text}");
 }
 
 #[test]

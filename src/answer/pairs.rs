@@ -65,17 +65,34 @@ impl JointState {
                 (z[joint], known_to(system, &joints, joint).max(z[joint].abs()), terms[joint]);
         }
         forced.into_iter().for_each(|joint| z[joint] = joints[joint].cleaned());
-        JointState { z, force, terms, z_terms, left, slips, p, free: Vec::new() }
+        JointState { z, force, terms, z_terms, left, slips, p, free: Vec::new() }.against_file(system, numbers)
+    }
+
+    /// With what the compliance of a file leaves over, where joints are in force form.
+    fn against_file(mut self, system: &ContactSystem, numbers: &ContactNumbers) -> JointState {
+        if let (Some(_), Some(file), Some(load)) = (&system.force_form, &system.file, &numbers.file_load) {
+            let (mut moved, mut sizes) = (self.z.clone(), self.z.abs() + &self.z_terms);
+            for (i, gap) in numbers.gap.iter().enumerate() {
+                moved[i] -= gap;
+                sizes[i] += gap.abs();
+            }
+            let forces: Vec<Sum> = (0..self.z.len()).map(|joint| self.sum(joint)).collect();
+            self.left = file.left_by(&forces, &moved, &sizes, load);
+        }
+        self
     }
 
     /// The state with the forces of least norm among those of its motion.
     fn with_least_norm(mut self, system: &ContactSystem, numbers: &ContactNumbers) -> JointState {
         let mut forces: Vec<Sum> = (0..self.z.len()).map(|joint| self.sum(joint)).collect();
         self.free = least_norm(system, numbers, &self.z, &mut forces);
+        if self.free.is_empty() {
+            return self;
+        }
         for (joint, force) in forces.iter().enumerate() {
             (self.force[joint], self.terms[joint]) = (force.value, force.magnitude);
         }
-        self
+        self.against_file(system, numbers)
     }
 
     /// The unknowns and what answers to them, in the forms that the joints have.

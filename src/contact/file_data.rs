@@ -76,6 +76,30 @@ impl FileData {
         Sum { value: self.row(row, x, start), magnitude: size + terms }
     }
 
+    /// z − (g, 0) − v − W λ in every kept row, each zero in a state that obeys the compliance; `moved` is z − (g, 0), known to
+    /// a few ε of `sizes`.
+    pub fn left_by(&self, forces: &[Sum], moved: &DVector<f64>, sizes: &DVector<f64>, load: &FileLoad) -> Vec<Sum> {
+        let (mut all, mut all_sizes) = (DVector::zeros(self.matrix.nrows()), DVector::zeros(self.matrix.nrows()));
+        for (force, &row) in forces.iter().zip(&self.kept) {
+            (all[row], all_sizes[row]) = (force.value, force.magnitude);
+        }
+        let left = |(i, &row): (usize, &usize)| {
+            let start = load.vector[row] - moved[i];
+            self.row_sum(row, (&all, &all_sizes), start, sizes[i] + load.terms[row])
+        };
+        self.kept.iter().enumerate().map(left).collect()
+    }
+
+    /// z_τ of the frictionless pairs under the forces of the kept joints of a compliance.
+    pub fn slips_under(&self, forces: &DVector<f64>, load: &FileLoad) -> DVector<f64> {
+        let mut all = DVector::zeros(self.matrix.nrows());
+        self.kept.iter().zip(forces.iter()).for_each(|(&row, force)| all[row] = *force);
+        DVector::from_iterator(
+            self.released.len(),
+            self.released.iter().map(|&row| self.row(row, &all, load.vector[row])),
+        )
+    }
+
     /// Forces at displacements z − (g, 0) of the kept joints, which are known to a few ε of `sizes` = |z| + |(g, 0)|.
     pub fn forces(&self, z: &DVector<f64>, sizes: &DVector<f64>, load: &FileLoad) -> FileForces {
         if self.compliance {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::file_data::FileData;
+use super::force_form::ForceForm;
 use super::pivoted::{NullSpace, PivotedCholesky, is_null};
 use super::system::{ContactPair, ContactSystem, JointLoad};
 use crate::lcp::problem::NOISE;
@@ -28,14 +29,14 @@ pub enum GivenError {
         /// Smallest eigenvalue.
         smallest: f64,
     },
-    /// W that cannot be inverted.
+    /// W in which a normal joint that holds both ways does not move under its own force, the other such joints held.
     #[error(
-        "the compliance matrix is singular: forces {forces} move nothing, so there is no contact stiffness matrix; give \
-         `stiffness` (with its `kernel`) instead, or leave out the joints that cannot move"
+        "pair {pair} is held along n both ways (law bound), and the compliance matrix says that no force moves it along n \
+         where the other such pairs hold: leave it out, or give it another law"
     )]
-    Singular {
-        /// Joints and their forces in words.
-        forces: String,
+    Held {
+        /// Id of the pair.
+        pair: String,
     },
     /// A load acts on a tangential motion of frictionless pairs that nothing resists.
     #[error("load case {case} pushes frictionless pair {pair} along a tangential motion that nothing resists")]
@@ -222,6 +223,9 @@ fn joint_loads(
 /// # Errors
 /// A load along a motion that nothing resists.
 pub fn with_loads(system: &ContactSystem, given: &GivenContactSystem) -> Result<ContactSystem, GivenError> {
+    if system.force_form.is_some() {
+        return given_system(given).map(|(system, _)| system);
+    }
     let file = system.file.as_ref().map(|file| {
         let loads = given.loads.iter().map(|load| DVector::from_column_slice(&load.vector)).collect();
         Arc::new(FileData { loads, ..FileData::clone(file) })
@@ -241,21 +245,13 @@ fn from_compliance(
     given: &GivenContactSystem,
     matrix: DMatrix<f64>,
 ) -> Result<(ContactSystem, Vec<String>), GivenError> {
-    let (whole, _) = null_space("compliance", &matrix)?;
+    null_space("compliance", &matrix)?;
     // Joints that carry no force are left out of W as they are: their motion follows.
     let rows = Rows::of(given);
     let own = Rows::block(&matrix, &rows.kept, &rows.kept);
     let factor = PivotedCholesky::new(&own);
     if factor.rank < rows.kept.len() {
-        let null = factor.null_space(&own);
-        let forces = null.exact.iter().chain(&null.near).next();
-        let mut all = DVector::zeros(matrix.nrows());
-        for (i, &row) in rows.kept.iter().enumerate() {
-            all[row] = forces.map_or(0.0, |forces| forces[i]);
-        }
-        return Err(GivenError::Singular {
-            forces: joints_in_words(given, &all, &whole.scale, ["along n", "along t"]),
-        });
+        return singular_compliance(given, matrix, rows, own, factor).map(|system| (system, Vec::new()));
     }
     let k = rows.kept.len();
     let inverse = DMatrix::from_columns(
@@ -275,6 +271,78 @@ fn from_compliance(
         file: Some(Arc::new(file)),
     };
     Ok((system, Vec::new()))
+}
+
+/// The system of a singular W: all joints in force form, but the normals of bound pairs, which are exchanged for their
+/// displacements one by one.
+fn singular_compliance(
+    given: &GivenContactSystem,
+    matrix: DMatrix<f64>,
+    rows: Rows,
+    own: DMatrix<f64>,
+    factor: PivotedCholesky,
+) -> Result<ContactSystem, GivenError> {
+    let k = rows.kept.len();
+    let of_load = |load: &GivenLoad| DVector::from_iterator(k, rows.kept.iter().map(|&row| load.vector[row]));
+    let mut mixed = Mixed { matrix: own.clone(), loads: given.loads.iter().map(of_load).collect() };
+    let mut forced = vec![true; k];
+    for (pair, _) in given.laws.iter().enumerate().filter(|(_, law)| matches!(law, Law::Bound { .. })) {
+        if mixed.matrix[(pair, pair)] <= NOISE * own[(pair, pair)].abs() {
+            return Err(GivenError::Held { pair: given.pairs[pair].clone() });
+        }
+        mixed.exchange(pair);
+        forced[pair] = false;
+    }
+    let mut self_stress = factor.null_space(&own).exact;
+    for stress in &mut self_stress {
+        let sizes: Vec<f64> = stress.iter().zip(&factor.scale).map(|(force, scale)| (force * scale).abs()).collect();
+        let noise = NOISE * sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
+        stress.iter_mut().zip(sizes).filter(|(_, size)| *size <= noise).for_each(|(force, _)| *force = 0.0);
+    }
+    let self_stress = if self_stress.is_empty() { DMatrix::zeros(k, 0) } else { DMatrix::from_columns(&self_stress) };
+    let loads = given.loads.iter().zip(mixed.loads);
+    let loads = loads.map(|(load, vector)| JointLoad::exactly(load.name.clone(), vector)).collect();
+    Ok(ContactSystem {
+        pairs: pairs(given),
+        stiffness: mixed.matrix,
+        loads,
+        rounded: false,
+        kernel: DMatrix::zeros(k, 0),
+        corrected: None,
+        force_form: Some(ForceForm { joints: forced, self_stress }),
+        file: Some(Arc::new(rows.data(matrix, true, given, factor))),
+    })
+}
+
+/// η = H y + h with some vectors h.
+struct Mixed {
+    matrix: DMatrix<f64>,
+    loads: Vec<DVector<f64>>,
+}
+
+impl Mixed {
+    /// Solves row j for y_j: η_j and y_j change places.
+    fn exchange(&mut self, j: usize) {
+        let a = &mut self.matrix;
+        let (k, pivot) = (a.nrows(), a[(j, j)]);
+        let (row, column) = (a.row(j).into_owned(), a.column(j).into_owned());
+        // What cancels to rounding is no compliance, and no displacement either.
+        let minus = |value: f64, term: f64| {
+            let rest = value - term;
+            if rest.abs() <= NOISE * (value.abs() + term.abs()) { 0.0 } else { rest }
+        };
+        for i in (0..k).filter(|&i| i != j) {
+            let factor = column[i] / pivot;
+            for l in (0..k).filter(|&l| l != j) {
+                a[(i, l)] = minus(a[(i, l)], factor * row[l]);
+            }
+            a[(i, j)] = factor;
+            self.loads.iter_mut().for_each(|load| load[i] = minus(load[i], factor * load[j]));
+        }
+        (0..k).filter(|&l| l != j).for_each(|l| a[(j, l)] = -row[l] / pivot);
+        a[(j, j)] = 1.0 / pivot;
+        self.loads.iter_mut().for_each(|load| load[j] = -load[j] / pivot);
+    }
 }
 
 fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {

@@ -151,13 +151,15 @@ impl Cluster<'_> {
             let added = Sum { value: change.by[a], magnitude: change.sizes[a] };
             forces[joint] = forces[joint].plus(1.0, added);
         }
-        // What a law stops stands exactly at its limit.
-        for &row in &change.at_limit {
-            if let [(joint, _)] = positive[row].terms[..]
-                && positive[row].constant == 0.0
-            {
-                forces[joint].value = 0.0;
-            }
+        // What a law stops stands exactly at its limit: normal forces first, friction then follows from them.
+        let stopped = || zero.iter().chain(change.at_limit.iter().map(|&row| &positive[row]));
+        for limit in stopped().filter(|limit| limit.terms.len() == 1 && limit.constant == 0.0) {
+            forces[limit.terms[0].0].value = 0.0;
+        }
+        for limit in stopped().filter(|limit| limit.terms.len() > 1 || limit.constant != 0.0) {
+            let ((joint, side), others) = (limit.terms[0], &limit.terms[1..]);
+            let bound = others.iter().map(|&(other, f)| f * forces[other].value).sum::<f64>() + limit.constant;
+            forces[joint].value = -side * bound;
         }
         let moved = |&pair: &usize| {
             joints_of(self.system, pair).filter_map(place).any(|a| free.row(a).amax() > NOISE * stress.row(a).amax())

@@ -88,6 +88,9 @@ impl ContactSystem {
         let felt = |joint: usize| form.self_stress.row(joint).amax() > 0.0;
         let of_pair = |(i, pair): &(usize, &ContactPair)| felt(*i) || pair.tangential.is_some_and(felt);
         let ids: Vec<&str> = self.pairs.iter().enumerate().filter(of_pair).map(|(_, pair)| pair.id.as_str()).collect();
+        if ids.is_empty() {
+            return Some(format!("`{command}` needs a contact stiffness matrix, and a singular compliance has none"));
+        }
         let (named, more) = ids.split_at(ids.len().min(6));
         let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
         Some(format!(

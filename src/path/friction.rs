@@ -232,7 +232,7 @@ impl Follower<'_> {
             let free = meaning.couple != Couple::Normal
                 && place.numbers.cohesion[meaning.pair] == 0.0
                 && place.contact.normal_row[meaning.pair]
-                    .is_some_and(|normal| basis.active.binary_search(&normal).is_ok());
+                    .is_some_and(|normal| basis.active.binary_search(&normal).is_ok() != place.contact.swapped[normal]);
             let (margin, slope) = match (free, is_active) {
                 (true, _) => (1.0, 0.0),
                 (_, true) => (place.point.z[row] / length, slope.z[row] / length),
@@ -345,8 +345,7 @@ impl Follower<'_> {
     }
 
     fn differs(&self, a: &Place, b: &Place) -> bool {
-        let z =
-            |place: &Place| place.contact.joint_displacements(self.system, &place.point.z) * place.contact.length_unit;
+        let z = |place: &Place| state_of(self.system, &place.numbers, &place.contact, &place.point).z;
         let (a, b) = (z(a), z(b));
         (&a - &b).amax() > 1e-6 * a.amax().max(b.amax())
     }

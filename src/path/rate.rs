@@ -1,8 +1,10 @@
 //! Rates of the answer within its scheme: what one more unit of a parameter does, from one extra solve.
 
 use crate::contact::complementarity::{ContactLcp, load_with_gaps};
+use crate::contact::force_form::constants;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
+use crate::contact::whole::fixed_bound;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::variable::Variable;
@@ -55,6 +57,12 @@ pub(crate) fn rate_lcp(
     sign: f64,
 ) -> MirroredLcp {
     let mut lcp = MirroredLcp::clone(&contact.lcp);
+    if system.force_form.is_some() {
+        let rates = with_friction_as_cohesion(system, contact, point, rates);
+        let fixed: Vec<f64> = (0..system.pairs.len()).map(|pair| fixed_bound(system, &rates, pair)).collect();
+        lcp.covering = sign * constants(system, contact, &load_with_gaps(system, &rates), &fixed);
+        return lcp;
+    }
     let load = load_with_gaps(system, rates) * (sign / contact.force_unit);
     for (i, pair) in system.pairs.iter().enumerate() {
         let x_n = contact.normal_row[i].map_or(0.0, |row| point.w[row]);
@@ -75,6 +83,23 @@ pub(crate) fn rate_lcp(
         }
     }
     lcp
+}
+
+/// The rates with what a friction that moves adds to the bound, f′ x_n, as a rate of the cohesion.
+pub(crate) fn with_friction_as_cohesion(
+    system: &ContactSystem,
+    contact: &ContactLcp,
+    point: &Point,
+    rates: &ContactNumbers,
+) -> ContactNumbers {
+    let mut rates = rates.clone();
+    for pair in 0..system.pairs.len() {
+        if let Some(row) = contact.normal_row[pair] {
+            let pressed = if contact.swapped[row] { point.z[row] } else { point.w[row] };
+            rates.cohesion[pair] += rates.friction[pair] * pressed * contact.force_unit;
+        }
+    }
+    rates
 }
 
 /// dz/dθ and dw/dθ within the scheme, dimensionless; `None` where its equations are singular.

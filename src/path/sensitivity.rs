@@ -2,10 +2,13 @@
 
 use nalgebra::DVector;
 
-use super::rate::{number_rates, place_beside_laws, rate, rate_lcp};
-use super::start::{PathError, final_basis};
+use super::rate::{number_rates, place_beside_laws, rate, rate_lcp, with_friction_as_cohesion};
+use super::start::{PathError, final_basis, state_of};
+use crate::answer::pairs::JointState;
 use crate::answer::record::PairState;
+use crate::contact::force_form::unknowns;
 use crate::contact::sums::{is_still, joint_forces};
+use crate::contact::system::ContactSystem;
 use crate::lcp::vertex::vertex;
 use crate::model::scenario::Scenario;
 use crate::solve::solved::Trace;
@@ -67,12 +70,27 @@ pub fn sensitivity(
         || PathError::Missing("the equations of the final scheme are singular: there are no derivatives".to_owned());
     // Afresh, forces included: a warm answer keeps only its displacements.
     let point = vertex(&contact.lcp, &basis).ok_or_else(singular)?;
+    if system.force_form.is_some() && !state_of(system, numbers, contact, &point).free.is_empty() {
+        let refusal = system.refusal("sensitivity").unwrap_or_default();
+        return Err(PathError::Missing(format!("{refusal}: how they share their forces has no derivative of its own")));
+    }
     let mut parameters = Vec::new();
     let settable = scenario.parameters.iter().filter(|(_, parameter)| parameter.formula.is_none());
     for name in settable.map(|(name, _)| name).filter(|name| place_beside_laws(scenario, name).is_none()) {
         let (rates, factor_rates) = number_rates(prepared, system, values, name);
         let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;
+        if system.force_form.is_some() {
+            let rates = with_friction_as_cohesion(system, contact, &point, &rates);
+            let unknowns = unknowns(system, Some(&rates), contact, &direction.z);
+            let state = JointState::at(system, &rates, unknowns, 0.0);
+            let mut shown = solved.answer.pairs.clone();
+            prepared.add_released_slips(&mut shown, &rates, &factor_rates, &state.z);
+            let value = values.get(name).copied().unwrap_or_default();
+            let pairs = rates_of_state(system, &state, &shown);
+            parameters.push(ParameterRate { parameter: name.clone(), value, pairs });
+            continue;
+        }
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
         // A rate below the rounding of its terms is 0.
         let forces = joint_forces(system, &rates, &z);
@@ -108,6 +126,20 @@ pub fn sensitivity(
         });
     }
     Ok(Sensitivity { parameters, on_limit: on_limit(&solved.answer.pairs) })
+}
+
+/// The rates of the pairs where forces and displacements of all joints are those of a state.
+fn rates_of_state(system: &ContactSystem, state: &JointState, shown: &[PairState]) -> Vec<PairRate> {
+    let force = |joint: usize| state.sum(joint).cleaned();
+    (system.pairs.iter().zip(shown).enumerate())
+        .map(|(i, (pair, shown))| PairRate {
+            pair: pair.id.clone(),
+            x_n: force(i),
+            x_t: pair.tangential.map_or(0.0, force),
+            z_n: state.z[i],
+            z_t: pair.tangential.map_or(shown.z_t, |joint| state.z[joint]),
+        })
+        .collect()
 }
 
 /// Pairs that stand exactly between two states.

@@ -38,6 +38,9 @@ use crate::model::scenario::Scenario;
 use crate::model::uses::Redone;
 use crate::watch::Watch;
 
+/// Most pairs that a note names.
+const NAMED: usize = 6;
+
 /// Why nothing was solved; the session stays as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
@@ -375,7 +378,11 @@ impl Prepared {
         state: &JointState,
     ) {
         if !state.free.is_empty() {
-            let ids: Vec<String> = state.free.iter().map(|&pair| system.pairs[pair].id.clone()).collect();
+            let mut ids: Vec<String> =
+                state.free.iter().take(NAMED).map(|&pair| system.pairs[pair].id.clone()).collect();
+            if state.free.len() > NAMED {
+                ids.push(format!("{} more", state.free.len() - NAMED));
+            }
             answer.notes.push(format!(
                 "joints of {} repeat one another: their displacements and what they carry together are certain, how they \
                  share it is not; shown are the forces of least norm that obey the laws",
@@ -442,6 +449,18 @@ impl Prepared {
                 let Some(file) = &system.file else {
                     return;
                 };
+                if system.force_form.is_some() {
+                    let mut forces = DVector::zeros(system.joint_count());
+                    for (i, (pair, shown)) in system.pairs.iter().zip(&*pairs).enumerate() {
+                        forces[i] = shown.x_n;
+                        pair.tangential.into_iter().for_each(|joint| forces[joint] = shown.x_t);
+                    }
+                    let slips = file.slips_under(&forces, &file.load(factors));
+                    for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
+                        pairs[pair].z_t = *slip;
+                    }
+                    return;
+                }
                 let moved = dislocation(numbers, z);
                 let slips = file.forces(&moved, &moved.abs(), &file.load(factors)).slips;
                 for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {

@@ -10,6 +10,10 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, OutcomeKind, State};
+use stickslip::path::limit::limit;
+use stickslip::path::sensitivity::sensitivity;
+use stickslip::path::{friction, load};
+use stickslip::watch::Quiet;
 
 use crate::common::balance::{imbalance, incompatibility, nodal_imbalance};
 use crate::common::laws::violation;
@@ -279,4 +283,47 @@ fn random_frames_with_repeated_joints() {
 fn states_of_a_guide() {
     let answer = guide(0.0).solve(&[("P", 1.0)]);
     assert_eq!(states(&answer), [State::Stick, State::Open]);
+}
+
+/// A guide with clearances along its loads and its friction: P from 1 to −1 opens the low side at k g₁ and closes the upper
+/// one at −k g₂; T = 0.5 slips on the low side for f < T/(P − k g₁); with P = 1 the tip stretches by (T − f (P − k g₁))/k_a.
+#[test]
+fn paths_and_sensitivities_of_a_guide() {
+    let (k, k_a, f) = (3.0 * EI / L.powi(3), EA / L, 0.3);
+    let case = guide(0.4);
+    let mut values = case.scenario.parameter_values();
+    values.insert("T".to_owned(), 0.5).expect("a parameter");
+    let solved = case.solved(&[("T", 0.5)], case.scenario.rules);
+    let (prepared, scenario) = (&case.prepared, &case.scenario);
+    let reach = load::LoadReach { to: Some(-1.0), through: false };
+    let path = load::trace(prepared, scenario, &values, Some(&solved), "P", reach, &Quiet).expect("a path");
+    assert_eq!(path.end, load::LoadEnd::Target);
+    let at: Vec<f64> = path.breakpoints.iter().map(|breakpoint| breakpoint.factor).collect();
+    near_all("breakpoints", &at, &[k * 0.01, -k * 0.02], 1e-12);
+    let path = friction::trace(prepared, scenario, &values, Some(&solved), "f", 1.0, &Quiet).expect("a path");
+    let at: Vec<f64> = path.breakpoints.iter().map(|breakpoint| breakpoint.value).collect();
+    near_all("breakpoints", &at, &[0.5 / (1.0 - k * 0.01)], 1e-11);
+    let found = sensitivity(prepared, scenario, &solved, &values).expect("rates");
+    let of = |name: &str| &found.parameters.iter().find(|rate| rate.parameter == name).expect("a parameter").pairs[0];
+    let pressed = 1.0 - k * 0.01;
+    near("dz_t/df", of("f").z_t, -pressed / k_a, 1e-12, 0.01);
+    near("dx_t/df", of("f").x_t, -pressed, 1e-12, 1.0);
+    near("dz_t/dP", of("P").z_t, -f / k_a, 1e-12, 0.01);
+    near("dx_n/dP", of("P").x_n, 1.0, 1e-12, 1.0);
+    near("dx_n/dg1", of("g1").x_n, -k, 1e-12, k);
+    near("dz_t/dg1", of("g1").z_t, f * k / k_a, 1e-12, 0.01);
+    near("dz_t/dT", of("T").z_t, 1.0 / k_a, 1e-12, 0.01);
+    let up = &found.parameters.iter().find(|rate| rate.parameter == "g2").expect("a parameter").pairs[1];
+    near("dz_n/dg2", up.z_n, 1.0, 1e-12, 1.0);
+}
+
+/// The blocks of the corner pushed further and further: on the way every point is an answer, the end is H = f · 2 W.
+#[test]
+fn limit_of_the_corner() {
+    let case = corner(0.2);
+    let values = case.scenario.parameter_values();
+    let solved = case.solved(&[], case.scenario.rules);
+    let found = limit(&case.prepared, &case.scenario, &values, Some(&solved), "push", &Quiet).expect("a path");
+    close("limit", found.factor.expect("a limit"), 0.4, 1e-10);
+    assert!(found.confirmed);
 }
