@@ -613,6 +613,16 @@ impl Quantity {
         }
     }
 
+    /// Whether it can be read from one state of the pairs and the structure, without a run or a path of its own.
+    pub fn is_of_state(&self) -> bool {
+        match self {
+            Quantity::Plain(word) => *word == "energy",
+            Quantity::Load(..) | Quantity::Critical(_) | Quantity::Stage(..) => false,
+            Quantity::Probe(_, inner) => inner.is_of_state(),
+            _ => true,
+        }
+    }
+
     /// Whether its value is a word, not a number.
     pub fn is_word(&self) -> bool {
         match self {

@@ -51,6 +51,16 @@ pub struct Interval {
     pub pairs: Vec<PairState>,
 }
 
+/// A part of the path in one working scheme.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scheme {
+    /// End nearer to the start of the path.
+    pub from: f64,
+    /// The other end.
+    pub to: f64,
+    basis: Basis,
+}
+
 /// A value at which the scheme changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionBreakpoint {
@@ -86,11 +96,26 @@ pub struct FrictionPath {
     pub breakpoints: Vec<FrictionBreakpoint>,
     /// Why it ends.
     pub end: FrictionEnd,
+    /// The schemes in which it runs, in the order of the path.
+    pub schemes: Vec<Scheme>,
     /// Places of the path for plots: value of the parameter and the pairs there.
     pub samples: Vec<(f64, Vec<PairState>)>,
 }
 
 impl FrictionPath {
+    /// The pairs in a scheme of the path under `values`; `None` where its equations are singular.
+    pub fn pairs_within(&self, prepared: &Prepared, values: &ParameterValues, scheme: usize) -> Option<Vec<PairState>> {
+        let system = prepared.system()?;
+        let factors = factors(prepared, values);
+        let numbers = contact_numbers(system, &factors, values);
+        let contact = contact_lcp(system, &numbers, Covering::Ones).ok()?;
+        let point = vertex(&contact.lcp, &self.schemes.get(scheme)?.basis)?;
+        let state = state_of(system, &numbers, &contact, &point);
+        let mut pairs = pair_states(system, &numbers, &contact, &state);
+        prepared.add_released_slips(&mut pairs, &numbers, &factors, &state.z);
+        Some(pairs)
+    }
+
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
         let at = short(self.intervals.last().map_or(self.start, |last| last.to));
@@ -184,6 +209,7 @@ pub fn trace(
         intervals: Vec::new(),
         breakpoints: Vec::new(),
         end: FrictionEnd::Target,
+        schemes: Vec::new(),
         samples: Vec::new(),
     };
     let basis = match solved.and_then(final_basis) {
@@ -273,6 +299,7 @@ impl Follower<'_> {
             path.samples.push((from, self.pairs(&here)));
             let reached = self.to_next_zero(here, &basis, to, path, watch)?;
             let middle = 0.5 * (from + reached.value);
+            path.schemes.push(Scheme { from, to: reached.value, basis: basis.clone() });
             let halfway = self.place(middle, &basis).ok_or_else(|| singular(middle))?;
             let pairs = self.pairs(&halfway);
             if path.samples.len() == first + 1 {

@@ -413,6 +413,22 @@ impl LoadPath {
         pairs
     }
 
+    /// The geometry in which the path runs: that given, or where the parameter stands in the loads themselves the one
+    /// with the cases that those grow by.
+    pub fn ground<'p>(&'p self, prepared: &'p Prepared) -> &'p Prepared {
+        self.grown.as_deref().unwrap_or(prepared)
+    }
+
+    /// The pairs at a factor between a knot and the next, in the geometry of [`LoadPath::ground`]; `None` where there is
+    /// no such knot.
+    pub fn pairs_within(&self, ground: &Prepared, knot: usize, factor: f64) -> Option<Vec<PairState>> {
+        let ends = self.path.knots.get(knot..knot + 2)?;
+        let t = self.sign * (factor - self.start);
+        let length = ends[1].t - ends[0].t;
+        let s = if length == 0.0 { 0.0 } else { ((t - ends[0].t) / length).clamp(0.0, 1.0) };
+        Some(self.pairs_of(ground, ground.system()?, &between(&ends[0].point, &ends[1].point, s)))
+    }
+
     /// Whether the parameter stands in the loads themselves: other values of it need other load vectors.
     pub fn moves_loads(&self) -> bool {
         self.grown.is_some()
@@ -420,7 +436,7 @@ impl LoadPath {
 
     /// The pairs at a factor, where the path passes it first; `None` where it does not.
     pub fn pairs_at(&self, prepared: &Prepared, factor: f64) -> Option<Vec<PairState>> {
-        let prepared = self.grown.as_deref().unwrap_or(prepared);
+        let prepared = self.ground(prepared);
         let system = prepared.system()?;
         let t = self.sign * (factor - self.start);
         let knots = &self.path.knots;

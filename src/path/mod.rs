@@ -1,14 +1,19 @@
 //! Paths: how the answer changes with the load, with friction and with history, breakpoint by breakpoint.
 
 pub mod change;
+pub mod edge;
+pub mod envelope;
+pub mod find;
 pub mod friction;
 pub mod grid;
 pub mod limit;
 pub mod load;
 pub mod merge;
+pub mod profile;
 pub mod quantity;
 pub(crate) mod rate;
 pub mod record;
+pub mod route;
 pub mod sensitivity;
 pub mod stages;
 pub mod start;

@@ -569,7 +569,7 @@ pub fn of_pair(word: &str, pair: &PairState) -> f64 {
 }
 
 /// The word of an outcome, class or verdict, as in results.
-fn written(word: &impl serde::Serialize) -> String {
+pub(super) fn written(word: &impl serde::Serialize) -> String {
     serde_json::to_value(word).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
 }
 

@@ -64,6 +64,7 @@ impl Session {
             Command::Trace { name, to, through } => self.trace(&name, &to, through, io)?,
             Command::Limit { name } => self.limit(&name, io)?,
             Command::Sensitivity { parameter } => self.sensitivity(parameter.as_deref(), io)?,
+            Command::Find { words } => self.find(&words, io)?,
             Command::Stages { stage } => self.stages(stage, io)?,
             Command::Sweep { words, out, resume, shard, columns } => {
                 self.sweep(&words, out.as_deref(), resume, shard, columns.as_deref(), io)?;

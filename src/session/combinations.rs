@@ -5,16 +5,19 @@ use std::sync::Arc;
 use serde_json::{Value as Json, json};
 
 use crate::model::quantity::Quantity;
+use crate::path::envelope::{Axis, Peak, envelope};
 use crate::path::quantity::{Facts, NoValue, Value};
+use crate::path::route::Basis;
 use crate::solve::numbers::factors;
 use crate::solve::{Prepared, Solved};
 use crate::view;
 use crate::view::combinations::{Extreme, Line, Row};
+use crate::view::path::exact;
 use crate::view::status::outcome_word;
 use crate::watch::Watch;
 
 use super::selection::no_such;
-use super::{CommandError, Output, Session, worker};
+use super::{CommandError, Output, Session, find, worker};
 
 /// A combination whose answer is shown in the place of the scenario's own.
 #[derive(Clone)]
@@ -129,21 +132,24 @@ impl Session {
         Ok(())
     }
 
-    /// `envelope [QUANTITY …] [over combinations]`.
+    /// `envelope [QUANTITY …] [over combinations | PARAMETER A..B …]`.
     pub(super) fn envelope(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let words = match words.iter().position(|word| word == "over") {
-            None => words,
-            Some(at) => match &words[at + 1..] {
-                [what] if what == "combinations" => &words[..at],
-                _ => {
-                    return Err(CommandError::Refused("envelope: expected `over combinations` at the end".to_owned()));
-                }
-            },
+        let (words, over) = match words.iter().position(|word| word == "over") {
+            None => (words, None),
+            Some(at) => (&words[..at], Some(&words[at + 1..])),
         };
         let quantities = if words.is_empty() { self.all_probes()? } else { self.quantities(words)? };
         if let Some(quantity) = quantities.iter().find(|quantity| quantity.is_word()) {
             return Err(CommandError::Refused(format!("envelope: `{quantity}` is a word, not a number")));
         }
+        match over {
+            None => self.envelope_of_combinations(quantities, io),
+            Some([what]) if what == "combinations" => self.envelope_of_combinations(quantities, io),
+            Some(ranges) => self.envelope_of_parameters(quantities, ranges, io),
+        }
+    }
+
+    fn envelope_of_combinations(&self, quantities: Vec<Quantity>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let all = self.combined(None, io)?;
         let watch = io.watch;
         let without: Vec<String> = all
@@ -173,7 +179,91 @@ impl Session {
                     "without_answer": without,
                 })
             },
-            |out, style| view::combinations::write_envelope(out, &extremes, &without, units, style),
+            |out, style| {
+                let notes: Vec<String> = match without.is_empty() {
+                    true => Vec::new(),
+                    false => vec![format!("without an answer: {}", without.join(", "))],
+                };
+                view::combinations::write_envelope(out, "in", &extremes, &notes, units, style)
+            },
+        )?;
+        Ok(())
+    }
+
+    /// Parameters and load cases with their ranges, those of their sliders where they are left out.
+    fn axes(&self, words: &[String]) -> Result<Vec<Axis>, CommandError> {
+        let mut axes: Vec<Axis> = Vec::new();
+        let mut rest = words;
+        while let Some((name, after)) = rest.split_first() {
+            let name = self.varied(name)?.to_owned();
+            let (range, after) = match after.split_first() {
+                Some((word, after)) if word.contains("..") => (find::range(word, "envelope")?, after),
+                _ => (self.slider(&name, "envelope … over")?, after),
+            };
+            if axes.iter().any(|axis| axis.name == name) {
+                return Err(CommandError::Refused(format!("envelope: {name} is named twice")));
+            }
+            axes.push(Axis { name, range });
+            rest = after;
+        }
+        if axes.is_empty() || axes.len() > 3 {
+            return Err(CommandError::Refused(
+                "envelope: expected `over combinations` or `over PARAMETER A..B`, up to three of them".to_owned(),
+            ));
+        }
+        Ok(axes)
+    }
+
+    fn envelope_of_parameters(
+        &self,
+        quantities: Vec<Quantity>,
+        words: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let axes = self.axes(words)?;
+        let ground = self.ground(io.watch)?;
+        let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
+        let (over, asked, prepared) = (axes.clone(), quantities.clone(), ground.prepared);
+        let found = worker::run(io.watch, move |watch| {
+            let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
+            envelope(basis, &over, &asked)
+        })??;
+        let units = &self.now.scenario.units;
+        let place = |peak: &Peak| -> serde_json::Map<String, Json> {
+            axes.iter().zip(&peak.at).map(|(axis, at)| (axis.name.clone(), json!(at))).collect()
+        };
+        let end = |peak: &Option<Peak>| {
+            peak.as_ref().map(|peak| json!({"value": peak.value, "at": place(peak), "change": peak.change}))
+        };
+        let words = |peak: &Peak| {
+            let at = axes.iter().zip(&peak.at).map(|(axis, at)| format!("{} = {}", axis.name, exact(*at)));
+            let at = at.collect::<Vec<_>>().join(", ");
+            (peak.value, peak.change.as_ref().map_or(at.clone(), |change| format!("{at}: {change}")))
+        };
+        io.report(
+            || {
+                json!({
+                    "envelope": quantities.iter().zip(&found.peaks).map(|(quantity, [least, largest])| json!({
+                        "quantity": quantity.to_string(),
+                        "unit": quantity.unit(units),
+                        "least": end(least),
+                        "largest": end(largest),
+                    })).collect::<Vec<_>>(),
+                    "over": axes.iter().map(|axis| json!({
+                        "parameter": axis.name, "from": axis.range[0], "to": axis.range[1],
+                    })).collect::<Vec<_>>(),
+                    "exact": found.exact,
+                    "notes": found.notes,
+                })
+            },
+            |out, style| {
+                let rows = quantities.iter().zip(&found.peaks).map(|(quantity, [least, largest])| Extreme {
+                    quantity: quantity.clone(),
+                    least: least.as_ref().map(words),
+                    largest: largest.as_ref().map(words),
+                });
+                view::combinations::write_envelope(out, "at", &rows.collect::<Vec<_>>(), &found.notes, units, style)
+            },
         )?;
         Ok(())
     }

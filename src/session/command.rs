@@ -132,10 +132,16 @@ pub enum Command {
         #[arg(value_name = "COMBINATION")]
         name: Option<String>,
     },
-    /// Show the least and the largest value of quantities over the load combinations, with the one that governs
-    #[command(after_help = "Example:\n  envelope\n  envelope x_n c1, max u over combinations")]
+    /// Show the least and the largest value of quantities, over load combinations or ranges of parameters
+    ///
+    /// With the combination, or the place, that governs. Where an exact path leads over a single parameter (loads,
+    /// friction) the place is exact; otherwise it is that of a grid of answers, refined around its extremes, and said to
+    /// be so. A range left out is that of the slider.
+    #[command(
+        after_help = "Example:\n  envelope\n  envelope x_n c1, max u over combinations\n  envelope x_t c1 over f 0..1\n  envelope max u over F 50..150 F2 0..200"
+    )]
     Envelope {
-        /// The quantities, the probes if none is named; and then `over combinations`
+        /// The quantities, the probes if none is named; then `over combinations` or `over PARAMETER A..B …`
         #[arg(value_name = "QUANTITY", allow_negative_numbers = true)]
         words: Vec<String>,
     },
@@ -231,6 +237,21 @@ pub enum Command {
         /// Load case, or a parameter in which the loads are linear
         #[arg(value_name = "LOAD")]
         name: String,
+    },
+    /// Find the values of a parameter or load at which a quantity is as wanted
+    ///
+    /// `find NAME [A..B] where QUANTITY < | = | > VALUE` (or `QUANTITY WORD`) tells every interval and place in the range,
+    /// which is that of the slider if it is left out. Where an exact path leads over NAME (loads, friction) they are
+    /// exact and in order; elsewhere (geometry, stiffness) they are brackets between answers of their own.
+    /// `find least|most NAME [A..B] where outcome answer` brackets the first value with an answer between a checked answer
+    /// and a proved collapse; with another condition it is the first or the last place at which that holds.
+    #[command(
+        after_help = "Example:\n  find F2 0..400 where z_t c3 > 0\n  find f 0..1 where x_t c1 = -50\n  find F2 where state c3 = slip+\n  find most F2 where outcome answer"
+    )]
+    Find {
+        /// `least` or `most`, the parameter or load case, the range, `where` and the condition
+        #[arg(value_name = "FOUND", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+        words: Vec<String>,
     },
     /// Show what one more unit of a parameter does to forces and slips
     #[command(after_help = "Example:\n  sensitivity\n  sensitivity f")]
@@ -648,7 +669,7 @@ pub fn grammar() -> clap::Command {
 }
 
 /// Commands that were not there in 0.1.
-const SINCE_0_2: &[&str] = &["show", "summary", "combine", "envelope", "import"];
+const SINCE_0_2: &[&str] = &["find", "show", "summary", "combine", "envelope", "import"];
 
 /// The full name of a command: itself, an alias, or a prefix that only one command has.
 ///

@@ -351,6 +351,11 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             [_, of, rest @ ..] if of == "of" => plain(&quantities::next_names(rest, vocabulary)),
             _ => Vec::new(),
         },
+        "FOUND" => found(given, vocabulary, &|| {
+            let mut all = parameters();
+            all.extend(vocabulary.cases.iter().map(|case| candidate(case, "load case")));
+            all
+        }),
         "NAME" | "SWEPT" => parameters(),
         "OF" => match given.first().map(String::as_str) {
             Some("path") => {
@@ -391,6 +396,12 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             [.., subject, _] if subject == "state" => fixed(expect::choices("state")),
             given => quantities::next_names(given, vocabulary).into_iter().map(|name| candidate(name, "")).collect(),
         },
+        "QUANTITY" if given.iter().any(|word| word == "over") => {
+            let mut all = parameters();
+            all.extend(vocabulary.cases.iter().map(|case| candidate(case, "load case")));
+            all.extend(fixed(&["combinations"]));
+            all
+        }
         "QUANTITY" => {
             let mut all = plain(&quantities::next_names(given, vocabulary));
             all.extend(fixed(&["over"]).into_iter().filter(|_| !given.is_empty()));
@@ -398,6 +409,35 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
         }
         "COMBINATION" => plain(&vocabulary.combinations),
         _ => Vec::new(),
+    }
+}
+
+/// What may follow the words of `find`.
+fn found(given: &[String], vocabulary: &Vocabulary, names: &dyn Fn() -> Vec<Candidate>) -> Vec<Candidate> {
+    let plain = |names: Vec<String>| names.iter().map(|name| candidate(name, "")).collect::<Vec<_>>();
+    if let Some(at) = given.iter().position(|word| word == "where") {
+        return match &given[at + 1..] {
+            [subject, _] if subject == "state" => plain(vec!["=".to_owned()]),
+            [.., subject, sign] if sign == "=" && !expect::choices(subject).is_empty() => {
+                plain(expect::choices(subject).iter().map(|word| (*word).to_owned()).collect())
+            }
+            [subject, _, sign] if sign == "=" && subject == "state" => {
+                plain(expect::choices("state").iter().map(|word| (*word).to_owned()).collect())
+            }
+            rest => plain(quantities::next_names(rest, vocabulary)),
+        };
+    }
+    let is_extreme = |word: &String| word == "least" || word == "most";
+    let rest = if given.first().is_some_and(is_extreme) { &given[1..] } else { given };
+    match rest {
+        [] => {
+            let mut all = names();
+            if given.is_empty() {
+                all.extend([candidate("least", "the first value with an answer"), candidate("most", "the last one")]);
+            }
+            all
+        }
+        _ => vec![candidate("where", "the condition")],
     }
 }
 
@@ -466,6 +506,12 @@ mod tests {
         assert_eq!(at_end("plot slip --at f"), ["first", "first,last"]);
         assert_eq!(at_end("help se"), ["sensitivity", "set"]);
         assert_eq!(at_end("trace p"), ["pull"]);
+        assert_eq!(at_end("find le"), ["least"]);
+        assert_eq!(at_end("find least p"), ["pull"]);
+        assert_eq!(at_end("find f 0..1 w"), ["where"]);
+        assert_eq!(at_end("find f where x_n "), ["c1", "c2", "joint[0]"]);
+        assert_eq!(at_end("find f where state c1 = slip"), ["slip+", "slip-"]);
+        assert_eq!(at_end("envelope x_n c1 over p"), ["pull"]);
         assert_eq!(at_end("trace pull t"), ["to"]);
         assert_eq!(at_end("plot path fo"), ["force"]);
         assert_eq!(at_end("load beam-r"), ["beam-ray"]);

@@ -221,6 +221,11 @@ fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, Expectatio
 }
 
 impl Bound {
+    /// Operator, value and tolerance.
+    pub fn parts(&self) -> (Operator, f64, f64) {
+        (self.operator, self.value, self.tolerance)
+    }
+
     fn holds(&self, found: f64) -> bool {
         match self.operator {
             Operator::Equal => (found - self.value).abs() <= self.tolerance,

@@ -10,6 +10,7 @@ pub mod complete;
 mod error;
 pub mod expect;
 mod exports;
+mod find;
 pub mod help;
 mod history;
 pub mod import;

@@ -54,7 +54,8 @@ pub enum Geometry {
     },
 }
 
-/// A scenario made ready to be solved for any values of its parameters.
+/// A scenario made ready to be solved for any values of its parameters. A copy shares the geometry.
+#[derive(Clone)]
 pub struct Prepared {
     /// What is solved.
     pub geometry: Arc<Geometry>,

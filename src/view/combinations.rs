@@ -26,7 +26,7 @@ pub struct Line {
     pub text: String,
 }
 
-/// Least and largest value of a quantity, each with the combination that governs.
+/// Least and largest value of a quantity, each with the combination or the place that governs.
 pub struct Extreme {
     /// The quantity.
     pub quantity: Quantity,
@@ -52,20 +52,21 @@ pub fn write(out: &mut dyn Write, rows: &[Row], note: Option<&str>, style: &Styl
     }
 }
 
-/// A row for each quantity.
+/// A row for each quantity; `at` heads what governs.
 pub fn write_envelope(
     out: &mut dyn Write,
+    at: &str,
     extremes: &[Extreme],
-    without: &[String],
+    notes: &[String],
     units: &Units,
     style: &Style,
 ) -> io::Result<()> {
     let mut table = Table::new(vec![
         Column::words("quantity"),
         Column::words("least"),
-        Column::words("in"),
+        Column::words(at),
         Column::words("largest"),
-        Column::words("in"),
+        Column::words(at),
     ]);
     for extreme in extremes {
         let unit = extreme.quantity.unit(units);
@@ -82,9 +83,10 @@ pub fn write_envelope(
         table.rows.push(TableRow::new(cells));
     }
     table.write(out, style)?;
-    if !without.is_empty() {
-        let text = format!("without an answer: {}", without.join(", "));
-        writeln!(out, "{}", style.paint(Role::Warning, &style.text(&text)))?;
+    for note in notes {
+        for line in style.wrap(&style.text(note), style.width) {
+            writeln!(out, "{}", style.paint(Role::Warning, &line))?;
+        }
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ pub mod difference;
 pub mod displacements;
 pub mod enumerate;
 pub mod exact;
+pub mod find;
 pub mod loose;
 pub mod members;
 pub mod mesh;

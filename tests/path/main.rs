@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod find;
 mod friction;
 mod hertz;
 mod history;

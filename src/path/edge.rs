@@ -1,0 +1,187 @@
+//! The least or the most of a parameter under which there is an answer: a bracket with a checked answer on one side and
+//! a proved collapse on the other.
+
+use super::friction::{self, FrictionEnd, is_friction};
+use super::load::{self, LoadEnd, LoadReach};
+use super::route::{Basis, There};
+use super::start::PathError;
+use crate::answer::record::{OutcomeKind, RayClass, Verdict};
+use crate::model::pair::Law;
+use crate::model::parameter::Number;
+use crate::model::uses::Redone;
+
+/// Values looked at before the search between two of them.
+const CELLS: usize = 32;
+/// The bracket is narrowed to this share of its place: nearer to the edge proofs fail for want of margin, and every
+/// other way to an answer would be tried in vain.
+const NARROW: f64 = 1e-8;
+/// Where in the bracket a proof is looked for next, where it failed at the place before.
+const SHARES: [f64; 2] = [0.5, 0.25];
+
+/// Which end of the values with an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// The least.
+    Least,
+    /// The most.
+    Most,
+}
+
+/// What a run at one value showed.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Run {
+    /// The value.
+    pub value: f64,
+    /// How the run ended.
+    pub outcome: OutcomeKind,
+    /// Class of its ray.
+    pub class: Option<RayClass>,
+    /// What is proved of it.
+    pub verdict: Option<Verdict>,
+}
+
+impl Run {
+    fn is_answer(&self) -> bool {
+        matches!(self.outcome, OutcomeKind::Trivial | OutcomeKind::Normal)
+    }
+
+    /// Whether it is proved that there is no answer.
+    pub fn is_proved(&self) -> bool {
+        matches!(self.verdict, Some(Verdict::Certified | Verdict::Proved))
+    }
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Edge {
+    /// The value: exact where `exact`, else that of the answer.
+    pub value: f64,
+    /// Whether the exact path from the answer ends there.
+    pub exact: bool,
+    /// The run with an answer; freshly checked, as every answer is.
+    pub answer: Run,
+    /// The run without one nearest to it; `None` where the end of the range has an answer.
+    pub collapse: Option<Run>,
+    /// Whether the proof holds for all values beyond: less friction bears no more.
+    pub beyond: bool,
+}
+
+/// Finds it within a range.
+///
+/// # Errors
+/// No answer anywhere in the range; see [`PathError`].
+pub fn edge(basis: Basis<'_>, name: &str, range: [f64; 2], which: Which) -> Result<Edge, PathError> {
+    let run = |value: f64| -> Result<Run, PathError> {
+        let solved = basis.solve(&basis.at(name, value)?)?;
+        let ray = solved.ray.as_ref();
+        Ok(Run {
+            value,
+            outcome: solved.answer.outcome,
+            class: ray.map(|ray| ray.class),
+            verdict: ray.and_then(|ray| ray.verdict),
+        })
+    };
+    let [from, to] = if which == Which::Least { range } else { [range[1], range[0]] };
+    let mut before: Vec<Run> = Vec::new();
+    let mut answer = None;
+    for k in 0..=CELLS {
+        let share = k as f64 / CELLS as f64;
+        basis.watch.progress(&format!("{name} = {}", from + share * (to - from)), share);
+        let next = run(if k == CELLS { to } else { from + share * (to - from) })?;
+        if next.is_answer() {
+            answer = Some(next);
+            break;
+        }
+        before.push(next);
+    }
+    let Some(mut answer) = answer else {
+        return Err(PathError::Missing(format!(
+            "no answer was found at any of {} values of {name} from {} to {}",
+            CELLS + 1,
+            range[0],
+            range[1]
+        )));
+    };
+    let mut unknown = 0;
+    let Some(mut collapse) = before.pop() else {
+        return Ok(Edge { value: answer.value, exact: false, answer, collapse: None, beyond: false });
+    };
+    // The proof nearest to the answer stands for the other side.
+    while !collapse.is_proved() {
+        let Some(farther) = before.pop() else { break };
+        collapse = farther;
+    }
+    while (answer.value - collapse.value).abs() > NARROW * answer.value.abs().max(collapse.value.abs()) {
+        // Where a proof fails close to the edge, nearer to it there may still be one.
+        let share = SHARES[unknown];
+        let middle = collapse.value + share * (answer.value - collapse.value);
+        if middle == answer.value || middle == collapse.value {
+            break;
+        }
+        let next = run(middle)?;
+        if next.is_answer() {
+            (answer, unknown) = (next, 0);
+        } else if next.is_proved() || !collapse.is_proved() {
+            (collapse, unknown) = (next, 0);
+        } else {
+            unknown += 1;
+            if unknown == SHARES.len() {
+                break;
+            }
+        }
+    }
+    let exact = end_of_path(basis, name, &answer, &collapse)?;
+    Ok(Edge {
+        value: exact.unwrap_or(answer.value),
+        exact: exact.is_some(),
+        beyond: which == Which::Least && collapse.is_proved() && is_friction_alone(basis, name),
+        answer,
+        collapse: Some(collapse),
+    })
+}
+
+/// Where the exact path from the answer towards the collapse ends, between the two or within their rounding.
+fn end_of_path(basis: Basis<'_>, name: &str, answer: &Run, collapse: &Run) -> Result<Option<f64>, PathError> {
+    let there = basis.at(name, answer.value)?;
+    let solved = basis.solve(&there)?;
+    let (Basis { scenario, watch, .. }, There { prepared, values }) = (basis, &there);
+    let target = collapse.value + (collapse.value - answer.value);
+    let is_case = prepared.cases.iter().any(|(case, _)| case == name);
+    let end = if is_friction(prepared, values, name) && !is_case {
+        friction::trace(prepared, scenario, values, Some(&solved), name, target.max(0.0), watch).map(|path| {
+            let end = path.schemes.last().map(|last| last.to);
+            end.filter(|_| path.end == FrictionEnd::NoAnswer)
+        })
+    } else {
+        let reach = LoadReach { to: Some(target), through: false };
+        load::trace(prepared, scenario, values, Some(&solved), name, reach, watch).map(|path| {
+            let end = path.factors.last().copied();
+            end.filter(|_| matches!(path.end, LoadEnd::Limit(_)) && !path.from_zero)
+        })
+    };
+    let room = 2.0 * (answer.value - collapse.value).abs();
+    match end {
+        Ok(end) => Ok(end.filter(|end| (end - answer.value).abs() <= room && (end - collapse.value).abs() <= room)),
+        Err(PathError::Interrupted) => Err(PathError::Interrupted),
+        // No path leads over it.
+        Err(_) => Ok(None),
+    }
+}
+
+/// Whether the parameter is a friction coefficient as it stands, and nothing else: then less of it bears no more.
+fn is_friction_alone(basis: Basis<'_>, name: &str) -> bool {
+    let Some(system) = basis.prepared.system() else { return false };
+    let mut moved = basis.values.clone();
+    moved.insert(name.to_owned(), basis.values.get(name).copied().unwrap_or_default() + 1.0);
+    let elsewhere = basis.scenario.uses.between(basis.values, &moved) > Redone::Lcp
+        || basis.prepared.cases.iter().any(|(_, factor)| factor.names().contains(&name));
+    let law = |law: &Law| {
+        law.numbers().into_iter().all(|(key, number)| match number {
+            Number::Value(_) => true,
+            Number::Parameter(parameter) => parameter != name || key == "friction",
+            // A formula may turn it round.
+            Number::Expression(_) => false,
+        })
+    };
+    !elsewhere && basis.values.formulas().iter().next().is_none() && system.pairs.iter().all(|pair| law(&pair.law))
+}

@@ -1,0 +1,185 @@
+//! The least and the largest value of quantities over ranges of parameters: at the exact place where an exact path leads
+//! over a single one, otherwise on a grid of answers, refined around its extremes.
+
+use super::profile::{Shape, profile};
+use super::quantity::{Facts, Value};
+use super::route::{Basis, Route};
+use super::start::PathError;
+use crate::model::quantity::Quantity;
+
+/// Values of each parameter on a grid over one, two or three of them.
+const POINTS: [usize; 3] = [41, 11, 7];
+/// The distance to the neighbours of the best place of a grid is halved this often.
+const HALVINGS: usize = 12;
+
+/// A parameter, or the factor of a load case, and its range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Its name.
+    pub name: String,
+    /// From … to.
+    pub range: [f64; 2],
+}
+
+/// An extreme value and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Peak {
+    /// The value.
+    pub value: f64,
+    /// The value of each parameter there.
+    pub at: Vec<f64>,
+    /// What changes there, in words.
+    pub change: Option<String>,
+}
+
+/// The least and the largest value of a quantity; `None` where it has none anywhere.
+pub type Peaks = [Option<Peak>; 2];
+
+/// The envelope of several quantities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Envelope {
+    /// In the order of the quantities.
+    pub peaks: Vec<Peaks>,
+    /// Whether the places are exact.
+    pub exact: bool,
+    /// What limits it, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// The envelope of `quantities`, numbers all, over up to three axes.
+///
+/// # Errors
+/// No answer to start from; see [`PathError`].
+pub fn envelope(basis: Basis<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Envelope, PathError> {
+    if let ([axis], true) = (axes, quantities.iter().all(Quantity::is_of_state))
+        && let Some(route) = Route::new(basis, &axis.name, axis.range)?
+    {
+        return Ok(on_route(&route, axis, quantities));
+    }
+    on_grid(basis, axes, quantities)
+}
+
+/// Takes a value into the peaks, the first of equals.
+fn take(peaks: &mut Peaks, value: f64, at: &[f64]) {
+    let [least, largest] = peaks;
+    let peak = || Some(Peak { value, at: at.to_vec(), change: None });
+    if least.as_ref().is_none_or(|least| value < least.value) {
+        *least = peak();
+    }
+    if largest.as_ref().is_none_or(|largest| value > largest.value) {
+        *largest = peak();
+    }
+}
+
+fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope {
+    let of = |quantity: &Quantity| {
+        let mut peaks: Peaks = [None, None];
+        for piece in profile(route, quantity) {
+            match piece.shape {
+                Shape::Curve(points) => points.iter().for_each(|(at, value)| take(&mut peaks, *value, &[*at])),
+                Shape::Steady(Value::Number(value)) => take(&mut peaks, value, &[piece.stretch.from]),
+                Shape::Steady(Value::Word(_)) | Shape::Nothing => {}
+            }
+        }
+        for peak in peaks.iter_mut().flatten() {
+            peak.change = peak.at.first().and_then(|at| route.change(*at));
+        }
+        peaks
+    };
+    let [low, high] = route.covered();
+    let mut notes = route.ends();
+    if (low > axis.range[0] || high < axis.range[1]) && notes.is_empty() {
+        notes.push(format!("the path leads from {low} to {high} only"));
+    }
+    Envelope { peaks: quantities.iter().map(of).collect(), exact: true, notes }
+}
+
+/// The quantities of an answer of its own; `None` without one.
+fn values(
+    basis: &Basis<'_>,
+    axes: &[Axis],
+    at: &[f64],
+    quantities: &[Quantity],
+) -> Result<Option<Vec<Option<f64>>>, PathError> {
+    let settings: Vec<(&str, f64)> = axes.iter().zip(at).map(|(axis, value)| (axis.name.as_str(), *value)).collect();
+    let there = match basis.at_all(&settings) {
+        Ok(there) => there,
+        // Values without a model: nothing to read there.
+        Err(PathError::Target(_)) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let solved = basis.solve(&there)?;
+    if !solved.answer.is_answer() {
+        return Ok(None);
+    }
+    let facts = Facts::of_answer(basis.scenario, &there.prepared, &there.values, &solved, basis.watch);
+    Ok(Some(quantities.iter().map(|quantity| facts.value(quantity).ok()?.number()).collect()))
+}
+
+fn on_grid(basis: Basis<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Envelope, PathError> {
+    let points = POINTS[axes.len().clamp(1, POINTS.len()) - 1];
+    let count = points.pow(axes.len() as u32);
+    let mut all: Vec<Peaks> = vec![[None, None]; quantities.len()];
+    let mut without = 0;
+    for number in 0..count {
+        basis.watch.progress("envelope", number as f64 / count as f64);
+        let mut rest = number;
+        let at: Vec<f64> = axes
+            .iter()
+            .map(|Axis { range: [low, high], .. }| {
+                let k = rest % points;
+                rest /= points;
+                if k + 1 == points { *high } else { low + (high - low) * k as f64 / (points - 1) as f64 }
+            })
+            .collect();
+        match values(&basis, axes, &at, quantities)? {
+            None => without += 1,
+            Some(found) => {
+                for (peaks, value) in all.iter_mut().zip(found) {
+                    value.into_iter().for_each(|value| take(peaks, value, &at));
+                }
+            }
+        }
+    }
+    for (peaks, quantity) in all.iter_mut().zip(quantities) {
+        for (sign, peak) in [-1.0, 1.0].into_iter().zip(peaks.iter_mut()) {
+            if let Some(peak) = peak {
+                refine(&basis, axes, quantity, sign, 1.0 / (points - 1) as f64, peak)?;
+            }
+        }
+    }
+    let mut notes = vec![format!(
+        "a grid of {count} answers, refined around its extremes: what stands out between its points is not seen"
+    )];
+    if without > 0 {
+        notes.push(format!("{without} of its points have no answer"));
+    }
+    Ok(Envelope { peaks: all, exact: false, notes })
+}
+
+/// Moves to a neighbour while that is better, then halves the distance.
+fn refine(
+    basis: &Basis<'_>,
+    axes: &[Axis],
+    quantity: &Quantity,
+    sign: f64,
+    mut step: f64,
+    peak: &mut Peak,
+) -> Result<(), PathError> {
+    for _ in 0..HALVINGS {
+        step *= 0.5;
+        for (k, Axis { range: [low, high], .. }) in axes.iter().enumerate() {
+            for direction in [-1.0, 1.0] {
+                let mut at = peak.at.clone();
+                at[k] = (at[k] + direction * step * (high - low)).clamp(*low, *high);
+                let found = values(basis, axes, &at, std::slice::from_ref(quantity))?;
+                let Some(value) = found.and_then(|found| found[0]) else { continue };
+                if sign * value > sign * peak.value {
+                    (peak.value, peak.at) = (value, at);
+                    break;
+                }
+            }
+        }
+    }
+    Ok(())
+}

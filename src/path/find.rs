@@ -1,0 +1,274 @@
+//! Where a quantity fulfils a condition over a parameter: on an exact path every place, elsewhere brackets between
+//! answers of their own.
+
+use super::profile::{ROUNDING, Shape, number, profile, zero};
+use super::quantity::Value;
+use super::route::{Basis, Route};
+use super::start::PathError;
+use crate::model::quantity::Quantity;
+use crate::path::quantity::Facts;
+
+/// Intervals into which a range is cut where there is no exact path.
+pub const CELLS: usize = 40;
+/// A bracket between answers is narrowed to this share of its place.
+const NARROW: f64 = 1e-10;
+
+/// What is asked of a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wanted {
+    /// It is less than a number, equal to it, or greater.
+    Compared(std::cmp::Ordering, f64),
+    /// It is this word; `answer` stands for trivial and normal.
+    Word(String),
+}
+
+/// A value at which the condition begins or ceases to hold, or at which the quantity meets the number.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Place {
+    /// The value of the parameter; in a bracket its middle.
+    pub value: f64,
+    /// Where it is not exact: values with answers, or proofs of none, between which it lies.
+    pub bracket: Option<[f64; 2]>,
+    /// The quantity just below; null where it has no value.
+    pub below: Option<serde_json::Value>,
+    /// The quantity just above.
+    pub above: Option<serde_json::Value>,
+    /// What changes there, in words.
+    pub change: Option<String>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Found {
+    /// Whether every value was found on an exact path.
+    pub exact: bool,
+    /// Where the condition holds: values of the parameter from … to.
+    pub holds: Vec<[f64; 2]>,
+    /// The places, upwards.
+    pub places: Vec<Place>,
+    /// The values between which there was an answer to look at.
+    pub covered: [f64; 2],
+    /// What limits the search, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Which side of the wanted number: −1, 0, 1; for a word 1 where it is the one, −1 where not; `None` without a value.
+fn side(wanted: &Wanted, value: Option<&Value>, size: f64) -> Option<i8> {
+    match (wanted, value?) {
+        (Wanted::Compared(_, wanted), Value::Number(found)) => {
+            let off = found - wanted;
+            let rounding = ROUNDING * size.max(found.abs()).max(wanted.abs());
+            Some(if off.abs() <= rounding { 0 } else { off.signum() as i8 })
+        }
+        (Wanted::Word(wanted), Value::Word(found)) => {
+            let holds = found == wanted || wanted == "answer" && (found == "trivial" || found == "normal");
+            Some(if holds { 1 } else { -1 })
+        }
+        _ => None,
+    }
+}
+
+impl Wanted {
+    fn holds(&self, side: Option<i8>) -> bool {
+        use std::cmp::Ordering::{Equal, Greater, Less};
+        match (self, side) {
+            (_, None) => false,
+            (Wanted::Word(_) | Wanted::Compared(Greater, _), Some(side)) => side > 0,
+            (Wanted::Compared(Less, _), Some(side)) => side < 0,
+            (Wanted::Compared(Equal, _), Some(side)) => side == 0,
+        }
+    }
+
+    fn is_equality(&self) -> bool {
+        matches!(self, Wanted::Compared(std::cmp::Ordering::Equal, _))
+    }
+}
+
+/// A part of the range on one side of the wanted value, with the values at its ends.
+#[derive(Clone, Debug)]
+struct Part {
+    from: f64,
+    to: f64,
+    side: Option<i8>,
+    ends: [Option<Value>; 2],
+}
+
+/// Finds where a quantity is as wanted within a range of a parameter or of the factor of a load case.
+///
+/// # Errors
+/// No answer to start from; see [`PathError`].
+pub fn find(
+    basis: Basis<'_>,
+    name: &str,
+    range: [f64; 2],
+    quantity: &Quantity,
+    wanted: &Wanted,
+) -> Result<Found, PathError> {
+    let route = if quantity.is_of_state() { Route::new(basis, name, range)? } else { None };
+    match route {
+        Some(route) => Ok(on_route(&route, range, quantity, wanted)),
+        None => on_grid(basis, name, range, quantity, wanted),
+    }
+}
+
+fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wanted) -> Found {
+    let mut parts: Vec<Part> = Vec::new();
+    for piece in profile(route, quantity) {
+        let (from, to) = (piece.stretch.from, piece.stretch.to);
+        match piece.shape {
+            Shape::Nothing => parts.push(Part { from, to, side: None, ends: [None, None] }),
+            Shape::Steady(value) => {
+                let side = side(wanted, Some(&value), 0.0);
+                parts.push(Part { from, to, side, ends: [Some(value.clone()), Some(value)] });
+            }
+            Shape::Curve(points) => {
+                let size = points.iter().fold(0.0, |size: f64, (_, f)| size.max(f.abs()));
+                let of = |f: f64| side(wanted, Some(&Value::Number(f)), size);
+                // What differs from the number by rounding is it.
+                let snapped = |f: f64| match wanted {
+                    Wanted::Compared(_, level) if of(f) == Some(0) => Some(Value::Number(*level)),
+                    _ => Some(Value::Number(f)),
+                };
+                let mut part = |from: f64, to: f64, side: Option<i8>, f: f64, g: f64| {
+                    parts.push(Part { from, to, side, ends: [snapped(f), snapped(g)] });
+                };
+                for two in points.windows(2) {
+                    let ((a, f), (b, g)) = (two[0], two[1]);
+                    match (of(f), of(g)) {
+                        (x, y) if x == y => part(a, b, x, f, g),
+                        (Some(0), y) => part(a, b, y, f, g),
+                        (x, Some(0)) => part(a, b, x, f, g),
+                        (x, y) => {
+                            let Wanted::Compared(_, level) = wanted else { continue };
+                            let off = |at: f64| Some(number(route, &piece.stretch, at, quantity)? - level);
+                            let root = zero(&off, (a, f - level), (b, g - level));
+                            part(a, root, x, f, *level);
+                            part(root, b, y, *level, g);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    let mut found = gather(&parts, wanted, |value| Place {
+        value,
+        bracket: None,
+        below: None,
+        above: None,
+        change: route.change(value),
+    });
+    found.exact = true;
+    found.covered = route.covered();
+    found.notes = route.ends();
+    let [low, high] = found.covered;
+    if (low > range[0] || high < range[1]) && found.notes.is_empty() {
+        found.notes.push("the path does not lead through the whole range".to_owned());
+    }
+    found
+}
+
+/// Intervals and places from the parts, in order.
+fn gather(parts: &[Part], wanted: &Wanted, place: impl Fn(f64) -> Place) -> Found {
+    let mut holds: Vec<[f64; 2]> = Vec::new();
+    for part in parts.iter().filter(|part| wanted.holds(part.side)) {
+        match holds.last_mut() {
+            Some(last) if last[1] == part.from => last[1] = part.to,
+            _ => holds.push([part.from, part.to]),
+        }
+    }
+    let mut places: Vec<Place> = Vec::new();
+    let ends = parts.windows(2).filter(|two| {
+        let (a, b) = (two[0].side, two[1].side);
+        if wanted.is_equality() {
+            // From one side to the other, or touching: through the number or across it in a jump.
+            let touches = |part: &Part, end: usize| side(wanted, part.ends[end].as_ref(), 0.0) == Some(0);
+            a.is_some() && b.is_some() && (a != b || (a != Some(0) && touches(&two[0], 1) && touches(&two[1], 0)))
+        } else {
+            wanted.holds(a) != wanted.holds(b)
+        }
+    });
+    for two in ends {
+        let json = |value: &Option<Value>| value.as_ref().map(Value::json);
+        let next = Place { below: json(&two[0].ends[1]), above: json(&two[1].ends[0]), ..place(two[0].to) };
+        places.push(next);
+    }
+    // The quantity may meet the number at the very ends.
+    if wanted.is_equality() {
+        let meets =
+            |part: &Part, end: usize| part.side != Some(0) && side(wanted, part.ends[end].as_ref(), 0.0) == Some(0);
+        let json = |value: &Option<Value>| value.as_ref().map(Value::json);
+        if let Some(first) = parts.first().filter(|part| meets(part, 0)) {
+            places.insert(0, Place { above: json(&first.ends[0]), ..place(first.from) });
+        }
+        if let Some(last) = parts.last().filter(|part| meets(part, 1)) {
+            places.push(Place { below: json(&last.ends[1]), ..place(last.to) });
+        }
+    }
+    let covered = [parts.first().map_or(f64::NAN, |part| part.from), parts.last().map_or(f64::NAN, |part| part.to)];
+    Found { exact: false, holds, places, covered, notes: Vec::new() }
+}
+
+/// The quantity of an answer of its own at a value.
+fn solved_value(basis: &Basis<'_>, name: &str, at: f64, quantity: &Quantity) -> Result<Option<Value>, PathError> {
+    let there = match basis.at(name, at) {
+        Ok(there) => there,
+        // Values without a model: nothing to read there.
+        Err(PathError::Target(_)) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let solved = basis.solve(&there)?;
+    if !solved.answer.is_answer() && quantity.is_of_state() {
+        return Ok(None);
+    }
+    let facts = Facts::of_answer(basis.scenario, &there.prepared, &there.values, &solved, basis.watch);
+    Ok(facts.value(quantity).ok())
+}
+
+fn on_grid(
+    basis: Basis<'_>,
+    name: &str,
+    range: [f64; 2],
+    quantity: &Quantity,
+    wanted: &Wanted,
+) -> Result<Found, PathError> {
+    let [low, high] = range;
+    let look = |at: f64| -> Result<(f64, Option<Value>, Option<i8>), PathError> {
+        let value = solved_value(&basis, name, at, quantity)?;
+        let side = side(wanted, value.as_ref(), 0.0);
+        Ok((at, value, side))
+    };
+    let mut last = look(low)?;
+    let mut parts: Vec<Part> = Vec::new();
+    let mut brackets: Vec<[f64; 2]> = Vec::new();
+    for k in 1..=CELLS {
+        basis.watch.progress(&format!("{name} = {}", last.0), k as f64 / CELLS as f64);
+        let next = look(if k == CELLS { high } else { low + (high - low) * k as f64 / CELLS as f64 })?;
+        let (mut a, mut b) = (last.clone(), next.clone());
+        if a.2 != b.2 {
+            // The sides differ: the bracket is narrowed until the middle tells neither apart.
+            while (b.0 - a.0).abs() > NARROW * a.0.abs().max(b.0.abs()).max(1e-3 * (high - low)) {
+                let middle = look(0.5 * (a.0 + b.0))?;
+                if middle.2 == a.2 { a = middle } else { b = middle }
+            }
+            let middle = 0.5 * (a.0 + b.0);
+            brackets.push([a.0, b.0]);
+            parts.push(Part { from: last.0, to: middle, side: a.2, ends: [last.1.clone(), a.1] });
+            parts.push(Part { from: middle, to: next.0, side: b.2, ends: [b.1, next.1.clone()] });
+        } else {
+            parts.push(Part { from: last.0, to: next.0, side: a.2, ends: [last.1.clone(), next.1.clone()] });
+        }
+        last = next;
+    }
+    let bracket = |value: f64| brackets.iter().copied().find(|[a, b]| (*a..=*b).contains(&value));
+    let place = |value: f64| Place { value, bracket: bracket(value), below: None, above: None, change: None };
+    let mut found = gather(&parts, wanted, place);
+    found.notes.push(format!(
+        "no exact path leads over {name} here: answers of their own at {} values, each change between two of them \
+         narrowed to a bracket with one on either side; what happens twice between two of them is not seen",
+        CELLS + 1
+    ));
+    if parts.iter().any(|part| part.side.is_none()) {
+        found.notes.push(format!("{quantity} has no value in parts of the range"));
+    }
+    Ok(found)
+}

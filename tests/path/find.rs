@@ -1,0 +1,231 @@
+//! `find` and `envelope` over parameters, against closed forms.
+
+use serde_json::Value;
+use stickslip::model::embedded;
+use stickslip::model::load::load_text;
+use stickslip::model::scenario::Scenario;
+use stickslip::session::{Format, Output, Session};
+use stickslip::view::style::Style;
+use stickslip::watch::Quiet;
+
+fn session(scenario: Scenario) -> Session {
+    Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn beam() -> Session {
+    session(embedded::load("beam").expect("embedded"))
+}
+
+fn report(session: &mut Session, command: &str) -> Result<Value, String> {
+    let mut text = Vec::new();
+    let mut io = Output::text(&mut text, Style::default(), &Quiet);
+    io.format = Format::JsonLines;
+    session.execute(command, &mut io).map_err(|error| error.to_string())?;
+    let line: Value = serde_json::from_slice(&text).expect("JSON");
+    Ok(line["report"].clone())
+}
+
+fn text(session: &mut Session, command: &str) -> String {
+    let mut text = Vec::new();
+    let mut io = Output::text(&mut text, Style::default(), &Quiet);
+    session.execute(command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
+    String::from_utf8(text).expect("text")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+fn near(found: &Value, expected: f64, tolerance: f64) {
+    assert!((number(found) - expected).abs() <= tolerance, "{found} is not {expected} within {tolerance:e}");
+}
+
+/// The places, and the ends of the intervals.
+fn places(found: &Value) -> (Vec<f64>, Vec<[f64; 2]>) {
+    let places = found["places"].as_array().unwrap().iter().map(|place| number(&place["value"])).collect();
+    let holds = found["holds"].as_array().unwrap().iter().map(|ends| [number(&ends[0]), number(&ends[1])]).collect();
+    (places, holds)
+}
+
+/// Example 1: r = f F = 50; the k-th support from the pulled end slips at F2 = k r, all six at 300.
+#[test]
+fn the_pull_at_which_a_support_begins_to_slip() {
+    let mut session = beam();
+    for (pair, from) in [("c6", 50.0), ("c3", 200.0), ("c1", 300.0)] {
+        for condition in [format!("z_t {pair} > 0"), format!("state {pair} = slip+"), format!("reserve {pair} = 0")] {
+            let found = report(&mut session, &format!("find F2 0..400 where {condition}")).unwrap();
+            assert_eq!(found["exact"], true);
+            let (places, holds) = places(&found);
+            if from < 300.0 {
+                assert!((places[0] - from).abs() < 1e-9, "{condition}: {found}");
+                assert!((holds[0][0] - from).abs() < 1e-9 && (holds[0][1] - 300.0).abs() < 1e-9, "{found}");
+                assert!(found["places"][0]["change"].as_str().unwrap().contains(&format!("{pair} slips +")), "{found}");
+            } else if condition.starts_with("reserve") {
+                // It comes to its bound where the path ends.
+                assert!((places[0] - 300.0).abs() < 1e-9, "{found}");
+            } else {
+                assert!(places.is_empty() && holds.is_empty(), "{found}");
+            }
+            assert!(found["notes"][0].as_str().unwrap().contains("limit load"), "{found}");
+        }
+    }
+    // Less than: from the other side; several pairs; a load case in the place of the parameter.
+    let found = report(&mut session, "find pull 0..250 where count slip+ < 3").unwrap();
+    near(&found["places"][0]["value"], 150.0, 1e-9);
+    near(&found["holds"][0][1], 150.0, 1e-9);
+    // Slip c6 = L/EA Σ (F2 − k r): 1e-5 · ((F2 − 50) + (F2 − 100)) = 1e-3 at F2 = 125.
+    let found = report(&mut session, "find F2 0..250 where z_t c6 = 0.001").unwrap();
+    near(&found["places"][0]["value"], 125.0, 1e-9);
+    let found = text(&mut session, "find F2 0..250 where z_t c6 = 0.001");
+    assert!(found.contains("F2 = 125 kN"), "{found}");
+}
+
+/// At F2 = 150 two supports slip: z_6 = 1e-5 (2 F2 − 3 r) = 1e-3 at r = 200/3, f = r/F = 2/3.
+#[test]
+fn the_friction_at_which_the_end_slips_a_millimetre() {
+    let mut session = beam();
+    report(&mut session, "set F2 150").unwrap();
+    let found = report(&mut session, "find f 0.3..1 where z_t c6 = 0.001").unwrap();
+    assert_eq!((&found["exact"], places(&found).0.len()), (&Value::Bool(true), 1), "{found}");
+    near(&found["places"][0]["value"], 2.0 / 3.0, 1e-10);
+    // Slips of more: below; the path begins at f = 0.3.
+    let found = report(&mut session, "find f 0.3..1 where z_t c6 > 0.001").unwrap();
+    let (_, holds) = places(&found);
+    assert!((holds[0][0] - 0.3).abs() < 1e-12 && (holds[0][1] - 2.0 / 3.0).abs() < 1e-10, "{found}");
+    // The weight has a path too: r = f F, so F = 200/3 / 0.5.
+    let found = report(&mut session, "find F 110..200 where z_t c6 = 0.001").unwrap();
+    near(&found["places"][0]["value"], 400.0 / 3.0, 1e-9);
+}
+
+/// All six slip where F2 = 6 f F: least f = 250/600, most F2 = 300.
+#[test]
+fn the_least_and_the_most_with_an_answer() {
+    let mut session = beam();
+    let found = report(&mut session, "find least f 0..1 where outcome answer").unwrap();
+    near(&found["value"], 250.0 / 600.0, 1e-9);
+    assert_eq!((&found["collapse"]["verdict"], &found["beyond"]), (&"certified".into(), &Value::Bool(true)), "{found}");
+    let (answer, collapse) = (number(&found["answer"]["value"]), number(&found["collapse"]["value"]));
+    assert!(collapse < 250.0 / 600.0 && answer >= 250.0 / 600.0 && answer - collapse < 2e-8, "{found}");
+    let found = report(&mut session, "find most F2 0..1000 where outcome answer").unwrap();
+    near(&found["value"], 300.0, 1e-9);
+    assert_eq!((&found["exact"], &found["collapse"]["verdict"]), (&Value::Bool(true), &"certified".into()), "{found}");
+    let found = report(&mut session, "find least F2 0..1000 where outcome answer").unwrap();
+    assert!(found["collapse"].is_null() && found["value"] == 0.0, "{found}");
+    let error = report(&mut session, "find least F2 400..500 where outcome answer").unwrap_err();
+    assert!(error.contains("no answer was found at any of 33 values of F2 from 400 to 500"), "{error}");
+}
+
+/// A block b × 1 of weight W = 10 pushed by H at its top: it slides at H = f W and turns at H = W b/2.
+fn block() -> Session {
+    let text = r#"{ "format": "stickslip/1", "title": "block",
+        "parameters": { "b": { "value": 2, "min": 0.4, "max": 3 }, "f": 0.6, "H": 4 },
+        "materials": { "m": { "E": 20000, "nu": 0.2 } },
+        "plates": [ { "id": "p", "origin": [0, 0], "size": ["b", 1], "divisions": [2, 1], "thickness": 1, "material": "m",
+                      "plane": "stress" } ],
+        "contacts": [ { "id": "base", "edge": "p.bottom", "against": "ground", "friction": "f" } ],
+        "loads": { "weight": { "items": [ { "point": { "at": "p.top", "force": [0, -10] } } ] },
+                   "push": { "factor": "H", "items": [ { "point": { "at": "p.top", "force": [1, 0] } } ] } } }"#;
+    session(load_text("block", text, None).unwrap_or_else(|problems| panic!("{problems}")))
+}
+
+#[test]
+fn overturning_against_sliding() {
+    let mut session = block();
+    // Geometry: H h = W b/2 at b = 0.8.
+    let found = report(&mut session, "find least b where outcome answer").unwrap();
+    near(&found["value"], 0.8, 1e-7);
+    assert_eq!(found["collapse"]["verdict"], "certified", "{found}");
+    assert_eq!(found["beyond"], false);
+    // Sliding: f = H/W.
+    near(&report(&mut session, "find least f 0..2 where outcome answer").unwrap()["value"], 0.4, 1e-9);
+    // limit = min(f W, W b/2) = min(6, 5 b): it turns below b = 1.2 and slides above.
+    let found = report(&mut session, "find b where limit push < 6").unwrap();
+    assert_eq!(found["exact"], false);
+    let (places, holds) = places(&found);
+    assert_eq!(places.len(), 1, "{found}");
+    assert!((places[0] - 1.2).abs() < 1e-6 && (holds[0][1] - 1.2).abs() < 1e-6, "{found}");
+    let bracket = &found["places"][0]["bracket"];
+    assert!(number(&bracket[0]) <= places[0] && places[0] <= number(&bracket[1]), "{found}");
+    // e = H h / W does not depend on b; the resultant of the path over H is exact.
+    let found = report(&mut session, "find H 0..5 where resultant base e = 0.25").unwrap();
+    near(&found["places"][0]["value"], 2.5, 1e-9);
+    assert_eq!(found["exact"], true);
+}
+
+#[test]
+fn envelopes_tell_the_place_that_governs() {
+    let mut session = beam();
+    // Largest slip at the end of the range; x_t c6 = −50 from F2 = 50 on.
+    let found = report(&mut session, "envelope z_t c6, x_t c6, count slip+ over F2 0..250").unwrap();
+    assert_eq!(found["exact"], true);
+    let row = |k: usize, end: &str| found["envelope"][k][end].clone();
+    near(&row(0, "largest")["value"], 0.005, 1e-12);
+    near(&row(0, "largest")["at"]["F2"], 250.0, 0.0);
+    near(&row(1, "least")["value"], -50.0, 1e-9);
+    near(&row(1, "least")["at"]["F2"], 50.0, 1e-9);
+    assert_eq!(row(1, "least")["change"], "pair c6 slips +");
+    near(&row(2, "largest")["value"], 4.0, 0.0);
+    near(&row(2, "largest")["at"]["F2"], 200.0, 1e-9);
+    // Over two parameters a grid, and said to be so: slip grows with F2 and falls with f.
+    let found = report(&mut session, "envelope z_t c6 over f 0.5..1 F2 0..250").unwrap();
+    assert_eq!(found["exact"], false);
+    near(&found["envelope"][0]["largest"]["value"], 0.005, 1e-12);
+    near(&found["envelope"][0]["largest"]["at"]["f"], 0.5, 0.0);
+    assert!(found["notes"][0].as_str().unwrap().contains("a grid of 121 answers"), "{found}");
+    let found = text(&mut session, "envelope x_t c6 over F2 0..250");
+    assert!(found.contains("F2 = 50: pair c6 slips +"), "{found}");
+}
+
+/// A quad on smooth ground, pressed by 8 (1 − t) from above and by 8 t from both sides: σ_x = −8 t, σ_y = −8 (1 − t);
+/// von Mises, 8 √(3 t² − 3 t + 1), is least at t = 1/2, where nothing changes, and is 8 √(7/16) = √28 at t = 1/4 and 3/4.
+#[test]
+fn zeros_and_extremes_between_breakpoints_are_found() {
+    let text = r#"{ "format": "stickslip/1", "title": "pressed", "parameters": { "t": 0.1 },
+        "materials": { "m": { "E": 1000, "nu": 0.3 } },
+        "nodes": { "a": [0, 0], "b": [1, 0], "c": [1, 1], "d": [0, 1] },
+        "quads": [ { "id": "q", "nodes": ["a", "b", "c", "d"], "thickness": 1, "material": "m", "plane": "stress" } ],
+        "edges": { "bottom": ["a", "b"], "right": ["b", "c"], "top": ["c", "d"], "left": ["d", "a"] },
+        "supports": [ { "at": "a", "fixed": ["x"] } ],
+        "contacts": [ { "id": "g", "edge": "bottom", "against": "ground", "law": "frictionless" } ],
+        "loads": { "all": { "items": [ { "pressure": { "edge": "top", "value": "8*(1 - t)" } },
+          { "pressure": { "edge": "left", "value": "8*t" } }, { "pressure": { "edge": "right", "value": "8*t" } } ] } } }"#;
+    let mut session = session(load_text("pressed", text, None).unwrap_or_else(|problems| panic!("{problems}")));
+    let found = report(&mut session, "envelope mises q over t 0..0.9").unwrap();
+    assert_eq!(found["exact"], true, "{found}");
+    let ends = &found["envelope"][0];
+    near(&ends["least"]["value"], 4.0, 1e-9);
+    // A place of a smooth extreme is known to √ε.
+    near(&ends["least"]["at"]["t"], 0.5, 1e-7);
+    near(&ends["largest"]["value"], 8.0, 1e-9);
+    near(&ends["largest"]["at"]["t"], 0.0, 0.0);
+    let found = report(&mut session, &format!("find t 0..0.9 where mises q = {}", 28.0_f64.sqrt())).unwrap();
+    let (places, _) = places(&found);
+    assert!(places.len() == 2 && (places[0] - 0.25).abs() < 1e-9 && (places[1] - 0.75).abs() < 1e-9, "{found}");
+    let found = report(&mut session, "find t 0..0.9 where mises q < 5").unwrap();
+    // 3 t² − 3 t + 1 = 25/64: t = 1/2 ± √(1/4 − 13/64) = 1/2 ± √3/8.
+    let half = 3.0_f64.sqrt() / 8.0;
+    near(&found["holds"][0][0], 0.5 - half, 1e-9);
+    near(&found["holds"][0][1], 0.5 + half, 1e-9);
+}
+
+#[test]
+fn wrong_questions_are_refused_in_words() {
+    for (command, part) in [
+        ("find", "help find"),
+        ("find F2 0..400", "find: expected `find NAME [A..B] where QUANTITY = VALUE`"),
+        ("find G 0..1 where z_t c1 > 0", "no parameter or load case `G`"),
+        ("find F2 4..1 where z_t c1 > 0", "the range 4..1 is empty"),
+        ("find F2 0-4 where z_t c1 > 0", "`0-4` is no range; expected A..B"),
+        ("find pull where z_t c1 > 0", "find: in which range? pull has no slider"),
+        ("find F2 where z_t c9 > 0", "no pair `c9`"),
+        ("find F2 where z_t c1 = 0 ± 1", "without a tolerance"),
+        ("find F2 where z_t c1", "is no comparison"),
+        ("find f -1..1 where z_t c1 > 0", "must not be negative"),
+        ("envelope x_n c1 over", "expected `over combinations` or `over PARAMETER A..B`"),
+        ("envelope x_n c1 over F2 0..1 F2 0..1", "F2 is named twice"),
+        ("envelope state c1 over f 0..1", "is a word, not a number"),
+    ] {
+        let error = report(&mut beam(), command).expect_err(command);
+        assert!(error.contains(part), "{command}: {error}");
+    }
+}
