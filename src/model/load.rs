@@ -6,6 +6,7 @@ use super::decode::{self, Under};
 use super::embedded;
 use super::locate::position;
 use super::memory;
+use super::mesh;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
@@ -15,6 +16,17 @@ use crate::text::file;
 /// Reads and checks a scenario file; the scenario's name is the path as given.
 pub fn load_file(path: &Path) -> Result<Scenario, Problems> {
     let name = path.display().to_string();
+    if mesh::is_mesh_name(path) && path.exists() {
+        let shown = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        return Err(Problems::of_file(
+            name,
+            "this is a mesh, not a scenario",
+            format!(
+                "name it in a scenario, \"meshes\": [{{ \"id\": \"m\", \"file\": {shown:?}, \"materials\": … }}]; \
+                 `stickslip check` lists what it holds"
+            ),
+        ));
+    }
     load_bytes(
         &name,
         file::read(path),

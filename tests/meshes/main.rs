@@ -2,6 +2,7 @@
 //! elements, edges of every kind, and files that are damaged.
 
 mod damaged;
+mod program;
 mod write;
 
 #[path = "../common/mod.rs"]
@@ -298,6 +299,59 @@ fn closed_rings_are_edges() {
             // Every node alike, and no shear.
             assert!((pair.x_n - first).abs() < 1e-9 * first && pair.x_t.abs() < 1e-9 * first, "{file}: {pair:?}");
         }
+    }
+}
+
+/// Two halves of a disc, cut along an arc; the nodes of one side differ by 1e-11, as Gmsh's do: they are partners, and the
+/// forces follow the arc's normals.
+#[test]
+fn edges_match_within_the_noise_of_their_coordinates() {
+    let folder = tempfile::tempdir().expect("a folder");
+    const N: usize = 6;
+    let arc = |r: f64, noise: f64| {
+        (0..=N).map(move |k| {
+            let angle = std::f64::consts::PI * (0.25 + 0.5 * k as f64 / N as f64);
+            [r * angle.cos() + noise * (k as f64 - 2.0), r * angle.sin() - noise]
+        })
+    };
+    let nodes: Vec<[f64; 2]> =
+        [(1.0, 0.0), (2.0, 0.0), (2.0, 1e-11), (3.0, 0.0)].into_iter().flat_map(|(r, noise)| arc(r, noise)).collect();
+    let strip = |a: usize| {
+        (0..N).map(move |k| [(a, k), (a + 1, k), (a + 1, k + 1), (a, k + 1)].map(|(a, k)| a * (N + 1) + k).to_vec())
+    };
+    let line = |a: usize| (0..N).rev().map(move |k| vec![a * (N + 1) + k, a * (N + 1) + k + 1]).collect::<Vec<_>>();
+    let drawn = Drawn {
+        nodes,
+        edges: vec![("base", line(0)), ("below", line(1)), ("above", line(2)), ("roof", line(3))],
+        areas: vec![("arch", strip(0).collect()), ("fill", strip(2).collect())],
+    };
+    for file in files(folder.path(), &drawn) {
+        let of = json!({ "material": "c", "thickness": 1, "plane": "stress" });
+        let case = case(
+            folder.path(),
+            json!({
+                "materials": { "c": { "E": 1000, "nu": 0.2 } },
+                "meshes": [{ "id": "m", "file": file, "materials": { "arch": of, "fill": of } }],
+                "supports": [{ "at": "m.base", "fixed": ["x", "y"] }],
+                "contacts": [{ "id": "j", "edge": "m.above", "against": "m.below", "friction": 1 }],
+                "loads": { "p": { "items": [{ "pressure": { "edge": "m.roof", "value": 5 } }] } }
+            }),
+        );
+        let answer = case.solve(&[]);
+        assert_eq!(answer.pairs.len(), N + 1, "{file}");
+        let [mut x, mut y] = [0.0; 2];
+        for (pair, expected) in answer.pairs.iter().zip(arc(2.0, 0.0).collect::<Vec<_>>().iter().rev()) {
+            let position = pair.position.expect("a place");
+            let off = (position[0] - expected[0]).hypot(position[1] - expected[1]);
+            assert!(off < 1e-9, "{file}: from left to right, {position:?} {expected:?}");
+            // n points up along the radius, t = (n_y, −n_x).
+            let (n, t) = (pair.x_n / 2.0, pair.x_t / 2.0);
+            x += n * expected[0] + t * expected[1];
+            y += n * expected[1] - t * expected[0];
+        }
+        // All of the pressure on the roof goes through the joint: 5 times its chord, and nothing sideways.
+        let chord = 2.0 * 3.0 * std::f64::consts::FRAC_1_SQRT_2;
+        assert!((y - 5.0 * chord).abs() < 0.02 * 5.0 * chord && x.abs() < 1e-6, "{file}: {x} {y}");
     }
 }
 

@@ -263,12 +263,17 @@ pub fn read(path: &Path, name: &str) -> Result<Mesh, Vec<MeshProblem>> {
     }
 }
 
+/// The bytes behind the mark that some editors put in front of UTF-8.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 /// Reads the bytes of a .msh file.
 ///
 /// # Errors
 /// See [`read`].
 pub fn read_gmsh(bytes: &[u8], name: &str) -> Result<Mesh, Vec<MeshProblem>> {
-    assemble::mesh(gmsh::read(bytes, name).map_err(|problem| vec![problem])?)
+    assemble::mesh(gmsh::read(without_mark(bytes), name).map_err(|problem| vec![problem])?)
 }
 
 /// Reads the bytes of an .inp file; without a folder it cannot include others.
@@ -276,7 +281,7 @@ pub fn read_gmsh(bytes: &[u8], name: &str) -> Result<Mesh, Vec<MeshProblem>> {
 /// # Errors
 /// See [`read`].
 pub fn read_abaqus(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Mesh, Vec<MeshProblem>> {
-    assemble::mesh(abaqus::read(bytes, name, folder).map_err(|problem| vec![problem])?)
+    assemble::mesh(abaqus::read(without_mark(bytes), name, folder).map_err(|problem| vec![problem])?)
 }
 
 /// Meshes by the names that a scenario gives them, read once: a value set later means the mesh that was loaded.
