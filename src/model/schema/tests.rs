@@ -26,6 +26,7 @@ fn is_of_type(kind: &str, value: &Value) -> bool {
         "object" => value.is_object(),
         "array" => value.is_array(),
         "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
         "number" => value.is_number(),
         "integer" => value.is_u64() || value.is_i64(),
         other => panic!("the schema speaks of `{other}`"),
@@ -203,4 +204,16 @@ fn schema_and_decoder_know_the_same_keys() {
     for kind in kinds {
         assert!(schema_keys(&schema, &schema, &load(&kind)).is_some(), "{kind}");
     }
+}
+
+/// The copy that editors read.
+#[test]
+fn the_schema_in_the_repository_is_the_one_that_is_printed() {
+    let copy = concat!(env!("CARGO_MANIFEST_DIR"), "/schemas/stickslip-1.json");
+    let copy: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(copy).expect("schemas/stickslip-1.json")).expect("JSON");
+    assert!(
+        copy == serde_json::json!(super::schema()),
+        "the schema has changed: `cargo run -- schema > schemas/stickslip-1.json`"
+    );
 }
