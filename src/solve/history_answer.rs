@@ -38,7 +38,7 @@ impl Prepared {
         answer.pairs = pairs;
         let equilibrium = self.recover(&mut answer, numbers, factors, state);
         // λ afresh: the history keeps exact values where the laws give them.
-        let mut moved = JointState::at(system, numbers, state.z.clone(), 0.0);
+        let mut moved = JointState::at(system, numbers, state.in_forms(system).0, 0.0);
         for joint in system.pairs.iter().filter_map(|pair| pair.tangential) {
             moved.z[joint] = last_slip[joint];
         }

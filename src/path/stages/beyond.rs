@@ -23,6 +23,17 @@ const FARTHER: f64 = 16.0;
 /// … shows less than this many times the motion where it is a jump.
 const STAYS: f64 = 4.0;
 
+/// What a collapse on the way says of the loads of its stage.
+pub(super) fn explanation(collapse: &Ray) -> &'static str {
+    if collapse.verdict == Some(Verdict::Certified) {
+        "The loads of this stage cannot be reached: beyond this place no contact forces within the laws' bounds balance them, \
+         and nothing resists this motion."
+    } else {
+        "The loads of this stage could not be followed further: the rate problem has no answer that was found, and no state \
+         just beyond was found to jump to. That the loads cannot be carried is not proved."
+    }
+}
+
 impl Walk<'_> {
     /// What comes where the rate problem ends in a ray at place t: a jump, and the place it leads to, or the collapse.
     pub(super) fn beyond(
@@ -34,19 +45,13 @@ impl Walk<'_> {
     ) -> Result<Result<f64, Ray>, PathError> {
         let mut collapse = self.collapse(course, t, motion, p)?;
         if collapse.verdict == Some(Verdict::Certified) {
-            collapse.explanation =
-                "The loads of this stage cannot be reached: beyond this place no contact forces within \
-                                    the laws' bounds balance them, and nothing resists this motion."
-                    .to_owned();
+            collapse.explanation = explanation(&collapse).to_owned();
             return Ok(Err(collapse));
         }
         if let Some(to) = self.jump(course, t, way)? {
             return Ok(Ok(to));
         }
-        collapse.explanation = "The loads of this stage could not be followed further: the rate problem has no answer that \
-                                was found, and no state just beyond was found to jump to. That the loads cannot be carried is \
-                                not proved."
-            .to_owned();
+        collapse.explanation = explanation(&collapse).to_owned();
         Ok(Err(collapse))
     }
 

@@ -11,6 +11,7 @@ mod beyond;
 mod course;
 mod energy;
 mod event;
+mod force_form;
 mod rate_problem;
 mod record;
 mod released;
@@ -74,13 +75,14 @@ pub fn follow_factors(
     watch: &dyn Watch,
 ) -> Result<History, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
-    if let Some(refusal) = system.refusal("stages") {
-        return Err(PathError::Missing(refusal));
-    }
     let none = vec![0.0; prepared.cases.len()];
     let numbers = contact_numbers(system, &none, values);
     let start = Instant::now();
-    let mut history = Walk::start(prepared, Laws { system, numbers: &numbers }, watch)?.follow(targets)?;
+    let laws = Laws { system, numbers: &numbers };
+    let mut history = match system.force_form {
+        Some(_) => force_form::follow(prepared, laws, targets, watch)?,
+        None => Walk::start(prepared, laws, watch)?.follow(targets)?,
+    };
     if let Some(stage) = history.stages.last_mut() {
         let timings = &mut stage.end.timings;
         timings.factor = prepared.factor_seconds;
