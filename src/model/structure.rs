@@ -4,6 +4,7 @@
 //! the generated ones (plate nodes `lower[i,j]`, mesh nodes `dam/17`, bar divisions `AB/1`), so that results keep the
 //! author's order.
 
+use super::edge::EdgeSide;
 use super::pair::Pair;
 use super::parameter::Number;
 
@@ -148,6 +149,8 @@ pub struct MeshElements {
     pub tags: Vec<u64>,
     /// The parts that hang together.
     pub bodies: Vec<Body>,
+    /// The sides of its elements, each once, with whether two elements share it.
+    pub sides: Vec<(EdgeSide, bool)>,
 }
 
 /// Elements that hang together.

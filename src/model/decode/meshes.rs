@@ -12,6 +12,7 @@ use super::plates::{membrane, modes};
 use super::reader::{Cursor, Entry, Fields};
 use super::structure::Builder;
 use super::words::{counted, did_you_mean, listed, quoted};
+use crate::model::edge::Sides;
 use crate::model::mesh::chain::{chains, oriented};
 use crate::model::mesh::{self, Group, LineType, Members, Mesh, Shape};
 use crate::model::structure::{Bar, Body, Element, ElementKind, MeshElements, Node, Plane};
@@ -412,7 +413,8 @@ pub fn append_elements<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>,
     }
     let range = first..elements.len();
     let bodies = bodies(part, &elements[range.clone()], first, builder.structure.nodes.len());
-    builder.structure.meshes.push(MeshElements { id: outline.id.to_owned(), elements: range, tags, bodies });
+    let sides = Sides::of(&elements[range.clone()]).all();
+    builder.structure.meshes.push(MeshElements { id: outline.id.to_owned(), elements: range, tags, bodies, sides });
     builder.notes.extend(outline.mesh.notes.iter().map(|note| format!("{}: {note}", outline.id)));
     builder.places.elements.resize(builder.structure.elements.len(), place.clone());
 }

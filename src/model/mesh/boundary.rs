@@ -21,6 +21,8 @@ pub enum EdgeFault {
     Inside([usize; 2], Option<u32>),
     /// The middle node of a quadratic side of which only one half is in the group.
     HalfSide(usize),
+    /// The middle node of a quadratic side that a set leaves out, though it has both corners.
+    WithoutMiddle(usize),
     /// A node at which more than two sides meet.
     Branch(usize),
     /// So many pieces; the first node of two of them.
@@ -171,7 +173,7 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
             .collect()
     }
 
-    /// Corners of the boundary sides with both corners in a set.
+    /// Corners of the boundary sides with all their nodes in a set.
     fn of_nodes(&self, nodes: &[u32]) -> Result<Vec<[usize; 2]>, EdgeFault> {
         let set: HashSet<usize> = nodes.iter().map(|node| *node as usize).collect();
         let boundary = self.sides.boundary();
@@ -182,8 +184,11 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
         if let Some(middle) = half.min() {
             return Err(EdgeFault::HalfSide(middle));
         }
-        let whole = boundary.iter().filter(|side| side.ends.iter().all(|end| set.contains(end)));
-        Ok(whole.map(|side| side.ends).collect())
+        let whole: Vec<_> = boundary.iter().filter(|side| side.ends.iter().all(|end| set.contains(end))).collect();
+        match whole.iter().filter_map(|side| side.middle).filter(|middle| !set.contains(middle)).min() {
+            Some(middle) => Err(EdgeFault::WithoutMiddle(middle)),
+            None => Ok(whole.into_iter().map(|side| side.ends).collect()),
+        }
     }
 
     /// The pieces of the outer boundary (holes have none) by the direction of their outward normals, those of one
@@ -307,6 +312,13 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
                     tag(*middle)
                 ),
                 "end it at a corner of an element",
+            ),
+            EdgeFault::WithoutMiddle(middle) => (
+                format!(
+                    "has half a quadratic edge: both ends of an element side, but not node {} in its middle",
+                    tag(*middle)
+                ),
+                "put the middle nodes into the set, too",
             ),
             EdgeFault::Branch(node) => (format!("branches at node {}", tag(*node)), split),
             EdgeFault::Pieces(count, [a, b]) => (

@@ -134,7 +134,7 @@ fn view(
             EdgeFault::Pieces(count, _) => format!("{count} pieces"),
             EdgeFault::NoSide(..) | EdgeFault::Empty => "no sides of elements".into(),
             EdgeFault::Inside(..) => "inside a body".into(),
-            EdgeFault::HalfSide(_) => "half a quadratic side".into(),
+            EdgeFault::HalfSide(_) | EdgeFault::WithoutMiddle(_) => "half a quadratic side".into(),
             EdgeFault::Branch(_) => "branches".into(),
             EdgeFault::Turns(_) => "on both sides of a body".into(),
             EdgeFault::NoEdge => "no edge".into(),

@@ -5,7 +5,6 @@ use std::collections::HashMap;
 
 use super::chart::range;
 use crate::answer::record::{NodeDisplacement, PairState, State};
-use crate::model::edge::Sides;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
 use crate::model::structure::{Element, ElementKind, Load, Structure};
@@ -117,10 +116,10 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
         }
     }
     for mesh in &structure.meshes {
-        for (side, is_inside) in Sides::of(&structure.elements[mesh.elements.clone()]).all() {
+        for (side, is_inside) in &mesh.sides {
             let [a, b] = side.ends;
             let line = [Some(a), side.middle, Some(b)].into_iter().flatten().map(at).collect();
-            if is_inside { grid.push(line) } else { outline.push(line) }
+            if *is_inside { grid.push(line) } else { outline.push(line) }
         }
     }
     for plate in &structure.plates {
