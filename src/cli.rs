@@ -78,6 +78,10 @@ enum Command {
     /// Find every problem in scenario files, solving nothing; list what a mesh file holds
     ///
     /// Also names the parts that only contact holds, with their motions: where those are not wanted, a support is missing.
+    /// Warns of what is allowed and hardly meant: a stiffness or weight that no material of that name has under the named
+    /// units, sections and parameters in other units, normals that point down under what stands on the ground, parameters, materials and
+    /// sections that nothing uses, loads on nothing, contacts that no load case presses while every joint is held.
+    /// Warnings leave the exit status as it is.
     /// Of a mesh (.msh, .inp): nodes, elements, groups with lengths and areas, the boundary by direction, and the
     /// worst element. Quality is the least sine of a corner's angle (of triangles by that of 60°):
     /// 1 is best, 0 degenerate.
@@ -618,23 +622,24 @@ fn check(names: &[String], format: Form, style: &Style, out: &mut dyn Write) -> 
             }
             continue;
         }
-        let looked = named(name, &watch).and_then(|scenario| {
-            let (title, notes) = (scenario.title.clone(), scenario.notes.clone());
-            diagnose(scenario, &watch).map(|loose| (title, notes, loose))
-        });
+        let looked = named(name, &watch).and_then(|scenario| diagnose(scenario, &watch));
         watch.clear();
         match looked {
-            Ok((title, notes, loose)) if format == Form::Json => {
-                checked.push(json!({"scenario": name, "title": title, "notes": notes, "loose": loose}));
+            Ok(of) if format == Form::Json => {
+                let warnings: Vec<Value> = of.warnings.iter().map(|of| json_export::problem(name, of)).collect();
+                checked.push(json!({
+                    "scenario": name, "title": of.title, "notes": of.notes, "loose": of.loose, "warnings": warnings,
+                }));
             }
-            Ok((title, notes, loose)) => {
-                writeln!(out, "{}", style.text(&format!("{name}: no problems found ({title})")))?;
-                for note in notes {
+            Ok(of) => {
+                writeln!(out, "{}", style.text(&format!("{name}: no problems found ({})", of.title)))?;
+                for note in of.notes {
                     for line in style.hanging("note: ", &style.text(&note)) {
                         writeln!(out, "{line}")?;
                     }
                 }
-                view::loose::write(out, &loose, style)?;
+                view::loose::write(out, &of.loose, style)?;
+                view::warnings::write(out, name, &of.warnings, style)?;
             }
             Err(error) if error.is_interrupted() => return Err(error.into()),
             Err(error) => tell_problem(name, error, style, &mut wrong)?,

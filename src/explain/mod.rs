@@ -16,5 +16,6 @@ pub mod remedy;
 pub mod sentence;
 pub mod tableau;
 pub mod ties;
+pub mod unpressed;
 pub mod vertex;
 pub mod words;

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{Answer, MemberForces, OutcomeKind};
 use crate::model::parameter::ParameterValues;
-use crate::model::problem::Problems;
+use crate::model::problem::{Problem, Problems};
 use crate::text::printable;
 
 /// A value as text on lines of its own, without the characters that a terminal must not get.
@@ -24,19 +24,19 @@ pub fn pretty(value: &impl Serialize) -> io::Result<String> {
 /// What is wrong with an input: `{"error": [{file, line, column, path, message, help}]}`, line and column null where
 /// there is no place in the text; `more` counts the problems that are not listed.
 pub fn problems(problems: &[Problems]) -> Value {
-    let place = |number: usize| if number == 0 { Value::Null } else { number.into() };
-    let errors: Vec<Value> = problems
-        .iter()
-        .flat_map(|of_file| of_file.problems.iter().map(move |problem| (&of_file.file, problem)))
-        .map(|(file, problem)| {
-            json!({
-                "file": file, "line": place(problem.line), "column": place(problem.column), "path": problem.path,
-                "message": problem.message, "help": problem.help,
-            })
-        })
-        .collect();
+    let errors: Vec<Value> =
+        problems.iter().flat_map(|of_file| of_file.problems.iter().map(move |of| problem(&of_file.file, of))).collect();
     let more: usize = problems.iter().map(|of_file| of_file.more).sum();
     if more == 0 { json!({"error": errors}) } else { json!({"error": errors, "more": more}) }
+}
+
+/// One problem, or warning, of a file.
+pub fn problem(file: &str, problem: &Problem) -> Value {
+    let place = |number: usize| if number == 0 { Value::Null } else { number.into() };
+    json!({
+        "file": file, "line": place(problem.line), "column": place(problem.column), "path": problem.path,
+        "message": problem.message, "help": problem.help,
+    })
 }
 
 /// [`problems`] where a result was due: `outcome` is null, for programs that look at it first.

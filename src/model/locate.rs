@@ -85,6 +85,12 @@ impl<'t> Document<'t> {
         &self.root
     }
 
+    /// The values without their places.
+    pub fn value(&self) -> serde_json::Value {
+        // It was parsed before; what overflows f64 was refused.
+        serde_json::from_str(&strict(self.text)).unwrap_or_default()
+    }
+
     /// JSON path of the value, or of the key, that starts at this byte offset.
     pub fn path_at(&self, offset: usize) -> String {
         let mut path = String::new();

@@ -16,6 +16,7 @@ pub mod mesh;
 pub mod mortar;
 pub mod pair;
 pub mod parameter;
+pub mod plausible;
 pub mod problem;
 pub mod quantity;
 pub mod rules;

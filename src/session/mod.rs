@@ -44,6 +44,7 @@ use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolut
 pub use crate::explain::remedy::Remedies;
 use crate::export::table::Table;
 use crate::model::parameter::ParameterValues;
+use crate::model::problem::Problem;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
@@ -107,12 +108,28 @@ enum Missing {
     Still,
 }
 
-/// Looks at a scenario without solving it: what only contact holds, in sentences.
+/// What `check` says of a scenario that has no problems.
+pub struct Diagnosis {
+    /// Its title.
+    pub title: String,
+    /// What was put right while it was read.
+    pub notes: Vec<String>,
+    /// What only contact holds, in sentences.
+    pub loose: Vec<String>,
+    /// What is allowed and hardly meant, under the values of the file.
+    pub warnings: Vec<Problem>,
+}
+
+/// Looks at a scenario without solving it.
 ///
 /// # Errors
 /// A main system that cannot be factorized, an interruption.
-pub fn diagnose(scenario: Scenario, watch: &dyn Watch) -> Result<Vec<String>, CommandError> {
-    worker::run(watch, move |watch| Ok::<_, CommandError>(solve::prepare(&scenario, watch)?.loose_sentences()))?
+pub fn diagnose(scenario: Scenario, watch: &dyn Watch) -> Result<Diagnosis, CommandError> {
+    worker::run(watch, move |watch| {
+        let prepared = solve::prepare(&scenario, watch)?;
+        let (loose, warnings) = (prepared.loose_sentences(), prepared.warnings(&scenario));
+        Ok::<_, CommandError>(Diagnosis { title: scenario.title, notes: scenario.notes, loose, warnings })
+    })?
 }
 
 /// A scenario that is being worked on.

@@ -13,10 +13,13 @@ use crate::explain::margin::{FinalScheme, Margin, friction_margin, load_margin};
 use crate::explain::remedy::{Remedies, remedies};
 use crate::explain::tableau::{Dictionary, NoDictionary, dictionary};
 use crate::explain::ties::{TieReport, ties};
+use crate::explain::unpressed::unpressed;
 use crate::explain::vertex::Naming;
 use crate::lcp::trace::PivotLog;
 use crate::lcp::vertex::vertex;
 use crate::model::parameter::ParameterValues;
+use crate::model::plausible;
+use crate::model::problem::Problem;
 use crate::model::rules::{Engine, Rules, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::watch::{Budget, Watch};
@@ -139,6 +142,17 @@ impl Prepared {
         };
         let parts = report.mode.as_ref().map_or(&[][..], |mode| mode.parts.as_slice());
         Some(remedies(&subject, parts, &solves, &budget))
+    }
+
+    /// What is allowed in the scenario and hardly meant, in the order of the file, under the values of the file.
+    pub fn warnings(&self, scenario: &Scenario) -> Vec<Problem> {
+        let mut warnings = plausible::warnings(scenario);
+        if let Geometry::Structure { system, .. } | Geometry::Contact { system, .. } = &*self.geometry {
+            // What lies on the wrong side is told once.
+            let told: Vec<String> = warnings.iter().map(|warning| warning.path.clone()).collect();
+            warnings.extend(unpressed(scenario, system).into_iter().filter(|warning| !told.contains(&warning.path)));
+        }
+        plausible::placed(scenario, warnings)
     }
 
     /// Parts that only contact holds, each with its motions in words.

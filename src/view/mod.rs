@@ -33,6 +33,7 @@ pub mod sweep;
 pub mod table;
 pub mod tableau;
 pub mod ties;
+pub mod warnings;
 pub mod why;
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde_json::Value;
+use stickslip::model::embedded;
 
 fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
@@ -129,6 +130,29 @@ fn check_names_loose_parts_and_mechanisms() {
     let (_, error, status) = piped(&["check", path.to_str().unwrap()], b"");
     assert_eq!(status, 2);
     assert!(error.contains("mechanism") && error.contains("node B"), "{error}");
+}
+
+#[test]
+fn check_warns_of_what_is_hardly_meant_and_succeeds() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("soft.json");
+    let text = embedded::text("gap").unwrap().replace("2.1e8", "210");
+    fs::write(&path, &text).unwrap();
+    let file = path.to_str().unwrap();
+    let line = 1 + text.lines().position(|line| line.contains("210,")).unwrap();
+    let (out, error, status) = piped(&["check", file, "--width", "1000"], b"");
+    let out = String::from_utf8(out).unwrap();
+    assert_eq!((status, error.as_str()), (0, ""));
+    assert!(out.contains(&format!("warning: {file}:{line}:")), "{out}");
+    assert!(out.contains("materials.steel.E: `steel` has E = 210 kN/m²") && out.contains("  help: "), "{out}");
+    let (out, _, status) = piped(&["check", file, "gap", "--format", "json"], b"");
+    let report: Value = serde_json::from_slice(&out).unwrap();
+    let warning = &report["checked"][0]["warnings"][0];
+    assert_eq!((status, &warning["line"], &warning["file"]), (0, &line.into(), &file.into()));
+    assert_eq!(warning["path"], "materials.steel.E");
+    assert!(warning["column"].is_u64() && warning["message"].is_string() && warning["help"].is_string());
+    assert_eq!(report["checked"][1]["warnings"], serde_json::json!([]));
+    assert!(report.get("error").is_none());
 }
 
 #[test]

@@ -1,0 +1,270 @@
+//! Before solving: contacts that no load case presses, which is what a normal that points the wrong way looks like.
+//!
+//! What is looked at is the main system, every joint on: a case presses pair i if its RF_n,i > 0 under the sign of its
+//! factor, or −R g does where gaps are interferences. An edge contact is pressed where one of its pairs is; so is a joint
+//! of single pairs between two bodies of plates, quads or triangles. What presses a pair only after others slip or open is not seen; where
+//! nothing reaches the pair itself, but joints that it is coupled to, that may be so, and nothing is said.
+
+use std::collections::HashSet;
+
+use nalgebra::DVector;
+
+use super::words::list;
+use crate::contact::system::ContactSystem;
+use crate::model::pair::{Law, Pair};
+use crate::model::parameter::{Number, ParameterValues};
+use crate::model::plausible::Warning;
+use crate::model::plausible::normals::{is_down, is_guided, parts};
+use crate::model::scenario::{Scenario, Source};
+use crate::model::structure::Structure;
+
+/// RF is zero below this many ε of the magnitude of its terms: it went through a factorization.
+const ROUNDING: f64 = 1e4 * f64::EPSILON;
+/// R_ij is zero below this part of √(R_ii R_jj).
+const UNCOUPLED: f64 = 1e-9;
+
+/// What the load cases do to a pair in the main system.
+#[derive(Clone, Copy, PartialEq)]
+enum Effect {
+    Pressed,
+    /// Pulled open by the case of this index, or by interference elsewhere, pressed by none.
+    Pulled(Option<usize>),
+    /// Not reached, but coupled to joints that are.
+    Perhaps,
+    Untouched,
+}
+
+impl Effect {
+    fn may_press(&self) -> bool {
+        matches!(self, Effect::Pressed | Effect::Perhaps)
+    }
+}
+
+/// A warning for the contacts none of whose pairs is pressed.
+pub fn unpressed(scenario: &Scenario, system: &ContactSystem) -> Vec<Warning> {
+    let values = scenario.parameter_values();
+    let signs: Vec<[bool; 2]> =
+        factors(scenario).map(|(name, factor)| signs(scenario, name, factor, &values)).collect();
+    let gaps = interference(system, &values);
+    let coupled = coupled(system);
+    let effects: Vec<Effect> =
+        (0..system.pair_count()).map(|pair| effect(system, &signs, &gaps, &coupled, pair)).collect();
+    let joints = Joints::of(scenario, &effects);
+    let places = &scenario.places.pairs;
+    let mut found: Vec<Unpressed> = Vec::new();
+    let mut first = 0;
+    while first < effects.len().min(places.len()) {
+        let end = (first..effects.len()).find(|&pair| places[pair] != places[first]).unwrap_or(effects.len());
+        if !effects[first..end].iter().any(Effect::may_press) && !joints.carry(first) {
+            let id = &system.pairs[first].id;
+            let id = if end > first + 1 { id.split('[').next().unwrap_or(id) } else { id };
+            let why = why(system, &effects[first..end]) + &joints.turned(first);
+            match found.last_mut() {
+                Some(last) if last.next == first && last.why == why => {
+                    last.ids.push(id.to_owned());
+                    last.next = end;
+                }
+                _ => found.push(Unpressed { place: first, ids: vec![id.to_owned()], why, next: end }),
+            }
+        }
+        first = end;
+    }
+    found.into_iter().map(|of| of.warning(&places[of.place])).collect()
+}
+
+/// Contacts that stand one after the other in the file and are not pressed for the same reason.
+struct Unpressed {
+    /// The first pair of the first of them.
+    place: usize,
+    ids: Vec<String>,
+    why: String,
+    /// The pair after them.
+    next: usize,
+}
+
+impl Unpressed {
+    fn warning(&self, place: &str) -> Warning {
+        let ids: Vec<String> = self.ids.iter().map(|id| format!("`{id}`")).collect();
+        let ids = match &ids[..] {
+            [first, .., last] if ids.len() > 3 => format!("{first} … {last} ({} contacts)", ids.len()),
+            ids => list(ids),
+        };
+        let (it, its, carries) =
+            if self.ids.len() == 1 { ("it", "its", "it carries") } else { ("them", "their", "they carry") };
+        Warning::new(
+            place,
+            format!("no load case presses {ids}: while every joint is held {}", self.why.replace("{it}", it)),
+            format!(
+                "turn {its} normal round if it does not point from `against` to the node; otherwise {carries} only after \
+                 others slip or open"
+            ),
+        )
+    }
+}
+
+/// The pairs that hold two bodies, or one and the ground, apart in one direction.
+struct Joints<'s> {
+    structure: Option<&'s Structure>,
+    /// Body of each node.
+    part: Vec<usize>,
+    /// Nodes of plates, quads, triangles: bodies that touch along faces. (Each support of a bar is looked at by itself.)
+    solid: HashSet<usize>,
+    /// Bodies and normal of the pairs that are pressed, or may be.
+    carrying: Vec<([Option<usize>; 2], [f64; 2])>,
+}
+
+impl<'s> Joints<'s> {
+    fn of(scenario: &'s Scenario, effects: &[Effect]) -> Joints<'s> {
+        let mut joints = Joints { structure: None, part: Vec::new(), solid: HashSet::new(), carrying: Vec::new() };
+        let Source::Structure(structure) = &scenario.source else { return joints };
+        joints.structure = Some(structure);
+        joints.part = parts(structure);
+        let membranes = structure.elements.iter().filter(|element| element.nodes.len() > 2);
+        joints.solid = membranes.flat_map(|element| element.nodes.iter().copied()).collect();
+        let pressed = structure.pairs.iter().zip(effects).filter(|(_, effect)| effect.may_press());
+        joints.carrying = pressed.map(|(pair, _)| (joints.bodies(pair), pair.normal)).collect();
+        joints
+    }
+
+    fn bodies(&self, pair: &Pair) -> [Option<usize>; 2] {
+        [Some(self.part[pair.node]), pair.weights.get(1).map(|(node, _)| self.part[*node])]
+    }
+
+    /// Whether another pair of the same joint carries, or the other side of a guide.
+    fn carry(&self, pair: usize) -> bool {
+        let Some(structure) = self.structure else { return false };
+        let pair = &structure.pairs[pair];
+        if is_guided(structure, pair.node, pair.normal) {
+            return true;
+        }
+        let bodies = self.bodies(pair);
+        let alike = |n: &[f64; 2]| n[0] * pair.normal[0] + n[1] * pair.normal[1] > 0.5;
+        self.solid.contains(&pair.node) && self.carrying.iter().any(|(other, n)| *other == bodies && alike(n))
+    }
+
+    /// That the ground lies on the other side of the loads.
+    fn turned(&self, pair: usize) -> String {
+        let Some(structure) = self.structure else { return String::new() };
+        let pair = &structure.pairs[pair];
+        if pair.weights.len() > 1 || !is_down(structure, pair.normal) {
+            return String::new();
+        }
+        format!("; the normal ({}, {}) points down, the way of the loads", pair.normal[0], pair.normal[1])
+    }
+}
+
+/// Which cases pull pairs open.
+fn why(system: &ContactSystem, effects: &[Effect]) -> String {
+    let mut cases: Vec<String> = Vec::new();
+    for effect in effects {
+        if let Effect::Pulled(Some(case)) = effect {
+            let name = format!("`{}`", system.loads[*case].name);
+            if !cases.contains(&name) {
+                cases.push(name);
+            }
+        }
+    }
+    match cases.len() {
+        0 => "nothing reaches {it}".to_owned(),
+        1 => format!("{} pulls {{it}} open", cases[0]),
+        _ => format!("{} pull {{it}} open", list(&cases)),
+    }
+}
+
+/// Name and factor of every load case.
+fn factors(scenario: &Scenario) -> Box<dyn Iterator<Item = (&str, &Number)> + '_> {
+    match &scenario.source {
+        Source::Structure(structure) => {
+            Box::new(structure.load_cases.iter().map(|case| (case.name.as_str(), &case.factor)))
+        }
+        Source::ContactSystem(system) => Box::new(system.loads.iter().map(|case| (case.name.as_str(), &case.factor))),
+        Source::Lcp(_) => Box::new(std::iter::empty()),
+    }
+}
+
+/// Whether a case may act with a positive and with a negative factor: under the values of the file, its multipliers in
+/// stages and combinations, and the ranges of the sliders in its factor.
+fn signs(scenario: &Scenario, case: &str, factor: &Number, values: &ParameterValues) -> [bool; 2] {
+    let stages = scenario.stages.iter().chain(scenario.combinations.iter().map(|(_, stage)| stage));
+    let multipliers = stages.flat_map(|stage| &stage.multipliers).filter(|(name, _)| name == case);
+    let multipliers: Vec<f64> =
+        std::iter::once(1.0).chain(multipliers.map(|(_, number)| number.value(values))).collect();
+    let mut factors = vec![factor.value(values)];
+    if !matches!(factor, Number::Value(_)) {
+        for name in values.formulas().free(factor.names()) {
+            let Some(parameter) = scenario.parameters.get(&name) else { continue };
+            for end in [parameter.min, parameter.max].into_iter().flatten() {
+                let mut moved = values.clone();
+                moved.insert(name.clone(), end);
+                factors.push(factor.value(&moved));
+            }
+        }
+    }
+    let any = |sign: f64| factors.iter().any(|factor| multipliers.iter().any(|by| factor * by * sign > 0.0));
+    let nothing = factors.iter().all(|factor| *factor == 0.0);
+    [any(1.0) || nothing, any(-1.0)]
+}
+
+/// −R g⁻: what interference does to the joints, and the magnitude of its terms.
+fn interference(system: &ContactSystem, values: &ParameterValues) -> [DVector<f64>; 2] {
+    let k = system.joint_count();
+    let mut gaps = DVector::zeros(k);
+    for (pair, of) in system.pairs.iter().enumerate() {
+        if let Law::Coulomb { gap, .. } | Law::Frictionless { gap, .. } = &of.law {
+            gaps[pair] = gap.value(values).min(0.0);
+        }
+    }
+    if gaps.iter().all(|gap| *gap == 0.0) {
+        return [gaps.clone(), gaps];
+    }
+    [-(&system.stiffness * &gaps), system.stiffness.abs() * gaps.abs()]
+}
+
+fn effect(
+    system: &ContactSystem,
+    signs: &[[bool; 2]],
+    gaps: &[DVector<f64>; 2],
+    coupled: &[bool],
+    pair: usize,
+) -> Effect {
+    if matches!(system.pairs[pair].law, Law::Bound { .. }) {
+        // It holds both ways.
+        return Effect::Pressed;
+    }
+    let mut pulled = (gaps[0][pair] < -ROUNDING * gaps[1][pair]).then_some(None);
+    if gaps[0][pair] > ROUNDING * gaps[1][pair] {
+        return Effect::Pressed;
+    }
+    for (index, (case, [plus, minus])) in system.loads.iter().zip(signs).enumerate() {
+        let (force, rounding) = (case.vector[pair], ROUNDING * case.terms[pair]);
+        if *plus && force > rounding || *minus && force < -rounding {
+            return Effect::Pressed;
+        }
+        if *plus && force < -rounding || *minus && force > rounding {
+            pulled = pulled.or(Some(Some(index)));
+        }
+    }
+    if let Some(case) = pulled {
+        return Effect::Pulled(case);
+    }
+    if coupled[pair] { Effect::Perhaps } else { Effect::Untouched }
+}
+
+/// For each joint whether it hangs together, through entries of R, with one that a case loads.
+fn coupled(system: &ContactSystem) -> Vec<bool> {
+    let (r, k) = (&system.stiffness, system.joint_count());
+    let is_loaded =
+        |joint: usize| system.loads.iter().any(|case| case.vector[joint].abs() > ROUNDING * case.terms[joint]);
+    let mut reached: Vec<bool> = (0..k).map(is_loaded).collect();
+    let mut next: Vec<usize> = (0..k).filter(|&joint| reached[joint]).collect();
+    while let Some(joint) = next.pop() {
+        for other in 0..k {
+            let size = (r[(joint, joint)] * r[(other, other)]).sqrt();
+            if !reached[other] && r[(joint, other)].abs() > UNCOUPLED * size {
+                reached[other] = true;
+                next.push(other);
+            }
+        }
+    }
+    reached
+}

@@ -1,0 +1,154 @@
+//! Load cases that load nothing.
+
+use serde_json::Value;
+
+use super::{Warning, keys, texts};
+use crate::model::parameter::Number;
+use crate::model::scenario::{GivenContactSystem, Scenario, Stage};
+use crate::model::structure::{Load, Structure};
+
+/// Cases whose loads are nothing whatever the parameters are, items without the property they need, cases that are
+/// counted nowhere.
+pub fn of_structure(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for case in &structure.load_cases {
+        let path = format!("loads.{}", case.name);
+        let of_case = file.get("loads").and_then(|loads| loads.get(&case.name));
+        let items = of_case.and_then(|of_case| of_case.get("items"));
+        let without = without_property(structure, file, &path, items);
+        let mut formulas = Vec::new();
+        items.into_iter().for_each(|items| texts_of_numbers(items, &mut formulas));
+        let empty = items.and_then(Value::as_array).is_none_or(Vec::is_empty);
+        if case.loads.is_empty() && empty {
+            let help = "give it `items`, or name it as the `case` of a settlement; or remove it";
+            warnings.push(Warning::new(&path, format!("the load case `{}` acts on nothing", case.name), help));
+        } else if without.is_empty()
+            && formulas.is_empty()
+            && !case.loads.is_empty()
+            && case.loads.iter().all(is_nothing)
+        {
+            let message = format!("all the loads of the case `{}` are zero", case.name);
+            warnings.push(Warning::new(&path, message, "give them their amount, or remove the case"));
+        }
+        warnings.extend(without);
+        warnings.extend(counted(scenario, &case.name, &case.factor, &path));
+    }
+    warnings
+}
+
+/// The same for a contact system of a file.
+pub fn of_contact_system(scenario: &Scenario, system: &GivenContactSystem) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for load in &system.loads {
+        let path = format!("contact_system.loads.{}", load.name);
+        if load.vector.iter().all(|force| *force == 0.0) {
+            let message = format!("the vector of the load case `{}` is zero", load.name);
+            warnings.push(Warning::new(&path, message, "give it its forces, or remove the case"));
+        }
+        warnings.extend(counted(scenario, &load.name, &load.factor, &path));
+    }
+    warnings
+}
+
+/// A case that counts nothing: by its own factor, or because no stage and no combination names it.
+fn counted(scenario: &Scenario, case: &str, factor: &Number, path: &str) -> Option<Warning> {
+    if *factor == Number::Value(0.0) {
+        return Some(Warning::new(
+            format!("{path}.factor"),
+            format!("the factor of the load case `{case}` is 0: it never acts, in stages and combinations neither"),
+            "give it a factor or a parameter, or remove the case",
+        ));
+    }
+    let names =
+        |stage: &Stage| stage.multipliers.iter().any(|(name, number)| name == case && *number != Number::Value(0.0));
+    let mut all = scenario.stages.iter().chain(scenario.combinations.iter().map(|(_, stage)| stage));
+    (!scenario.stages.is_empty() && !all.any(names)).then(|| {
+        Warning::new(
+            path,
+            format!("no stage and no combination counts the load case `{case}`: the load history leaves it out"),
+            "name it in the `stages` in which it acts, or remove it",
+        )
+    })
+}
+
+/// Gravity on elements without density, temperature on elements without expansion.
+fn without_property(structure: &Structure, file: &Value, path: &str, items: Option<&Value>) -> Vec<Warning> {
+    let materials: Vec<&str> = keys(file, "materials").collect();
+    let mut warnings = Vec::new();
+    for (index, item) in items.and_then(Value::as_array).into_iter().flatten().enumerate() {
+        for (load, property) in [("gravity", "density"), ("temperature", "expansion")] {
+            let Some(of_load) = item.get(load) else { continue };
+            // A name that is no element of the file is one of a mesh: its material is not looked for.
+            let Some(on) = materials_on(structure, file, &materials, of_load.get("on")) else { continue };
+            let has = |&material: &usize| {
+                let material = &structure.materials[material];
+                if load == "gravity" { material.density != 0.0 } else { material.expansion != 0.0 }
+            };
+            let given =
+                |&material: &usize| file["materials"][materials[material]].get(property).is_some_and(Value::is_string);
+            if on.iter().any(|material| has(material) || given(material)) {
+                continue;
+            }
+            let mut named: Vec<&str> = on.iter().map(|&material| materials[material]).collect();
+            named.dedup();
+            let whose = match named[..] {
+                [] => "there are no elements".to_owned(),
+                [one] => format!("the {property} of `{one}` is 0"),
+                _ => format!("the {property} of {} is 0", named.join(", ")),
+            };
+            warnings.push(Warning::new(
+                format!("{path}.items[{index}].{load}"),
+                format!("this {load} does nothing: {whose}"),
+                format!("give the material its `{property}`, or remove the load"),
+            ));
+        }
+    }
+    warnings
+}
+
+/// The materials of the elements that a load is on, by index; `None` where a name cannot be followed.
+fn materials_on(structure: &Structure, file: &Value, materials: &[&str], on: Option<&Value>) -> Option<Vec<usize>> {
+    let Some(on) = on else {
+        let mut all: Vec<usize> = structure.elements.iter().map(|element| element.material).collect();
+        all.sort_unstable();
+        all.dedup();
+        return Some(all);
+    };
+    let element = |id: &Value| {
+        ["bars", "plates", "quads", "triangles"].iter().find_map(|key| {
+            file.get(key)?.as_array()?.iter().find(|entry| entry.get("id") == Some(id))?.get("material")?.as_str()
+        })
+    };
+    let found = on.as_array()?.iter().map(|id| {
+        let name = element(id)?;
+        materials.iter().position(|known| *known == name)
+    });
+    found.collect()
+}
+
+/// The texts of a list of loads that may be numbers: all but names.
+fn texts_of_numbers<'v>(items: &'v Value, found: &mut Vec<&'v str>) {
+    const NAMES: [&str; 6] = ["at", "edge", "bar", "on", "axes", "face"];
+    match items {
+        Value::Array(list) => list.iter().for_each(|value| texts_of_numbers(value, found)),
+        Value::Object(map) => {
+            map.iter()
+                .filter(|(key, _)| !NAMES.contains(&key.as_str()))
+                .for_each(|(_, value)| texts_of_numbers(value, found));
+        }
+        other => texts(other, found),
+    }
+}
+
+/// Whether a load is zero.
+fn is_nothing(load: &Load) -> bool {
+    let zero = |forces: &[f64]| forces.iter().all(|force| *force == 0.0);
+    match load {
+        Load::Nodal { force, moment, .. } | Load::BarPoint { force, moment, .. } => zero(force) && *moment == 0.0,
+        Load::Line { value, .. } => zero(&value[0]) && zero(&value[1]),
+        Load::Body { value, .. } => zero(value),
+        // Its number may be a parameter, and stands with its support.
+        Load::Settlement { .. } => false,
+        Load::FreeStrain { strain, curvature, .. } => *strain == 0.0 && *curvature == 0.0,
+    }
+}

@@ -1,0 +1,84 @@
+//! What is allowed and yet hardly meant: materials no one builds with under the named units, parts that nothing uses,
+//! loads that load nothing, ground inside a body. Warnings, never errors: an odd model is still the author's.
+
+mod loads;
+pub mod normals;
+mod stiffness;
+mod units;
+mod unused;
+
+use serde_json::Value;
+
+use super::locate::Document;
+use super::problem::Problem;
+use super::scenario::{Scenario, Source};
+
+/// A warning before its place is known as line and column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// JSON path of what is meant.
+    pub path: String,
+    /// What is odd.
+    pub message: String,
+    /// What to do.
+    pub help: String,
+}
+
+impl Warning {
+    /// A warning at a JSON path.
+    pub fn new(path: impl Into<String>, message: impl Into<String>, help: impl Into<String>) -> Warning {
+        Warning { path: path.into(), message: message.into(), help: help.into() }
+    }
+}
+
+/// All that is odd in the file itself, under the parameter values of the file.
+pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
+    // The text was parsed when it was loaded.
+    let Ok(document) = Document::parse(&scenario.text) else { return Vec::new() };
+    let file = document.value();
+    let mut warnings = unused::parameters(scenario);
+    warnings.extend(units::of_parameters(scenario, &file));
+    match &scenario.source {
+        Source::Structure(structure) => {
+            warnings.extend(unused::materials_and_sections(structure, &file));
+            warnings.extend(stiffness::materials(scenario, structure, &file));
+            warnings.extend(stiffness::weights(scenario, structure, &file));
+            warnings.extend(stiffness::sections(scenario, structure, &file));
+            warnings.extend(normals::upside_down(scenario, structure));
+            warnings.extend(loads::of_structure(scenario, structure, &file));
+        }
+        Source::ContactSystem(system) => warnings.extend(loads::of_contact_system(scenario, system)),
+        Source::Lcp(_) => {}
+    }
+    warnings
+}
+
+/// The warnings in the order of the file, each with its place.
+pub fn placed(scenario: &Scenario, warnings: Vec<Warning>) -> Vec<Problem> {
+    let Ok(document) = Document::parse(&scenario.text) else { return Vec::new() };
+    let mut placed: Vec<(usize, Problem)> = warnings
+        .into_iter()
+        .map(|Warning { path, message, help }| {
+            let offset = document.offset_of(&path);
+            let (line, column) = document.position(offset);
+            (offset, Problem { line, column, path: document.path_at(offset), message, help })
+        })
+        .collect();
+    placed.sort_by_key(|(offset, _)| *offset);
+    placed.into_iter().map(|(_, problem)| problem).collect()
+}
+
+/// Every text in a value, however deep.
+fn texts<'v>(value: &'v Value, found: &mut Vec<&'v str>) {
+    match value {
+        Value::String(text) => found.push(text),
+        Value::Array(list) => list.iter().for_each(|value| texts(value, found)),
+        Value::Object(map) => map.values().for_each(|value| texts(value, found)),
+        _ => {}
+    }
+}
+
+/// The keys of an object of the file, in its order.
+fn keys<'v>(file: &'v Value, key: &str) -> impl Iterator<Item = &'v str> {
+    file.get(key).and_then(Value::as_object).into_iter().flat_map(|map| map.keys()).map(String::as_str)
+}
