@@ -262,7 +262,7 @@ pub fn contact_lcp_like(
         scale: Scale {
             row: row_scale,
             column: (0..count).map(|row| column_scale[joint_of(row)]).collect(),
-            load: (largest_load > 0.0).then_some(largest_load / force_unit),
+            load: Some(if largest_load > 0.0 { largest_load } else { largest } / force_unit),
         },
         whole_size: rows.len(),
     };

@@ -166,7 +166,7 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
     let load = combinations.iter().flat_map(|(terms, _)| terms);
     let load = load.map(|(i, factor)| (factor.to_f64() * constants[*i].to_f64()).abs()).fold(0.0, f64::max);
     let scale = Scale {
-        load: (load > 0.0).then_some(load),
+        load: Some(load),
         row: rows
             .iter()
             .map(|row| match row.couple {

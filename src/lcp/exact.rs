@@ -197,7 +197,7 @@ impl<'a> Exact<'a> {
                     return failed();
                 };
                 let Point { z, w, p } = self.rationals(&moving);
-                let small = self.lcp.load_size() * MARGINAL;
+                let small = self.lcp.scale.load.map_or(0.0, |load| load * MARGINAL);
                 let at = BigRational::new_raw(vertex.p.clone(), vertex.denominator.clone());
                 if !vertex.holds() || !moving.holds() || Scalar::to_f64(&at) <= 0.5 * small {
                     return failed();

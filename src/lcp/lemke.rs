@@ -15,7 +15,6 @@ use super::driver::{Engine, Step};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Outcome, Point, RayDirection};
 use super::parametric::Parametric;
-use super::problem::MARGINAL;
 use super::ratio_test::{TieRule, choose};
 use super::stand::{Candidate, NOISE, Sizes, Stand};
 use super::trace::{Pivot, PivotLog};
@@ -88,7 +87,7 @@ impl SchemeEngine {
 
     /// The end where nothing goes on but p is as good as zero: an answer.
     fn at_limit_of_p(&self) -> Option<Outcome> {
-        (self.stand.p() <= MARGINAL * self.stand.lcp.load_size()).then_some(Outcome::Normal { marginal: true })
+        self.stand.lcp.is_marginal(&self.stand.point()).then_some(Outcome::Normal { marginal: true })
     }
 
     /// The end where no row blocks the entering variable of column c.

@@ -13,7 +13,8 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::dense::add_response;
-use super::problem::{Lcp, Scale};
+use super::outcome::Point;
+use super::problem::{Lcp, Scale, as_good_as_nothing};
 
 /// The mirror of a primary row.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,6 +84,15 @@ impl MirroredLcp {
     /// Size of the load: see [`Scale::load`].
     pub fn load_size(&self) -> f64 {
         self.scale.load.unwrap_or_else(|| self.q.amax())
+    }
+
+    /// Whether what is left of p is as good as nothing; see [`as_good_as_nothing`].
+    pub fn is_marginal(&self, point: &Point) -> bool {
+        let terms = |i: usize| {
+            let row = point.z.iter().enumerate().filter(|(_, z)| **z != 0.0);
+            self.q[i].abs() + row.map(|(j, z)| (self.base[(i, j)] * z).abs()).sum::<f64>()
+        };
+        as_good_as_nothing(point, self.scale.load, |i| self.covering[i], terms)
     }
 
     /// n(i) and f_i of a row that is coupled to a normal force.

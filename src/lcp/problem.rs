@@ -1,12 +1,13 @@
 //! The whole LCP written out: w = M z + q + d p, w ≥ 0, z ≥ 0, wᵀz = 0.
 
+use super::outcome::Point;
 use super::scalar::Scalar;
 
 /// A value or rate counts as zero below this multiple of its natural size (method §4, "Zero"), see [`Scale`].
 pub const NOISE: f64 = 256.0 * f64::EPSILON;
 /// Rounds of equilibration: the logarithms of the factors come twice as near in each.
 const EQUILIBRATIONS: usize = 8;
-/// p at a ray at most this multiple of the size of the load is a normal end, flagged marginal.
+/// p at a ray at most this multiple of the load, or of the terms of each row, is a normal end, flagged marginal.
 pub const MARGINAL: f64 = 1e-12;
 
 /// Sizes against which rounding noise is judged: the response (M Δz)_i counts as zero when it is at most
@@ -21,7 +22,7 @@ pub struct Scale {
     /// One entry per column of the LCP.
     pub column: Vec<f64>,
     /// Size of what has to be balanced, where q holds other numbers besides: a friction bound of 1e15 is no load. What
-    /// is left of p is judged against it; without one, against the largest |q|.
+    /// is left of p is judged against it. A bare LCP has none.
     pub load: Option<f64>,
 }
 
@@ -71,9 +72,29 @@ impl<T> Lcp<T> {
 }
 
 impl<T: Scalar> Lcp<T> {
-    /// Size of the load: see [`Scale::load`].
-    pub fn load_size(&self) -> f64 {
-        let largest = || self.q.iter().map(|q| q.to_f64().abs()).fold(0.0, f64::max);
-        self.scale.load.unwrap_or_else(largest)
+    /// Whether what is left of p is as good as nothing; see [`as_good_as_nothing`].
+    pub fn is_marginal(&self, point: &Point) -> bool {
+        let terms = |i: usize| -> f64 {
+            let row = self.matrix[i].iter().zip(&point.z).filter(|(_, z)| **z != 0.0);
+            self.q[i].to_f64().abs() + row.map(|(m, z)| (m.to_f64() * z).abs()).sum::<f64>()
+        };
+        as_good_as_nothing(point, self.scale.load, |i| self.covering[i].to_f64(), terms)
     }
+}
+
+/// Whether the p that is left at the end of a run is an answer's: beside the load, where its size is known. Of a bare LCP
+/// the rows may be of any sizes: there in every row that has no w to spare for it, beside the terms of that row.
+pub(super) fn as_good_as_nothing(
+    point: &Point,
+    load: Option<f64>,
+    covering: impl Fn(usize) -> f64,
+    terms: impl Fn(usize) -> f64,
+) -> bool {
+    if let Some(load) = load {
+        return point.p <= MARGINAL * load;
+    }
+    (0..point.w.len()).all(|i| {
+        let share = covering(i) * point.p;
+        point.w[i] >= share || share <= MARGINAL * terms(i)
+    })
 }

@@ -23,7 +23,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::driver::{Engine, Step};
 use super::outcome::{Outcome, Point, RayDirection};
-use super::problem::{Lcp, MARGINAL};
+use super::problem::Lcp;
 use super::ratio_test::TieRule;
 use super::scalar::Scalar;
 use super::trace::{Pivot, PivotLog};
@@ -60,7 +60,6 @@ pub struct Tableau<T> {
     ended: Option<Outcome<T>>,
     /// Typical d_i / row_i: what a unit of p weighs against scaled displacements.
     weight_of_p: f64,
-    load: f64,
 }
 
 impl<T: Scalar> Tableau<T> {
@@ -92,7 +91,6 @@ impl<T: Scalar> Tableau<T> {
             pivots: PivotLog::default(),
             ended: None,
             weight_of_p: if high > 0.0 { (low * high).sqrt() } else { 1.0 },
-            load: lcp.load_size(),
             lcp: lcp.clone(),
         }
     }
@@ -217,7 +215,13 @@ impl<T: Scalar> Tableau<T> {
     /// The end where nothing goes on but p is as good as zero: an answer.
     fn at_limit_of_p(&self) -> Option<Outcome<T>> {
         let p = self.p_value();
-        (p.to_f64() <= MARGINAL * self.load).then(|| Outcome::Normal { marginal: !p.is_zero() })
+        if p.is_zero() {
+            return Some(Outcome::Normal { marginal: false });
+        }
+        let Point { z, w, .. } = self.point();
+        let all = |values: Vec<T>| values.iter().map(Scalar::to_f64).collect();
+        let point = Point { z: all(z), w: all(w), p: p.to_f64() };
+        self.lcp.is_marginal(&point).then_some(Outcome::Normal { marginal: true })
     }
 
     fn ray(&self, column: usize) -> Outcome<T> {

@@ -245,8 +245,13 @@ pub(super) fn solve_plain_judged(
         }
         match within_budget(rules.engine, budget, watch, |watch| attempt_plain(problem, rules, watch))? {
             Some(again) => {
-                if let Ok(answer) = ladder.add(again) {
-                    return Ok(answer);
+                let mut again = match ladder.add(again) {
+                    Ok(answer) => return Ok(answer),
+                    Err(again) => again,
+                };
+                // The first run broke down or failed its check: a ray that is proved is better than that.
+                if ladder.first().plain_ray.is_none() && prove_ray(&mut again, problem, found.as_ref(), watch) {
+                    return Ok(ladder.with_history(*again));
                 }
             }
             None => {
@@ -273,6 +278,20 @@ fn prove_in_time(lcp: &MirroredLcp, watch: &dyn Watch) -> (Option<RayProof>, boo
     let proof = prove_plain_ray(lcp, &deadline);
     let given_up = proof.is_none() && deadline.passed();
     (proof, given_up)
+}
+
+/// Whether it is proved that there is no answer, in place of the ray of a later attempt.
+fn prove_ray(solved: &mut Solved, problem: &PlainProblem, found: Option<&PlainAnswers>, watch: &dyn Watch) -> bool {
+    let Some(ray) = &solved.plain_ray else { return false };
+    let record = if found.is_some_and(PlainAnswers::none) {
+        ray.record(Verdict::Proved, ALL_BASES)
+    } else if let (Some(proof @ RayProof::Infeasible(_)), _) = prove_in_time(&problem.lcp, watch) {
+        proof.record(ray, problem.names)
+    } else {
+        return false;
+    };
+    solved.answer.ray = Some(record);
+    true
 }
 
 /// A ray that is none in exact arithmetic claims nothing: the run broke down.

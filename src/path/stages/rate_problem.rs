@@ -383,7 +383,8 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
                 })
                 .collect(),
             column: primary.iter().map(|row| scales[row.joint]).collect(),
-            load: None,
+            // Dimensionless: the largest |q| is about 1.
+            load: Some(1.0),
         },
         whole_size: rows.len(),
     };
