@@ -19,6 +19,7 @@ mod plates;
 mod random_structures;
 mod repeated_joints;
 mod rigid;
+mod rings;
 mod settlements;
 mod slope;
 mod springs;

@@ -374,3 +374,33 @@ fn a_body_follows_its_coordinates_live() {
         }
     }
 }
+
+/// A block of no elements on two contacts with friction: four joints for three motions. What statics fixes is shown
+/// (x_n, Σ x_t), and it slides at H = f W, not before and certified beyond.
+#[test]
+fn joints_that_a_body_makes_dependent() {
+    let f = 0.5;
+    let case = Case::json(json!({
+        "parameters": { "H": 1.0 },
+        "nodes": { "A": [-2, 0], "B": [2, 0], "G": [0, 1] },
+        "rigid": [{ "id": "block", "nodes": ["A", "B", "G"] }],
+        "contacts": [
+            { "id": "a", "node": "A", "against": "ground", "normal": [0, 1], "friction": f },
+            { "id": "b", "node": "B", "against": "ground", "normal": [0, 1], "friction": f }
+        ],
+        "loads": { "weight": { "items": [{ "point": { "at": "G", "force": [0, -10] } }] },
+                   "push": { "factor": "H", "items": [{ "point": { "at": "G", "force": [1, 0] } }] } }
+    }));
+    for h in [1.0, -3.0, 4.999] {
+        let answer = case.solve(&[("H", h)]);
+        is_answer(&answer);
+        near_all("x_n", &of_pairs(&answer, |pair| pair.x_n), &[5.0 - h / 4.0, 5.0 + h / 4.0], 1e-10);
+        near("Σ x_t", of_pairs(&answer, |pair| pair.x_t).iter().sum(), -h, 1e-10, 5.0);
+        for pair in &answer.pairs {
+            assert!(pair.x_t.abs() <= f * pair.x_n + 1e-9, "{pair:?}");
+        }
+    }
+    let beyond = case.solve(&[("H", 5.05)]);
+    let ray = mechanism(&beyond);
+    assert_eq!(ray.verdict, Some(Verdict::Certified));
+}

@@ -145,7 +145,7 @@ pub fn of_edge<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     }
     let two = TwoEdges { builder, at, against, edge: &edge, other: &other, apart: gap_of(fields) == Gap::Geometry };
     match (two.partners(), method) {
-        (Ok(reversed), None | Some(Method::Nodes)) => two.of_nodes(reversed, normal),
+        (Ok(partners), None | Some(Method::Nodes)) => Some(two.of_nodes(&partners, normal)),
         (Err(mismatch), Some(Method::Nodes)) => {
             let (message, help) = two.in_words(mismatch);
             against.problem(format!("the edges do not match: {message}"), help);
@@ -196,40 +196,43 @@ impl TwoEdges<'_, '_> {
         self.builder.structure.nodes[node].position
     }
 
-    /// Whether the other edge runs the other way; each node must be at the place of its partner.
-    fn partners(&self) -> Result<bool, Mismatch> {
-        let (nodes, mut others) = (self.edge.distinct_nodes(), self.other.distinct_nodes().to_vec());
-        if others.len() != nodes.len() {
+    /// For each node the position of its partner on the other edge, which may run the other way and, where both are
+    /// closed, begin elsewhere; each node must be at the place of its partner.
+    fn partners(&self) -> Result<Vec<usize>, Mismatch> {
+        let (nodes, others) = (self.edge.distinct_nodes(), self.other.distinct_nodes());
+        let count = others.len();
+        if count != nodes.len() {
             return Err(Mismatch::Count);
         }
-        let distance = |[dx, dy]: [f64; 2]| dx.hypot(dy);
+        let length = |[dx, dy]: [f64; 2]| dx.hypot(dy);
         let difference = |a: usize, b: usize| {
             let (a, b) = (self.place(a), self.place(b));
             [b[0] - a[0], b[1] - a[1]]
         };
         // Edges have at least two nodes.
-        let near = NEAR * distance(difference(nodes[0], nodes[nodes.len() - 1]));
-        let mut normals = self.other.outward_normals(&self.builder.structure.nodes);
-        normals.truncate(others.len());
-        let off = |a: usize, b: usize, n: [f64; 2]| {
-            let [dx, dy] = difference(a, b);
-            if self.apart { (dx * n[1] - dy * n[0]).abs() } else { distance([dx, dy]) }
+        let near = NEAR * length(difference(nodes[0], nodes[count - 1]));
+        let normals = self.other.outward_normals(&self.builder.structure.nodes);
+        let off = |k: usize, at: usize| {
+            let ([dx, dy], n) = (difference(nodes[k], others[at]), normals[at]);
+            if self.apart { (dx * n[1] - dy * n[0]).abs() } else { length([dx, dy]) }
         };
-        // Of two plates turned towards each other one counts its edge the other way round.
-        let last = others.len() - 1;
-        let reversed =
-            off(nodes[0], others[0], normals[0]) > near && off(nodes[0], others[last], normals[last]) <= near;
-        if reversed {
-            others.reverse();
-            normals.reverse();
-        }
-        for ((&node, &partner), normal) in nodes.iter().zip(&others).zip(normals) {
-            // A repeated node is the shared corner of two edges of one plate.
-            if node == partner || off(node, partner, normal) > near {
-                return Err(Mismatch::Place { node, partner });
-            }
-        }
-        Ok(reversed)
+        let is_closed = |edge: &Edge| edge.distinct_nodes().len() < edge.nodes.len();
+        let distance = |at: usize| length(difference(nodes[0], others[at]));
+        let nearest = || (0..count).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
+        let (first, last) = match is_closed(self.edge) && is_closed(self.other) {
+            true => (nearest(), nearest()),
+            false => (0, count - 1),
+        };
+        let forward: Vec<usize> = (0..count).map(|k| (first + k) % count).collect();
+        let backward: Vec<usize> = (0..count).map(|k| (last + count - k) % count).collect();
+        // A repeated node is the shared corner of two edges of one plate.
+        let wrong = |order: &[usize]| (0..count).find(|&k| nodes[k] == others[order[k]] || off(k, order[k]) > near);
+        let (Some(ahead), Some(back)) = (wrong(&forward), wrong(&backward)) else {
+            return Ok(if wrong(&forward).is_none() { forward } else { backward });
+        };
+        // Of the two ways the one that goes further is told.
+        let (k, order) = if back > ahead { (back, backward) } else { (ahead, forward) };
+        Err(Mismatch::Place { node: nodes[k], partner: others[order[k]] })
     }
 
     fn in_words(&self, mismatch: Mismatch) -> (String, &'static str) {
@@ -255,19 +258,13 @@ impl TwoEdges<'_, '_> {
         }
     }
 
-    fn of_nodes(&self, reversed: bool, normal: Option<[f64; 2]>) -> Option<Sides> {
-        let nodes = self.edge.distinct_nodes();
-        let mut partners = self.other.distinct_nodes().to_vec();
-        let mut normals = match normal {
-            Some(normal) => vec![normal; partners.len()],
-            None => self.other.outward_normals(&self.builder.structure.nodes)[..partners.len()].to_vec(),
-        };
-        if reversed {
-            partners.reverse();
-            normals.reverse();
-        }
-        let weights = nodes.iter().zip(partners).map(|(&node, partner)| Some(Pair::of_nodes(node, Some(partner))));
-        Some(Sides::new(self.builder, nodes.to_vec(), weights.collect(), normals))
+    /// `partners`: positions on the other edge.
+    fn of_nodes(&self, partners: &[usize], normal: Option<[f64; 2]>) -> Sides {
+        let (nodes, others) = (self.edge.distinct_nodes(), self.other.distinct_nodes());
+        let own = self.other.outward_normals(&self.builder.structure.nodes);
+        let normals = partners.iter().map(|&at| normal.unwrap_or(own[at])).collect();
+        let weights = nodes.iter().zip(partners).map(|(&node, &at)| Some(Pair::of_nodes(node, Some(others[at]))));
+        Sides::new(self.builder, nodes.to_vec(), weights.collect(), normals)
     }
 
     /// `must_touch`: no gap is given, so that the edges have to lie on each other.
