@@ -169,11 +169,16 @@ pub fn displacement_share(system: &ContactSystem, z: &DVector<f64>, forces: &[Su
         return 0.0;
     }
     let column = system.stiffness.column(joint);
-    if column.amax() == 0.0 {
-        return moved / z.amax();
+    let feels = |i: &usize| column[*i] != 0.0;
+    let forced = |i: &usize| system.is_forced(*i);
+    let any_force = (0..column.len()).any(|i| feels(&i) && !forced(&i));
+    if !any_force && !forced(&joint) {
+        let others = (0..z.len()).filter(|i| !forced(i));
+        return moved / others.map(|i| z[i].abs()).fold(0.0, f64::max);
     }
-    let felt = column.iter().zip(forces).filter(|(entry, _)| **entry != 0.0);
-    felt.map(|(entry, force)| entry.abs() * moved / force.magnitude).fold(0.0, f64::max)
+    // Where forces tell, displacements of joints in force form, which follow from this one, tell nothing more.
+    let felt = (0..column.len()).filter(|i| feels(i) && !(any_force && forced(i)));
+    felt.map(|i| column[i].abs() * moved / forces[i].magnitude).fold(0.0, f64::max)
 }
 
 /// Whether the displacement of a joint is rounding: no force can tell it from 0.

@@ -415,3 +415,91 @@ fn a_history_of_the_corner_ends_at_its_limit() {
     near("place", *t, 0.8, 1e-9, 1.0);
     assert_eq!(collapse.verdict, Some(Verdict::Certified));
 }
+
+/// A running-bond wall of bricks 2 × 1, nodes a unit apart, every contact at every node where two bricks touch: where a head
+/// joint stands on a brick, or hangs under one, six joints meet on four relative displacements. Weight W = 1 a unit of
+/// area and its part `a` as a horizontal force, at the nodes.
+fn wall(courses: usize, width: usize) -> Case {
+    let (mut plates, mut contacts, mut weight, mut quake) = (vec![], vec![], vec![], vec![]);
+    let mut bricks: Vec<Vec<(usize, usize)>> = Vec::new();
+    for course in 0..courses {
+        let mut row: Vec<(usize, usize)> = Vec::new();
+        let mut x = 0;
+        while x < width {
+            let length = if course % 2 == 1 && (x == 0 || x + 1 == width) { 1 } else { 2 };
+            let id = format!("k{course}_{}", row.len());
+            plates.push(json!({ "id": id, "origin": [x, course], "size": [length, 1], "divisions": [length, 1],
+                                "thickness": 1, "material": "m", "plane": "stress" }));
+            for i in 0..=length {
+                let share = if i == 0 || i == length { 0.25 } else { 0.5 };
+                for j in 0..2 {
+                    let at = format!("{id}[{i},{j}]");
+                    weight.push(json!({ "point": { "at": at, "force": [0, -share] } }));
+                    quake.push(json!({ "point": { "at": at, "force": [share, 0] } }));
+                }
+                if course == 0 {
+                    let node = format!("{id}[{i},0]");
+                    contacts.push(json!({ "id": format!("g{}", contacts.len()), "node": node, "against": "ground",
+                                          "normal": [0, 1], "friction": "f" }));
+                }
+            }
+            row.push((x, length));
+            x += length;
+        }
+        for (left, pair) in row.windows(2).enumerate() {
+            for j in 0..2 {
+                contacts.push(
+                    json!({ "id": format!("h{}", contacts.len()), "node": format!("k{course}_{}[0,{j}]", left + 1),
+                    "against": format!("k{course}_{left}[{},{j}]", pair[0].1), "normal": [1, 0], "friction": "f" }),
+                );
+            }
+        }
+        for (below, (x, length)) in bricks.last().into_iter().flatten().enumerate() {
+            for (above, (other, size)) in row.iter().enumerate() {
+                let ends = (*x.max(other), (x + length).min(other + size));
+                for at in ends.0..=if ends.0 < ends.1 { ends.1 } else { continue } {
+                    contacts.push(json!({ "id": format!("b{}", contacts.len()),
+                        "node": format!("k{course}_{above}[{},0]", at - other),
+                        "against": format!("k{}_{below}[{},1]", course - 1, at - x), "normal": [0, 1], "friction": "f" }));
+                }
+            }
+        }
+        bricks.push(row);
+    }
+    Case::json(json!({
+        "parameters": { "a": 0, "f": 0.6 },
+        "materials": { "m": { "E": 1e5, "nu": 0.2 } },
+        "plates": plates, "contacts": contacts,
+        "loads": { "weight": { "items": weight }, "quake": { "factor": "a", "items": quake } }
+    }))
+}
+
+/// Answers balance every brick and obey the laws; collapses are mechanisms; with more friction the wall stands more.
+#[test]
+fn running_bond_walls() {
+    let case = wall(3, 6);
+    for f in [0.2, 0.4, 0.7, 1.0] {
+        let mut stood = true;
+        for step in 0..7 {
+            let set = [("a", 0.1 * step as f64), ("f", f)];
+            let mut values = case.scenario.parameter_values();
+            for (name, value) in set {
+                values.insert(name.to_owned(), value).expect("a parameter");
+            }
+            let answer = case.solve(&set);
+            let what = format!("a = {}, f = {f}", set[0].1);
+            if answer.outcome == OutcomeKind::Ray {
+                mechanism(&answer);
+                stood = false;
+                continue;
+            }
+            is_answer(&answer);
+            assert!(stood, "{what}: a smaller push made it fall");
+            assert!(violation(&case.scenario, &values, &answer) < 1e-10, "{what}");
+            assert!(imbalance(&case.scenario, &values, &answer) < 1e-10, "{what}");
+            assert!(incompatibility(&case.scenario, &values, &answer) < 1e-10, "{what}");
+        }
+        // On the ground it slides at a = f.
+        assert_eq!(stood, f > 0.6, "f = {f}");
+    }
+}
