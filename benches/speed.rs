@@ -110,6 +110,31 @@ fn resolve(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// A parameter inside the model moved: a load costs a solve with the kept factor, geometry a factorization.
+fn renewed(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("re-solve");
+    group.sample_size(10).measurement_time(Duration::from_secs(5));
+    for (divisions, name) in [([24, 8], "1 000 unknowns"), ([160, 80], "52 000 unknowns")] {
+        let scenario = Plates { divisions, ..Plates::with_pairs(2, 0.4) }.inner_scenario();
+        for (what, parameter, here, there) in [("load", "T", 60.0, 61.0), ("geometry", "b", 8.0, 8.1)] {
+            group.bench_function(BenchmarkId::new(what, name), |bench| {
+                let mut prepared = prepare(&scenario, &Quiet).expect("it stands");
+                let mut turn = false;
+                bench.iter(|| {
+                    turn = !turn;
+                    let mut values = scenario.parameter_values();
+                    values.insert(parameter.to_owned(), if turn { there } else { here });
+                    let (renewed, _) =
+                        prepared.renewed(&scenario, &values, &Quiet).expect("it stands").expect("something moved");
+                    prepared = renewed;
+                    black_box(prepared.solve(&scenario, &values, scenario.rules, &Quiet).expect("an answer"))
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
 /// Scenario text to checked model.
 fn loading(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("load");
@@ -152,6 +177,6 @@ fn frame(criterion: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1));
-    targets = lemke, condensation, resolve, loading, frame
+    targets = lemke, condensation, resolve, renewed, loading, frame
 }
 criterion_main!(benches);

@@ -3,6 +3,7 @@
 //! ```text
 //! measure engine PAIRS F T one-sided|symmetric [FOLDER]   exports M, q, d to FOLDER; a run per line read from stdin
 //! measure warm PAIRS F T REPETITIONS                      cold, load changed, friction changed
+//! measure resolve NX NY REPETITIONS                       a load inside the model moved, a size moved
 //! measure condense NX NY WIDTH HEIGHT CASES [plain]       two plates; `plain`: also faer's own factorization
 //! ```
 
@@ -32,6 +33,7 @@ use stickslip::lcp::vertex::vertex;
 use stickslip::model::pair::joints;
 use stickslip::model::rules::TieBreak;
 use stickslip::model::scenario::Source;
+use stickslip::solve::prepare;
 use stickslip::solve::resume::same_answer;
 use stickslip::watch::Quiet;
 
@@ -180,6 +182,31 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
     }))
 }
 
+/// What a parameter inside the loads and one of the geometry cost when they move: making ready, and the whole answer.
+fn resolve(arguments: &[String]) -> Result<Value, Failure> {
+    let divisions = [number(arguments, 0, "NX")?, number(arguments, 1, "NY")?];
+    let repetitions: usize = number(arguments, 2, "REPETITIONS")?;
+    let scenario = Plates { divisions, ..Plates::with_pairs(2, 0.4) }.inner_scenario();
+    let mut prepared = prepare(&scenario, &Quiet)?;
+    let mut medians = serde_json::Map::new();
+    let mut size = None;
+    for (what, parameter, here, there) in [("load", "T", 60.0, 61.0), ("geometry", "b", 8.0, 8.1)] {
+        let (mut ready, mut whole) = (Vec::new(), Vec::new());
+        for round in 0..2 * repetitions {
+            let mut values = scenario.parameter_values();
+            values.insert(parameter.to_owned(), if round % 2 == 0 { there } else { here });
+            let (making, renewed) = timed(|| prepared.renewed(&scenario, &values, &Quiet));
+            prepared = renewed?.ok_or("nothing moved")?.0;
+            let (solving, solved) = timed(|| prepared.solve(&scenario, &values, scenario.rules, &Quiet));
+            size = solved?.answer.size.unknowns;
+            ready.push(making);
+            whole.push(making + solving);
+        }
+        medians.insert(what.to_owned(), json!({ "ready": median(ready), "whole": median(whole) }));
+    }
+    Ok(json!({ "unknowns": size, "medians": medians }))
+}
+
 /// The main system of two plates: seconds of its parts, memory.
 fn condense(arguments: &[String]) -> Result<Value, Failure> {
     let scenario = Plates {
@@ -231,8 +258,9 @@ fn main() -> ExitCode {
     let done = match arguments.first().map(String::as_str) {
         Some("engine") => engine(rest),
         Some("warm") => warm(rest).map(|result| println!("{result}")),
+        Some("resolve") => resolve(rest).map(|result| println!("{result}")),
         Some("condense") => condense(rest).map(|result| println!("{result}")),
-        _ => Err("expected engine, warm or condense; see the head of examples/measure.rs".into()),
+        _ => Err("expected engine, warm, resolve or condense; see the head of examples/measure.rs".into()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -85,6 +85,18 @@ impl Plates {
         )
     }
 
+    /// The same with `T` inside the loads and the width of the upper plate a parameter `b`: what moves then is RF with the
+    /// kept factorization, or K.
+    pub fn inner_scenario(&self) -> Scenario {
+        let text = self
+            .text()
+            .replace(r#""factor":"T","#, "")
+            .replace(r#""value":[1,0.7]"#, r#""value":["T","0.7*T"]"#)
+            .replace(r#""parameters":{"#, &format!(r#""parameters":{{"b":{},"#, self.size[0]))
+            .replace(&format!(r#""size":[{},"#, self.size[0]), r#""size":["b","#);
+        load_text("plates", &text, None).expect("the generated scenario is sound")
+    }
+
     /// The scenario, loaded.
     pub fn scenario(&self) -> Scenario {
         load_text("plates", &self.text(), None).expect("the generated scenario is sound")

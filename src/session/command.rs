@@ -315,7 +315,7 @@ pub enum Command {
         /// Lines of the picture
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(5..=500))]
         height: Option<u16>,
-        /// Bar, for moment, shear and axial; quantity and pairs, for path
+        /// Bar, for moment, shear and axial (all of them without one); quantity and pairs, for path
         #[arg(value_name = "OF")]
         of: Vec<String>,
     },
@@ -491,11 +491,11 @@ pub enum Picture {
     Structure,
     /// The collapse mode of a ray
     Mode,
-    /// Bending moment along a bar
+    /// Bending moment along a bar, or along all bars where they lie
     Moment,
-    /// Shear force along a bar
+    /// Shear force likewise
     Shear,
-    /// Normal force along a bar
+    /// Normal force likewise
     Axial,
     /// Slip or force over the load, friction or history that was followed last
     Path,

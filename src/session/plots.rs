@@ -239,7 +239,23 @@ impl Session {
     ) -> Result<(), CommandError> {
         let (members, bars) = self.bars(bar)?;
         let &[bar] = &bars[..] else {
-            return Err(CommandError::Refused(format!("plot: of which bar? One of {}", bars.join(", "))));
+            let structure = self.structure().ok_or_else(not_a_structure)?;
+            let title = self.shape()?.title;
+            let shown = Shape { title, structure, displacements: None, pairs: Some(self.quantity_pairs()) };
+            io.report(
+                || {
+                    let points = |bar: &&str| {
+                        let points = diagram::series(members, bar, force).map(|series| series.points);
+                        json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
+                    };
+                    bars.iter().map(points).collect()
+                },
+                |out, style| {
+                    let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
+                    structure::write_with_diagrams(out, &picture, (members, force), &self.now.scenario.units, style)
+                },
+            )?;
+            return Ok(());
         };
         io.report(
             || {

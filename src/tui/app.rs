@@ -86,6 +86,12 @@ pub enum Plot {
     Gap,
     /// p over the pivots.
     P,
+    /// M along the bars.
+    Moment,
+    /// Q along the bars.
+    Shear,
+    /// N along the bars.
+    Axial,
     /// Direction of the ray.
     Ray,
 }
@@ -347,10 +353,14 @@ impl State {
 
     /// The plots that make sense now; never empty.
     pub fn plots(&self) -> Vec<Plot> {
-        if self.shown.pairs.is_empty() {
-            return vec![Plot::P];
+        let mut plots = match self.shown.pairs.is_empty() {
+            true => vec![Plot::P],
+            false => vec![Plot::Slip, Plot::Force, Plot::Pressure, Plot::Gap, Plot::P],
+        };
+        let members = self.shown.answer().and_then(|answer| answer.members.as_ref());
+        if members.is_some_and(|members| !members.is_empty()) {
+            plots.extend([Plot::Moment, Plot::Shear, Plot::Axial]);
         }
-        let mut plots = vec![Plot::Slip, Plot::Force, Plot::Pressure, Plot::Gap, Plot::P];
         if self.shown.at_ray() {
             plots.insert(0, Plot::Ray);
         }

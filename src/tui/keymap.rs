@@ -117,7 +117,7 @@ pub const BINDINGS: &[Binding] = &[
     row(Everywhere, "reset", &["r"], Do::Reset, "parameter back to the value of the file", ""),
     row(Everywhere, "undo", &["u"], Do::Undo, "take back the last change", ""),
     row(Everywhere, "redo", &["U", "ctrl-y"], Do::Redo, "do it again", ""),
-    row(Everywhere, "next-plot", &["p"], Do::NextPlot, "next plot: slip, force, pressure, opening, p", ""),
+    row(Everywhere, "next-plot", &["p"], Do::NextPlot, "next plot: slip, force, pressure, opening, p, M Q N", ""),
     row(Everywhere, "previous-plot", &["P"], Do::PreviousPlot, "plot before", ""),
     row(Everywhere, "answers", &["a"], Do::Answers, "all answers side by side, up to 10 pairs", ""),
     row(Everywhere, "mode", &["m"], Do::Mode, "let the mode of a ray move, or stop it", ""),

@@ -208,6 +208,22 @@ fn zeros_and_extremes_between_breakpoints_are_found() {
     near(&found["holds"][0][1], 0.5 + half, 1e-9);
 }
 
+/// The heated pipe: the moment at its nozzle is zero near f = 0.1287 and largest where c1 begins to stick.
+#[test]
+fn the_moment_at_the_nozzle_over_the_friction() {
+    let mut session = session(embedded::load("pipeline").expect("embedded"));
+    let found = report(&mut session, "find f 0..1 where m noz = 0").unwrap();
+    near(&found["places"][0]["value"], 0.1287, 5e-5);
+    assert_eq!(places(&found).0.len(), 1, "{found}");
+    let found = report(&mut session, "envelope m noz over f 0..1").unwrap();
+    let row = &found["envelope"][0];
+    near(&row["least"]["value"], -5.130, 5e-4);
+    near(&row["least"]["at"]["f"], 0.0, 0.0);
+    near(&row["largest"]["value"], 20.041, 5e-4);
+    near(&row["largest"]["at"]["f"], 0.4815246519, 1e-9);
+    assert_eq!(row["largest"]["change"], "pair c1 sticks");
+}
+
 #[test]
 fn wrong_questions_are_refused_in_words() {
     for (command, part) in [

@@ -4,8 +4,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
+use crate::answer::diagram::Internal;
 use crate::session::results::PairState;
 use crate::tui::app::{Plot, State};
+use crate::view::plot::scene::{Magnification, Picture};
+use crate::view::plot::structure::write_with_diagrams;
 use crate::view::plot::trace;
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::style::Role;
@@ -45,6 +48,9 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         Plot::Gap => Quantity::Gap,
         Plot::P => return pivots(state, area),
         Plot::Ray => return ray(state, area),
+        Plot::Moment => return along_bars(state, Internal::Moment, area),
+        Plot::Shear => return along_bars(state, Internal::Shear, area),
+        Plot::Axial => return along_bars(state, Internal::Axial, area),
     };
     let now_label = match shown.position {
         Some(step) => format!("pivot {step}"),
@@ -82,6 +88,30 @@ fn pivots(state: &State, area: Rect) -> Vec<Line<'static>> {
     fitting(area, |height| {
         super::report(state.look, usize::from(area.width), |out, style| {
             trace::write(out, &answer.pivots, shown.position, &shown.scenario.units, height, style)
+        })
+    })
+}
+
+/// A force along the bars, where they lie.
+fn along_bars(state: &State, force: Internal, area: Rect) -> Vec<Line<'static>> {
+    let shown = &state.shown;
+    let (Some(structure), Some(members)) =
+        (shown.structure(), shown.answer().and_then(|answer| answer.members.as_deref()))
+    else {
+        return Vec::new();
+    };
+    let title = if shown.position.is_some() { "at the end" } else { "" };
+    fitting(area, |height| {
+        let picture = Picture {
+            title,
+            structure,
+            displacements: None,
+            pairs: Some(&shown.pairs),
+            magnification: Magnification::Auto,
+            height,
+        };
+        super::report(state.look, usize::from(area.width), |out, style| {
+            write_with_diagrams(out, &picture, (members, force), &shown.scenario.units, style)
         })
     })
 }

@@ -4,11 +4,13 @@
 use std::collections::HashMap;
 
 use super::chart::range;
-use crate::answer::record::{NodeDisplacement, PairState, State};
+use super::{Series, diagram};
+use crate::answer::diagram::Internal;
+use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
-use crate::model::structure::{Element, ElementKind, Load, Structure};
-use crate::view::number::short;
+use crate::model::structure::{Bar, Element, ElementKind, Load, Structure};
+use crate::view::number::{largest, short};
 
 /// By how much displacements are enlarged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,6 +39,8 @@ pub struct Picture<'a> {
     pub height: usize,
 }
 
+/// The largest ordinate of a diagram as a share of the model.
+const ORDINATE: f64 = 0.125;
 /// Straight pieces of a bent frame element.
 const PIECES: usize = 8;
 
@@ -272,6 +276,8 @@ pub struct Scene {
     pub pairs: Vec<PairMark>,
     /// Loads: where they act and which force.
     pub loads: Vec<((f64, f64), [f64; 2])>,
+    /// Forces along the bars, where they lie: closed lines from the bar to its ordinates and back.
+    pub diagrams: Vec<Vec<(f64, f64)>>,
     /// Least and largest x and y of all of it; `None` where there is nothing to draw.
     pub bounds: Option<[[f64; 2]; 2]>,
 }
@@ -333,11 +339,55 @@ impl Scene {
             supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
             pairs: structure.pairs.iter().enumerate().map(mark).collect(),
             loads: arrows.iter().map(|arrow| (middle(&arrow.nodes), arrow.force)).collect(),
+            diagrams: Vec::new(),
             before,
             now,
             bounds,
         }
     }
+
+    /// Adds a force along every bar of the structure: N and Q on its +y side where they are positive, M on the side in
+    /// tension. The largest ordinate is an eighth of the model.
+    pub fn with_diagrams(mut self, structure: &Structure, members: &[MemberForces], force: Internal) -> Scene {
+        let all: Vec<(&Bar, Series)> =
+            structure.bars.iter().filter_map(|bar| Some((bar, diagram::series(members, &bar.id, force)?))).collect();
+        let largest = largest(all.iter().flat_map(|(_, series)| series.points.iter().map(|(_, value)| *value)));
+        let Some([[left, right], [bottom, top]]) = self.bounds.filter(|_| largest > 0.0) else { return self };
+        let side = if force == Internal::Moment { -1.0 } else { 1.0 };
+        let scale = side * ORDINATE * (right - left).max(top - bottom) / largest;
+        for (bar, series) in all {
+            let line = ordinates(structure, bar, &series.points, scale);
+            for (x, y) in &line {
+                let [[left, right], [bottom, top]] = self.bounds.get_or_insert([[*x; 2], [*y; 2]]);
+                (*left, *right) = (left.min(*x), right.max(*x));
+                (*bottom, *top) = (bottom.min(*y), top.max(*y));
+            }
+            self.diagrams.push(line);
+        }
+        self
+    }
+}
+
+/// The ordinates of values along a bar, from its axis and back to it.
+fn ordinates(structure: &Structure, bar: &Bar, points: &[(f64, f64)], scale: f64) -> Vec<(f64, f64)> {
+    let mut stretches = Vec::new();
+    let mut from = 0.0;
+    for element in &structure.elements[bar.elements.clone()] {
+        let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+        stretches.push((from, length, a, [(b[0] - a[0]) / length, (b[1] - a[1]) / length]));
+        from += length;
+    }
+    let place = |s: f64, value: f64| {
+        let at = stretches.partition_point(|(from, ..)| *from < s).saturating_sub(1);
+        let (from, _, a, [c, d]) = stretches[at];
+        let along = s - from;
+        (a[0] + c * along - d * scale * value, a[1] + d * along + c * scale * value)
+    };
+    let ends = [points.first(), points.last()].map(|end| end.map(|(s, _)| place(*s, 0.0)));
+    let [first, last] = ends;
+    let line = points.iter().map(|(s, value)| place(*s, *value));
+    first.into_iter().chain(line).chain(last).collect()
 }
 
 /// Nodes with supports and how many components each holds.
@@ -356,7 +406,36 @@ pub fn supported(structure: &Structure) -> Vec<(usize, usize)> {
 
 #[cfg(test)]
 mod tests {
-    use super::hull;
+    use super::{Magnification, Picture, Scene, hull};
+    use crate::answer::diagram::Internal;
+    use crate::view::sample::cantilever;
+
+    /// Cantilever of 4 m along x under q = −10: M = −10 (4 − x)²/2, tension above, so its ordinates stand above the bar,
+    /// the largest, 80 at the clamp, an eighth of the model high; Q = 10 (4 − x) > 0 on the +y side too.
+    #[test]
+    fn diagrams_lie_along_the_bars_on_the_side_in_tension() {
+        let (structure, members, _) = cantilever();
+        let picture = Picture {
+            title: "",
+            structure: &structure,
+            displacements: None,
+            pairs: None,
+            magnification: Magnification::Auto,
+            height: 10,
+        };
+        for (force, value) in [
+            (Internal::Moment, (|x: f64| 0.5 * (4.0 - x) * (4.0 - x) / 8.0) as fn(f64) -> f64),
+            (Internal::Shear, |x: f64| 0.5 * (4.0 - x) / 4.0),
+        ] {
+            let scene = Scene::new(&picture, &[]).with_diagrams(&structure, &members, force);
+            let [line] = &scene.diagrams[..] else { panic!("{:?}", scene.diagrams) };
+            assert_eq!((line[0], line[line.len() - 1]), ((0.0, 0.0), (4.0, 0.0)));
+            for (x, y) in &line[1..line.len() - 1] {
+                assert!((y - value(*x)).abs() < 1e-12, "{force:?}: {y} at {x}");
+            }
+            assert!((scene.bounds.unwrap()[1][1] - 0.5).abs() < 1e-12);
+        }
+    }
 
     /// A square with points on its sides and inside, and three points on a line.
     #[test]

@@ -4,12 +4,19 @@ use std::io::{self, Write};
 
 use super::canvas::{Canvas, Stroke};
 use super::chart::{dotted, write_legend};
-use super::scene::{Arrow, Picture, Scene, arrows};
-use crate::answer::record::State;
+use super::diagram;
+use super::scene::{Picture, Scene, arrows};
+use crate::answer::diagram::{Diagram, Internal};
+use crate::answer::record::{MemberForces, State};
 use crate::model::parameter::ParameterValues;
+use crate::model::scenario::Units;
 use crate::model::structure::Structure;
+use crate::view::members::extremes;
+use crate::view::number::largest;
 use crate::view::style::{Role, Style};
 
+/// Bars whose extremes are told below a picture.
+const EXTREMES: usize = 6;
 /// Plates are drawn with their grid as long as its lines are this many dots apart.
 pub const GRID_PITCH: f64 = 6.0;
 /// Sign of a pair in a picture. A slip points the way the second side moves over the first.
@@ -57,7 +64,40 @@ pub fn support_sign(held: usize, ascii: bool) -> char {
 
 /// Draws the picture with a legend of the signs it uses.
 pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::Result<()> {
-    draw(out, picture, &[], style)
+    draw(out, picture, &Scene::new(picture, &[]), style)
+}
+
+/// The same undeformed, with a force along every bar where it lies, and the extremes of each bar in words.
+pub fn write_with_diagrams(
+    out: &mut dyn Write,
+    picture: &Picture<'_>,
+    (members, force): (&[MemberForces], Internal),
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let (name, unit) = diagram::name(force, units);
+    let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+    let side = if force == Internal::Moment { ", on the tension side" } else { "" };
+    let head = if picture.title.is_empty() { String::new() } else { format!("{} · ", picture.title) };
+    let title = format!("{head}{name}{unit}{side}");
+    let picture = Picture { title: &title, displacements: None, ..*picture };
+    let scene = Scene::new(&picture, &[]).with_diagrams(picture.structure, members, force);
+    draw(out, &picture, &scene, style)?;
+    let diagrams = picture.structure.bars.iter().filter_map(|bar| Some((&bar.id, Diagram::of(members, &bar.id)?)));
+    let size = |diagram: &Diagram| largest(diagram.extremes(force).map(|place| place.value));
+    let mut diagrams: Vec<_> = diagrams.collect();
+    diagrams.sort_by(|a, b| size(&b.1).total_cmp(&size(&a.1)));
+    for (id, found) in diagrams.iter().take(EXTREMES) {
+        let line = format!("{id} {}", extremes(found, force, units));
+        for line in style.wrap(&style.text(&line), style.width) {
+            writeln!(out, "{line}")?;
+        }
+    }
+    if diagrams.len() > EXTREMES {
+        let rest = format!("… and {} bars with less: `members BAR`", diagrams.len() - EXTREMES);
+        writeln!(out, "{}", style.paint(Role::Muted, &style.fit(&style.text(&rest), style.width)))?;
+    }
+    Ok(())
 }
 
 /// The same with an arrow beside every node and bar that carries load under these parameter values.
@@ -67,7 +107,7 @@ pub fn write_with_loads(
     parameters: &ParameterValues,
     style: &Style,
 ) -> io::Result<()> {
-    draw(out, picture, &arrows(picture.structure, parameters), style)
+    draw(out, picture, &Scene::new(picture, &arrows(picture.structure, parameters)), style)
 }
 
 /// A component below this share of a load gets no arrow of its own.
@@ -91,8 +131,7 @@ pub fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
     shown
 }
 
-fn draw(out: &mut dyn Write, picture: &Picture<'_>, arrows: &[Arrow], style: &Style) -> io::Result<()> {
-    let scene = Scene::new(picture, arrows);
+fn draw(out: &mut dyn Write, picture: &Picture<'_>, scene: &Scene, style: &Style) -> io::Result<()> {
     let title = style.fit(&style.text(&scene.title), style.width);
     writeln!(out, "{}", style.paint(Role::Title, &title))?;
     let Some([[left, right], [bottom, top]]) = scene.bounds.filter(|_| style.width >= 8) else {
@@ -132,7 +171,9 @@ fn draw(out: &mut dyn Write, picture: &Picture<'_>, arrows: &[Arrow], style: &St
     }
     let strokes = placed(&scene.now.outline).into_iter().map(Stroke::Line).collect();
     canvas.draw(Role::Plain, strokes);
-    let legend = draw_marks(&scene, &mut canvas, &place, style);
+    let strokes = placed(&scene.diagrams).into_iter().map(Stroke::Line).collect();
+    canvas.draw(Role::Accent, strokes);
+    let legend = draw_marks(scene, &mut canvas, &place, style);
     for line in canvas.lines(style) {
         writeln!(out, "{line}")?;
     }
