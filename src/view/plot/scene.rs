@@ -424,7 +424,7 @@ mod tests {
             height: 10,
         };
         for (force, value) in [
-            (Internal::Moment, (|x: f64| 0.5 * (4.0 - x) * (4.0 - x) / 8.0) as fn(f64) -> f64),
+            (Internal::Moment, (|x: f64| 0.5 * (4.0 - x) * (4.0 - x) / 16.0) as fn(f64) -> f64),
             (Internal::Shear, |x: f64| 0.5 * (4.0 - x) / 4.0),
         ] {
             let scene = Scene::new(&picture, &[]).with_diagrams(&structure, &members, force);
