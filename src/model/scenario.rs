@@ -86,6 +86,7 @@ pub struct GivenLcp {
 
 /// One of the three things a scenario can describe.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one for each scenario, never in lists")]
 pub enum Source {
     /// Structure with contact pairs.
     Structure(Structure),

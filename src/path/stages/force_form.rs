@@ -128,7 +128,7 @@ impl Follower<'_> {
     }
 
     /// The same for slips that count from the committed ones.
-    fn from_here(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
+    fn beyond_slips(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
         let system = self.laws.system;
         let mut numbers = self.numbers_at(factors, gaps);
         for joint in (0..self.slips.len()).filter(|&joint| self.slips[joint] != 0.0) {
@@ -265,7 +265,7 @@ impl Follower<'_> {
                 Ahead::Limit(ray) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
             };
             let (factors, gaps) = (course.factors_at(to), course.gaps_at(to));
-            let numbers = self.from_here(&factors, &gaps);
+            let numbers = self.beyond_slips(&factors, &gaps);
             let before = self.slips.clone();
             (self.factors, self.gaps) = (factors, gaps);
             self.stand(&numbers, &contact, &point);
@@ -279,12 +279,12 @@ impl Follower<'_> {
     /// The next event after t, found from the scheme a little ahead.
     fn ahead(&self, course: &Course, rate: &DVector<f64>, t: f64, way: &mut Way) -> Result<Ahead, PathError> {
         let system = self.laws.system;
-        let here = self.from_here(&course.factors_at(t), &course.gaps_at(t));
+        let here = self.beyond_slips(&course.factors_at(t), &course.gaps_at(t));
         let path = path_lcp(system, &here, rate);
         let (mut jump, mut limit) = (None, None);
         for step in AHEAD {
             let to = (t + step).min(1.0);
-            let numbers = self.from_here(&course.factors_at(to), &course.gaps_at(to));
+            let numbers = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
             let found = cold(system, &numbers, self.watch)?;
             let Some(basis) = &found.basis else {
                 let p = found.point.p * found.contact.force_unit;
@@ -316,7 +316,7 @@ impl Follower<'_> {
         let system = self.laws.system;
         // At the limit itself the forces still balance.
         let (factors, gaps) = (course.factors_at(t + AHEAD[1]), course.gaps_at(t + AHEAD[1]));
-        let numbers = self.from_here(&factors, &gaps);
+        let numbers = self.beyond_slips(&factors, &gaps);
         let cases = self.prepared.named_factors(&factors);
         let subject = self.prepared.subject(system, &numbers, &cases);
         let (contact, direction, p) = match ray {

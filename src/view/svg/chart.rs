@@ -12,7 +12,7 @@ const HUGE: f64 = 1e300;
 /// The marker of a curve: shapes differ, not only colours.
 fn marker(drawing: &mut Drawing, (x, y): (f64, f64), number: usize) {
     let colour = COLOURS[number % COLOURS.len()];
-    let fill = if number % 2 == 0 { colour } else { "#ffffff" };
+    let fill = if number.is_multiple_of(2) { colour } else { "#ffffff" };
     let r = 3.5;
     match (number / 2) % 3 {
         0 => drawing.circle((x, y), r, fill, colour),
