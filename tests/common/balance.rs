@@ -7,7 +7,7 @@ use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::{Scenario, Source};
 use stickslip::model::structure::{Component, Load, LoadCase, Structure};
 
-/// Parts of the structure as a label per node: nodes joined by elements or ties.
+/// Parts of the structure as a label per node: nodes joined by elements, ties or rigid bodies.
 fn parts(structure: &Structure) -> Vec<usize> {
     let mut label: Vec<usize> = (0..structure.nodes.len()).collect();
     let mut join = |nodes: &[usize]| {
@@ -24,6 +24,9 @@ fn parts(structure: &Structure) -> Vec<usize> {
     }
     for tie in &structure.ties {
         join(&tie.nodes);
+    }
+    for body in &structure.rigid {
+        join(&body.nodes);
     }
     label
 }
@@ -158,12 +161,13 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
 }
 
 /// Worst imbalance of a node that carries bars only, from the end forces of the members alone: what they hand to the
-/// node + loads + contact + reaction (of supports and springs) = 0, in x, in y and in moment. Structures without ties.
+/// node + loads + contact + reaction (of supports and springs) = 0, in x, in y and in moment. Structures without
+/// ties and rigid bodies.
 pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer) -> f64 {
     let Source::Structure(structure) = &scenario.source else {
         return 0.0;
     };
-    if !structure.ties.is_empty() {
+    if !structure.ties.is_empty() || !structure.rigid.is_empty() {
         return 0.0;
     }
     let n = structure.nodes.len();

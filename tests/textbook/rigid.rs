@@ -261,6 +261,9 @@ fn contact_between_rigid_bodies() {
     let right = (1.3 * w + h) / 2.0;
     near_all("x_n", &of_pairs(&answer, |pair| pair.x_n), &[w - right, right], 1e-12);
     near_all("x_t", &of_pairs(&answer, |pair| pair.x_t), &[-h, 0.0], 1e-12);
+    let values = case.scenario.parameter_values();
+    assert!(balance::imbalance(&case.scenario, &values, &answer) < 1e-12);
+    assert!(balance::incompatibility(&case.scenario, &values, &answer) < 1e-12);
     // The springs: about a 2 B = 1.3 W + 2·H.
     let b = (1.3 * w + 2.0 * h) / 2.0;
     near_all("b", &reaction(&answer, "b"), &[0.0, b, 0.0], 1e-12);
