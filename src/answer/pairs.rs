@@ -139,14 +139,27 @@ pub fn pair_states(
     state: &JointState,
 ) -> Vec<PairState> {
     let pairs = system.pairs.iter().enumerate();
-    pairs.map(|(i, pair)| pair_state(system, numbers, contact.covering_of(i), state, (i, pair.tangential))).collect()
+    pairs
+        .map(|(i, pair)| {
+            let cover = Cover { force: contact.covering_of(i), distance: contact.covered_distance(i, state.p) };
+            pair_state(system, numbers, cover, state, (i, pair.tangential))
+        })
+        .collect()
+}
+
+/// What the covering adds to a pair at p > 0.
+struct Cover {
+    /// (d_n, d_τ).
+    force: (f64, f64),
+    /// To z_n, where the normal joint is in force form.
+    distance: f64,
 }
 
 /// One pair; `joints` are its normal and its tangential joint.
 fn pair_state(
     system: &ContactSystem,
     numbers: &ContactNumbers,
-    (d_n, d_t): (f64, f64),
+    Cover { force: (d_n, d_t), distance }: Cover,
     state: &JointState,
     joints: (usize, Option<usize>),
 ) -> PairState {
@@ -154,7 +167,7 @@ fn pair_state(
     let pair = &system.pairs[i];
     let (is_bound, is_frictionless) =
         (matches!(pair.law, Law::Bound { .. }), matches!(pair.law, Law::Frictionless { .. }));
-    let z_n = if is_bound { 0.0 } else { state.z[i] };
+    let z_n = if is_bound { 0.0 } else { Sum::exactly(state.z[i]).plus(1.0, Sum::exactly(distance)).cleaned() };
     let z_t = tangential.map_or(0.0, |joint| state.z[joint]);
     let open = z_n > 0.0;
     // A released joint carries exactly nothing; what is left of λ there is rounding.

@@ -116,6 +116,9 @@ pub struct Ray {
     pub mode: String,
     /// What it means and what would help, in words.
     pub explanation: String,
+    /// Whether what is certified is that the parts do not fit together.
+    #[serde(skip)]
+    pub misfit: bool,
 }
 
 /// One try of the solver.

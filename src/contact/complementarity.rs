@@ -344,6 +344,12 @@ impl ContactLcp {
         (read(self.normal_row[pair]), read(self.plus_row[pair]))
     }
 
+    /// What p (user's units) adds to z_n of a pair whose normal joint is in force form; 0 for all others.
+    pub fn covered_distance(&self, pair: usize, p: f64) -> f64 {
+        let row = self.normal_row[pair].filter(|&row| self.swapped[row]);
+        row.map_or(0.0, |row| self.lcp.covering[row] * (p / self.force_unit) * self.length_unit)
+    }
+
     /// A point in the user's units.
     pub fn in_units(&self, point: &Point) -> Point {
         let scaled = |values: &[f64], variable: fn(usize) -> Variable| {

@@ -366,6 +366,19 @@ pub fn contact_lcp(
     numbers: &ContactNumbers,
     covering: Covering,
 ) -> Result<ContactLcp, CoveringError> {
+    let contact = written_lcp(system, numbers, covering);
+    let MirroredLcp { q, covering, .. } = &*contact.lcp;
+    match (0..q.len()).find(|&row| covering[row] == 0.0 && q[row] < 0.0) {
+        Some(row) => {
+            let pair = system.pairs[contact.rows[row].pair].id.clone();
+            Err(CoveringError::WeightWithoutFriction { pair })
+        }
+        None => Ok(contact),
+    }
+}
+
+/// The same whatever the covering covers.
+pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: Covering) -> ContactLcp {
     let rows = rows(system);
     let frictions: Vec<f64> = (0..system.pairs.len()).map(|pair| friction(system, numbers, pair)).collect();
     let stiffness_unit = stiffness_unit(system);
@@ -386,13 +399,10 @@ pub fn contact_lcp(
     let q: Vec<f64> = (0..n).map(|i| written[(i, n)] / force_unit).collect();
     let cover: Vec<f64> =
         rows.iter().zip(&swapped).map(|(row, swapped)| cover(system, &frictions, *row, *swapped, covering)).collect();
-    if let Some(row) = (0..n).find(|&row| cover[row] == 0.0 && q[row] < 0.0) {
-        return Err(CoveringError::WeightWithoutFriction { pair: system.pairs[rows[row].pair].id.clone() });
-    }
     let of = |couple: Couple| (0..system.pairs.len()).map(|pair| writer.row_of(pair, couple)).collect::<Vec<_>>();
     let scale = Scale::plain(&matrix);
     let lcp = MirroredLcp::plain(&Lcp { matrix, q, covering: cover, scale });
-    Ok(ContactLcp {
+    ContactLcp {
         lcp: Arc::new(lcp),
         friction: numbers.friction.clone(),
         normal_row: of(Couple::Normal),
@@ -402,7 +412,7 @@ pub fn contact_lcp(
         length_unit: force_unit / stiffness_unit,
         swapped,
         rows,
-    })
+    }
 }
 
 /// Entry of the covering vector: as everywhere for forces and reserves; 1 for displacements; and for the second reserve of

@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use super::vertex::value;
-use crate::contact::complementarity::{ContactLcp, Couple, CoveringError, contact_lcp};
+use crate::contact::complementarity::{ContactLcp, Couple, CoveringError, Quantity, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::outcome::Point;
@@ -76,7 +76,8 @@ fn watched(scheme: &FinalScheme) -> Vec<Variable> {
                 return false;
             };
             let meaning = contact.rows[*row];
-            let open = contact.normal_row[meaning.pair].is_some_and(|row| basis.z.binary_search(&row).is_ok());
+            let open = contact.normal_row[meaning.pair]
+                .is_some_and(|row| basis.z.binary_search(&row).is_ok() != contact.swapped[row]);
             let loose = open && numbers.cohesion[meaning.pair] == 0.0;
             !loose || meaning.couple == Couple::Normal
         })
@@ -84,11 +85,10 @@ fn watched(scheme: &FinalScheme) -> Vec<Variable> {
 }
 
 fn what(scheme: &FinalScheme, variable: Variable) -> (usize, &'static str) {
-    let (row, force) = match variable {
-        Variable::W(row) => (row, true),
-        Variable::Z(row) => (row, false),
-        Variable::P => return (0, "p"),
+    let Some((row, quantity)) = scheme.contact.quantity(variable) else {
+        return (0, "p");
     };
+    let force = quantity == Quantity::Force;
     let meaning = scheme.contact.rows[row];
     let words = match (meaning.couple, force) {
         (Couple::Normal, true) => "loses its contact force",
@@ -103,6 +103,20 @@ fn what(scheme: &FinalScheme, variable: Variable) -> (usize, &'static str) {
 fn turn(scheme: &FinalScheme, at: f64, variable: Variable) -> Turn {
     let (pair, what) = what(scheme, variable);
     Turn { at, pair: scheme.system.pairs[pair].id.clone(), what: what.to_owned() }
+}
+
+/// Largest force and displacement of a point in the user's units.
+fn sizes(contact: &ContactLcp, point: &Point) -> (f64, f64) {
+    let (mut force, mut length) = (0.0_f64, 0.0_f64);
+    for row in 0..contact.rows.len() {
+        for variable in [Variable::W(row), Variable::Z(row)] {
+            match contact.quantity(variable) {
+                Some((_, Quantity::Displacement)) => length = length.max(value(point, variable).abs()),
+                _ => force = force.max(value(point, variable).abs()),
+            }
+        }
+    }
+    (force, length)
 }
 
 /// Margins in the factor of a load case whose RF per unit is `unit`.
@@ -127,9 +141,8 @@ pub fn load_margin(
     let change = contact_lcp(scheme.system, &rate, Covering::Ones).ok()?;
     let rates = change.in_units(&vertex(&change.lcp, scheme.basis)?);
     let values = scheme.contact.in_units(scheme.point);
-    let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let (force, length) = (largest(&values.w), largest(&values.z));
-    let (force_rate, length_rate) = (largest(&rates.w), largest(&rates.z));
+    let (force, length) = sizes(scheme.contact, &values);
+    let (force_rate, length_rate) = sizes(scheme.contact, &rates);
     let mut margin = Margin {
         parameter: format!("factor of load case `{name}`"),
         present,
@@ -141,8 +154,8 @@ pub fn load_margin(
     };
     for variable in watched(scheme) {
         let (value, rate) = (value(&values, variable), value(&rates, variable));
-        let (size, rate_size) = match variable {
-            Variable::Z(_) => (length, length_rate),
+        let (size, rate_size) = match scheme.contact.quantity(variable) {
+            Some((_, Quantity::Displacement)) => (length, length_rate),
             _ => (force, force_rate),
         };
         if rate.abs() <= 1e-12 * rate_size {
@@ -190,8 +203,7 @@ pub fn friction_margin(
     let watched = watched(scheme);
     // Basic variables in user's units relative to the present sizes, and which of them is most negative.
     let now = scheme.contact.in_units(scheme.point);
-    let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let (force, length) = (largest(&now.w), largest(&now.z));
+    let (force, length) = sizes(scheme.contact, &now);
     let worst = |parameter: f64, own: bool| -> Option<(f64, Variable)> {
         let lcp: Result<ContactLcp, CoveringError> = contact_lcp(scheme.system, &at(parameter), Covering::Ones);
         let lcp = lcp.ok()?;
@@ -200,8 +212,8 @@ pub fn friction_margin(
             .iter()
             .filter(|variable| !own || what(scheme, **variable).0 == pair)
             .map(|variable| {
-                let size = match variable {
-                    Variable::Z(_) => length,
+                let size = match lcp.quantity(*variable) {
+                    Some((_, Quantity::Displacement)) => length,
                     _ => force,
                 };
                 let size = if size > 0.0 { size } else { 1.0 };

@@ -7,6 +7,7 @@ mod exact_equations;
 pub mod kernel;
 pub mod loose;
 pub mod margin;
+pub mod misfit;
 pub mod mode;
 pub mod motions;
 pub mod plain_ray;

@@ -99,6 +99,7 @@ impl PlainRay {
                 self.driver,
                 short(self.p)
             ),
+            misfit: false,
         }
     }
 }

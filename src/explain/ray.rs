@@ -8,6 +8,7 @@ use nalgebra::DVector;
 use super::balance::is_balanced;
 use super::certificate::{BUDGET, Certificate, certify};
 use super::kernel::releasable_kernel;
+use super::misfit::{Misfit, misfit};
 use super::mode::{Mode, mode, pair_words};
 use super::motions::FreeMotions;
 use super::remedy::digits;
@@ -65,6 +66,8 @@ pub struct RayReport {
     pub powers: Vec<CasePower>,
     /// The proof of *certified*: a motion and the work on it.
     pub certificate: Option<Certificate>,
+    /// Another one: parts that do not fit together.
+    pub misfit: Option<Misfit>,
     /// Whether the search for a proof was given up when its time was used up.
     pub out_of_time: bool,
     /// The motion of the structure behind the certificate; found by [`explain`].
@@ -171,6 +174,7 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
         mode: None,
         powers,
         certificate: None,
+        misfit: None,
         out_of_time: false,
         certificate_mode: None,
         balanced: false,
@@ -185,7 +189,10 @@ pub fn certify_ray(report: &mut RayReport, subject: &Subject) -> bool {
     let search = certify(subject.system, subject.numbers, &subject.motions());
     report.certificate = search.certificate;
     report.out_of_time = search.out_of_time;
-    let certified = report.certificate.is_some();
+    if report.certificate.is_none() {
+        report.misfit = misfit(subject.system, subject.numbers);
+    }
+    let certified = report.certificate.is_some() || report.misfit.is_some();
     report.verdict = Some(if certified { Verdict::Certified } else { Verdict::Undecided });
     certified
 }
@@ -295,11 +302,11 @@ impl RayReport {
                      this ray is a failure of the chosen rules, not a collapse.{why}"
                 )
             }
-            RayClass::Mechanism | RayClass::NoEquilibrium => self.no_answer(covering),
+            RayClass::Mechanism | RayClass::NoEquilibrium => self.no_answer(system, covering),
         }
     }
 
-    fn no_answer(&self, covering: Covering) -> String {
+    fn no_answer(&self, system: &ContactSystem, covering: Covering) -> String {
         let p = short(self.p);
         let missing = match covering {
             Covering::Cohesive => {
@@ -317,6 +324,17 @@ impl RayReport {
             )
         };
         match self.verdict {
+            Some(Verdict::Certified) if self.misfit.is_some() => {
+                if let Some(misfit) = &self.misfit {
+                    let ids: Vec<String> = misfit.pairs.iter().map(|&pair| system.pairs[pair].id.clone()).collect();
+                    text += &format!(
+                        " Proved: the parts do not fit together. Whatever moves, the distances of pairs {} sum up to {}, and none \
+                         of them may be negative.",
+                        list(&ids),
+                        short(misfit.room)
+                    );
+                }
+            }
             Some(Verdict::Certified) => {
                 text += " Proved: no contact forces within the laws' bounds balance the loads";
                 if let Some(certificate) = &self.certificate {
@@ -380,6 +398,7 @@ impl RayReport {
             ),
             mode: self.mode_words(system),
             explanation: self.explanation(system, covering),
+            misfit: self.misfit.is_some(),
         }
     }
 }

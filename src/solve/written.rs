@@ -3,8 +3,12 @@
 use super::judge::written_out;
 use super::numbers::{contact_numbers, factors};
 use super::prepared::{Geometry, Prepared};
+use crate::contact::force_form;
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
 use crate::contact::whole::{WholeInput, rows, whole_lcp};
 use crate::lcp::problem::Lcp;
+use crate::lcp::variable::Variable;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Covering;
 
@@ -15,6 +19,9 @@ impl Prepared {
         match &*self.geometry {
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
                 let numbers = contact_numbers(system, &factors(self, values), values);
+                if system.force_form.is_some() {
+                    return written_in_force_form(system, &numbers, covering);
+                }
                 let lcp = whole_lcp(&WholeInput { system, numbers: &numbers, covering });
                 let names = rows(system).iter().map(|row| row.name('x', system)).collect();
                 (lcp, names)
@@ -26,6 +33,24 @@ impl Prepared {
             }
         }
     }
+}
+
+/// Where joints are in force form: forces and displacements have changed places in some rows, as their names say.
+fn written_in_force_form(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    covering: Covering,
+) -> (Lcp<f64>, Vec<String>) {
+    let contact = force_form::written_lcp(system, numbers, covering);
+    let mut lcp = written_out(&contact.lcp);
+    let unit = |variable: Variable| contact.unit(variable);
+    for (i, row) in lcp.matrix.iter_mut().enumerate() {
+        row.iter_mut().enumerate().for_each(|(j, entry)| *entry *= unit(Variable::W(i)) / unit(Variable::Z(j)));
+        lcp.q[i] *= unit(Variable::W(i));
+        lcp.covering[i] *= unit(Variable::W(i)) / contact.force_unit;
+    }
+    let names = (0..contact.rows.len()).map(|row| contact.name(Variable::W(row), system)).collect();
+    (lcp, names)
 }
 
 #[cfg(test)]

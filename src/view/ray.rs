@@ -60,6 +60,7 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
     let head = style.fit(&format!("ray: {}", class_word(ray.class)), style.width);
     writeln!(out, "{}", style.paint(role, &head))?;
     let verdict = match ray.verdict {
+        Some(verdict) if ray.misfit => format!("{}: the parts do not fit together", verdict_word(verdict)),
         Some(verdict) => format!("{}: {}", verdict_word(verdict), verdict_meaning(ray.verdict)),
         None if matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium) => verdict_meaning(None).into(),
         // An artefact or a fault claims nothing about the structure.

@@ -153,6 +153,7 @@ pub fn beam_ray() -> Answer {
         explanation: "the loads pull with 20 kN more than friction can hold; more weight, more friction \
                       or a smaller F2 would stop it"
             .into(),
+        misfit: false,
     });
     answer.displacements = None;
     answer.members = None;

@@ -9,7 +9,8 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use stickslip::answer::record::{Answer, OutcomeKind, State, Verdict};
+use stickslip::answer::record::{Answer, OutcomeKind, RayClass, State, Verdict};
+use stickslip::model::rules::Covering;
 use stickslip::path::limit::limit;
 use stickslip::path::sensitivity::sensitivity;
 use stickslip::path::stages::{History, HistoryEnd, follow_factors};
@@ -105,7 +106,9 @@ fn guide_without_clearance() {
 fn guide_with_interference_has_no_answer() {
     let case = guide(0.3);
     let answer = case.solve(&[("g1", -0.03), ("g2", 0.02)]);
-    assert_eq!(answer.outcome, OutcomeKind::Ray);
+    let ray = answer.ray.as_ref().expect("no answer");
+    assert_eq!((ray.class, ray.verdict), (RayClass::NoEquilibrium, Some(Verdict::Certified)));
+    assert!(ray.explanation.contains("distances of pairs low and up sum up to -0.01"), "{}", ray.explanation);
     // With room for both it is the guide with clearances moved: the low side pushes the tip up by 0.01.
     let answer = case.solve(&[("g1", -0.01), ("g2", 0.02)]);
     is_answer(&answer);
@@ -501,5 +504,47 @@ fn running_bond_walls() {
         }
         // On the ground it slides at a = f.
         assert_eq!(stood, f > 0.6, "f = {f}");
+    }
+}
+
+/// The LCP as exported: w = M z + q at the answer, with forces and displacements in the places that the names of the rows say.
+#[test]
+fn the_written_lcp_holds_at_the_answer() {
+    for (case, set) in [(guide(0.3), [("P", 1.0), ("T", 0.5)]), (corner(0.2), [("W", 1.0), ("H", 0.3)])] {
+        let answer = case.solve(&set);
+        is_answer(&answer);
+        let mut values = case.scenario.parameter_values();
+        for (name, value) in set {
+            values.insert(name.to_owned(), value).expect("a parameter");
+        }
+        let (lcp, names) = case.prepared.written_lcp(&values, Covering::Cohesive);
+        let mut exchanged = 0;
+        let (w, z): (Vec<f64>, Vec<f64>) = names
+            .iter()
+            .map(|name| {
+                let pair = answer
+                    .pairs
+                    .iter()
+                    .find(|pair| name[name.find('[').unwrap() + 1..name.len() - 1] == pair.id)
+                    .expect("a pair");
+                let (force, displacement) = match &name[1..3] {
+                    "_n" => (pair.x_n, pair.z_n),
+                    "+[" => (pair.reserve_plus, pair.z_t.max(0.0)),
+                    _ => (pair.reserve_minus, (-pair.z_t).max(0.0)),
+                };
+                if name.starts_with('x') {
+                    (force, displacement)
+                } else {
+                    exchanged += 1;
+                    (displacement, force)
+                }
+            })
+            .unzip();
+        assert!(exchanged > 0, "{names:?}");
+        for (i, row) in lcp.matrix.iter().enumerate() {
+            let terms: f64 = row.iter().zip(&z).map(|(m, z)| (m * z).abs()).sum();
+            let found: f64 = row.iter().zip(&z).map(|(m, z)| m * z).sum::<f64>() + lcp.q[i];
+            near(&names[i], found, w[i], 1e-11, terms + lcp.q[i].abs() + w[i].abs());
+        }
     }
 }

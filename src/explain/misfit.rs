@@ -1,0 +1,113 @@
+//! Parts that do not fit together: joints that repeat one another and whose gaps leave no room for all of them.
+//!
+//! ```text
+//!   S μ = s self-stress:   sᵀ (z − (g, 0)) = sᵀ h  whatever moves
+//!   a proof:  s_n ≥ 0 in unilateral pairs, s_τ = 0,  sᵀ_n g + sᵀ h < 0;  z_n ≥ 0 then cannot hold, for any load and friction
+//! ```
+//! A linear program proposes μ; the signs are verified in rationals.
+
+use std::time::Instant;
+
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+
+use super::certificate::BUDGET;
+use super::exact_equations::{Equations, Solved, exact, nearest};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+use crate::lcp::linear_program::{LinearProgram, Outcome};
+use crate::lcp::problem::NOISE;
+use crate::model::pair::Law;
+
+/// An s_n below this share of the largest must be 0.
+const TIGHT: f64 = 1e-6;
+
+/// The proof.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misfit {
+    /// The pairs that cannot all be closed or open, those that s presses.
+    pub pairs: Vec<usize>,
+    /// sᵀ_n g + sᵀ h with the largest s_n = 1: by so much they overlap, < 0.
+    pub room: f64,
+}
+
+/// What s times gaps and common displacements of the joints sums, per unit of each μ, and its terms.
+fn rooms(system: &ContactSystem, numbers: &ContactNumbers, stress: &nalgebra::DMatrix<f64>) -> Vec<(f64, f64)> {
+    let given = system.file.as_ref().zip(numbers.file_load.as_ref());
+    let offset = |joint: usize| match given {
+        Some((file, load)) => load.vector[file.kept[joint]],
+        None if system.is_forced(joint) => numbers.load[joint],
+        None => 0.0,
+    };
+    let gap = |joint: usize| numbers.gap.get(joint).copied().unwrap_or(0.0);
+    (stress.column_iter())
+        .map(|s| {
+            s.iter().enumerate().fold((0.0, 0.0), |(sum, size), (joint, s)| {
+                let terms = [s * gap(joint), s * offset(joint)];
+                (sum + terms[0] + terms[1], size + terms[0].abs() + terms[1].abs())
+            })
+        })
+        .collect()
+}
+
+/// Looks for a proof that the parts do not fit.
+pub fn misfit(system: &ContactSystem, numbers: &ContactNumbers) -> Option<Misfit> {
+    let stress = &system.force_form.as_ref()?.self_stress;
+    let rooms = rooms(system, numbers, stress);
+    if rooms.iter().all(|(room, _)| *room == 0.0) {
+        return None;
+    }
+    let row = |joint: usize| -> Vec<(usize, f64)> {
+        stress.row(joint).iter().copied().enumerate().filter(|(_, s)| *s != 0.0).collect()
+    };
+    let unilateral: Vec<usize> = (0..system.pairs.len())
+        .filter(|&i| !matches!(system.pairs[i].law, Law::Bound { .. }) && !row(i).is_empty())
+        .collect();
+    let tangential: Vec<usize> =
+        system.pairs.iter().filter_map(|pair| pair.tangential).filter(|&joint| !row(joint).is_empty()).collect();
+    let mut program = LinearProgram::default();
+    let size = rooms.iter().fold(0.0, |a: f64, (_, size)| a.max(*size));
+    for (k, (room, _)) in rooms.iter().enumerate() {
+        program.variable(room / size);
+        program.at_most(vec![(k, 1.0)], 1.0);
+        program.at_most(vec![(k, -1.0)], 1.0);
+    }
+    for &joint in &tangential {
+        program.equal(row(joint), 0.0);
+    }
+    for &joint in &unilateral {
+        program.at_most(row(joint).into_iter().map(|(k, s)| (k, -s)).collect(), 0.0);
+    }
+    let Outcome::Optimum(found) = program.solve(BUDGET.as_secs_f64()) else {
+        return None;
+    };
+    let pressed = |joint: usize| row(joint).iter().map(|(k, s)| s * found.x[*k]).sum::<f64>();
+    let largest = unilateral.iter().map(|&joint| pressed(joint)).fold(0.0, f64::max);
+    let end = Instant::now() + BUDGET;
+    let mut equations = Equations::new(rooms.len(), end);
+    let idle = unilateral.iter().filter(|&&joint| pressed(joint) <= TIGHT * largest);
+    for &joint in tangential.iter().chain(idle) {
+        equations.add(row(joint).into_iter().map(|(k, s)| (k, exact(s))));
+    }
+    let amounts: Vec<BigRational> = match equations.nearest(&found.x) {
+        Solved::Free => found.x.iter().map(|x| exact(*x)).collect(),
+        Solved::Exactly(amounts) => amounts,
+        Solved::OutOfTime => return None,
+    };
+    let value = |joint: usize| -> BigRational { row(joint).into_iter().map(|(k, s)| exact(s) * &amounts[k]).sum() };
+    let holds = tangential.iter().all(|&joint| value(joint).is_zero())
+        && unilateral.iter().all(|&joint| !value(joint).is_negative());
+    let (mut room, mut terms) = (0.0, 0.0);
+    for ((own, size), amount) in rooms.iter().zip(&amounts) {
+        room += own * nearest(amount);
+        terms += size * nearest(amount).abs();
+    }
+    if !holds || room >= -NOISE * terms {
+        return None;
+    }
+    let sizes: Vec<f64> = unilateral.iter().map(|&joint| nearest(&value(joint))).collect();
+    let largest = sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
+    let unit = if largest > 0.0 { largest } else { 1.0 };
+    let pairs = unilateral.into_iter().zip(sizes).filter(|(_, size)| *size > 0.0).map(|(pair, _)| pair).collect();
+    Some(Misfit { pairs, room: room / unit })
+}
