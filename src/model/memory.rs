@@ -41,6 +41,11 @@ pub fn for_joints(joints: f64) -> f64 {
     4.0 * 8.0 * joints * joints
 }
 
+/// Bytes needed for so many entries of a sparse matrix: read, checked and assembled.
+pub fn for_entries(entries: f64) -> f64 {
+    120.0 * entries
+}
+
 /// `needs about 2.8 TiB of memory, this machine has 15.6 GiB`, if that is too much for this machine, or for what this
 /// process may use of it.
 pub fn refusal(bytes: f64) -> Option<String> {

@@ -2,13 +2,22 @@
 
 use std::path::Path;
 
-use super::matrix_market::{self, Size};
+use super::matrix_market::{self, Entries, MatrixError, Size};
 use super::reader::Cursor;
 use super::words::quoted;
 
 /// Reads the matrix that `cursor`, an object, names; also where the name stands.
 pub fn read<'a>(cursor: Cursor<'a>, size: Size, path: Option<&Path>) -> Option<(Vec<Vec<f64>>, Cursor<'a>)> {
     let at = cursor.fields(&["file"])?.required("file")?;
+    Some((named(at, path, |text| matrix_market::read(text, size))?, at))
+}
+
+/// Reads the entries of the matrix in the file that `at` names.
+pub fn entries(at: Cursor<'_>, size: Size, path: Option<&Path>) -> Option<Entries> {
+    named(at, path, |text| matrix_market::entries(text, size))
+}
+
+fn named<T>(at: Cursor<'_>, path: Option<&Path>, read: impl Fn(&str) -> Result<T, MatrixError>) -> Option<T> {
     let name = at.string()?;
     let Some(scenario) = path else {
         at.problem(
@@ -28,11 +37,5 @@ pub fn read<'a>(cursor: Cursor<'a>, size: Size, path: Option<&Path>) -> Option<(
             return None;
         }
     };
-    match matrix_market::read(&text, size) {
-        Ok(matrix) => Some((matrix, at)),
-        Err(error) => {
-            at.problem(format!("{name}:{}: {}", error.line, error.message), error.help);
-            None
-        }
-    }
+    read(&text).map_err(|error| at.problem(format!("{name}:{}: {}", error.line, error.message), error.help)).ok()
 }

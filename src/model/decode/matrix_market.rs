@@ -21,27 +21,75 @@ pub enum Size {
     OfPairs(usize),
     /// As many rows as columns, at least one.
     Square,
+    /// A row and a column for each of so many displacements.
+    OfDofs(usize),
+    /// A force for each of so many displacements: one column.
+    Forces(usize),
 }
 
 impl Size {
-    /// The number of rows, or why `rows` × `columns` does not fit: what was expected, and what to do.
-    fn of(self, rows: usize, columns: usize) -> Result<usize, (String, &'static str)> {
-        match self {
-            Size::OfPairs(pairs) if rows == 2 * pairs && columns == rows => Ok(rows),
-            Size::OfPairs(pairs) => Err((
+    /// Why `rows` × `columns` does not fit: what was expected, and what to do.
+    fn check(self, rows: usize, columns: usize) -> Result<(), (String, &'static str)> {
+        let (fits, expected, help) = match self {
+            Size::OfPairs(pairs) => (
+                rows == 2 * pairs && columns == rows,
                 format!("expected 2m × 2m = {0} × {0}", 2 * pairs),
                 "rows and columns: all normals, then all tangentials",
-            )),
-            Size::Square if rows == columns && rows > 0 => Ok(rows),
-            Size::Square => {
-                Err(("expected a square one with at least one row".into(), "M has a row for each entry of q"))
-            }
+            ),
+            Size::Square => (
+                rows == columns && rows > 0,
+                "expected a square one with at least one row".into(),
+                "M has a row for each entry of q",
+            ),
+            Size::OfDofs(count) => (
+                rows == count && columns == rows,
+                format!("expected {count} × {count}: `dofs` has {count} entries"),
+                "rows and columns stand in the order of `dofs`",
+            ),
+            Size::Forces(count) => (
+                rows == count && columns == 1,
+                format!("expected {count} × 1: `dofs` has {count} entries"),
+                "a column of forces in the order of `dofs`",
+            ),
+        };
+        if fits { Ok(()) } else { Err((expected, help)) }
+    }
+
+    /// Bytes that a file with so many entries takes.
+    fn bytes(self, rows: usize, entries: usize) -> f64 {
+        match self {
+            Size::OfPairs(_) | Size::Square => memory::for_joints(rows as f64),
+            Size::OfDofs(_) | Size::Forces(_) => memory::for_entries(entries as f64),
         }
     }
 }
 
+/// What a file holds.
+#[derive(Debug, PartialEq)]
+pub struct Entries {
+    /// Number of rows.
+    pub rows: usize,
+    /// Whether only the lower triangle is given.
+    pub symmetric: bool,
+    /// (row, column, value) in the order of the file, each place once.
+    pub entries: Vec<(usize, usize, f64)>,
+}
+
 /// Reads a square matrix, row by row.
 pub fn read(text: &str, size: Size) -> Result<Vec<Vec<f64>>, MatrixError> {
+    let Entries { rows, symmetric, entries } = entries(text, size)?;
+    let mut matrix = vec![vec![0.0; rows]; rows];
+    for (i, j, value) in entries {
+        matrix[i][j] = value;
+        if symmetric {
+            matrix[j][i] = value;
+        }
+    }
+    Ok(matrix)
+}
+
+/// Reads the entries of a matrix.
+pub fn entries(text: &str, size: Size) -> Result<Entries, MatrixError> {
     let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
     let (number, banner) = lines.next().unwrap_or((1, ""));
     let header = Header::parse(banner).map_err(|message| {
@@ -55,39 +103,31 @@ pub fn read(text: &str, size: Size) -> Result<Vec<Vec<f64>>, MatrixError> {
     let last = text.lines().count().max(1);
     let (number, sizes) = lines.next().ok_or_else(|| error(last, "the line with the sizes is missing", ""))?;
     let sizes = words::<usize>(number, sizes, if header.coordinate { 3 } else { 2 })?;
-    let size = size.of(sizes[0], sizes[1]).map_err(|(expected, help)| {
-        error(number, format!("the matrix is {} × {}, {expected}", sizes[0], sizes[1]), help)
-    })?;
+    let (rows, columns) = (sizes[0], sizes[1]);
+    size.check(rows, columns)
+        .map_err(|(expected, help)| error(number, format!("the matrix is {rows} × {columns}, {expected}"), help))?;
     // An array has at least its lower triangle in the file, and every number two bytes.
-    let claimed = if header.coordinate { sizes[2] } else { size.saturating_mul(size) / 2 };
+    let claimed = if header.coordinate { sizes[2] } else { rows.saturating_mul(columns) / 2 };
     if claimed > text.len() {
         return Err(error(number, format!("{claimed} entries are announced, more than the file has characters"), ""));
     }
-    if let Some(refusal) = memory::refusal(memory::for_joints(size as f64)) {
-        return Err(error(number, format!("a matrix of {size} rows {refusal}"), "use a smaller one"));
+    if let Some(refusal) = memory::refusal(size.bytes(rows, claimed)) {
+        return Err(error(number, format!("a matrix of {rows} rows {refusal}"), "use a smaller one"));
     }
-    let mut matrix = vec![vec![0.0; size]; size];
-    let places: Vec<(usize, usize)> = if header.coordinate {
-        Vec::new()
-    } else {
-        // Column by column; of a symmetric matrix the lower triangle.
-        (0..size)
-            .flat_map(|j| {
-                let first = if header.symmetric { j } else { 0 };
-                (first..size).map(move |i| (i, j))
-            })
-            .collect()
-    };
-    let expected = if header.coordinate { sizes[2] } else { places.len() };
-    let mut count = 0;
-    let mut seen = vec![false; if header.coordinate { size * size } else { 0 }];
+    // Of an array column by column; of a symmetric one the lower triangle.
+    let first = |column: usize| if header.symmetric { column } else { 0 };
+    let mut places = (0..columns).flat_map(|j| (first(j)..rows).map(move |i| (i, j)));
+    let in_array = if header.symmetric && rows == columns { rows * (rows + 1) / 2 } else { rows * columns };
+    let expected = if header.coordinate { sizes[2] } else { in_array };
+    let mut entries = Vec::with_capacity(expected);
+    let mut seen = std::collections::HashSet::new();
     for (number, line) in lines {
-        if count == expected {
+        if entries.len() == expected {
             return Err(error(number, format!("found more than the {expected} entries announced"), ""));
         }
-        let (i, j, value) = if header.coordinate {
-            let (i, j, value) = header.coordinate_entry(number, line, size)?;
-            if std::mem::replace(&mut seen[i * size + j], true) {
+        let entry = if header.coordinate {
+            let (i, j, value) = header.coordinate_entry(number, line, [rows, columns])?;
+            if !seen.insert((i, j)) {
                 return Err(error(
                     number,
                     format!("row {}, column {} is given twice", i + 1, j + 1),
@@ -96,19 +136,16 @@ pub fn read(text: &str, size: Size) -> Result<Vec<Vec<f64>>, MatrixError> {
             }
             (i, j, value)
         } else {
-            let (i, j) = places[count];
+            // As many places as entries are expected.
+            let (i, j) = places.next().unwrap_or_default();
             (i, j, real(number, words::<&str>(number, line, 1)?[0])?)
         };
-        matrix[i][j] = value;
-        if header.symmetric {
-            matrix[j][i] = value;
-        }
-        count += 1;
+        entries.push(entry);
     }
-    if count < expected {
-        return Err(error(last, format!("the file ends after {count} of {expected} entries"), ""));
+    if entries.len() < expected {
+        return Err(error(last, format!("the file ends after {} of {expected} entries", entries.len()), ""));
     }
-    Ok(matrix)
+    Ok(Entries { rows, symmetric: header.symmetric, entries })
 }
 
 struct Header {
@@ -143,16 +180,21 @@ impl Header {
         Ok(Header { coordinate, symmetric })
     }
 
-    fn coordinate_entry(&self, number: usize, line: &str, size: usize) -> Result<(usize, usize, f64), MatrixError> {
+    fn coordinate_entry(
+        &self,
+        number: usize,
+        line: &str,
+        [rows, columns]: [usize; 2],
+    ) -> Result<(usize, usize, f64), MatrixError> {
         let parts = words::<&str>(number, line, 3)?;
-        let index = |word: &str| {
+        let index = |word: &str, size: usize| {
             word.parse::<usize>()
                 .ok()
                 .filter(|index| (1..=size).contains(index))
                 .map(|index| index - 1)
                 .ok_or_else(|| error(number, format!("`{word}` is no row or column, expected 1 to {size}"), ""))
         };
-        let (i, j) = (index(parts[0])?, index(parts[1])?);
+        let (i, j) = (index(parts[0], rows)?, index(parts[1], columns)?);
         if self.symmetric && j > i {
             return Err(error(
                 number,
