@@ -62,6 +62,7 @@ pub fn assemble<T: Real>(
                     count(column);
                 });
             }
+            given_entries(structure, dofs, |_, column, _| count(column));
         },
         |push| {
             (0..dofs.count()).for_each(|dof| push(dof, dof, T::zero()));
@@ -80,9 +81,22 @@ pub fn assemble<T: Real>(
                     push(row, column, spring::stiffness(element, i, j));
                 });
             }
+            given_entries(structure, dofs, |row, column, value| push(row, column, T::from(value)));
             Ok(())
         },
     )
+}
+
+/// Visits the entries of a superelement's K: (row, column, value) in base dofs, row ≥ column.
+pub fn given_entries(structure: &Structure, dofs: &Dofs, mut visit: impl FnMut(usize, usize, f64)) {
+    let Some(element) = &structure.superelement else { return };
+    // Every row has its dof.
+    let at: Vec<Option<usize>> = element.dofs.iter().map(|&(node, component)| dofs.of(node, component)).collect();
+    for &(i, j, value) in &element.entries {
+        if let (Some(row), Some(column)) = (at[i], at[j]) {
+            visit(row.max(column), row.min(column), value);
+        }
+    }
 }
 
 /// K_m, C and D of the main system.

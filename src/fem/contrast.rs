@@ -2,7 +2,7 @@
 
 use super::element::stiffness;
 use super::error::MainSystemError;
-use crate::model::structure::Structure;
+use crate::model::structure::{Component, Structure};
 
 /// The refusal of a structure whose stiffness is lost beside that of its stiffest part.
 pub fn refusal(structure: &Structure) -> MainSystemError {
@@ -20,6 +20,14 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
     for spring in &structure.springs {
         let node = spring.terms[0].node;
         parts.push((spring.stiffness, node, format!("the spring at {}", id(node))));
+    }
+    let given = structure.superelement.iter().flat_map(|element| {
+        let diagonal = element.entries.iter().filter(|(i, j, _)| i == j);
+        diagonal.map(|&(i, _, k)| (k, element.dofs[i]))
+    });
+    for (k, (node, component)) in given.filter(|(_, (_, component))| *component != Component::R) {
+        let word = if component == Component::X { "x" } else { "y" };
+        parts.push((k, node, format!("row {word} of {} of the superelement", id(node))));
     }
     parts.retain(|(k, ..)| *k > 0.0);
     parts.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -8,11 +8,12 @@ use crate::model::structure::{Component, ElementKind, Structure};
 const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::R];
 
 /// Numbers of the nodal components ("base dofs"): x, y at every node, r where a frame bar is rigidly attached
-/// and at the nodes of rigid bodies.
+/// and at the nodes of rigid bodies; of a superelement what its rows are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dofs {
     first: Vec<u32>,
-    has_rotation: Vec<bool>,
+    /// Whether there are x, y, r: nodes of a superelement have those of its dofs.
+    has: Vec<[bool; 3]>,
     count: usize,
     frame_nodes_only_hinged: usize,
 }
@@ -30,21 +31,29 @@ impl Dofs {
                 }
             }
         }
+        let mut has: Vec<[bool; 3]> = match &structure.superelement {
+            None => has_rotation.iter().map(|&rotation| [true, true, rotation]).collect(),
+            Some(element) => {
+                let mut has = vec![[false; 3]; structure.nodes.len()];
+                element.dofs.iter().for_each(|&(node, component)| has[node][component as usize] = true);
+                has
+            }
+        };
         for &node in structure.rigid.iter().flat_map(|body| &body.nodes) {
-            has_rotation[node] = true;
+            has[node] = [true; 3];
         }
         let mut count = 0;
-        let first = has_rotation
+        let first = has
             .iter()
-            .map(|&rotation| {
+            .map(|has| {
                 let first = count;
-                count += if rotation { 3 } else { 2 };
+                count += has.iter().filter(|has| **has).count();
                 first as u32
             })
             .collect();
         let frame_nodes_only_hinged =
-            std::iter::zip(&frame, &has_rotation).filter(|(frame, rotation)| **frame && !**rotation).count();
-        Dofs { first, has_rotation, count, frame_nodes_only_hinged }
+            std::iter::zip(&frame, &has).filter(|(frame, [.., rotation])| **frame && !*rotation).count();
+        Dofs { first, has, count, frame_nodes_only_hinged }
     }
 
     /// Number of base dofs.
@@ -58,25 +67,16 @@ impl Dofs {
         self.count + self.frame_nodes_only_hinged
     }
 
-    /// The base dof of a component; `None` for a rotation that does not exist.
+    /// The base dof of a component; `None` for one that does not exist.
     pub fn of(&self, node: usize, component: Component) -> Option<usize> {
-        let first = self.first[node] as usize;
-        match component {
-            Component::X => Some(first),
-            Component::Y => Some(first + 1),
-            Component::R => self.has_rotation[node].then_some(first + 2),
-        }
+        let (has, at) = (self.has[node], component as usize);
+        has[at].then(|| self.first[node] as usize + has[..at].iter().filter(|has| **has).count())
     }
 
-    /// Displacements [u_x, u_y, θ] per node from base dofs; θ = 0 where there is none.
+    /// Displacements [u_x, u_y, θ] per node from base dofs; 0 where there is none.
     pub fn scatter<T: Real>(&self, u: &[T]) -> Vec<[T; 3]> {
-        std::iter::zip(&self.first, &self.has_rotation)
-            .map(|(&first, &rotation)| {
-                let first = first as usize;
-                let theta = if rotation { u[first + 2] } else { T::zero() };
-                [u[first], u[first + 1], theta]
-            })
-            .collect()
+        let value = |node: usize, component| self.of(node, component).map_or(T::zero(), |dof| u[dof]);
+        (0..self.has.len()).map(|node| COMPONENTS.map(|component| value(node, component))).collect()
     }
 
     /// Base dofs from displacements per node.
@@ -94,17 +94,15 @@ impl Dofs {
 
     /// Node of each base dof.
     pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
-        let components = self.has_rotation.iter().enumerate();
-        components.flat_map(|(node, &rotation)| std::iter::repeat_n(node, if rotation { 3 } else { 2 }))
+        let components = self.has.iter().enumerate();
+        components.flat_map(|(node, has)| std::iter::repeat_n(node, has.iter().filter(|has| **has).count()))
     }
 
     /// Which base dofs are rotations.
     pub fn is_rotation(&self) -> Vec<bool> {
         let mut rotations = vec![false; self.count];
-        for (&first, &rotation) in std::iter::zip(&self.first, &self.has_rotation) {
-            if rotation {
-                rotations[first as usize + 2] = true;
-            }
+        for dof in (0..self.has.len()).filter_map(|node| self.of(node, Component::R)) {
+            rotations[dof] = true;
         }
         rotations
     }

@@ -119,6 +119,7 @@ impl MainSystem {
         for index in (0..structure.elements.len()).filter(|&index| !rigid[index]) {
             self.add_element(structure, index, &element_forces(structure, index, u), &mut sums);
         }
+        self.add_superelement(structure, u, &mut sums);
         for spring in &structure.springs {
             // Along a unit vector: its force is the length of its components.
             let force = spring::force(spring, &u.0).abs();
@@ -137,6 +138,20 @@ impl MainSystem {
             self.each_term(joint, |dof, a| sums[dof] += (a * lambda).abs());
         }
         sums
+    }
+
+    /// Adds what the other nodes of a superelement do to each of its rows as they move against the node of the row.
+    fn add_superelement(&self, structure: &Structure, u: &Displacements, sums: &mut [f64]) {
+        let Some(element) = &structure.superelement else { return };
+        for &(i, j, k) in &element.entries {
+            for (row, column) in if i == j { vec![(i, i)] } else { vec![(i, j), (j, i)] } {
+                let ((own, component), (other, moved)) = (element.dofs[row], element.dofs[column]);
+                let with = if moved == Component::R { 0.0 } else { u.0[own][moved as usize] };
+                if let Some(dof) = self.dofs.of(own, component) {
+                    sums[dof] += (k * (u.0[other][moved as usize] - with)).abs();
+                }
+            }
+        }
     }
 
     /// Adds the nodal forces of one element to the sums of magnitudes.

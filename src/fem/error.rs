@@ -98,6 +98,15 @@ pub enum MainSystemError {
         /// Bytes that are available.
         available: u64,
     },
+    /// The K of a superelement has a negative eigenvalue.
+    #[error(
+        "{file}: the stiffness is not positive semidefinite: after scaling to unit diagonal it has an eigenvalue below \
+         -1e-9, a motion that would release energy; check the signs of its entries and the order of rows and columns"
+    )]
+    Indefinite {
+        /// The file of K.
+        file: String,
+    },
     /// Memory ran out although the estimate fitted.
     #[error("out of memory while {doing}: use fewer divisions or free some memory")]
     OutOfMemory {

@@ -1,7 +1,8 @@
 //! Motions that cost no energy when every contact joint is off: the kernel of K from the rigid motions of parts.
 //!
 //! A *part* is a set of elements that can only move as one rigid body: elements with a common edge, frame bars
-//! rigidly attached to one node, a rigid body and elements with two nodes in it; a lone node is a part without rotation. Parts that share a node are pinned there.
+//! rigidly attached to one node, a rigid body and elements with two nodes in it; a lone node is a part without rotation. A part of a superelement moves as its stiffness lets it. Parts that share a node are
+//! pinned there.
 //! Parts linked by pins and ties make a *cluster*. In each cluster the motions q (a translation and a rotation per
 //! part) that open no pin and no tie, move no support and stretch no spring are the null space of a small matrix;
 //! testing motions one by one would miss a rotation about a pin or a tie.
@@ -9,11 +10,14 @@
 //! In a cluster of very many parts (a large truss) elements joined by common nodes are taken as one part; its
 //! internal mechanisms, if it has any, are found from the eigenvalues of R instead (see `main_system`).
 
+use std::collections::HashSet;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::dense::svd;
 use super::dof::{Dofs, root};
 use crate::model::structure::{Component, ElementKind, Structure};
+use crate::model::superelement::Part;
 
 /// Singular values below this share of the largest belong to the null space, times the rounding of the coordinates
 /// beside the size of the cluster.
@@ -60,13 +64,22 @@ struct Parts {
     turning: Vec<Option<u32>>,
     /// Whether a part can turn (is more than a lone node).
     turns: Vec<bool>,
+    /// The part of each part of the superelement; `u32::MAX` for one that lies in another cluster.
+    of_superelement: Vec<u32>,
+}
+
+/// The parts of the superelement, if there is one.
+fn superelement_parts(structure: &Structure) -> &[Part] {
+    structure.superelement.as_ref().map_or(&[], |element| &element.parts)
 }
 
 impl Parts {
     fn new(structure: &Structure) -> Parts {
-        // Rigid bodies count as elements, after the others.
+        // Rigid bodies count as elements, after the others, and so do the parts of a superelement.
         let elements = structure.elements.len();
-        let mut parent: Vec<u32> = (0..(elements + structure.rigid.len()) as u32).collect();
+        let beyond = elements + structure.rigid.len();
+        let given = superelement_parts(structure);
+        let mut parent: Vec<u32> = (0..(beyond + given.len()) as u32).collect();
         let mut join = |a: u32, b: u32| {
             let (a, b) = (root(&mut parent, a as usize), root(&mut parent, b as usize));
             parent[a.max(b)] = a.min(b) as u32;
@@ -113,6 +126,18 @@ impl Parts {
                 }
             }
         }
+        if let Some(element) = &structure.superelement {
+            let mut part_of = vec![None; structure.nodes.len()];
+            for (index, part) in given.iter().enumerate() {
+                part.nodes.iter().for_each(|&node| part_of[node] = Some((beyond + index) as u32));
+            }
+            for &(node, _) in element.dofs.iter().filter(|(_, component)| *component == Component::R) {
+                match (turning[node], part_of[node]) {
+                    (Some(body), Some(part)) => join(part, body),
+                    (_, part) => turning[node] = part,
+                }
+            }
+        }
         // Number the parts; lone nodes come last.
         let mut number = vec![u32::MAX; parent.len()];
         let mut turns = Vec::new();
@@ -127,7 +152,8 @@ impl Parts {
         let mut at_node: Vec<Vec<u32>> = vec![Vec::new(); structure.nodes.len()];
         let elements = structure.elements.iter().map(|element| &element.nodes);
         let bodies = structure.rigid.iter().map(|body| &body.nodes);
-        for (index, nodes) in elements.chain(bodies).enumerate() {
+        let parts = given.iter().map(|part| &part.nodes);
+        for (index, nodes) in elements.chain(bodies).chain(parts).enumerate() {
             let part = part_of(&mut parent, index);
             for &node in nodes {
                 if !at_node[node].contains(&part) {
@@ -138,11 +164,12 @@ impl Parts {
         for turning in turning.iter_mut().flatten() {
             *turning = part_of(&mut parent, *turning as usize);
         }
+        let of_superelement = (0..given.len()).map(|part| part_of(&mut parent, beyond + part)).collect();
         for parts in at_node.iter_mut().filter(|parts| parts.is_empty()) {
             parts.push(turns.len() as u32);
             turns.push(false);
         }
-        Parts { at_node, turning, turns }
+        Parts { at_node, turning, turns, of_superelement }
     }
 
     /// Parts linked by pins, ties and springs.
@@ -210,7 +237,9 @@ impl Cluster {
     fn with_whole_groups(self, structure: &Structure) -> (Parts, Cluster) {
         let mut parent: Vec<u32> = (0..structure.nodes.len() as u32).collect();
         let elements = structure.elements.iter().map(|element| &element.nodes);
-        for nodes in elements.chain(structure.rigid.iter().map(|body| &body.nodes)) {
+        let given = superelement_parts(structure);
+        let bodies = structure.rigid.iter().map(|body| &body.nodes).chain(given.iter().map(|part| &part.nodes));
+        for nodes in elements.chain(bodies) {
             for nodes in nodes.windows(2) {
                 let (a, b) = (root(&mut parent, nodes[0]), root(&mut parent, nodes[1]));
                 parent[a.max(b)] = a.min(b) as u32;
@@ -232,7 +261,9 @@ impl Cluster {
             turning[node] = Some(number[group]);
         }
         let parts = (0..turns.len() as u32).collect();
-        let merged = Parts { at_node, turning, turns };
+        let part_of = |part: &Part| at_node[part.nodes[0]].first().copied().unwrap_or(u32::MAX);
+        let of_superelement = given.iter().map(part_of).collect();
+        let merged = Parts { at_node, turning, turns, of_superelement };
         (merged, Cluster { parts, ..self })
     }
 
@@ -280,13 +311,30 @@ impl Cluster {
 
         let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
         let negative = |terms: Vec<(usize, f64)>| terms.into_iter().map(|(c, a)| (c, -a));
+        let given: Option<HashSet<&(usize, Component)>> =
+            structure.superelement.as_ref().map(|element| element.dofs.iter().collect());
         for &node in &self.nodes {
             for &other in &parts.at_node[node][1..] {
                 for component in [Component::X, Component::Y] {
+                    // Of a displacement that a superelement does not know nothing follows for it.
+                    if given.as_ref().is_some_and(|given| !given.contains(&(node, component))) {
+                        continue;
+                    }
                     let mut row = moved(node, parts.at_node[node][0], component);
                     row.extend(negative(moved(node, other, component)));
                     rows.push(row);
                 }
+            }
+        }
+        for (part, &number) in superelement_parts(structure).iter().zip(&parts.of_superelement) {
+            let Some(columns) = column.get(number as usize).filter(|columns| columns[0] != usize::MAX) else {
+                continue;
+            };
+            let arm = [0, 1].map(|c| part.centre[c] - centre[c]);
+            for c in &part.resisted {
+                let turned = (c[1] * arm[0] - c[0] * arm[1] + c[2] * part.size) / size;
+                let terms = columns.iter().copied().zip([c[0], c[1], turned]);
+                rows.push(terms.filter(|(column, _)| *column != usize::MAX).collect());
             }
         }
         for &support in &self.supports {

@@ -27,6 +27,7 @@ use super::order::Places;
 use super::refinement::{Refinement, Verdict};
 use super::repeated::Repeated;
 use super::sparse::SymmetricSparse;
+use super::superelement::refuse_indefinite;
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
 use crate::watch::{Quiet, Watch};
@@ -146,6 +147,7 @@ impl MainSystem {
         let clock = Instant::now();
         watch.progress(&format!("assembling {} elements", structure.elements.len()), 0.0);
         let dofs = Dofs::new(structure);
+        refuse_indefinite(structure, &dofs, watch)?;
         let repeated = Elimination::repeated(structure, &dofs, all_joints)?;
         let is_repeated = |index: &usize| repeated.iter().any(|repeated| repeated.joint == *index);
         let independent: Vec<usize> = (0..all_joints.len()).filter(|index| !is_repeated(index)).collect();

@@ -51,6 +51,7 @@ mod order;
 mod refinement;
 mod repeated;
 mod sparse;
+mod superelement;
 mod supernodes;
 mod watch;
 

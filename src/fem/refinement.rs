@@ -12,7 +12,7 @@
 use nalgebra::{DMatrix, DVector};
 use num_traits::Zero;
 
-use super::assembly::{on_joints, on_masters};
+use super::assembly::{given_entries, on_joints, on_masters};
 use super::dof::Dofs;
 use super::doubled::{Doubled, Real};
 use super::element::{Slot, slots, spring, stiffness};
@@ -41,6 +41,9 @@ const MOST_STEPS: usize = 400;
 /// A motion that costs at most this share (squared) of the terms that its energy sums costs nothing: by so much does
 /// the rounding of the coordinates strain the elements.
 const ROUNDING_STRAIN: f64 = 64.0 * f64::EPSILON;
+
+/// The same of the rows of a given K, of which only the digits of a file are known.
+const GIVEN_DIGITS: f64 = 64.0 * f64::EPSILON;
 
 /// Below this share of its terms an energy is beyond what conjugate gradients in doubled precision can resolve.
 const UNSOLVABLE: f64 = 1e-22;
@@ -244,6 +247,7 @@ impl Refinement<'_> {
             }
             strained |= energy.to_f64() > allowed * terms;
         });
+        strained |= self.strains_superelement(structure, u);
         if !strained {
             return Verdict::Mechanism;
         }
@@ -251,6 +255,25 @@ impl Refinement<'_> {
         let rounded: Vec<f64> = u.iter().map(|u| u.to_f64()).collect();
         let terms: f64 = self.k.times_absolute(&rounded).iter().zip(&rounded).map(|(f, u)| f * u.abs()).sum();
         if energy <= UNSOLVABLE * terms { Verdict::Unsolvable } else { Verdict::Resisted }
+    }
+}
+
+impl Refinement<'_> {
+    /// Whether a superelement resists the displacements by more than its own digits tell from nothing.
+    fn strains_superelement(&self, structure: &Structure, u: &[Doubled]) -> bool {
+        let (mut forces, mut terms) = (vec![Doubled::zero(); u.len()], vec![0.0; u.len()]);
+        given_entries(structure, self.dofs, |row, column, value| {
+            let mut add = |row: usize, column: usize| {
+                let term = Doubled::from(value) * u[column];
+                forces[row] += term;
+                terms[row] += term.to_f64().abs();
+            };
+            add(row, column);
+            if row != column {
+                add(column, row);
+            }
+        });
+        forces.iter().zip(&terms).any(|(force, terms)| force.to_f64().abs() > GIVEN_DIGITS * terms)
     }
 }
 

@@ -24,5 +24,6 @@ pub mod scenario;
 pub mod schema;
 pub mod siconos;
 pub mod structure;
+pub mod superelement;
 pub mod uses;
 mod words;

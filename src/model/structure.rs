@@ -7,6 +7,7 @@
 use super::edge::EdgeSide;
 use super::pair::Pair;
 use super::parameter::Number;
+use super::superelement::Superelement;
 
 /// A node: its name and its place in the plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -357,6 +358,8 @@ pub struct Structure {
     pub supports: Vec<Support>,
     /// Ties.
     pub ties: Vec<Tie>,
+    /// K and F of another program in the place of elements.
+    pub superelement: Option<Superelement>,
     /// Rigid bodies; no node is in two of them.
     pub rigid: Vec<RigidBody>,
     /// Springs to the ground.

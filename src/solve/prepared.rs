@@ -190,6 +190,7 @@ fn main_system_problem(scenario: &Scenario, structure: &Structure, error: MainSy
             return problems_at(scenario, bodies.iter().map(|body| (place(body.body), body.to_string())));
         }
         MainSystemError::Mechanism { node: at, .. } | MainSystemError::Contrast { node: at, .. } => node(*at),
+        MainSystemError::Indefinite { .. } => "superelement.stiffness.file".to_owned(),
         MainSystemError::MomentWithoutRotation { case, .. } => format!("loads.{case}"),
         MainSystemError::Element { nodes, .. } => structure
             .nodes

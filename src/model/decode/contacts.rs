@@ -68,6 +68,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         }
     };
     let sides = sides.filter(|sides| !is_within_a_body(builder, cursor, sides));
+    let sides = sides.filter(|sides| has_its_displacements(builder, cursor, sides, law));
     if !is_edge {
         fields.refuse(&["method"], |key| format!("`{key}` belongs to contacts of an `edge`"), "remove it");
     }
@@ -101,6 +102,17 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         builder.structure.edge_contacts.push(EdgeContact { id: id.to_owned(), nodes: sides.nodes });
     }
     Some(pairs)
+}
+
+/// Reports a node of a superelement without a displacement that a joint needs.
+fn has_its_displacements<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, sides: &Sides, law: Option<LawKind>) -> bool {
+    std::iter::zip(&sides.weights, &sides.normals).all(|(weights, [x, y])| {
+        weights.iter().flatten().all(|&(node, _)| {
+            builder.demand_displacement(cursor, node, [*x, *y], "the normal joint needs it")
+                && (law == Some(LawKind::Frictionless)
+                    || builder.demand_displacement(cursor, node, [*y, *x], "the tangential joint needs it"))
+        })
+    })
 }
 
 /// Reports a pair whose nodes move as one.

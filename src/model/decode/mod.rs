@@ -23,6 +23,7 @@ mod sides;
 mod single_elements;
 mod stages;
 mod structure;
+mod superelement;
 mod supports;
 #[cfg(test)]
 mod tests;
@@ -49,7 +50,8 @@ const COMMON: [&str; 10] =
     ["$schema", "format", "title", "description", "units", "parameters", "stages", "combinations", "probes", "solver"];
 
 /// Keys of the source *structure*.
-const STRUCTURE: [&str; 16] = [
+const STRUCTURE: [&str; 17] = [
+    "superelement",
     "materials",
     "sections",
     "nodes",
@@ -143,7 +145,7 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
     let mut notes = Vec::new();
     let source = match source_key(&fields)? {
         SourceKey::Structure => {
-            let found = structure::read(&fields)?;
+            let found = structure::read(&fields, path.as_deref())?;
             (places, notes) = (found.places, found.notes);
             Source::Structure(found.structure)
         }
@@ -337,7 +339,7 @@ fn source_key<'d>(fields: &Fields<'d>) -> Option<SourceKey<'d>> {
         (_, _, Some(lcp)) => Some(SourceKey::Lcp(lcp.value())),
         (None, None, None) => {
             fields.cursor().problem(
-                "the scenario describes nothing: expected a structure (`nodes`, `bars`, `plates` …), a `contact_system` or an `lcp`",
+                "the scenario describes nothing: expected a structure (`nodes`, `bars`, `plates` …), a `superelement`, a `contact_system` or an `lcp`",
                 "add one of them",
             );
             None

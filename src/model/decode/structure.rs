@@ -2,15 +2,17 @@
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 use std::sync::Arc;
 
 use super::mesh_names::MeshPart;
 use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
-use super::{contacts, edges, elements, foundations, loads, rigid, supports};
+use super::{contacts, edges, elements, foundations, loads, rigid, superelement, supports};
 use crate::model::edge::{Edge, PlateSide};
 use crate::model::scenario::Places;
 use crate::model::structure::{Component, ElementKind, Node, Structure};
+use crate::model::superelement::Superelement;
 
 /// Cross-section of bars.
 pub struct Section {
@@ -102,7 +104,7 @@ pub struct Found {
 }
 
 /// Reads a structure. `None`, or an incomplete structure, only after a problem was reported.
-pub fn read<'d>(fields: &Fields<'d>) -> Option<Found> {
+pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     let before = fields.cursor().problems_so_far();
     let mut builder = Builder {
         structure: Structure::default(),
@@ -126,8 +128,14 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<Found> {
         has_rotation: Vec::new(),
         elements_complete: false,
     };
-    let names = author_nodes(&mut builder, fields);
-    elements::read(&mut builder, fields)?;
+    let names = match fields.optional("superelement") {
+        Some(at) => superelement::read(&mut builder, fields, at, path)?,
+        None => {
+            let names = add_nodes(&mut builder, fields.optional("nodes"), "nodes");
+            elements::read(&mut builder, fields)?;
+            names
+        }
+    };
     builder.elements_complete = fields.cursor().problems_so_far() == before;
     builder.find_rotations();
     edges::read(&mut builder, fields);
@@ -142,10 +150,9 @@ pub fn read<'d>(fields: &Fields<'d>) -> Option<Found> {
     Some(Found { structure: builder.structure, places: builder.places, notes: builder.notes })
 }
 
-/// The nodes of the file, with the places of their names.
-fn author_nodes<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Vec<Place<'d>> {
+/// Adds the nodes of the file, which stand at the path `within`; the places of their names.
+pub fn add_nodes<'d>(builder: &mut Builder<'d>, nodes: Option<Cursor<'d>>, within: &str) -> Vec<Place<'d>> {
     let mut names = Vec::new();
-    let nodes = fields.optional("nodes");
     let entries = nodes.and_then(Cursor::entries);
     builder.nodes_are_known = nodes.is_none() || entries.is_some();
     for entry in entries.unwrap_or_default() {
@@ -153,7 +160,7 @@ fn author_nodes<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Vec<Place
         // A node without a usable place stays known, with a place that no geometric check complains about.
         let position = entry.value().vector().unwrap_or([f64::NAN; 2]);
         names.push(entry.key_place());
-        builder.add_node(Node { id: entry.name().to_string(), position }, format!("nodes.{}", entry.name()).into());
+        builder.add_node(Node { id: entry.name().to_string(), position }, format!("{within}.{}", entry.name()).into());
     }
     names
 }
@@ -422,6 +429,9 @@ impl<'d> Builder<'d> {
 
     fn find_rotations(&mut self) {
         self.has_rotation = vec![false; self.structure.nodes.len()];
+        for &(node, component) in self.structure.superelement.iter().flat_map(|element| &element.dofs) {
+            self.has_rotation[node] |= component == Component::R;
+        }
         for element in &self.structure.elements {
             if let ElementKind::Frame { .. } = element.kind {
                 for &node in &element.nodes {
@@ -429,6 +439,26 @@ impl<'d> Builder<'d> {
                 }
             }
         }
+    }
+
+    /// Whether a superelement knows nothing of a displacement of this node.
+    pub fn lacks(&self, node: usize, component: Component) -> bool {
+        let knows = |element: &Superelement| element.dofs.contains(&(node, component));
+        self.structure.superelement.as_ref().is_some_and(|element| !knows(element)) && !self.body_of.contains_key(&node)
+    }
+
+    /// Reports a displacement along x or y asked of a node of a superelement that has none.
+    pub fn demand_displacement(&self, cursor: Cursor<'d>, node: usize, direction: [f64; 2], what: &str) -> bool {
+        let asked = [(Component::X, "x"), (Component::Y, "y")].into_iter().zip(direction);
+        let Some(((_, word), _)) = asked.into_iter().find(|((c, _), amount)| *amount != 0.0 && self.lacks(node, *c))
+        else {
+            return true;
+        };
+        cursor.problem(
+            format!("the node \"{}\" of the superelement has no dof \"{word}\": {what}", self.node_id(node)),
+            "keep this displacement when K is made and name it in `dofs`, or choose another direction",
+        );
+        false
     }
 
     /// Reports a rotation asked of a node that has none. Silent while elements are missing for other reasons.
@@ -446,19 +476,24 @@ impl<'d> Builder<'d> {
     /// A node that nothing holds or connects would move freely: reported at its name.
     fn report_loose_nodes(&self, fields: &Fields<'d>, names: &[Place<'d>]) {
         let structure = &self.structure;
-        if structure.elements.is_empty() && structure.springs.is_empty() && structure.rigid.is_empty() {
+        if structure.superelement.is_none()
+            && structure.elements.is_empty()
+            && structure.springs.is_empty()
+            && structure.rigid.is_empty()
+        {
             let message =
                 "the structure has no elements: expected bars, plates, meshes, quads, rigid bodies or springs";
             fields.cursor().problem(message, "add what carries the load");
             return;
         }
         let mut touched = vec![false; structure.nodes.len()];
+        let dofs = structure.superelement.iter().flat_map(|element| &element.dofs).map(|(node, _)| node);
         let elements = structure.elements.iter().flat_map(|element| &element.nodes);
         let rigid = structure.rigid.iter().flat_map(|body| &body.nodes);
         let ties = structure.ties.iter().flat_map(|tie| &tie.nodes);
         let supports = structure.supports.iter().map(|support| &support.node);
         let springs = structure.springs.iter().flat_map(|spring| spring.terms.iter().map(|term| &term.node));
-        for &node in elements.chain(rigid).chain(ties).chain(supports).chain(springs) {
+        for &node in elements.chain(dofs).chain(rigid).chain(ties).chain(supports).chain(springs) {
             touched[node] = true;
         }
         // The author's nodes come first, so names and touched run side by side; generated nodes have elements.

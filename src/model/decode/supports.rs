@@ -36,7 +36,8 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     }
 }
 
-const COMPONENTS: [(&str, Component); 3] = [("x", Component::X), ("y", Component::Y), ("r", Component::R)];
+/// The words for displacement components.
+pub const COMPONENTS: [(&str, Component); 3] = [("x", Component::X), ("y", Component::Y), ("r", Component::R)];
 
 /// The components in `fixed`; a rotation must exist at every one of the nodes.
 fn components<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, nodes: &[usize], verb: &str) -> Option<Vec<Component>> {
@@ -51,6 +52,9 @@ fn components<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, nodes: &[usize], ve
             let what = format!("\"r\" cannot be {verb} there");
             is_right &= nodes.iter().all(|&node| builder.demand_rotation(entry, node, &what));
         }
+        let direction = [component == Component::X, component == Component::Y].map(f64::from);
+        let what = format!("it cannot be {verb} there");
+        is_right &= nodes.iter().all(|&node| builder.demand_displacement(entry, node, direction, &what));
         if !components.contains(&component) {
             components.push(component);
         }
@@ -207,6 +211,9 @@ fn springs<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Spring>>
     let direction = fields.required("direction").and_then(|cursor| cursor.direction("direction"));
     let stiffness = fields.required("stiffness").and_then(|at| amount(at, "stiffness"));
     let (ends, direction, stiffness) = (ends?, direction?, stiffness?);
+    let pulls = |node: usize| builder.demand_displacement(cursor, node, direction, "no spring can pull there");
+    let is_right = ends.iter().all(|&(node, other)| pulls(node) && other.is_none_or(pulls));
+    is_right.then_some(())?;
     Some(ends.into_iter().map(|(node, other)| Spring::along(node, other, direction, stiffness)).collect())
 }
 

@@ -18,7 +18,7 @@ mod loads;
 use elements::{Bar, Material, Mesh, Plate, Quad, Section, Triangle};
 use loads::LoadCase;
 
-/// A scenario of stickslip: a structure, a contact system or an LCP
+/// A scenario of stickslip: a structure, a superelement, a contact system or an LCP
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields, title = "stickslip/1")]
 #[schemars(extend("oneOf" = [
@@ -29,7 +29,7 @@ use loads::LoadCase;
         { "required": ["bars"] }, { "required": ["plates"] }, { "required": ["quads"] },
         { "required": ["meshes"] }, { "required": ["triangles"] }, { "required": ["edges"] },
         { "required": ["foundations"] }, { "required": ["rigid"] }, { "required": ["ties"] }, { "required": ["supports"] }, { "required": ["springs"] },
-        { "required": ["contacts"] }, { "required": ["loads"] },
+        { "required": ["contacts"] }, { "required": ["loads"] }, { "required": ["superelement"] },
     ] },
 ]))]
 struct Scenario {
@@ -88,6 +88,8 @@ struct Scenario {
     contacts: Option<Vec<Contact>>,
     /// Load cases by name
     loads: Option<BTreeMap<String, LoadCase>>,
+    /// K and F of another program in the place of elements and nodes
+    superelement: Option<Superelement>,
     /// CSM and CLV computed elsewhere
     contact_system: Option<ContactSystem>,
     /// A bare linear complementarity problem
@@ -326,6 +328,30 @@ struct Contact {
     skip: Option<Vec<u32>>,
     /// How two edges meet: node by node, or by mortar where the nodes do not match; if left out as the nodes ask for
     method: Option<Method>,
+}
+
+/// Stiffness and loads of another program on some displacements of nodes
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Superelement {
+    /// K, symmetric and positive semidefinite, with a row for each of `dofs`
+    stiffness: MatrixFile,
+    /// Load cases by name
+    loads: Option<BTreeMap<String, ForceFile>>,
+    /// Nodes by id: [x, y]
+    nodes: BTreeMap<String, [Number; 2]>,
+    /// Node and displacement of each row of K
+    dofs: Vec<(String, Component)>,
+}
+
+/// Forces in a file: one column with a row for each of `dofs`
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct ForceFile {
+    /// Matrix Market file beside the scenario
+    file: String,
+    /// What multiplies them; 1 if left out
+    factor: Option<Number>,
 }
 
 /// Contact stiffness matrix and contact load vectors

@@ -174,6 +174,7 @@ fn schema_and_decoder_know_the_same_keys() {
         json!({ "materials": { "m": unknown } }),
         json!({ "sections": { "s": unknown } }),
         json!({ "loads": { "w": unknown } }),
+        json!({ "superelement": unknown }),
         json!({ "contact_system": unknown }),
         json!({ "contact_system": { "pairs": ["c"], "stiffness": [[1, 0], [0, 1]], "loads": { "w": unknown } } }),
         system(unknown.clone()),

@@ -25,7 +25,9 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
                 }
                 None => 0.0,
             };
-            Some(vec![Load::Nodal { node, force: force?, moment }])
+            let force = force?;
+            builder.demand_displacement(cursor, node, force, "no force can act there").then_some(())?;
+            Some(vec![Load::Nodal { node, force, moment }])
         }
         Spot::Edge(edge) => {
             if let Some((cursor, _)) = moment {

@@ -1,0 +1,306 @@
+//! A body of which only K and F are known, computed by another program; and the rigid motions that K leaves free.
+
+use nalgebra::DMatrix;
+
+use super::structure::{Component, Node};
+
+/// A row of K u below this share of its terms is zero by the digits of K.
+const DIGITS: f64 = 64.0 * f64::EPSILON;
+
+/// Below this share it is what a condensation (K_bb − K_bi K_ii⁻¹ K_ib) leaves of zero: ε times the condition of K_ii, which
+/// is up to some 1e5 in a body of usual proportions. What is taken as free so is told.
+const CONDENSED: f64 = 1e-10;
+
+/// Singular values below this are looked at.
+const NEARLY: f64 = 1e-9;
+
+/// Parts with more rows are not corrected: the corrected K is dense.
+const MOST_ROWS: usize = 3000;
+
+/// K on some displacement components of nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Superelement {
+    /// The file of K.
+    pub file: String,
+    /// Node and component of each row of K.
+    pub dofs: Vec<(usize, Component)>,
+    /// The lower triangle of K: (row, column, value), row ≥ column, each place once.
+    pub entries: Vec<(usize, usize, f64)>,
+    /// What hangs together.
+    pub parts: Vec<Part>,
+}
+
+/// Nodes that K joins, and how they can move as one rigid body.
+///
+/// A rigid motion is q = (t_x, t_y, θ · size) about `centre`: u = t + θ × (x − centre).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Its nodes.
+    pub nodes: Vec<usize>,
+    /// The point about which it turns.
+    pub centre: [f64; 2],
+    /// Largest distance of a coordinate from there, or 1.
+    pub size: f64,
+    /// Unit vectors c: motions with c·q = 0 cost nothing; three of them where K resists every motion.
+    pub resisted: Vec<[f64; 3]>,
+}
+
+impl Superelement {
+    /// Finds the parts and their free motions; K is put right where it resists a rigid motion by rounding alone. Also what
+    /// is to be said of that.
+    pub fn new(
+        nodes: &[Node],
+        file: &str,
+        dofs: Vec<(usize, Component)>,
+        entries: Vec<(usize, usize, f64)>,
+    ) -> (Superelement, Vec<String>) {
+        let mut element = Superelement { file: file.to_owned(), dofs, entries, parts: Vec::new() };
+        let mut notes = Vec::new();
+        let part_of = element.part_of_nodes(nodes.len());
+        let count = part_of.iter().flatten().max().map_or(0, |last| last + 1);
+        let mut rows: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for (row, (node, _)) in element.dofs.iter().enumerate() {
+            if let Some(part) = part_of[*node] {
+                rows[part].push(row);
+            }
+        }
+        for rows in &rows {
+            let part = element.part(nodes, rows, &mut notes);
+            element.parts.push(part);
+        }
+        (element, notes)
+    }
+
+    /// The part of every node that has a row, counted from 0.
+    fn part_of_nodes(&self, nodes: usize) -> Vec<Option<usize>> {
+        let mut parent: Vec<usize> = (0..nodes).collect();
+        fn root(parent: &mut [usize], mut at: usize) -> usize {
+            while parent[at] != at {
+                parent[at] = parent[parent[at]];
+                at = parent[at];
+            }
+            at
+        }
+        for &(i, j, _) in self.entries.iter().filter(|(_, _, value)| *value != 0.0) {
+            let (a, b) = (root(&mut parent, self.dofs[i].0), root(&mut parent, self.dofs[j].0));
+            parent[a.max(b)] = a.min(b);
+        }
+        let mut number = vec![None; nodes];
+        let mut part_of = vec![None; nodes];
+        let mut count = 0;
+        for &(node, _) in &self.dofs {
+            let first = root(&mut parent, node);
+            part_of[node] = Some(*number[first].get_or_insert_with(|| {
+                count += 1;
+                count - 1
+            }));
+        }
+        part_of
+    }
+
+    fn part(&mut self, nodes: &[Node], rows: &[usize], notes: &mut Vec<String>) -> Part {
+        let mut own: Vec<usize> = rows.iter().map(|&row| self.dofs[row].0).collect();
+        own.sort_unstable();
+        own.dedup();
+        let place = |node: usize, c: usize| nodes[node].position[c];
+        let mean = |c: usize| own.iter().map(|&node| place(node, c)).sum::<f64>() / own.len() as f64;
+        let centre = [mean(0), mean(1)];
+        let reach = |node: &usize| [0, 1].map(|c| (place(*node, c) - centre[c]).abs());
+        let size = own.iter().flat_map(reach).fold(0.0, f64::max);
+        let mut part = Part { nodes: own, centre, size: if size > 0.0 { size } else { 1.0 }, resisted: Vec::new() };
+        let rigid: Vec<[f64; 3]> = rows.iter().map(|&row| part.moved(nodes, self.dofs[row])).collect();
+        let free = self.free_motions(rows, &rigid);
+        let words = |q: &[f64; 3]| {
+            let names = ["along x", "along y", "round"];
+            let moved = q.iter().zip(names).filter(|(q, _)| q.abs() > 1e-6).map(|(_, name)| name);
+            moved.collect::<Vec<_>>().join(" and ")
+        };
+        let near = free.iter().filter(|(_, share)| *share > DIGITS);
+        let mut at = nodes[part.nodes[0]].id.clone();
+        if part.nodes.len() > 1 {
+            at = format!("{at} and what hangs on it");
+        }
+        for (q, share) in near.clone() {
+            let what =
+                format!("the stiffness resists the rigid motion {} of {at} with {share:.1e} of its terms", words(q));
+            notes.push(if *share <= CONDENSED && rows.len() <= MOST_ROWS {
+                format!("{what}: rounding of its digits, taken as free")
+            } else {
+                format!("{what}, little but more than its digits leave: taken as it is; if nothing holds the body, give more digits")
+            });
+        }
+        let free: Vec<([f64; 3], f64)> = free.into_iter().filter(|(_, share)| *share <= CONDENSED).collect();
+        if free.iter().any(|(_, share)| *share > DIGITS) {
+            if rows.len() <= MOST_ROWS {
+                let motions: Vec<Vec<f64>> =
+                    free.iter().map(|(q, _)| rigid.iter().map(|v| dot(v, q)).collect()).collect();
+                self.take_out(rows, &motions);
+            } else {
+                let exact: Vec<[f64; 3]> = free.iter().filter(|(_, s)| *s <= DIGITS).map(|(q, _)| *q).collect();
+                part.resisted = complement(&exact);
+                return part;
+            }
+        }
+        part.resisted = complement(&free.iter().map(|(q, _)| *q).collect::<Vec<_>>());
+        part
+    }
+
+    /// Rigid motions that K resists by less than 1e-9 of its terms, each with the share it does: the largest
+    /// |(K u)_i| / Σ |K_ij||u_j|.
+    fn free_motions(&self, rows: &[usize], rigid: &[[f64; 3]]) -> Vec<([f64; 3], f64)> {
+        let mut local = vec![usize::MAX; self.dofs.len()];
+        for (at, &row) in rows.iter().enumerate() {
+            local[row] = at;
+        }
+        let mut diagonal = vec![0.0_f64; rows.len()];
+        let mut own = Vec::new();
+        for &(i, j, value) in self.entries.iter().filter(|(i, ..)| local[*i] != usize::MAX) {
+            let (i, j) = (local[i], local[j]);
+            own.push((i, j, value));
+            if i != j {
+                own.push((j, i, value));
+            } else {
+                diagonal[i] = value;
+            }
+        }
+        // (K V)_i and Σ |K_ij||V_j| by rows scaled to unit diagonal.
+        let mut forces = DMatrix::<f64>::zeros(rows.len() + 3, 3);
+        let mut largest = 0.0_f64;
+        let mut sums = vec![0.0_f64; rows.len()];
+        for &(i, j, value) in &own {
+            if diagonal[i] > 0.0 {
+                let root = diagonal[i].sqrt();
+                for c in 0..3 {
+                    forces[(i, c)] += value * rigid[j][c] / root;
+                }
+                sums[i] += (value / root).abs() * rigid[j].iter().map(|v| v.abs()).sum::<f64>();
+                largest = largest.max(sums[i]);
+            }
+        }
+        if largest > 0.0 {
+            forces /= largest;
+        }
+        // Motions that move no displacement at all are none.
+        let moves = DMatrix::from_fn(rows.len(), 3, |i, c| rigid[i][c]);
+        for (k, idle) in small_directions(moves, NEARLY).into_iter().enumerate() {
+            for c in 0..3 {
+                forces[(rows.len() + k, c)] = idle[c];
+            }
+        }
+        let share = |q: &[f64; 3]| {
+            let u: Vec<f64> = rigid.iter().map(|v| dot(v, q)).collect();
+            let (mut force, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+            for &(i, j, value) in &own {
+                force[i] += value * u[j];
+                terms[i] += (value * u[j]).abs();
+            }
+            let shares = std::iter::zip(&force, &terms).filter(|(force, _)| **force != 0.0).map(|(f, t)| (f / t).abs());
+            shares.fold(0.0, f64::max)
+        };
+        let candidates = echelon(small_directions(forces, NEARLY));
+        candidates.into_iter().map(|q| (q, share(&q))).collect()
+    }
+
+    /// Makes K of these rows cost exactly nothing in the motions: (1 − Q Qᵀ) S (1 − Q Qᵀ) with S = K at unit diagonal.
+    fn take_out(&mut self, rows: &[usize], motions: &[Vec<f64>]) {
+        let n = rows.len();
+        let mut local = vec![usize::MAX; self.dofs.len()];
+        for (at, &row) in rows.iter().enumerate() {
+            local[row] = at;
+        }
+        let mut k = DMatrix::<f64>::zeros(n, n);
+        for &(i, j, value) in self.entries.iter().filter(|(i, ..)| local[*i] != usize::MAX) {
+            k[(local[i], local[j])] = value;
+            k[(local[j], local[i])] = value;
+        }
+        let scale: Vec<f64> = k.diagonal().iter().map(|d| if *d > 0.0 { d.sqrt() } else { 1.0 }).collect();
+        let mut s = DMatrix::from_fn(n, n, |i, j| k[(i, j)] / scale[i] / scale[j]);
+        let q = DMatrix::from_fn(n, motions.len(), |i, m| motions[m][i] * scale[i]).qr().q();
+        // Twice: what the first pass leaves is rounding of large terms, what the second leaves of small ones.
+        for _ in 0..2 {
+            let y = &s * &q;
+            let y = &y - &q * (q.transpose() * &y) * 0.5;
+            s -= &q * y.transpose() + &y * q.transpose();
+        }
+        self.entries.retain(|(i, ..)| local[*i] == usize::MAX);
+        for j in 0..n {
+            for i in j..n {
+                let value = 0.5 * (s[(i, j)] + s[(j, i)]) * scale[i] * scale[j];
+                if value != 0.0 {
+                    let (a, b) = (rows[i].max(rows[j]), rows[i].min(rows[j]));
+                    self.entries.push((a, b, value));
+                }
+            }
+        }
+    }
+}
+
+impl Part {
+    /// What the three rigid motions do to a displacement.
+    fn moved(&self, nodes: &[Node], (node, component): (usize, Component)) -> [f64; 3] {
+        let arm = [0, 1].map(|c| (nodes[node].position[c] - self.centre[c]) / self.size);
+        match component {
+            Component::X => [1.0, 0.0, -arm[1]],
+            Component::Y => [0.0, 1.0, arm[0]],
+            Component::R => [0.0, 0.0, 1.0 / self.size],
+        }
+    }
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Directions q with |A q| ≤ limit for a matrix of three columns.
+fn small_directions(a: DMatrix<f64>, limit: f64) -> Vec<[f64; 3]> {
+    let a = if a.nrows() < 3 { a.resize_vertically(3, 0.0) } else { a };
+    let svd = a.svd(false, true);
+    let Some(v) = svd.v_t else { return Vec::new() };
+    let small = svd.singular_values.iter().zip(v.row_iter()).filter(|(sigma, _)| **sigma <= limit);
+    small.map(|(_, v)| [v[0], v[1], v[2]]).collect()
+}
+
+/// The same span by simple vectors: each has a leading one where the others are 0.
+fn echelon(mut basis: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+    let mut done = 0;
+    for c in 0..3 {
+        let Some(best) = (done..basis.len()).max_by(|&a, &b| basis[a][c].abs().total_cmp(&basis[b][c].abs())) else {
+            break;
+        };
+        if basis[best][c].abs() < 1e-6 {
+            continue;
+        }
+        basis.swap(done, best);
+        let lead = basis[done].map(|q| q / basis[done][c]);
+        basis[done] = lead;
+        for (i, q) in basis.iter_mut().enumerate().filter(|(i, _)| *i != done) {
+            let factor = q[c];
+            debug_assert!(i != done);
+            *q = [0, 1, 2].map(|k| q[k] - factor * lead[k]);
+        }
+        done += 1;
+    }
+    // Rounding of unit vectors.
+    basis.into_iter().map(|q| q.map(|q| if q.abs() < 1e-14 { 0.0 } else { q })).collect()
+}
+
+/// Orthonormal vectors that span what is orthogonal to `motions`.
+fn complement(motions: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut basis: Vec<[f64; 3]> = Vec::new();
+    let units = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for vector in motions.iter().chain(&units) {
+        let mut rest = *vector;
+        let before = dot(&rest, &rest).sqrt();
+        for _ in 0..2 {
+            for one in &basis {
+                let share = dot(one, &rest);
+                rest = [0, 1, 2].map(|k| rest[k] - share * one[k]);
+            }
+        }
+        let left = dot(&rest, &rest).sqrt();
+        if left > 1e-9 * before {
+            basis.push(rest.map(|q| q / left));
+        }
+    }
+    basis.split_off(motions.len().min(basis.len()))
+}
