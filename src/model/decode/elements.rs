@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::bars::{BarOutline, bar, divide};
+use super::mesh_elements;
 use super::meshes::{self, MeshOutline};
 use super::plates::plate;
 use super::reader::{Cursor, Fields};
@@ -37,7 +38,7 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
     }
     let place = |index: usize| -> Arc<str> { format!("meshes[{index}]").into() };
     for (index, mesh) in meshes.iter().enumerate() {
-        meshes::append_nodes(builder, mesh, &place(index));
+        mesh_elements::append_nodes(builder, mesh, &place(index));
     }
     for (index, bar) in bars.into_iter().enumerate() {
         divide(builder, bar, format!("bars[{index}]").into());
@@ -52,7 +53,7 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
         builder.places.elements.resize(builder.structure.elements.len(), place);
     }
     for (index, mesh) in meshes.iter().enumerate() {
-        meshes::append_elements(builder, mesh, &place(index));
+        mesh_elements::append_elements(builder, mesh, &place(index));
     }
     for (list, read) in [("triangles", triangle as ReadElement), ("quads", quad)] {
         for (index, cursor) in entries(fields, list).into_iter().enumerate() {

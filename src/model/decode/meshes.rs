@@ -1,53 +1,48 @@
-//! `meshes`: files of other programs, which of their groups are what, and the nodes and elements they bring.
+//! `meshes`: files of other programs, and which of their groups are what.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::bars::{bar_kind, section_of};
 use super::elements::{id_of, material_of};
-use super::mesh_names::MeshPart;
 use super::plates::{membrane, modes};
 use super::reader::{Cursor, Entry, Fields};
 use super::structure::Builder;
 use super::words::{counted, did_you_mean, listed, quoted};
-use crate::model::edge::Sides;
-use crate::model::mesh::chain::{chains, oriented};
 use crate::model::mesh::{self, Group, LineType, Members, Mesh, Shape};
-use crate::model::structure::{Bar, Body, Element, ElementKind, MeshElements, Node, Plane};
+use crate::model::structure::{ElementKind, Plane};
 
 /// The key for elements in no group.
 const REST: &str = "*";
 
 /// What a group of areas is made of.
 #[derive(Clone, Copy, PartialEq)]
-struct Area {
-    thickness: f64,
-    material: usize,
-    plane: Plane,
-    incompatible: bool,
+pub struct Area {
+    pub thickness: f64,
+    pub material: usize,
+    pub plane: Plane,
+    pub incompatible: bool,
 }
 
 /// A group of lines that are bars.
-struct Lines<'d> {
-    group: String,
-    material: usize,
-    section: &'d str,
+pub struct Lines<'d> {
+    pub group: String,
+    pub material: usize,
+    pub section: &'d str,
     /// Index and kind of each line.
-    lines: Vec<(u32, ElementKind)>,
+    pub lines: Vec<(u32, ElementKind)>,
 }
 
 /// A mesh before its nodes are known.
 pub struct MeshOutline<'d> {
     pub cursor: Cursor<'d>,
-    id: &'d str,
-    mesh: Arc<Mesh>,
-    scale: f64,
+    pub id: &'d str,
+    pub mesh: Arc<Mesh>,
+    pub scale: f64,
     /// For each element of the file what it is made of; `None` for lines and what is not used.
-    areas: Vec<Option<Area>>,
+    pub areas: Vec<Option<Area>>,
     /// Groups of lines that are bars.
-    bars: Vec<Lines<'d>>,
+    pub bars: Vec<Lines<'d>>,
 }
 
 impl MeshOutline<'_> {
@@ -61,7 +56,8 @@ impl MeshOutline<'_> {
         self.used_nodes().iter().filter(|used| **used).count() as f64
     }
 
-    fn used_nodes(&self) -> Vec<bool> {
+    /// Which nodes of the file it will have.
+    pub fn used_nodes(&self) -> Vec<bool> {
         let mut used = vec![false; self.mesh.nodes.len()];
         for element in self.used_elements() {
             for node in &self.mesh.elements[element as usize].nodes {
@@ -373,131 +369,4 @@ fn lines_of<'d>(
         kinds.push((index, bar_kind(at, section, data, is_frame, [false; 2])?));
     }
     Some(Lines { group: group.name.clone(), material, section, lines: kinds })
-}
-
-/// Appends the nodes `ID/TAG` that are used.
-pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
-    let mut node_of = vec![None; outline.mesh.nodes.len()];
-    for ((node, used), index) in outline.mesh.nodes.iter().zip(outline.used_nodes()).zip(&mut node_of) {
-        if used {
-            let [x, y, _] = node.position;
-            *index = Some(builder.structure.nodes.len());
-            let id = format!("{}/{}", outline.id, node.tag);
-            builder.structure.nodes.push(Node { id, position: [outline.scale * x, outline.scale * y] });
-        }
-    }
-    builder.places.nodes.resize(builder.structure.nodes.len(), place.clone());
-    let part = MeshPart::new(outline.id, Arc::clone(&outline.mesh), node_of);
-    builder.meshes.entry(outline.id).or_insert(part);
-}
-
-/// Appends bars and areas.
-pub fn append_elements<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
-    for bars in &outline.bars {
-        append_bars(builder, outline, bars);
-    }
-    let Some(part) = builder.meshes.get_mut(outline.id) else { return };
-    let elements = &mut builder.structure.elements;
-    let first = elements.len();
-    let mut tags = Vec::new();
-    for (index, area) in outline.areas.iter().enumerate() {
-        let Some(area) = area else { continue };
-        let element = &outline.mesh.elements[index];
-        let incompatible = area.incompatible && element.shape == Shape::Quad4;
-        let kind = ElementKind::Membrane { thickness: area.thickness, plane: area.plane, incompatible };
-        part.element_of[index] = Some(elements.len());
-        // Nodes of used elements are there.
-        let nodes = element.nodes.iter().filter_map(|node| part.node_of[*node as usize]).collect();
-        elements.push(Element { nodes, material: area.material, kind });
-        tags.push(element.tag);
-    }
-    let range = first..elements.len();
-    let bodies = bodies(part, &elements[range.clone()], first, builder.structure.nodes.len());
-    let sides = Sides::of(&elements[range.clone()]).all();
-    builder.structure.meshes.push(MeshElements { id: outline.id.to_owned(), elements: range, tags, bodies, sides });
-    builder.notes.extend(outline.mesh.notes.iter().map(|note| format!("{}: {note}", outline.id)));
-    builder.places.elements.resize(builder.structure.elements.len(), place.clone());
-}
-
-/// The two nodes of a line, as indices into the mesh.
-type Ends = [usize; 2];
-/// A line as a bar runs along it, with its index in the mesh and what it is made of.
-type Along<'l> = (Ends, &'l (u32, ElementKind));
-
-/// A chain of lines is one bar `ID.GROUP` from left to right; otherwise every line is a bar `ID#TAG`.
-fn append_bars<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, group: &Lines<'d>) {
-    let mesh = &outline.mesh;
-    let lines: Vec<Along> = group
-        .lines
-        .iter()
-        .map(|line| {
-            let nodes = &mesh.elements[line.0 as usize].nodes;
-            ([nodes[0] as usize, nodes[1] as usize], line)
-        })
-        .collect();
-    let segments: Vec<Ends> = lines.iter().map(|(ends, _)| *ends).collect();
-    let chain = chains(&segments).ok().and_then(|found| <[Vec<usize>; 1]>::try_from(found).ok());
-    let bars: Vec<(String, Vec<Along>)> = match chain {
-        Some([chain]) => {
-            let of: HashMap<Ends, &(u32, ElementKind)> =
-                lines.iter().flat_map(|&([a, b], line)| [([a, b], line), ([b, a], line)]).collect();
-            let chain = oriented(chain, &|node| mesh.position(node as u32));
-            let along = chain.windows(2).filter_map(|ends| Some(([ends[0], ends[1]], *of.get(ends)?)));
-            vec![(format!("{}.{}", outline.id, group.group), along.collect())]
-        }
-        None => {
-            let name = |index: u32| format!("{}#{}", outline.id, mesh.elements[index as usize].tag);
-            lines.iter().map(|&(ends, line)| (name(line.0), vec![(ends, line)])).collect()
-        }
-    };
-    let Some(part) = builder.meshes.get_mut(outline.id) else { return };
-    for (id, along) in bars {
-        let first = builder.structure.elements.len();
-        for (ends, (index, kind)) in along {
-            part.element_of[*index as usize] = Some(builder.structure.elements.len());
-            let nodes = ends.iter().filter_map(|node| part.node_of[*node]).collect();
-            let element = Element { nodes, material: group.material, kind: kind.clone() };
-            builder.structure.elements.push(element);
-        }
-        builder.bars.insert(Cow::Owned(id.clone()), builder.structure.bars.len());
-        builder.bar_sections.push(group.section);
-        builder.structure.bars.push(Bar { id, elements: first..builder.structure.elements.len() });
-    }
-}
-
-/// The parts of a mesh that hang together, with names: of the mesh, of a group that is just this part, or of a node.
-fn bodies(part: &MeshPart, elements: &[Element], first: usize, nodes: usize) -> Vec<Body> {
-    let mut parent: Vec<usize> = (0..nodes).collect();
-    fn root(parent: &mut [usize], mut node: usize) -> usize {
-        while parent[node] != node {
-            parent[node] = parent[parent[node]];
-            node = parent[node];
-        }
-        node
-    }
-    for element in elements {
-        let one = root(&mut parent, element.nodes[0]);
-        for node in &element.nodes[1..] {
-            let other = root(&mut parent, *node);
-            parent[other] = one;
-        }
-    }
-    let mut bodies: Vec<Body> = Vec::new();
-    let mut body_of: HashMap<usize, usize> = HashMap::new();
-    for (index, element) in elements.iter().enumerate() {
-        let body = *body_of.entry(root(&mut parent, element.nodes[0])).or_insert_with(|| {
-            bodies.push(Body { name: String::new(), elements: Vec::new() });
-            bodies.len() - 1
-        });
-        bodies[body].elements.push(first + index);
-    }
-    let single = bodies.len() == 1;
-    for body in &mut bodies {
-        body.name = match part.group_of_elements(&body.elements) {
-            _ if single => part.id().to_owned(),
-            Some(group) => format!("{}.{group}", part.id()),
-            None => part.element_name(body.elements[0]),
-        };
-    }
-    bodies
 }

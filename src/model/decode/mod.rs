@@ -12,6 +12,7 @@ mod lcp;
 mod loads;
 mod matrix_file;
 mod matrix_market;
+mod mesh_elements;
 mod mesh_names;
 mod meshes;
 mod numbers;

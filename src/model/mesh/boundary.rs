@@ -50,6 +50,8 @@ pub struct Facing {
 pub struct Boundary<M> {
     mesh: M,
     sides: Sides,
+    /// The sides of one element only.
+    outer: OnceCell<Vec<EdgeSide>>,
     facing: OnceCell<Vec<Facing>>,
 }
 
@@ -65,7 +67,11 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
             let element = &mesh.elements[index as usize];
             sides.add(index as usize, element.shape.corners(), &usizes(&element.nodes));
         }
-        Boundary { mesh, sides, facing: OnceCell::new() }
+        Boundary { mesh, sides, outer: OnceCell::new(), facing: OnceCell::new() }
+    }
+
+    fn outer(&self) -> &[EdgeSide] {
+        self.outer.get_or_init(|| self.sides.boundary())
     }
 
     fn position(&self, node: usize) -> [f64; 2] {
@@ -176,7 +182,7 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
     /// Corners of the boundary sides with all their nodes in a set.
     fn of_nodes(&self, nodes: &[u32]) -> Result<Vec<[usize; 2]>, EdgeFault> {
         let set: HashSet<usize> = nodes.iter().map(|node| *node as usize).collect();
-        let boundary = self.sides.boundary();
+        let boundary = self.outer();
         let half = boundary.iter().filter_map(|side| {
             let corners = side.ends.iter().filter(|end| set.contains(end)).count();
             side.middle.filter(|middle| set.contains(middle) && corners < 2)
@@ -247,7 +253,7 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
 
     /// Rings of boundary sides, each in the sense of its element, that have their body inside.
     fn outer_rings(&self) -> Vec<Vec<EdgeSide>> {
-        let boundary = self.sides.boundary();
+        let boundary = self.outer();
         let mut from: HashMap<usize, Vec<usize>> = HashMap::with_capacity(boundary.len());
         for (index, side) in boundary.iter().enumerate() {
             from.entry(side.ends[0]).or_default().push(index);
