@@ -9,6 +9,7 @@ use std::io::{self, Write};
 use crate::answer::record::{PairState, State};
 use crate::model::structure::{Element, ElementKind};
 use crate::path::quantity::Field;
+use crate::text::printable::xml;
 
 /// Number of a state in the array `contact_state`.
 pub fn state_number(state: State) -> i32 {
@@ -180,12 +181,7 @@ impl Mesh<'_> {
 pub fn collection(out: &mut dyn Write, states: &[(f64, String)]) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>")?;
     for (time, file) in states {
-        writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{}\"/>", escaped(file))?;
+        writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{}\"/>", xml(file))?;
     }
     writeln!(out, "</Collection>\n</VTKFile>")
-}
-
-/// Text within XML, also within quotes.
-pub fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -42,6 +42,23 @@ pub fn json(text: String) -> String {
     escaped
 }
 
+/// Text within XML or HTML, also between quotes; what steers a terminal, or what XML cannot hold, is `?`.
+pub fn xml(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\n' | '\t' => escaped.push(' '),
+            c if is_unprintable(c) || matches!(c, '\u{fffe}' | '\u{ffff}') => escaped.push(STAND_IN),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
 /// Length of a colour code at the start of `text`: `ESC [ … m` with the 16 colours, bold and reset alone.
 fn colour_code(text: &str) -> Option<usize> {
     let body = text.strip_prefix("\x1b[")?;

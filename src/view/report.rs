@@ -1,7 +1,7 @@
 //! A report as a list of blocks, written as Markdown or as one file of HTML.
 
-use super::svg::escaped;
 use super::table::{Align, Table};
+use crate::text::printable::xml as escaped;
 
 /// Longer tables show so many rows of their beginning and of their end.
 const ENDS: usize = 20;

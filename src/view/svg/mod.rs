@@ -7,6 +7,8 @@ pub mod structure;
 
 use std::fmt::Write;
 
+use crate::text::printable::xml as escaped;
+
 /// Width of every figure, in px.
 pub const WIDTH: f64 = 760.0;
 /// Left and right of everything.
@@ -22,6 +24,9 @@ const FAINT: &str = "#c8c8c8";
 const FACE: &str = "#eef0f2";
 /// Of curves, one after the other.
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+
+/// Of a text that may stand over lines: they end before its letters.
+const HALO: &str = "paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"3\" stroke-linejoin=\"round\"";
 
 /// What stands over a figure.
 #[derive(Clone, Debug, Default)]
@@ -59,24 +64,6 @@ struct Drawing {
     y: f64,
     /// Boxes of the texts written: left, top, right, bottom.
     taken: Vec<[f64; 4]>,
-}
-
-/// Text within XML.
-pub fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\n' | '\t' => escaped.push(' '),
-            // XML has no way to write them
-            c if crate::text::printable::is_unprintable(c) || matches!(c, '\u{fffe}' | '\u{ffff}') => escaped.push('?'),
-            c => escaped.push(c),
-        }
-    }
-    escaped
 }
 
 /// A coordinate with two digits behind the point.
@@ -156,7 +143,7 @@ impl Drawing {
         let inside = own[0] >= 2.0 && own[2] <= WIDTH - 2.0;
         let free = inside && !self.taken.iter().any(|other| overlap(&own, other));
         if free {
-            self.text(at, text, SMALL, anchor, colour, "");
+            self.text(at, text, SMALL, anchor, colour, HALO);
         }
         free
     }

@@ -10,6 +10,8 @@ use crate::view::plot::structure::support_word;
 const HEIGHT: f64 = 420.0;
 /// Room around the structure for arrows, signs and names.
 pub(super) const AROUND: f64 = 46.0;
+/// The names of more pairs than this hide what they name.
+const MOST_NAMES: usize = 16;
 /// Grid lines closer than this are left out.
 const GRID: f64 = 5.0;
 
@@ -179,7 +181,7 @@ fn sign_radius(scene: &Scene, place: &Place) -> f64 {
     };
     let pairs = closest(scene.pairs.iter().map(|pair| place.at(pair.place)).collect());
     let supports = closest(scene.supports.iter().map(|(at, _)| place.at(*at)).collect());
-    (0.42 * pairs.min(supports)).clamp(2.0, 5.5)
+    (0.42 * pairs.min(supports)).clamp(3.0, 5.5)
 }
 
 /// An arrow for each load, as long as the root of its share of the largest: from outside to its place, or from there
@@ -219,10 +221,10 @@ fn name_pairs(drawing: &mut Drawing, scene: &Scene, place: &Place) {
         places.into_iter().any(|(at, anchor)| drawing.text_if_free(at, &mark.id, anchor, GREY))
     };
     let mut named = drawing.clone();
-    if (0..scene.pairs.len()).all(|index| name(&mut named, index)) {
+    if scene.pairs.len() <= MOST_NAMES && (0..scene.pairs.len()).all(|index| name(&mut named, index)) {
         *drawing = named;
     } else {
         name(drawing, 0);
-        name(drawing, scene.pairs.len() - 1);
+        name(drawing, scene.pairs.len() - 1); // there is one: of none all have room
     }
 }
