@@ -353,8 +353,11 @@ impl State {
 
     /// The plots that make sense now; never empty.
     pub fn plots(&self) -> Vec<Plot> {
-        let mut plots = match self.shown.pairs.is_empty() {
+        let pairs = &self.shown.pairs;
+        let mut plots = match pairs.is_empty() {
             true => vec![Plot::P],
+            // Where nothing rubs there are neither friction forces nor slips to look at.
+            false if pairs.iter().all(|pair| pair.law == "frictionless") => vec![Plot::Pressure, Plot::Gap, Plot::P],
             false => vec![Plot::Slip, Plot::Force, Plot::Pressure, Plot::Gap, Plot::P],
         };
         let members = self.shown.answer().and_then(|answer| answer.members.as_ref());

@@ -238,6 +238,15 @@ fn every_plot() {
 }
 
 #[test]
+fn without_friction_pressures_are_plotted_first() {
+    let mut rig = Rig::new("footing", 80, 24);
+    rig.press(&["5", "z"]);
+    assert!(rig.screen().contains("Pressing force x_n"), "{}", rig.screen());
+    rig.press(&["p", "p"]);
+    assert_eq!(rig.state.plot, Plot::P);
+}
+
+#[test]
 fn before_and_after() {
     let mut rig = Rig::new("beam", 80, 24);
     rig.press(&["down", "down", "[", "5"]);
