@@ -16,6 +16,7 @@ mod klarbring;
 mod loads;
 mod method;
 mod plates;
+mod press_fit;
 mod random_structures;
 mod repeated_joints;
 mod rigid;
