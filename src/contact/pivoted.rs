@@ -130,7 +130,11 @@ impl PivotedCholesky {
             }
             z -= self.solve(&residual);
         }
-        z
+        // An entry that is 0 in truth is rounding, and the only term of some row.
+        let size = |z: &DVector<f64>, i: usize| z[i].abs() * self.scale[i];
+        let largest = (0..z.len()).map(|i| size(&z, i)).fold(0.0, f64::max);
+        let simple = DVector::from_fn(z.len(), |i, _| if size(&z, i) <= f64::EPSILON * largest { 0.0 } else { z[i] });
+        if is_null(matrix, &simple) { simple } else { z }
     }
 }
 
@@ -211,6 +215,17 @@ mod tests {
         rounded[(0, 0)] *= 1.0 + 1e-12;
         let null = PivotedCholesky::new(&rounded).null_space(&rounded);
         assert_eq!((null.exact.len(), null.near.len()), (0, 1));
+    }
+
+    /// z = (0, 1, 0, 1): what elimination leaves in the first and third entry is all there is in the first row.
+    #[test]
+    fn a_motion_that_leaves_joints_at_rest_is_found() {
+        let rows = [[2.0, 0.0, -1.0, 0.0], [0.0, 3.0, -5.0, -3.0], [-1.0, -5.0, 9.0, 5.0], [0.0, -3.0, 5.0, 3.0]];
+        let a = DMatrix::from_fn(4, 4, |i, j| rows[i][j]);
+        let null = PivotedCholesky::new(&a).null_space(&a);
+        assert_eq!((null.exact.len(), null.near.len()), (1, 0));
+        let z = &null.exact[0] / null.exact[0][1];
+        assert_eq!(z.as_slice(), [0.0, 1.0, 0.0, 1.0]);
     }
 
     #[test]

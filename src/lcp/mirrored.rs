@@ -83,7 +83,7 @@ impl MirroredLcp {
 
     /// Size of the load: see [`Scale::load`].
     pub fn load_size(&self) -> f64 {
-        self.scale.load.unwrap_or_else(|| self.q.amax())
+        self.scale.load.filter(|load| *load > 0.0).unwrap_or_else(|| self.q.amax())
     }
 
     /// Whether what is left of p is as good as nothing; see [`as_good_as_nothing`].

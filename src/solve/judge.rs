@@ -99,7 +99,8 @@ pub fn run_exact_contact(
     let Some(stiffness) = exact_stiffness(system, watch) else {
         return Run { outcome: Outcome::Interrupted, pivots: PivotLog::default(), point: Point::default() };
     };
-    let problem = whole_lcp_of(&input, &stiffness);
+    let mut problem = whole_lcp_of(&input, &stiffness);
+    problem.scale.load = contact.lcp.scale.load.map(|load| load * contact.force_unit);
     rounded(run_exact(problem, rule, watch), contact.force_unit, contact.length_unit)
 }
 

@@ -204,6 +204,9 @@ impl Prepared {
     }
 
     /// One run under exactly these rules. A ray is classified; nothing is proved of it yet.
+    ///
+    /// What is left of p beside the load is nothing only where the state passes its check without it: where it does not,
+    /// the run ends in the ray that it is.
     pub(super) fn attempt_contact(
         &self,
         system: &ContactSystem,
@@ -212,8 +215,26 @@ impl Prepared {
         rules: Rules,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        let start = Instant::now();
         let contact = contact_lcp(system, numbers, rules.covering)?;
+        let solved = self.run_contact(system, numbers, factors, contact.clone(), rules, watch)?;
+        if !solved.answer.marginal || solved.answer.check.passed {
+            return Ok(solved);
+        }
+        let mut strict = contact;
+        Arc::make_mut(&mut strict.lcp).scale.load = Some(0.0);
+        self.run_contact(system, numbers, factors, strict, rules, watch)
+    }
+
+    fn run_contact(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        contact: ContactLcp,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        let start = Instant::now();
         let rule = contact.tie_rule(rules.tie_break);
         let mut engine = None;
         let mut run = match rules.engine {
