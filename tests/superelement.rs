@@ -363,3 +363,28 @@ fn invalid_superelements() {
     );
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+/// The example scripts write what they say: a beam of two spans with P in each carries 0.3125 · P at its ends and 1.375 · P in the
+/// middle, from K as from R and RF; the pull of 1 stays where it acts.
+#[test]
+fn the_example_scripts() {
+    let folder = folder("python");
+    for script in ["superelement", "contact_system"] {
+        let out = folder.join(format!("{script}.json"));
+        let run =
+            std::process::Command::new("python3").arg("-B").arg(format!("examples/{script}.py")).arg(&out).output();
+        let Ok(run) = run else {
+            println!("no python3 here");
+            return;
+        };
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let text = std::fs::read_to_string(&out).unwrap();
+        let answer = solve(&folder, serde_json::from_str(&text).unwrap());
+        is_answer(&answer);
+        for (pair, expected) in answer.pairs.iter().zip([31.25, 137.5, 31.25]) {
+            close(&pair.id, pair.x_n, expected, 1e-12);
+        }
+        near("x_t", answer.pairs[0].x_t, -1.0, 1e-12, 1.0);
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}
