@@ -196,6 +196,9 @@ struct Replay {
     /// Go on after a command that fails
     #[arg(long)]
     keep_going: bool,
+    /// Say each command before its result
+    #[arg(long)]
+    echo: bool,
 }
 
 #[derive(Args, Debug)]
@@ -585,6 +588,7 @@ fn replay(arguments: &Replay, style: Style, out: &mut dyn Write) -> Result<u8, F
     };
     let errors = Style { color: style.color && io::stderr().is_terminal(), ..style };
     let mut io = Output::new(out, style, format, &watch);
+    io.echo = arguments.echo;
     let ended = script::run(&mut session, &name, &text, arguments.keep_going, &mut io, &mut |error| {
         watch.clear();
         tell(&errors, &error.to_string());

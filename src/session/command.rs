@@ -83,25 +83,27 @@ pub enum Command {
     #[command(after_help = "Example:\n  status")]
     Status,
     /// Show state, forces and slip of the contact pairs, at the pivot chosen by `step`
-    #[command(after_help = "Example:\n  pairs\n  pairs c1 c3\n  pairs joint[0]..joint[4] sort z_t")]
+    #[command(
+        after_help = "Example:\n  pairs\n  pairs c1 c3\n  pairs joint[0]..joint[4] sort z_t\n  pairs c* sort reserve top 3"
+    )]
     Pairs {
-        /// Pairs, or ranges A..B of them, and then `sort KEY`
+        /// Pairs, ranges A..B or patterns with `*`; then `sort KEY` and `top N`
         #[arg(value_name = "PAIRS")]
         words: Vec<String>,
     },
     /// Show the displacements of the nodes, at the pivot chosen by `step`
-    #[command(after_help = "Example:\n  displacements\n  displacements A B")]
+    #[command(after_help = "Example:\n  displacements\n  displacements s1 s3..s5\n  displacements s* sort ux top 3")]
     Displacements {
-        /// Nodes; all of them if none is named
-        #[arg(value_name = "NODE")]
-        nodes: Vec<String>,
+        /// Nodes, ranges A..B or patterns with `*`; then `sort u|ux|uy|rz` and `top N`
+        #[arg(value_name = "NODES")]
+        words: Vec<String>,
     },
     /// Show N, Q, M at the ends of the elements of the bars
-    #[command(after_help = "Example:\n  members\n  members AB")]
+    #[command(after_help = "Example:\n  members\n  members AB\n  members b1..b3 sort M top 2")]
     Members {
-        /// Bar; all of them if none is named
-        #[arg(value_name = "BAR")]
-        bar: Option<String>,
+        /// Bars, ranges A..B or patterns with `*`; then `sort N|Q|M` and `top N`
+        #[arg(value_name = "BARS")]
+        words: Vec<String>,
     },
     /// Show the forces of supports and springs on the structure
     ///

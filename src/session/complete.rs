@@ -11,7 +11,7 @@ use crate::model::scenario::Source;
 
 use super::command;
 use super::expect;
-use super::selection::SORT_KEYS;
+use super::selection::{DISPLACEMENT_KEYS, MEMBER_KEYS, SORT_KEYS};
 use super::{Session, quantities, words};
 
 /// Never more candidates than this are offered.
@@ -367,16 +367,22 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             _ => Vec::new(),
         },
         "PAIR" => plain(&vocabulary.pairs),
-        "PAIRS" => match given.last().map(String::as_str) {
-            Some("sort") => fixed(SORT_KEYS),
-            _ => {
-                let mut all = plain(&vocabulary.pairs);
-                all.push(candidate("sort", "by a column"));
-                all
+        "PAIRS" | "NODES" | "BARS" => {
+            let (names, keys) = match kind {
+                "PAIRS" => (&vocabulary.pairs, SORT_KEYS),
+                "NODES" => (&vocabulary.nodes, DISPLACEMENT_KEYS),
+                _ => (&vocabulary.bars, MEMBER_KEYS),
+            };
+            match given.last().map(String::as_str) {
+                Some("sort") => fixed(keys),
+                Some("top") => Vec::new(),
+                _ => {
+                    let mut all = plain(names);
+                    all.extend([candidate("sort", "by a column"), candidate("top", "the first rows")]);
+                    all
+                }
             }
-        },
-        "NODE" => plain(&vocabulary.nodes),
-        "BAR" => plain(&vocabulary.bars),
+        }
         "STEP" => match given {
             [] => fixed(&["back", "to", "first", "last"]),
             _ => Vec::new(),

@@ -35,6 +35,8 @@ pub struct Output<'a> {
     pub has_screen: bool,
     /// Whether the lines come by themselves: from a script, a pipe, a paste. Nobody looks at what the one before said.
     pub unattended: bool,
+    /// Whether a script says each command before its result.
+    pub echo: bool,
     /// The report of the command that runs, in JSON.
     pub(super) report: Option<Value>,
     /// What the commands answered, with [`Format::Values`].
@@ -57,6 +59,7 @@ impl<'a> Output<'a> {
             line: 0,
             has_screen: false,
             unattended: false,
+            echo: false,
             report: None,
             answers: Vec::new(),
         }

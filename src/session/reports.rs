@@ -5,14 +5,15 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use crate::answer::record::{Answer, PlainSolution, Reaction};
+use crate::answer::diagram::{Diagram, Internal};
+use crate::answer::record::{Answer, MemberForces, NodeDisplacement, PairState, PlainSolution, Reaction};
 use crate::export::json as json_export;
 use crate::model::scenario::Source;
 use crate::view;
 use crate::view::number::{short, with_unit};
 use crate::view::style::{Role, Style};
 
-use super::selection::{SORT_KEYS, distinct, indices, no_such, sort};
+use super::selection::{DISPLACEMENT_KEYS, MEMBER_KEYS, Rows, SORT_KEYS, no_pair, sort};
 use super::{CommandError, Output, Session};
 
 impl Session {
@@ -142,28 +143,21 @@ impl Session {
         if let (Source::Lcp(_), Some(solution)) = (&self.now.scenario.source, self.solution()) {
             return self.report_solution(&solution, io);
         }
-        let (ids, key) = match words.iter().position(|word| word == "sort") {
-            None => (words, None),
-            Some(at) => match &words[at + 1..] {
-                [key] => (&words[..at], Some(key.as_str())),
-                _ => {
-                    return Err(CommandError::Refused(format!("pairs: `sort` takes one of {}", SORT_KEYS.join(", "))));
-                }
-            },
-        };
+        let rows = Rows::read(words, "pairs", SORT_KEYS)?;
         let place = self.history_place();
         let all = self.quantity_pairs();
-        let mut chosen = if ids.is_empty() {
-            all
-        } else {
-            let mut chosen = Vec::new();
-            for index in indices(ids, &all)? {
-                chosen.push(all[index].clone());
+        let ids: Vec<&str> = all.iter().map(|pair| pair.id.as_str()).collect();
+        if let ([], Some(name)) = (&ids[..], rows.names.first()) {
+            return Err(no_pair(name, &all));
+        }
+        let mut chosen: Vec<PairState> =
+            rows.chosen("pair", &ids)?.into_iter().map(|index| all[index].clone()).collect();
+        match rows.sort {
+            Some(key) => {
+                sort(&mut chosen, key);
+                rows.cut(&mut chosen);
             }
-            chosen
-        };
-        if let Some(key) = key {
-            sort(&mut chosen, key)?;
+            None => rows.order(&mut chosen, "z_t", |pair, _| pair.z_t.abs()),
         }
         io.report(
             || json!(chosen),
@@ -211,22 +205,20 @@ impl Session {
         }
     }
 
-    pub(super) fn report_displacements(&self, nodes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    /// `displacements [NODES] [sort KEY] [top N]`.
+    pub(super) fn report_displacements(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let rows = Rows::read(words, "displacements", DISPLACEMENT_KEYS)?;
         let answer = self.need_quantities()?;
         let all = self.quantity_displacements().ok_or_else(|| self.none("displacements", answer))?;
-        let chosen = if nodes.is_empty() {
-            all
-        } else {
-            let by_name: HashMap<&str, usize> = all.iter().enumerate().map(|(i, d)| (d.node.as_str(), i)).collect();
-            let mut chosen = Vec::new();
-            for node in nodes {
-                let index = by_name
-                    .get(node.as_str())
-                    .ok_or_else(|| CommandError::Refused(no_such("node", node, all.iter().map(|d| d.node.as_str()))))?;
-                chosen.push(all[*index].clone());
-            }
-            chosen
-        };
+        let ids: Vec<&str> = all.iter().map(|node| node.node.as_str()).collect();
+        let mut chosen: Vec<NodeDisplacement> =
+            rows.chosen("node", &ids)?.into_iter().map(|index| all[index].clone()).collect();
+        rows.order(&mut chosen, "u", |node, key| match key {
+            "ux" => node.ux.abs(),
+            "uy" => node.uy.abs(),
+            "rz" => node.rz.abs(),
+            _ => node.ux.hypot(node.uy),
+        });
         io.report(
             || json!(chosen),
             |out, style| {
@@ -251,29 +243,29 @@ impl Session {
         })
     }
 
-    pub(super) fn report_members(&self, bar: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    /// `members [BARS] [sort KEY] [top N]`.
+    pub(super) fn report_members(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let rows = Rows::read(words, "members", MEMBER_KEYS)?;
         let answer = self.need_quantities()?;
-        let members = answer.members.as_ref().ok_or_else(|| self.none("member forces", answer))?;
-        if let Some(bar) = bar
-            && !members.iter().any(|member| member.bar == bar)
-        {
-            return Err(CommandError::Refused(no_such(
-                "bar",
-                bar,
-                distinct(members.iter().map(|member| member.bar.as_str())).into_iter(),
-            )));
-        }
+        let all = answer.members.as_ref().ok_or_else(|| self.none("member forces", answer))?;
+        let bars: Vec<&str> = all.iter().map(|member| member.bar.as_str()).collect();
+        let mut chosen: Vec<MemberForces> =
+            rows.chosen("bar", &bars)?.into_iter().map(|index| all[index].clone()).collect();
+        rows.order(&mut chosen, "M", |member, key| {
+            let which = Internal::ALL.into_iter().find(|which| which.symbol() == key);
+            let extremes = which.zip(Diagram::of_element(member)).map(|(which, diagram)| diagram.extremes(which));
+            extremes.map_or(0.0, |ends| ends.iter().fold(0.0, |size, place| size.max(place.value.abs())))
+        });
         io.report(
-            || {
-                members
-                    .iter()
-                    .filter(|member| bar.is_none_or(|bar| member.bar == bar))
-                    .map(json_export::member)
-                    .collect()
-            },
+            || chosen.iter().map(json_export::member).collect(),
             |out, style| {
                 self.write_place(out, style)?;
-                view::members::write(out, members, bar, &self.now.scenario.units, style)
+                // The extremes of a whole bar are told where only that is shown.
+                let bar = match rows {
+                    Rows { names: [bar], top: None, .. } => bars.iter().find(|known| *known == bar).copied(),
+                    _ => None,
+                };
+                view::members::write(out, &chosen, bar, &self.now.scenario.units, style)
             },
         )?;
         Ok(())

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::command::{self, Command};
-use super::{CommandError, Next, Output, Session, load, words};
+use super::{CommandError, Format, Next, Output, Session, load, words};
+use crate::view::style::Role;
 
 /// Scripts within scripts, at most: a script that sources itself ends here.
 const DEEPEST: usize = 16;
@@ -61,6 +62,10 @@ pub fn run(
     let unattended = std::mem::replace(&mut io.unattended, true);
     for (index, (line, command)) in commands.iter().enumerate() {
         io.line = *line;
+        if io.echo && io.format == Format::Text {
+            let said = io.style.paint(Role::Accent, &io.style.text(&format!("> {command}")));
+            writeln!(io.out, "{said}")?;
+        }
         let result =
             if command.len() > LONGEST { Err(session.refuse_long_line(*line)) } else { session.run(command, io) };
         match result {
