@@ -47,13 +47,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
             return Ok(Ended::with(signals.status()));
         }
         let line = match waiting.pop_front() {
-            Some(line) => {
-                // what was pasted stands above all results: each says which line it belongs to
-                if !line.trim().is_empty() {
-                    writeln!(io::stdout(), "{prompt_colour}{}", printable::line(&line))?;
-                }
-                line
-            }
+            Some(line) => line,
             None => {
                 pasted = false;
                 if let Some(helper) = editor.helper_mut() {
