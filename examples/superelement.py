@@ -2,7 +2,7 @@
 """A superelement for stickslip from the stiffness and the loads of another program.
 
     from superelement import write
-    write("frame.json", K, loads={"weight": F}, nodes={"A": (0, 0)}, dofs=[("A", "x"), …], contacts=[…])
+    write("frame.json", K, {"weight": F}, nodes={"A": (0, 0)}, dofs=[("A", "x"), …], contacts=[…])
 
 K may be a scipy sparse matrix, a numpy array or a list of rows; a load one number for each dof. Files K.mtx and CASE.mtx are
 written beside the scenario. `from_pynite` takes K and F from a PyNite model in the x-y plane. Run without arguments it
@@ -41,13 +41,13 @@ def write_column(path, values):
     pathlib.Path(path).write_text("\n".join(head + lines) + "\n")
 
 
-def write(path, stiffness, loads, nodes, dofs, **rest):
-    """Writes the scenario `path` and its matrices beside it; `rest` holds contacts, supports, parameters and the like."""
+def write(path, stiffness, forces, nodes, dofs, **rest):
+    """Writes the scenario `path` and its matrices beside it; `rest` holds contacts, supports, further loads and the like."""
     path = pathlib.Path(path)
     file = path.stem + "-K.mtx"
     write_matrix(path.with_name(file), stiffness, len(dofs))
     cases = {}
-    for name, values in loads.items():
+    for name, values in forces.items():
         cases[name] = {"file": f"{path.stem}-{name}.mtx"}
         write_column(path.with_name(cases[name]["file"]), values)
     scenario = {
