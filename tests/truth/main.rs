@@ -208,3 +208,31 @@ fn the_field() {
     let number = |name: &str, other: u64| std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(other);
     assert_truth(&run(number("STICKSLIP_TRUTH", 20_000) as usize, number("STICKSLIP_TRUTH_SEED", 12)));
 }
+
+/// Kinds that a scale common to all rows, or rounding in a motion that leaves joints at rest, left without a verdict.
+#[test]
+fn what_has_no_answer_is_proved_to_have_none_at_any_scale() {
+    let system = |stiffness: [[f64; 4]; 4], load: [f64; 4], cohesion: f64| {
+        json!({ "contact_system": {
+            "pairs": ["c1", "c2"], "stiffness": stiffness, "loads": { "load": { "vector": load } },
+            "friction": [0, 0], "cohesion": [cohesion, 0] } })
+    };
+    let nothing = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0; 4], [0.0; 4]];
+    let at_rest = [[2.0, 0.0, -1.0, 0.0], [0.0, 3.0, -5.0, -3.0], [-1.0, -5.0, 9.0, 5.0], [0.0, -3.0, 5.0, 3.0]];
+    let problems = [
+        // z_1 ≥ 1 keeps w_2 ≥ 0, and then w_1 > 0 with z_1 > 0.
+        json!({ "lcp": { "M": [[1e11, 0], [1e-9, 0]], "q": [2e11, -1e-9] } }),
+        // f = 0 takes nothing of the tangential load, 2^-40.
+        system(nothing, [2.0, 2.0, 2f64.powi(-40), 0.0], 0.0),
+        // R (0, 1, 0, 1) = 0, and the load −2 · 1 − 1 · 1 < 0 drives pair c2 apart.
+        system(at_rest, [1.0, -2.0, 1.0, -1.0], 0.5),
+    ];
+    for problem in problems {
+        let loaded = stickslip::model::load::load_text("test", &common::scenario_text(problem.clone()), None);
+        let loaded = loaded.unwrap_or_else(|problems| panic!("{problems}"));
+        let prepared = stickslip::solve::prepare(&loaded, &Quiet).expect("sound");
+        let solved = prepared.solve(&loaded, &loaded.parameter_values(), Rules::default(), &Quiet).expect("solved");
+        let verdict = solved.answer.ray.as_ref().and_then(|ray| ray.verdict);
+        assert!(matches!(verdict, Some(Verdict::Certified | Verdict::Proved)), "{problem}: {:?}", solved.answer);
+    }
+}
