@@ -4,7 +4,7 @@
 //!   x_B = value + A x_N          N rows, N + 1 columns
 //! ```
 //! A pivot on (r, c) zeroes row r and column c and then adds u vᵀ with u_r = 1, v_c = 1/pivot: no cancellation
-//! (method §5 (b)); how such steps are collected and multiplied out is the matter of [`super::updated_matrix`].
+//! (method §5); how such steps are collected and multiplied out is the matter of [`super::updated_matrix`].
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,5 +1,5 @@
 //! A matrix under elimination steps that wait: A = T + U V, the steps' columns U kept, their multipliers V found
-//! only when somebody asks for a column (method §5 (b)).
+//! only when somebody asks for a column (method §5).
 //!
 //! A step clears a row or a column of A or both and then adds u vᵀ. v is a combination of a few rows of A as they
 //! stood before the step; so the multiplier of step k in column j follows from the entries of T in those rows and
