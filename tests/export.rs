@@ -364,7 +364,7 @@ fn a_picture_of_the_structure_has_a_legend_of_what_it_shows() {
     for word in ["stick", "slip+", "load", "undeformed", "5 m", "c1", "c6"] {
         assert!(texts.contains(&word), "{word} is missing in {texts:?}");
     }
-    assert!(texts.iter().any(|text| text.contains("F2 = 250 kN")), "{texts:?}");
+    assert!(texts.iter().any(|text| text.contains("F2\u{a0}=\u{a0}250\u{a0}kN")), "{texts:?}");
     assert!(!texts.contains(&"open"));
     // 2 pairs stick and 4 slip, and each has one sign in the legend
     assert_eq!(text.matches("<circle").count(), 3);

@@ -103,7 +103,8 @@ impl Session {
             .free()
             .map(|(name, value)| {
                 let unit = scenario.parameters.get(name).and_then(|parameter| parameter.unit.as_deref());
-                format!("{name} = {}", with_unit(&short(value), unit))
+                // kept together where the line is broken
+                format!("{name} = {}", with_unit(&short(value), unit)).replace(' ', "\u{a0}")
             })
             .collect();
         if !named.is_empty() {
