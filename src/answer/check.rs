@@ -37,8 +37,11 @@ pub fn check_contact(
     };
     for (i, pair) in system.pairs.iter().enumerate() {
         let sums = pair_sums(system, numbers, &forces, (i, state.z[i] > 0.0));
-        if let Some(normal) = sums.normal {
-            couple(normal, state.z[i], share(i));
+        match sums.normal {
+            Some(normal) => couple(normal, state.z[i], share(i)),
+            // Held both ways: what it repeats must leave it at rest.
+            None if system.is_forced(i) => couple(Sum::exactly(1.0), state.z[i], share(i)),
+            None => {}
         }
         if let (Some([plus, minus]), Some(joint)) = (sums.reserves, pair.tangential) {
             let (slip, share) = (state.z[joint], share(joint));

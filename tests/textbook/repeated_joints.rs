@@ -548,3 +548,26 @@ fn the_written_lcp_holds_at_the_answer() {
         }
     }
 }
+
+/// Two pairs held both ways at one node, friction bounds 0.1 and 0.05: the tip is held along n, and along the bar up to the
+/// sum of the bounds.
+#[test]
+fn bounds_of_a_clamp_add_up() {
+    let mut value: Value = serde_json::from_str(&guide(0.0).scenario.text).expect("json");
+    for (i, bound) in [0.1, 0.05].into_iter().enumerate() {
+        let pair = value["contacts"][i].as_object_mut().expect("a pair");
+        pair.remove("friction");
+        pair.remove("gap");
+        pair.insert("law".into(), "bound".into());
+        pair.insert("bound".into(), bound.into());
+    }
+    let case = Case::json(value);
+    for t in [0.12, 0.5, -0.5_f64] {
+        let answer = case.solve(&[("T", t)]);
+        is_answer(&answer);
+        let [low, up] = &answer.pairs[..] else { panic!() };
+        near("pressed", low.x_n - up.x_n, 1.0, 1e-12, 1.0);
+        near("friction", low.x_t - up.x_t, -t.signum() * t.abs().min(0.15), 1e-12, 1.0);
+        near("slip", low.z_t, t.signum() * (t.abs() - 0.15).max(0.0) / (EA / L), 1e-12, 0.01);
+    }
+}
