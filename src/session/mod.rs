@@ -38,9 +38,9 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-pub use crate::answer::record as results;
 pub use crate::answer::record::Answer;
 use crate::answer::record::{NodeDisplacement, OutcomeKind, PairState, PlainSolution, RayClass};
+pub use crate::answer::{diagram, record as results};
 pub use crate::explain::remedy::Remedies;
 use crate::export::table::Table;
 use crate::model::parameter::ParameterValues;

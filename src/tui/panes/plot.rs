@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::answer::diagram::Internal;
+use crate::session::diagram::Internal;
 use crate::session::results::PairState;
 use crate::tui::app::{Plot, State};
 use crate::view::plot::scene::{Magnification, Picture};
