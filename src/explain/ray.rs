@@ -315,14 +315,27 @@ impl RayReport {
             Covering::Weight => format!("an extra pressing force p = {p} in every pair"),
             Covering::Ones => format!("an extra p = {p} in every contact force and every reserve"),
         };
-        let mut text = if self.class == RayClass::Mechanism {
-            format!("The motion costs no energy and the loads do work on it; only {missing} would just hold it.")
-        } else {
-            format!(
+        // In force form p adds to distances too and to some reserves twice: it is no force that is missing.
+        let forced = system.force_form.is_some();
+        let mut text = match (self.class == RayClass::Mechanism, forced) {
+            (true, false) => {
+                format!("The motion costs no energy and the loads do work on it; only {missing} would just hold it.")
+            }
+            (true, true) => "The motion costs no energy and the loads do work on it.".to_owned(),
+            (false, false) => format!(
                 "The run found no state that obeys the laws of contact with less than {missing}; its direction is no pure \
                  mechanism."
-            )
+            ),
+            (false, true) => {
+                "The run found no state that obeys the laws of contact; its direction is no pure mechanism.".to_owned()
+            }
         };
+        if forced {
+            text += &format!(
+                " It ended at p = {p}; where joints repeat one another this adds to distances as well as to forces: it is \
+                 not the force that is missing."
+            );
+        }
         match self.verdict {
             Some(Verdict::Certified) if self.misfit.is_some() => {
                 if let Some(misfit) = &self.misfit {

@@ -10,7 +10,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, OutcomeKind, RayClass, State, Verdict};
-use stickslip::model::rules::Covering;
+use stickslip::model::rules::{Covering, Rules};
 use stickslip::path::limit::limit;
 use stickslip::path::sensitivity::sensitivity;
 use stickslip::path::stages::{History, HistoryEnd, follow_factors};
@@ -319,6 +319,31 @@ fn paths_and_sensitivities_of_a_guide() {
     near("dz_t/dT", of("T").z_t, 1.0 / k_a, 1e-12, 0.01);
     let up = &found.parameters.iter().find(|rate| rate.parameter == "g2").expect("a parameter").pairs[1];
     near("dz_n/dg2", up.z_n, 1.0, 1e-12, 1.0);
+}
+
+/// A rigid sledge on two runners, pushed along the ground: one tangential joint repeats the other. What the run ends with is
+/// told as what it is: p as much more pressing force and cohesion in both pairs would hold where
+/// f (W + 2 p) + 2 p = H, and that is another p.
+#[test]
+fn the_p_of_a_ray_is_not_called_the_missing_force() {
+    let (w, h, f) = (10.0, 5.05, 0.5);
+    let runner =
+        |id: &str, node: &str| json!({ "id": id, "node": node, "against": "ground", "normal": [0, 1], "friction": f });
+    let case = Case::json(json!({
+        "nodes": { "left": [0, 0], "right": [2, 0], "middle": [1, 0] },
+        "rigid": [{ "id": "sledge", "nodes": ["left", "right", "middle"] }],
+        "contacts": [runner("a", "left"), runner("b", "right")],
+        "loads": { "all": { "items": [{ "point": { "at": "middle", "force": [h, -w] } }] } }
+    }));
+    for covering in [Covering::Cohesive, Covering::Ones, Covering::Weight] {
+        let answer = case.solved(&[], Rules { covering, ..case.scenario.rules }).answer;
+        let ray = mechanism(&answer);
+        let missing = (h - f * w) / (2.0 * (f + 1.0));
+        assert!(covering != Covering::Cohesive || (ray.p - missing).abs() > 0.1 * missing, "{ray:?}");
+        let text = &ray.explanation;
+        assert!(!text.contains("hold it") && !text.contains("extra"), "{text}");
+        assert!(text.contains("not the force that is missing"), "{text}");
+    }
 }
 
 /// The blocks of the corner pushed further and further: on the way every point is an answer, the end is H = f · 2 W.
