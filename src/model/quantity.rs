@@ -339,16 +339,45 @@ pub fn read<'w>(words: &'w [String], names: &Names<'_>) -> Result<(Quantity, &'w
     let Some((first, rest)) = words.split_first() else {
         return error("a quantity is expected: `help show` lists them");
     };
+    let probe = |name: &str, quantity: &Quantity| Quantity::Probe(name.to_owned(), Box::new(quantity.clone()));
     if let Some((name, quantity)) = names.probes.iter().find(|(name, _)| name == first) {
-        return Ok((Quantity::Probe(name.clone(), Box::new(quantity.clone())), rest));
+        return Ok((probe(name, quantity), rest));
     }
-    // Typed without quotes a name with blanks comes in words.
-    let typed = words.join(" ");
-    let spaced = names.probes.iter().map(|(name, _)| name).filter(|name| name.contains(char::is_whitespace));
-    if let Some(name) = spaced.clone().find(|name| typed.starts_with(name.as_str())).filter(|_| entry(first).is_none())
-    {
-        return error(format!("unknown quantity `{first}`: a probe's name with blanks is quoted: \"{name}\""));
+    if let Some(inner) = quoted(first) {
+        let (quantity, more) = read(&inner, names)?;
+        return match more.first() {
+            None => Ok((quantity, rest)),
+            Some(word) => error(format!("`{word}` after {quantity} in `{first}`: quote each quantity by itself")),
+        };
     }
+    let found = read_words(first, rest, names);
+    if found.is_err() {
+        // Typed without quotes a name with blanks comes in words; of several the longest.
+        let typed = |name: &str| {
+            let parts: Vec<&str> = name.split_whitespace().collect();
+            let fits = words.len() >= parts.len() && parts.iter().zip(words).all(|(part, word)| part == word);
+            fits.then_some(parts.len()).filter(|count| *count > 1)
+        };
+        let named = names.probes.iter().filter_map(|(name, quantity)| Some((typed(name)?, name, quantity)));
+        if let Some((count, name, quantity)) = named.max_by_key(|(count, ..)| *count) {
+            return Ok((probe(name, quantity), &words[count..]));
+        }
+    }
+    found
+}
+
+/// The words of a quantity that was quoted as a whole: `m noz` in one word.
+fn quoted(word: &str) -> Option<Vec<String>> {
+    let words = shlex::split(word)?;
+    (words.len() > 1 && entry(&words[0]).is_some()).then_some(words)
+}
+
+/// Reads a quantity that is no probe.
+fn read_words<'w>(
+    first: &str,
+    rest: &'w [String],
+    names: &Names<'_>,
+) -> Result<(Quantity, &'w [String]), QuantityError> {
     let Some(entry) = entry(first) else {
         let probes = names.probes.iter().map(|(name, _)| name.as_str());
         let near = did_you_mean(first, WORDS.iter().map(|known| known.word).chain(probes));
@@ -744,6 +773,37 @@ mod tests {
         }
         assert_eq!(read(&words("\"nozzle moment\" < 20"), &names).unwrap().1, ["<", "20"]);
         assert_eq!(read(&words("count open = 3"), &names).unwrap().1, ["=", "3"]);
+    }
+
+    /// Quoted as a whole or not, with the name of a node in quotes inside, a probe with blanks in its name.
+    #[test]
+    fn quotation_marks_hold_together_what_they_hold() {
+        let probe = |name: &str| (name.to_owned(), Quantity::Node("m", "B".into()));
+        let probes = [probe("foot"), probe("nozzle moment"), probe("nozzle moment hot"), probe("m of B")];
+        let names = names(&probes);
+        let all = |text: &str| {
+            let all = read_text(text, &names).unwrap_or_else(|error| panic!("{text}: {error}"));
+            all.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(all("'m B'"), ["m B"]);
+        assert_eq!(
+            all("m B, 'sum x_n joint[*]' 'M AB at 1.5', foot"),
+            ["m B", "sum x_n joint[*]", "M AB at 1.5", "foot"]
+        );
+        assert_eq!(all("'m \"B\"' 'stage 2 x_n c1' stage 1 'x_n c1'"), ["m B", "stage 2 x_n c1", "stage 1 x_n c1"]);
+        assert_eq!(all("nozzle moment, foot"), ["nozzle moment", "foot"]);
+        assert_eq!(all("nozzle moment hot 'nozzle moment' m of B"), ["nozzle moment hot", "nozzle moment", "m of B"]);
+        assert_eq!(read(&words("'x_n c1' < 20"), &names).unwrap().1, ["<", "20"]);
+        assert_eq!(read(&words("nozzle moment < 20"), &names).unwrap().1, ["<", "20"]);
+        for (text, part) in [
+            ("'m B m B'", "quote each quantity by itself"),
+            ("'m D'", "no node `D`"),
+            ("'no such probe'", "unknown quantity `no such probe`"),
+            ("nozzle", "unknown quantity `nozzle`"),
+        ] {
+            let error = read(&words(text), &names).expect_err(text).to_string();
+            assert!(error.contains(part), "{text}: {error}");
+        }
     }
 
     #[test]
