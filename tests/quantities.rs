@@ -57,6 +57,23 @@ fn expect(session: &mut Session, text: &str) {
     run(session, &format!("expect {text}")).unwrap_or_else(|error| panic!("expect {text}: {error}"));
 }
 
+/// Resting supports without friction give nothing along the run, so the riser has no shear and the nozzle no horizontal
+/// force: exactly 0 in quantities, as in the tables.
+#[test]
+fn what_is_rounding_reads_zero_everywhere() {
+    let mut session = session(include_str!("../scenarios/pipeline.json"));
+    run(&mut session, "set f 0").expect("an answer");
+    for quantity in ["fx noz", "Q riser start", "max Q riser", "N run end", "M run end", "sum x_t c*", "nozzle_force"] {
+        let shown = report(&mut session, &format!("show {quantity}"));
+        assert_eq!(shown[0]["value"].as_f64(), Some(0.0), "{quantity}: {shown}");
+        expect(&mut session, &format!("{quantity} = 0"));
+    }
+    // The weight of 4 m + 18 m of pipe is carried by the nozzle and the supports together.
+    let carried = report(&mut session, "show fy noz")[0]["value"].as_f64().expect("a number")
+        + report(&mut session, "show sum x_n c*")[0]["value"].as_f64().expect("a number");
+    assert!((carried - 22.0 * 0.62).abs() < 1e-9, "{carried}");
+}
+
 #[test]
 fn quantities_have_the_values_of_closed_forms() {
     let mut session = session(TWO);

@@ -5,4 +5,5 @@ pub mod check_plain;
 pub mod diagram;
 pub mod pairs;
 pub mod record;
+pub mod rounding;
 pub mod stress;

@@ -9,6 +9,7 @@ use super::limit;
 use super::stages::History;
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{Answer, MemberForces, NodeDisplacement, PairState, Reaction};
+use crate::answer::rounding::{balance, denoised, of_members, of_reactions};
 use crate::answer::stress::{Stress, StressPlace};
 use crate::fem::{Displacements, MainSystem, MembraneStress, NodeStress};
 use crate::model::parameter::ParameterValues;
@@ -301,7 +302,7 @@ impl<'a> Facts<'a> {
             Quantity::Pairs(over, word, pattern) => {
                 let chosen = self.chosen(pattern)?.into_iter().map(|pair| of_pair(word, pair));
                 Ok(match over {
-                    Over::Sum => chosen.sum(),
+                    Over::Sum => balance(chosen),
                     Over::Max => chosen.fold(f64::NEG_INFINITY, f64::max),
                     Over::Min => chosen.fold(f64::INFINITY, f64::min),
                 })
@@ -425,10 +426,11 @@ impl<'a> Facts<'a> {
                 let reactions = self.reactions()?;
                 let found = reactions.iter().find(|reaction| reaction.node == node);
                 let found = found.ok_or_else(|| NoValue(format!("no support at node {node}")))?;
+                let [force, moment] = of_reactions(&reactions);
                 return Ok(match word {
-                    "fx" => found.fx,
-                    "fy" => found.fy,
-                    _ => found.m,
+                    "fx" => denoised(found.fx, force),
+                    "fy" => denoised(found.fy, force),
+                    _ => denoised(found.m, moment),
                 });
             }
         };
@@ -461,11 +463,13 @@ impl<'a> Facts<'a> {
     }
 
     fn of_bar(&self, word: &str, bar: &str, place: BarPlace) -> Result<f64, NoValue> {
-        let diagram = Diagram::of(self.members()?, bar).ok_or_else(|| self.missing())?;
-        let which = match word {
-            "N" => Internal::Axial,
-            "Q" => Internal::Shear,
-            _ => Internal::Moment,
+        let members = self.members()?;
+        let diagram = Diagram::of(members, bar).ok_or_else(|| self.missing())?;
+        let [force, moment] = of_members(members.iter());
+        let (which, scale) = match word {
+            "N" => (Internal::Axial, force),
+            "Q" => (Internal::Shear, force),
+            _ => (Internal::Moment, moment),
         };
         let [least, largest] = diagram.extremes(which).map(|place| place.value);
         let beyond = |s: f64| NoValue(format!("{s} is beyond the bar {bar}, which is {} long", diagram.length()));
@@ -477,6 +481,7 @@ impl<'a> Facts<'a> {
             BarPlace::Over(_) => Ok(largest),
             BarPlace::Extreme => Ok(if least.abs() > largest.abs() { least } else { largest }),
         }
+        .map(|value| denoised(value, scale))
     }
 
     fn of_load(&self, word: &str, name: &str) -> Result<f64, NoValue> {
@@ -507,8 +512,8 @@ impl<'a> Facts<'a> {
     pub fn resultant(&self, joint: &str) -> Option<Resultant> {
         let head = format!("{joint}[");
         let pairs: Vec<&PairState> = self.pairs.iter().filter(|pair| pair.id.starts_with(&head)).collect();
-        let normal: f64 = pairs.iter().map(|pair| pair.x_n).sum();
-        let tangential = pairs.iter().map(|pair| pair.x_t).sum();
+        let normal = balance(pairs.iter().map(|pair| pair.x_n));
+        let tangential = balance(pairs.iter().map(|pair| pair.x_t));
         let places = self.places(joint, &pairs);
         let moment: Option<f64> = pairs.iter().zip(&places).map(|(pair, s)| Some(pair.x_n * (*s)?)).sum();
         let eccentricity = moment.map(|moment| moment / normal).filter(|e| normal != 0.0 && e.is_finite());

@@ -8,6 +8,7 @@ use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, length_unit, moment_unit};
 use crate::answer::diagram::{Diagram, Internal, Place};
 use crate::answer::record::MemberForces;
+use crate::answer::rounding::of_members;
 use crate::model::scenario::Units;
 
 /// Writes N, Q, M at both ends of every element of `bar` (of all bars without one). Tension, and M with tension
@@ -48,9 +49,7 @@ pub fn table(chosen: &[&MemberForces], units: &Units) -> Table {
         Column::numbers("Q", force),
         Column::numbers("M", moment_unit(units)),
     ]);
-    let ends = |member: &&MemberForces| [member.start, member.end];
-    let forces = largest(chosen.iter().flat_map(ends).flat_map(|end| [end.n, end.q]));
-    let moments = largest(chosen.iter().flat_map(ends).map(|end| end.m));
+    let [forces, moments] = of_members(chosen.iter().copied());
     for member in chosen {
         for (word, end) in [("start", member.start), ("end", member.end)] {
             let first = word == "start";

@@ -1,8 +1,6 @@
 //! Numbers as an engineer reads them.
 
-/// Largest share of a column's largest entry that is rounding noise and shown as 0. The smallest difference the
-/// solver tells apart in a load is 1e-10 of it (method §4).
-const NOISE: f64 = 1e-12;
+pub use crate::answer::rounding::{balance, denoised, largest};
 
 /// Five significant digits; exponents are multiples of three and appear below 0.1 and from 1e5 on:
 /// `36.442`, `0.50000`, `13.544e-3`, `210.00e6`. Zero is `0`; what is not finite is `n/a`.
@@ -56,16 +54,6 @@ pub fn with_unit(number: &str, unit: Option<&str>) -> String {
         Some(unit) if !unit.is_empty() => format!("{number} {unit}"),
         _ => number.to_owned(),
     }
-}
-
-/// Largest finite |value|: the scale against which a column's noise is judged.
-pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().filter(|value| value.is_finite()).fold(0.0, |largest, value| f64::max(largest, value.abs()))
-}
-
-/// `value`, or 0 if it is only noise beside `scale`.
-pub fn denoised(value: f64, scale: f64) -> f64 {
-    if value.abs() <= NOISE * scale { 0.0 } else { value }
 }
 
 /// A number of a table whose quantity has the largest value `scale`: noise is `0`, and all numbers not much smaller
@@ -140,12 +128,6 @@ fn written(value: f64, figures: &str, exponent: i32, power: i32) -> String {
         text.push_str(&format!("e{power}"));
     }
     text
-}
-
-/// A sum; 0 where it is what rounding leaves of its terms.
-pub fn balance(terms: impl Iterator<Item = f64>) -> f64 {
-    let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
-    if sum.abs() <= crate::lcp::problem::NOISE * size { 0.0 } else { sum }
 }
 
 #[cfg(test)]

@@ -2,11 +2,12 @@
 
 use std::io::{self, Write};
 
-use super::number::{balance, in_column, largest, short, with_unit};
+use super::number::{balance, in_column, short, with_unit};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, moment_unit};
 use crate::answer::record::Reaction;
+use crate::answer::rounding::of_reactions;
 use crate::model::scenario::Units;
 
 /// Writes the forces of supports and springs on the structure, and their totals: the sums, and the moment of all of
@@ -35,8 +36,7 @@ pub fn table(reactions: &[Reaction], units: &Units) -> Table {
     if moments {
         table.columns.push(Column::numbers("M", moment_unit(units)).droppable(1));
     }
-    let forces = largest(reactions.iter().flat_map(|r| [r.fx, r.fy]));
-    let largest_moment = largest(reactions.iter().map(|r| r.m));
+    let [forces, largest_moment] = of_reactions(reactions);
     let mut push = |name: &str, fx: f64, fy: f64, m: Option<f64>| {
         let mut cells = vec![Cell::from(name), Cell::from(in_column(fx, forces)), Cell::from(in_column(fy, forces))];
         if moments {
