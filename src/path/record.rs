@@ -131,12 +131,19 @@ impl PathRecord {
         }
     }
 
-    /// Index of the case that a plot of a history has as abscissa: the one whose factor wanders farthest.
-    pub fn widest_case(&self) -> Option<usize> {
-        let way = |case: usize| -> f64 {
-            self.places.windows(2).map(|ends| (ends[1].factors[case] - ends[0].factors[case]).abs()).sum()
+    /// Index of the case that a plot of a history has as abscissa where none is chosen: the one that goes to and fro most,
+    /// its way as a multiple of its largest factor, so that no unit counts; of equal ones that which moves last.
+    pub fn busiest_case(&self) -> Option<usize> {
+        let steps = |case: usize| self.places.windows(2).map(move |ends| ends[1].factors[case] - ends[0].factors[case]);
+        let turns = |case: usize| {
+            let largest = self.places.iter().map(|place| place.factors[case].abs()).fold(0.0, f64::max);
+            let way: f64 = steps(case).map(f64::abs).sum();
+            // Equal but for the rounding of the sum.
+            if largest > 0.0 { (way / largest * 1e6).round() } else { 0.0 }
         };
-        (0..self.cases.len()).max_by(|&a, &b| way(a).total_cmp(&way(b)).then(b.cmp(&a)))
+        let last = |case: usize| steps(case).rposition(|step| step != 0.0);
+        (0..self.cases.len())
+            .max_by(|&a, &b| turns(a).total_cmp(&turns(b)).then_with(|| last(a).cmp(&last(b))).then(b.cmp(&a)))
     }
 
     /// Abscissas of the places: the value followed, or the factor of a case.

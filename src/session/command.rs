@@ -302,8 +302,11 @@ pub enum Command {
     /// Draw a picture of the present state, or of the last path
     ///
     /// `plot path [slip|force|gap|pressure] [PAIRS]`, or `plot path QUANTITY`, draws what the last `trace` or `stages`
-    /// followed.
-    #[command(after_help = "Example:\n  plot slip\n  plot force\n  plot structure\n  trace F2; plot path force c6 c5")]
+    /// followed. A history is drawn over the load that goes to and fro most, or with `over CASE` at the end over another one.
+    #[command(
+        after_help = "Example:\n  plot slip\n  plot force\n  plot structure\n  trace F2; plot path force c6 c5\n  \
+                            stages; plot path slip c6 over pull"
+    )]
     Plot {
         /// What to draw
         #[arg(value_name = "PICTURE")]
@@ -317,7 +320,7 @@ pub enum Command {
         /// Lines of the picture
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(5..=500))]
         height: Option<u16>,
-        /// Bar, for moment, shear and axial (all of them without one); quantity and pairs, for path
+        /// Bar, for moment, shear and axial (all of them without one); quantity, pairs and `over CASE`, for path
         #[arg(value_name = "OF")]
         of: Vec<String>,
     },

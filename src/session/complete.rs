@@ -275,6 +275,16 @@ fn values(argument: &clap::Arg, given: &[String], vocabulary: &Vocabulary, word:
     names_of(&value_name(argument), given, vocabulary, word)
 }
 
+/// What may follow `plot path` and the words after it.
+fn of_path(given: &[String], vocabulary: &Vocabulary) -> Vec<Candidate> {
+    if given.last().is_some_and(|word| word == "over") {
+        return vocabulary.cases.iter().map(|case| candidate(case, "load case")).collect();
+    }
+    let words = ["slip", "force", "gap", "pressure", "over"];
+    let pairs = vocabulary.pairs.iter().map(String::as_str);
+    pairs.chain(words).map(|word| candidate(word, "")).collect()
+}
+
 /// The names behind a `value_name` of the grammar.
 fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -> Vec<Candidate> {
     let plain = |names: &[String]| names.iter().map(|name| candidate(name, "")).collect::<Vec<_>>();
@@ -330,11 +340,7 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
                 "sensitivity" => parameters(),
                 "moment" | "shear" | "axial" => plain(&vocabulary.bars),
                 "slip" | "force" | "gap" | "pressure" => fixed(&["first", "last"]),
-                "path" => {
-                    let mut all = plain(&vocabulary.pairs);
-                    all.extend(fixed(&["slip", "force", "gap", "pressure"]));
-                    all
-                }
+                "path" => of_path(of, vocabulary),
                 _ => Vec::new(),
             });
             all
@@ -358,11 +364,7 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
         }),
         "NAME" | "SWEPT" => parameters(),
         "OF" => match given.first().map(String::as_str) {
-            Some("path") => {
-                let mut all = plain(&vocabulary.pairs);
-                all.extend(fixed(&["slip", "force", "gap", "pressure"]));
-                all
-            }
+            Some("path") => of_path(&given[1..], vocabulary),
             Some("moment" | "shear" | "axial") => plain(&vocabulary.bars),
             _ => Vec::new(),
         },

@@ -29,6 +29,7 @@ use crate::view::plot::zone::Quantity as Zone;
 use crate::watch::Watch;
 
 use super::command::did_you_mean;
+use super::selection::no_such;
 use super::{CommandError, Output, Session, Setup, worker};
 
 pub use crate::path::grid::Shard;
@@ -362,7 +363,7 @@ impl Session {
         Ok(())
     }
 
-    /// `plot path [QUANTITY] [PAIRS]`, `plot path QUANTITY`.
+    /// `plot path [QUANTITY] [PAIRS] [over CASE]`, `plot path QUANTITY [over CASE]`.
     pub(super) fn plot_path(&self, of: &[String], height: usize, io: &mut Output<'_>) -> Result<(), CommandError> {
         let (chart, along) = self.path_chart(of, io.watch)?;
         let path = self.need_path()?;
@@ -379,6 +380,10 @@ impl Session {
     ) -> Result<(Chart, Option<Vec<OnPath>>), CommandError> {
         let path = self.need_path()?;
         let units = &self.now.scenario.units;
+        let (of, over) = match of {
+            [of @ .., word, name] if word == "over" => (of, Some(abscissa(path, name)?)),
+            of => (of, None),
+        };
         let (quantity, names) = match of.split_first() {
             Some((word, rest)) if word == "slip" => (Zone::Slip, rest),
             Some((word, rest)) if word == "force" => (Zone::Force, rest),
@@ -390,7 +395,7 @@ impl Session {
                     return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
                 };
                 let along = self.report_along(prepared, path, &quantities, watch)?;
-                return Ok((view::plot::path::drawing_along(path, &along, units), Some(along)));
+                return Ok((view::plot::path::drawing_along(path, &along, over, units), Some(along)));
             }
             _ => (Zone::Slip, of),
         };
@@ -409,7 +414,7 @@ impl Session {
         if pairs.is_empty() {
             pairs = busiest(path, &ids);
         }
-        Ok((view::plot::path::drawing(path, quantity, &pairs, units), None))
+        Ok((view::plot::path::drawing(path, quantity, &pairs, over, units), None))
     }
 
     pub(super) fn need_path(&self) -> Result<&PathRecord, CommandError> {
@@ -520,6 +525,18 @@ fn along_json(path: &PathRecord, along: &[OnPath]) -> Value {
             "quantity": quantity.to_string(), "values": values,
         })).collect::<Vec<_>>(),
     })
+}
+
+/// The load case whose factor a plot of a history goes over.
+fn abscissa(path: &PathRecord, name: &str) -> Result<usize, CommandError> {
+    let refusal = match path.followed {
+        Followed::Stages => match path.cases.iter().position(|case| case == name) {
+            Some(case) => return Ok(case),
+            None => no_such("load case", name, path.cases.iter().map(String::as_str)),
+        },
+        _ => format!("plot: `over` chooses a load case of a history; this path goes over {}", path.name),
+    };
+    Err(CommandError::Refused(refusal))
 }
 
 /// The pairs that slip most on a path, at most four: what a plot shows if none is named.

@@ -152,3 +152,30 @@ fn after_stages_quantities_mean_the_history() {
     assert!(text(&results[17]).contains("-3.0000e-3"), "{}", text(&results[17]));
     assert!(text(&results[25]).contains("where the load history ended"), "{}", text(&results[25]));
 }
+
+/// In the isolator the pull goes 0, H, 0, −H, 0, four times its largest value; the weight of 0 … 4000 kN goes 10 200 kN or
+/// less, not three times as far. A load that only grows is told from one that grew before.
+#[test]
+fn a_history_is_drawn_over_the_load_that_goes_to_and_fro() {
+    let commands = [
+        "plot path over pull",
+        "stages",
+        "plot path offset",
+        "plot path offset over weight",
+        "plot path slip s1 over weight",
+        "plot path over pull",
+        "plot path over pul",
+        "trace pull",
+        "plot path over weight",
+    ];
+    let results = run("isolator", &commands);
+    assert!(results[0].is_err());
+    assert!(text(&results[2]).contains("offset over the factor of pull"), "{}", text(&results[2]));
+    assert!(text(&results[3]).contains("offset over the factor of weight"), "{}", text(&results[3]));
+    assert!(text(&results[4]).contains("slip z_τ over the factor of weight"), "{}", text(&results[4]));
+    assert!(text(&results[5]).contains("slip z_τ over the factor of pull"), "{}", text(&results[5]));
+    assert!(results[6].as_ref().is_err_and(|error| error.contains("no load case `pul`")), "{:?}", results[6]);
+    assert!(results[8].as_ref().is_err_and(|error| error.contains("goes over pull")), "{:?}", results[8]);
+    let results = run("pipeline", &["stages 2", "plot path slip c6"]);
+    assert!(text(&results[1]).contains("over the factor of hot"), "{}", text(&results[1]));
+}

@@ -42,10 +42,11 @@ pub fn series(path: &PathRecord, quantity: Quantity, pair: usize, case: Option<u
     [Series { label: label.clone(), points }, Series { label, points: marked }]
 }
 
-/// What a picture of the path goes over: of a history the load case that moves most, else what was followed; and its name.
-fn abscissa(path: &PathRecord) -> (Option<usize>, String) {
+/// What a picture of the path goes over: of a history the factor of the case that is chosen, else of the one that goes to
+/// and fro most; otherwise what was followed. And its name.
+fn abscissa(path: &PathRecord, chosen: Option<usize>) -> (Option<usize>, String) {
     let case = match path.followed {
-        Followed::Stages => path.widest_case(),
+        Followed::Stages => chosen.or_else(|| path.busiest_case()),
         _ => None,
     };
     let over = match case {
@@ -55,9 +56,9 @@ fn abscissa(path: &PathRecord) -> (Option<usize>, String) {
     (case, over)
 }
 
-/// The chart of a quantity of the pairs (indices) over what was followed.
-pub fn drawing(path: &PathRecord, quantity: Quantity, pairs: &[usize], units: &Units) -> Chart {
-    let (case, over) = abscissa(path);
+/// The chart of a quantity of the pairs (indices) over what was followed; of a history over the factor of a case.
+pub fn drawing(path: &PathRecord, quantity: Quantity, pairs: &[usize], over: Option<usize>, units: &Units) -> Chart {
+    let (case, over) = abscissa(path, over);
     let (what, unit) = match quantity {
         Quantity::Slip => ("slip z_τ", length_unit(units)),
         Quantity::Gap => ("gap z_n", length_unit(units)),
@@ -82,9 +83,9 @@ pub fn drawing(path: &PathRecord, quantity: Quantity, pairs: &[usize], units: &U
     }
 }
 
-/// The chart of quantities over what was followed.
-pub fn drawing_along(path: &PathRecord, along: &[OnPath], units: &Units) -> Chart {
-    let (case, over) = abscissa(path);
+/// The chart of quantities, likewise.
+pub fn drawing_along(path: &PathRecord, along: &[OnPath], over: Option<usize>, units: &Units) -> Chart {
+    let (case, over) = abscissa(path, over);
     let abscissas = path.abscissas(case);
     let mut curves = Vec::new();
     for (number, (quantity, values)) in along.iter().enumerate() {
