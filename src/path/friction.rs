@@ -237,7 +237,7 @@ impl Follower<'_> {
 
     /// d(numbers)/dθ at a value: an expression has another rate everywhere.
     fn rates(&self, value: f64) -> ContactNumbers {
-        number_rates(self.prepared, self.system, &self.values(value), self.name).0
+        number_rates(self.prepared, self.system, &self.values(value), self.name, &[]).0
     }
 
     fn place(&self, value: f64, basis: &Basis) -> Option<Place> {

@@ -16,16 +16,21 @@ use crate::model::uses::Region;
 use crate::solve::Prepared;
 use crate::solve::numbers::numbers_by;
 
-/// d(numbers)/dθ and d(factors)/dθ at these values for a parameter θ, with R and RF as they are.
+/// d(numbers)/dθ and d(factors)/dθ at these values for a parameter θ, with R and RF as they are; `growing`: of the last
+/// cases, which are what earlier ones grow by per unit of θ ([`LoadRates`](crate::solve::load_rates::LoadRates)), those.
 pub(crate) fn number_rates(
     prepared: &Prepared,
     system: &ContactSystem,
     values: &ParameterValues,
     name: &str,
+    growing: &[usize],
 ) -> (ContactNumbers, Vec<f64>) {
     let along = values.along(name);
     let rate = |number: &Number| number.along(&along).rate;
-    let factors: Vec<f64> = prepared.cases.iter().map(|(_, factor)| rate(factor)).collect();
+    let own = &prepared.cases[..prepared.cases.len() - growing.len()];
+    // (factor F)′ = factor′ F + factor F′.
+    let grown = growing.iter().map(|&case| own[case].1.value(values));
+    let factors: Vec<f64> = own.iter().map(|(_, factor)| rate(factor)).chain(grown).collect();
     (numbers_by(system, &factors, &rate), factors)
 }
 

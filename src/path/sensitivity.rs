@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::rate::{number_rates, place_beside_laws, rate, rate_lcp, with_friction_as_cohesion};
+use super::rate::{fixed_place, number_rates, rate, rate_lcp, with_friction_as_cohesion};
 use super::start::{PathError, final_basis, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::PairState;
@@ -11,8 +11,9 @@ use crate::contact::sums::{is_still, joint_forces};
 use crate::contact::system::ContactSystem;
 use crate::lcp::vertex::vertex;
 use crate::model::scenario::Scenario;
+use crate::model::uses::Region;
 use crate::solve::solved::Trace;
-use crate::solve::{Prepared, Solved};
+use crate::solve::{PrepareError, Prepared, Solved};
 
 /// A variable of an answer counts as exactly on its limit below this multiple of the largest.
 const ON_LIMIT: f64 = 1e-11;
@@ -52,7 +53,8 @@ pub struct Sensitivity {
     pub on_limit: Vec<String>,
 }
 
-/// Derivatives with respect to every parameter of the scenario that stands in laws and factors only.
+/// Derivatives with respect to every parameter of the scenario that stands in laws, factors and amounts of loads only, in
+/// those linearly.
 ///
 /// # Errors
 /// Where there is no answer, or a bare LCP.
@@ -76,8 +78,20 @@ pub fn sensitivity(
     }
     let mut parameters = Vec::new();
     let settable = scenario.parameters.iter().filter(|(_, parameter)| parameter.formula.is_none());
-    for name in settable.map(|(name, _)| name).filter(|name| place_beside_laws(scenario, name).is_none()) {
-        let (rates, factor_rates) = number_rates(prepared, system, values, name);
+    for name in settable.map(|(name, _)| name).filter(|name| fixed_place(scenario, name).is_none()) {
+        let grown = match scenario.uses.place(name, Region::Amount) {
+            None => None,
+            Some(_) => match prepared.load_rates(scenario, values, name) {
+                Ok(grown) => Some(grown),
+                // A number that is no linear function of it.
+                Err(PrepareError::Problems(_)) => continue,
+                Err(PrepareError::Interrupted) => return Err(PathError::Interrupted),
+            },
+        };
+        let (prepared, growing) =
+            grown.as_ref().map_or((prepared, &[][..]), |grown| (&*grown.prepared, &grown.growing[..]));
+        let loaded = prepared.system().unwrap_or(system);
+        let (rates, factor_rates) = number_rates(prepared, loaded, values, name, growing);
         let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;
         if system.force_form.is_some() {

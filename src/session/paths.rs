@@ -15,7 +15,7 @@ use crate::path::limit;
 use crate::path::load::{self, LoadReach};
 use crate::path::merge::Shards;
 use crate::path::quantity::{Facts, NoValue, OnPath};
-use crate::path::rate::place_beside_laws;
+use crate::path::rate::{fixed_place, place_beside_laws};
 use crate::path::record::{Followed, PathPlace, PathRecord};
 use crate::path::sensitivity::sensitivity;
 use crate::path::start::PathError;
@@ -232,12 +232,18 @@ impl Session {
         }
         if let Some(name) = parameter
             && let Some(refusal) =
-                self.now.scenario.refusal(name, 0.0).or_else(|| place_beside_laws(&self.now.scenario, name))
+                self.now.scenario.refusal(name, 0.0).or_else(|| fixed_place(&self.now.scenario, name))
         {
-            return Err(CommandError::Refused(format!("no derivatives with respect to {name}: {refusal}")));
+            return Err(no_derivatives(name, &refusal));
         }
         let ground = self.ground(io.watch)?;
         let found = sensitivity(&ground.prepared, &self.now.scenario, &ground.solved, &self.now.values)?;
+        if let Some(name) = parameter
+            && !found.parameters.iter().any(|rate| rate.parameter == name)
+        {
+            let place = place_beside_laws(&self.now.scenario, name).unwrap_or_default();
+            return Err(no_derivatives(name, &format!("the loads are no linear function of it: {place}")));
+        }
         io.report(|| json!(found), |out, style| view::sensitivity::write(out, &found, parameter, style))?;
         Ok(())
     }
@@ -525,6 +531,10 @@ fn along_json(path: &PathRecord, along: &[OnPath]) -> Value {
             "quantity": quantity.to_string(), "values": values,
         })).collect::<Vec<_>>(),
     })
+}
+
+fn no_derivatives(name: &str, why: &str) -> CommandError {
+    CommandError::Refused(format!("no derivatives with respect to {name}: {why}"))
 }
 
 /// The load case whose factor a plot of a history goes over.

@@ -101,6 +101,60 @@ fn every_kind_of_load_is_linear_in_its_amounts() {
     }
 }
 
+/// Every kind of load: the rates are the differences of two answers of one scheme, divided by that of the parameter; and
+/// with a factor beside it, in the law as well, by the product rule.
+#[test]
+fn sensitivity_to_amounts_of_loads_is_the_slope_of_the_answers() {
+    let d = 1e-4;
+    for (name, friction, push) in [
+        (
+            "traction",
+            "0.6",
+            r#"{ "items": [ { "traction": { "edge": "b.top", "value": [["Q", 0], ["2*Q", "-Q"]] } } ] }"#,
+        ),
+        ("fluid", "0.6", r#"{ "items": [ { "fluid": { "edge": "b.left", "level": 0.7, "weight": "4 - Q" } } ] }"#),
+        ("gravity", "0.6", r#"{ "items": [ { "gravity": { "acceleration": ["Q", "-Q/2"] } } ] }"#),
+        ("temperature", "0.6", r#"{ "items": [ { "temperature": { "change": "Q", "on": ["b"] } } ] }"#),
+        (
+            "factor",
+            "0.6",
+            r#"{ "factor": "2*Q^2", "items": [ { "point": { "at": "b.top", "force": ["1 + Q", "-Q"] } } ] }"#,
+        ),
+        (
+            "friction",
+            "\"0.4 + Q\"",
+            r#"{ "factor": 3, "items": [ { "point": { "at": "b.top", "force": ["Q", 0] } } ] }"#,
+        ),
+    ] {
+        let mut session = block("\"Q\": 0.25", friction, push);
+        let found = report(&mut session, "sensitivity Q").unwrap_or_else(|error| panic!("{name}: {error}"));
+        let rates = found["parameters"].as_array().unwrap();
+        assert_eq!(rates.len(), 1, "{found}");
+        let mut at = |q: f64| {
+            report(&mut session, &format!("set Q {q}")).unwrap();
+            let pairs = (0..5).flat_map(|k| ["x_n", "x_t", "z_n", "z_t"].map(|word| format!("{word} base[{k}]")));
+            let command = format!("show {}", pairs.collect::<Vec<_>>().join(", "));
+            let shown = report(&mut session, &command).unwrap();
+            shown.as_array().unwrap().iter().map(|one| number(&one["value"])).collect::<Vec<_>>()
+        };
+        // Of second order in d: central differences.
+        let (after, before) = (at(0.25 + d), at(0.25 - d));
+        let mut moves = 0.0;
+        for (k, pair) in rates[0]["pairs"].as_array().unwrap().iter().enumerate() {
+            for (q, word) in ["x_n", "x_t", "z_n", "z_t"].into_iter().enumerate() {
+                let slope = (after[4 * k + q] - before[4 * k + q]) / (2.0 * d);
+                let rate = number(&pair[word]);
+                moves = f64::max(moves, rate.abs());
+                assert!((rate - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{name} {k} {word}: {rate} {slope}");
+            }
+        }
+        assert!(moves > 0.1, "{name}: {found}");
+    }
+    let push = POINT.replace("\"H\"", "\"H^2\"");
+    let error = report(&mut block("\"H\": 1", "0.4", &push), "sensitivity H").unwrap_err();
+    assert!(error.contains("no linear function of it: it stands in the loads (loads.push.items[0]"), "{error}");
+}
+
 #[test]
 fn what_is_not_linear_is_refused_with_its_place() {
     for (parameters, push, part) in [
