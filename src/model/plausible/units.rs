@@ -17,7 +17,7 @@ const FORCES: &[(&str, f64)] = &[
     ("kp", 9.80665),
     ("tf", 9806.65),
     ("lbf", 4.448_221_615_260_5),
-    ("kip", 4448.221_615_260_5),
+    ("kip", 4_448.221_615_260_5),
 ];
 
 /// A label of a force times a power of a length is a power law in both.

@@ -28,6 +28,7 @@ fn is_of_type(kind: &str, value: &Value) -> bool {
         "string" => value.is_string(),
         "number" => value.is_number(),
         "integer" => value.is_u64() || value.is_i64(),
+        "boolean" => value.is_boolean(),
         other => panic!("the schema speaks of `{other}`"),
     }
 }
