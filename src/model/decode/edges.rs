@@ -29,6 +29,11 @@ fn edge<'d>(builder: &Builder<'d>, entry: Entry<'d>, sides: &Sides) -> Option<Ed
     let nodes: Vec<Option<usize>> = cursor.list()?.map(|node| builder.node(node)).collect();
     let nodes: Vec<usize> = nodes.into_iter().collect::<Option<_>>()?;
     let id = |node: usize| builder.node_id(node);
+    // A node in the middle of a quadratic side, and the corner of that side that is named beside it.
+    let half = |[a, b]: [usize; 2]| {
+        let of = |middle: usize, corner: usize| sides.with_middle(middle).filter(|ends| ends.contains(&corner));
+        of(a, b).map(|ends| (a, ends)).or_else(|| of(b, a).map(|ends| (b, ends)))
+    };
     let (message, help) = match sides.chain(&nodes) {
         Ok(edge) => return Some(edge),
         // Elements that could not be read are reported where they stand.
@@ -37,10 +42,21 @@ fn edge<'d>(builder: &Builder<'d>, entry: Entry<'d>, sides: &Sides) -> Option<Ed
             format!("an edge needs two or more nodes, found {}", nodes.len()),
             "name the corners along the edge in order",
         ),
-        Err(ChainError::NoSide([a, b])) => (
-            format!("no triangle, quad or plate has a side from \"{}\" to \"{}\"", id(a), id(b)),
-            "name every corner along the edge in order: neighbours are the two ends of one element side",
-        ),
+        Err(ChainError::NoSide([a, b])) => match half([a, b]) {
+            Some((middle, [from, to])) => (
+                format!(
+                    "half a quadratic edge: \"{}\" is in the middle of the side from \"{}\" to \"{}\"",
+                    id(middle),
+                    id(from),
+                    id(to)
+                ),
+                "begin and end the edge at corners: name both of the side",
+            ),
+            None => (
+                format!("no triangle, quad or plate has a side from \"{}\" to \"{}\"", id(a), id(b)),
+                "name every corner along the edge in order: neighbours are the two ends of one element side",
+            ),
+        },
         Err(ChainError::Inside([a, b])) => (
             format!("two elements share the side from \"{}\" to \"{}\": it lies inside a body", id(a), id(b)),
             "an edge is on the outside; to cut a body give each part its own nodes",
