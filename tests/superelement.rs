@@ -52,10 +52,9 @@ fn chain(nodes: &[[f64; 2]]) -> Vec<Vec<f64>> {
         }
     }
     // Sums in one order or the other differ in the last digit.
-    for i in 0..k.len() {
-        for j in 0..i {
-            k[i][j] = k[j][i];
-        }
+    let upper = k.clone();
+    for (i, row) in k.iter_mut().enumerate() {
+        (0..i).for_each(|j| row[j] = upper[j][i]);
     }
     k
 }
