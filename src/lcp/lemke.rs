@@ -125,7 +125,10 @@ impl SchemeEngine {
         self.stand.sizes.p = needed;
         let tied: Vec<Candidate> = negative
             .iter()
-            .filter(|row| row.2 + row.3 * needed <= NOISE * (row.2.abs() + row.3 * needed))
+            .filter(|row| {
+                // The row that needs the most is one of them, even where the noise of its numbers rounds to 0.
+                -row.2 / row.3 == needed || row.2 + row.3 * needed <= NOISE * (row.2.abs() + row.3 * needed)
+            })
             .map(|row| Candidate { variable: row.0, hidden: row.1, value: -row.2, fall: row.3, noise: 0.0 })
             .collect();
         let c = lcp.size();
@@ -257,5 +260,39 @@ impl Engine for SchemeEngine {
 
     fn point(&self) -> Point {
         self.artefact_point.clone().unwrap_or_else(|| self.stand.point())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::lcp::driver::run;
+    use crate::lcp::problem::{Lcp, Scale};
+    use crate::lcp::tableau::Tableau;
+
+    /// w = q + z: a load of the smallest number there is has an answer, z = −q; p must come
+    /// in over some row.
+    #[test]
+    fn the_row_that_needs_most_of_p_is_found_for_the_smallest_numbers() {
+        for q in [-5e-324, -1e-310, -f64::MIN_POSITIVE] {
+            let lcp = Lcp {
+                matrix: vec![vec![1.0]],
+                q: vec![q],
+                covering: vec![1.5],
+                scale: Scale { row: vec![1.0], column: vec![1.0], load: None },
+            };
+            let rule = TieRule::Lexicographic(vec![0]);
+            let mut engine = SchemeEngine::new(Arc::new(MirroredLcp::plain(&lcp)), rule.clone());
+            let by_scheme = run(&mut engine, 10, &mut |_| ControlFlow::Continue(()));
+            let by_tableau = run(&mut Tableau::new(&lcp, rule), 10, &mut |_| ControlFlow::Continue(()));
+            for (outcome, pivots) in
+                [(by_scheme.outcome, by_scheme.pivots.count()), (by_tableau.outcome, by_tableau.pivots.count())]
+            {
+                assert!(matches!(outcome, Outcome::Normal { .. }), "{q:e}: {outcome:?}");
+                assert!(pivots >= 1, "{q:e}");
+            }
+        }
     }
 }
