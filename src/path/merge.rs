@@ -4,8 +4,8 @@
 use std::io::{BufRead, BufReader, Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use super::grid::Shard;
-use super::sweep::{Format, Header, columns_line, header_line};
+use super::grid::{AXES, Axis, Grid, Shard};
+use super::sweep::{Format, Header, columns_line, header_line, key};
 use super::sweep_file::{SweepFileError, failed, next_line, read_header, same};
 use crate::text::file;
 use crate::watch::Watch;
@@ -34,6 +34,8 @@ struct Part {
 /// All shards of a sweep, in their order, each found whole and unaltered.
 pub struct Shards {
     parts: Vec<Part>,
+    /// The points that their headers tell.
+    grid: Grid,
 }
 
 impl Source {
@@ -73,8 +75,13 @@ impl Part {
         self.header.shard.points(self.header.points)
     }
 
-    /// Hands every row to `take`, each found as it was written.
-    fn rows(&self, watch: &dyn Watch, take: &mut dyn FnMut(&str) -> std::io::Result<()>) -> Result<(), SweepFileError> {
+    /// Hands every row to `take`, each found as it was written, at its point of `grid`.
+    fn rows(
+        &self,
+        grid: &Grid,
+        watch: &dyn Watch,
+        take: &mut dyn FnMut(&str) -> std::io::Result<()>,
+    ) -> Result<(), SweepFileError> {
         let path = &self.path;
         let mut reader = self.source.reader(path)?;
         let mut line = String::new();
@@ -84,7 +91,11 @@ impl Part {
         let points = self.points();
         let mut found = 0;
         while next_line(&mut *reader, &mut line).map_err(failed(path))? {
-            if found == points.len() || !self.header.is_row(points.start + found, self.format, &line) {
+            let index = points.start + found;
+            if found == points.len()
+                || !self.header.is_row(index, self.format, &line)
+                || !line.starts_with(&key(grid, self.format, index))
+            {
                 return Err(SweepFileError::Row { path: path.clone(), row: found + 1 });
             }
             take(&line).map_err(SweepFileError::Output)?;
@@ -130,10 +141,11 @@ impl Shards {
         }
         parts.sort_by_key(|part| part.header.shard.number);
         is_whole(&parts)?;
+        let grid = grid_of(&parts[0])?;
         for part in &parts {
-            part.rows(watch, &mut |_| Ok(()))?;
+            part.rows(&grid, watch, &mut |_| Ok(()))?;
         }
-        Ok(Shards { parts })
+        Ok(Shards { parts, grid })
     }
 
     /// Rows of the whole.
@@ -152,10 +164,26 @@ impl Shards {
             out.write_all(head.as_bytes()).map_err(SweepFileError::Output)?;
         }
         for part in &self.parts {
-            part.rows(watch, &mut |line| out.write_all(line.as_bytes()))?;
+            part.rows(&self.grid, watch, &mut |line| out.write_all(line.as_bytes()))?;
         }
         out.flush().map_err(SweepFileError::Output)
     }
+}
+
+/// The grid that the header of a part tells, of as many points as it says.
+fn grid_of(part: &Part) -> Result<Grid, SweepFileError> {
+    let no = |why: String| SweepFileError::NoSweep { path: part.path.clone(), why };
+    let Header { grid, points, .. } = &part.header;
+    if grid.is_empty() || grid.len() > AXES {
+        return Err(no(format!("its header tells {} ranges, expected 1 to {AXES}", grid.len())));
+    }
+    let axes: Result<Vec<Axis>, _> = grid.iter().map(|range| Axis::parse(range)).collect();
+    let axes = axes.map_err(|error| no(error.to_string()))?;
+    let found: f64 = axes.iter().map(|axis| axis.values.len() as f64).product();
+    if found != *points as f64 {
+        return Err(no(format!("its header tells {points} points, and its grid {} has {found}", grid.join(" "))));
+    }
+    Ok(Grid { axes })
 }
 
 /// Whether every shard is there, once.

@@ -214,20 +214,7 @@ impl Sweep<'_> {
 
     /// The fields of the parameters, by which a row is known again.
     pub fn key(&self, index: usize) -> String {
-        let values = self.grid.point(index);
-        match self.format {
-            Format::Csv => values.iter().map(|value| format!("{},", number(*value))).collect(),
-            Format::Json => {
-                let fields: Vec<String> = self
-                    .grid
-                    .axes
-                    .iter()
-                    .zip(values)
-                    .map(|(axis, value)| format!("{}:{}", json!(axis.name), number(value)))
-                    .collect();
-                format!("{{{},", fields.join(","))
-            }
-        }
+        key(self.grid, self.format, index)
     }
 
     /// The answer at one point; a refusal in words, or `None` where `watch` asked to stop.
@@ -301,6 +288,20 @@ impl Header {
         line.strip_suffix(after_sum(format))
             .and_then(|line| line.rsplit_once(before_sum(format)))
             .is_some_and(|(body, sum)| sum == checksum(&self.hash, index, body))
+    }
+}
+
+/// The fields of the parameters at point `index`, with which its row begins.
+pub(super) fn key(grid: &Grid, format: Format, index: usize) -> String {
+    let values = grid.point(index);
+    match format {
+        Format::Csv => values.iter().map(|value| format!("{},", number(*value))).collect(),
+        Format::Json => {
+            let fields = grid.axes.iter().zip(values);
+            let fields: Vec<String> =
+                fields.map(|(axis, value)| format!("{}:{}", json!(axis.name), number(value))).collect();
+            format!("{{{},", fields.join(","))
+        }
     }
 }
 

@@ -113,7 +113,14 @@ fn difference(found: &Header, expected: &Header) -> Option<(&'static str, String
             return Some((what, a.clone(), b.clone()));
         }
     }
-    (found.grid != expected.grid).then(|| ("grid", found.grid.join(" "), expected.grid.join(" ")))
+    if found.grid != expected.grid {
+        return Some(("grid", found.grid.join(" "), expected.grid.join(" ")));
+    }
+    if found.points != expected.points {
+        return Some(("number of points", found.points.to_string(), expected.points.to_string()));
+    }
+    let differ = found.quantities != expected.quantities;
+    differ.then(|| ("list of quantities", found.quantities.join(", "), expected.quantities.join(", ")))
 }
 
 pub(super) fn same(path: &Path, found: &Header, expected: &Header) -> Result<(), SweepFileError> {

@@ -188,6 +188,18 @@ fn altered_rows_are_refused() {
         let body: Vec<&str> = foreign.split_inclusive('\n').skip(first).collect();
         fs::write(&path, format!("{}{}", lines[..first].concat(), body.concat())).expect("written");
         assert!(matches!(run_to_file(&sweep, &path, true, &Quiet), Err(SweepFileError::Row { row: 1, .. })));
+        // a header that tells other points
+        for (from, to, part) in [
+            ("F2=0:400:50", "F2=0:200:25", "row 2 is not"),
+            ("F2=0:400:50", "F2=0:200:50", "tells 9 points"),
+            ("\"points\":9", "\"points\":5", "tells 5 points"),
+            ("F2=0:400:50", "F2=0:400", "cannot read"),
+        ] {
+            assert!(lines[0].contains(from), "{}", lines[0]);
+            fs::write(&path, whole.replacen(from, to, 1)).expect("written");
+            let error = merged(std::slice::from_ref(&path)).expect_err(to).to_string();
+            assert!(error.contains(part), "{error}");
+        }
         // an earlier version
         fs::write(&path, whole.replacen("stickslip-sweep/2", "stickslip-sweep/1", 1)).expect("written");
         for error in [
