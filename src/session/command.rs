@@ -144,7 +144,7 @@ pub enum Command {
     )]
     Envelope {
         /// The quantities, the probes if none is named; then `over combinations` or `over PARAMETER A..B …`
-        #[arg(value_name = "QUANTITY", allow_negative_numbers = true)]
+        #[arg(value_name = "QUANTITY", trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
     /// Show the numbers of the fresh check of the answer; `check exact` proves or refutes it
@@ -404,7 +404,7 @@ pub enum Command {
         #[arg(value_name = "WHAT")]
         what: Export,
         /// Its ending says the format; of what stands before it
-        #[arg(value_name = "OF FILE", required = true, allow_negative_numbers = true)]
+        #[arg(value_name = "OF FILE", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
     /// Turn an LCP of Siconos (FILE.dat: dense, sparse or in blocks) into a scenario
@@ -718,6 +718,11 @@ pub fn parse(text: &str) -> Result<Option<Command>, GrammarError> {
     };
     let name = resolve(first)?;
     first.clone_from(&name);
+    if name == "sweep" {
+        // Its options may follow its ranges: a range from below zero would be taken for one of them.
+        let below_zero = |word: &&mut String| word.starts_with('-') && !word.starts_with("--") && word.contains("..");
+        words.iter_mut().filter(below_zero).for_each(|word| word.insert(0, ' '));
+    }
     match grammar().try_get_matches_from(&words) {
         Ok(matches) => Line::from_arg_matches(&matches)
             .map(|line| Some(line.command))

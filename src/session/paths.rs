@@ -595,7 +595,7 @@ fn axes(words: &[String]) -> Result<Vec<Axis>, CommandError> {
     let mut rest = words;
     while let Some((name, after)) = rest.split_first() {
         let (range, after) = after.split_first().ok_or_else(form)?;
-        let (from, to) = range.split_once("..").ok_or_else(form)?;
+        let (from, to) = range.trim_start().split_once("..").ok_or_else(form)?;
         let number = |word: &str| {
             word.parse::<f64>()
                 .ok()

@@ -224,6 +224,32 @@ fn the_moment_at_the_nozzle_over_the_friction() {
     assert_eq!(row["largest"]["change"], "pair c1 sticks");
 }
 
+/// A spring of 100 carries F until the pair of bound 0.2·10 slips: u = (F ∓ 2)/100 beyond ±2.
+#[test]
+fn ranges_begin_below_zero() {
+    let text = r#"{ "format": "stickslip/1", "title": "t", "parameters": { "F": { "value": 3 } },
+        "nodes": { "A": [0, 0] }, "springs": [{ "at": "A", "direction": [1, 0], "stiffness": 100 }],
+        "contacts": [{ "id": "c", "node": "A", "against": "ground", "normal": [0, 1], "friction": 0.2 }],
+        "loads": { "w": { "items": [{ "point": { "at": "A", "force": [0, -10] } }] },
+                   "p": { "factor": "F", "items": [{ "point": { "at": "A", "force": [1, 0] } }] } } }"#;
+    let mut session = session(load_text("t.json", text, None).unwrap());
+    for (range, least) in [("-5..5", -0.03), ("-6.5..-5", -0.045), ("-.05e2..5", -0.03)] {
+        let row = report(&mut session, &format!("envelope ux A over F {range}")).unwrap()["envelope"][0].clone();
+        near(&row["least"]["value"], least, 1e-12);
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("rows.json");
+        let mut written = Vec::new();
+        let mut io = Output::text(&mut written, Style::default(), &Quiet);
+        let command = format!("sweep F {range} 3 --out {} --columns 'ux A'", file.display());
+        session.execute(&command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
+        let rows = std::fs::read_to_string(&file).unwrap();
+        let first: Value = serde_json::from_str(rows.lines().nth(1).unwrap()).unwrap();
+        near(&first["ux A"], least, 1e-12);
+    }
+    let error = report(&mut session, "sweep F -5..5 --ot x.csv").expect_err("no such option");
+    assert!(error.contains("--ot"), "{error}");
+}
+
 #[test]
 fn wrong_questions_are_refused_in_words() {
     for (command, part) in [
