@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use stickslip::answer::record::{OutcomeKind, State, Verdict};
+use stickslip::answer::record::{Answer, OutcomeKind, State, Verdict};
 use stickslip::contact::exact_check::{ExactCheck, Finding};
 use stickslip::model::load::load_text;
 use stickslip::solve::all_answers::Exactly;
@@ -268,6 +268,90 @@ fn a_singular_compliance_is_solved_from_its_own_rows() {
     }
     assert!(tried > 180 && answered >= tried - 4, "{answered} of {tried}");
     assert!(shared > 20, "{shared}");
+}
+
+/// z − v − W λ of each row and the laws, of an answer under a compliance without gaps.
+fn obeys_compliance(case: &Case, w: &DMatrix<f64>, vector: &[f64], answer: &Answer) {
+    let m = answer.pairs.len();
+    let pick = |i: usize, normal: f64, tangential: f64| if i < m { normal } else { tangential };
+    let pair = |i: usize| &answer.pairs[i % m];
+    let lambda = DVector::from_fn(2 * m, |i, _| pick(i, pair(i).x_n, pair(i).x_t));
+    for i in 0..2 * m {
+        let z = pick(i, pair(i).z_n, pair(i).z_t);
+        // Forces that share what a pair carries are known to a few ε of the largest.
+        let terms = w.row(i).abs().sum() * lambda.amax();
+        let left = z - vector[i] - w.row(i).transpose().dot(&lambda);
+        near(&format!("row {i} of W"), left, 0.0, 1e-13, terms + vector[i].abs() + z.abs());
+    }
+    assert!(violation(&case.scenario, &case.scenario.parameter_values(), answer) < 1e-11, "{:?}", answer.pairs);
+}
+
+#[test]
+fn a_force_that_moves_nothing_is_no_rounding() {
+    // W_ττ = 0: z_n = x_n − 2 = 0, and z_t = 5 whatever x_t is, which friction makes −0.8 · 2.
+    let case = Case::json(system(json!({ "pairs": ["a"], "friction": [0.8], "compliance": [[1, 0], [0, 0]],
+        "loads": { "w": { "vector": [-2, 5] } } })));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    let a = &answer.pairs[0];
+    assert_eq!((a.state, a.x_n, a.x_t, a.z_t), (State::SlipPlus, 2.0, -1.6, 5.0));
+}
+
+#[test]
+fn what_a_reserve_leaves_of_a_bound_by_rounding_moves_nothing() {
+    // a open, b closed and sticking with x_t = 0, x_n = 4/10: z = (8·0.4 − 3, 10·0.4 − 4, 2 − 10·0.4, 0) is one answer.
+    let w = [[8.0, 8.0, -8.0, -4.0], [8.0, 10.0, -10.0, 0.0], [-8.0, -10.0, 10.0, 0.0], [-4.0, 0.0, 0.0, 10.0]];
+    let vector = [-3.0, -4.0, 2.0, 0.0];
+    let case = Case::json(system(json!({ "pairs": ["a", "b"], "friction": [0.5, 0.8], "compliance": w,
+        "loads": { "w": { "vector": vector } } })));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    obeys_compliance(&case, &DMatrix::from_fn(4, 4, |i, j| w[i][j]), &vector, &answer);
+}
+
+/// Small whole numbers, in which zeros and ties are exact: λ and z are chosen by the laws first, and W and v = z − W λ follow,
+/// so that there is an answer, which must be found and not be refused.
+#[test]
+fn whole_numbers_made_from_an_answer_are_answered() {
+    let mut rng = ChaCha8Rng::seed_from_u64(17);
+    let mut answered = 0;
+    for k in 0..300 {
+        let m = 1 + k % 3;
+        let rank = rng.random_range(1..2 * m);
+        let g = DMatrix::from_fn(2 * m, rank, |_, _| f64::from(rng.random_range(-2..=2)));
+        let w = &g * g.transpose();
+        let tenths: Vec<i32> = (0..m).map(|_| [0, 3, 5, 8][rng.random_range(0..4)]).collect();
+        let (mut force, mut z) = (DVector::zeros(2 * m), DVector::zeros(2 * m));
+        for i in 0..m {
+            if rng.random_bool(0.3) {
+                (z[i], z[m + i]) = (f64::from(rng.random_range(0..4)), f64::from(rng.random_range(-3..4)));
+                continue;
+            }
+            // x_n in tens: the bound is whole.
+            let tens = rng.random_range(0..3);
+            force[i] = f64::from(10 * tens);
+            let bound = f64::from(tenths[i] * tens);
+            match rng.random_range(-1..=1) {
+                0 => force[m + i] = f64::from(rng.random_range(-tenths[i] * tens..=tenths[i] * tens)),
+                side => {
+                    (force[m + i], z[m + i]) = (-f64::from(side) * bound, f64::from(side * rng.random_range(0..4)));
+                }
+            }
+        }
+        let vector = &z - &w * &force;
+        let friction: Vec<f64> = tenths.iter().map(|tenths| f64::from(*tenths) / 10.0).collect();
+        let case = Case::json(system(json!({ "pairs": (0..m).map(|i| format!("c{i}")).collect::<Vec<_>>(),
+            "friction": friction, "compliance": rows(&w), "loads": { "w": { "vector": vector.as_slice() } } })));
+        let answer = case.solve(&[]);
+        if let Some(ray) = &answer.ray {
+            assert_ne!(ray.verdict, Some(Verdict::Certified), "{k}: there is an answer");
+            continue;
+        }
+        assert!(answer.is_answer(), "{k}: {friction:?} {w} {vector} {force} {z} {answer:?}");
+        obeys_compliance(&case, &w, vector.as_slice(), &answer);
+        answered += 1;
+    }
+    assert!(answered >= 297, "{answered}");
 }
 
 #[test]

@@ -27,7 +27,7 @@ use nalgebra::{DMatrix, DVector};
 use super::complementarity::{ContactLcp, Couple, CoveringError, RowMeaning, load_with_gaps, power_of_two};
 use super::given::orthonormal;
 use super::numbers::ContactNumbers;
-use super::sums::joint_forces;
+use super::sums::{Sum, joint_forces};
 use super::system::{ContactSystem, JointLoad};
 use super::whole::{fixed_bound, friction, rows};
 use crate::lcp::mirrored::MirroredLcp;
@@ -157,7 +157,9 @@ pub fn unknowns(
             response[pair]
         };
         let fixed = numbers.map_or(0.0, |numbers| fixed_bound(system, numbers, pair));
-        unknowns[joint] = plus - f * pressed - fixed;
+        let force = Sum::exactly(plus).plus(-f, Sum::exactly(pressed)).plus(-1.0, Sum::exactly(fixed));
+        // What x⁺ and the bound leave of each other by rounding would come out as a displacement with no larger terms.
+        unknowns[joint] = force.cleaned();
     }
     unknowns
 }

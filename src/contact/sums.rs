@@ -183,6 +183,10 @@ pub fn displacement_share(system: &ContactSystem, z: &DVector<f64>, forces: &[Su
 
 /// Whether the displacement of a joint is rounding: no force can tell it from 0.
 pub fn is_still(system: &ContactSystem, z: &DVector<f64>, forces: &[Sum], joint: usize) -> bool {
+    if system.is_forced(joint) && system.stiffness.column(joint).iter().all(|entry| *entry == 0.0) {
+        // A force that moves nothing follows from the laws alone; no displacement can call it rounding.
+        return false;
+    }
     // The joint's own force says so at once in most cases.
     let own = system.stiffness[(joint, joint)].abs() * z[joint].abs();
     own <= NOISE * forces[joint].magnitude && displacement_share(system, z, forces, joint) <= NOISE
