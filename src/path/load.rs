@@ -246,7 +246,7 @@ pub struct LoadPath {
 /// What to follow and how far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadReach {
-    /// Factor to reach; `None`: as far as it goes, upwards.
+    /// Factor to reach; `None`: as far as it goes, upwards; −∞: downwards.
     pub to: Option<f64>,
     /// Whether to go on at turning points.
     pub through: bool,
@@ -272,6 +272,7 @@ pub fn trace(
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
     if let Some(to) = reach.to
         && !to.is_finite()
+        && to != f64::NEG_INFINITY
     {
         return Err(PathError::Target(format!("cannot follow {name} to {to}")));
     }

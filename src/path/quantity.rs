@@ -489,7 +489,7 @@ impl<'a> Facts<'a> {
         let found = limit::limit(prepared, self.scenario, self.values, self.solved, name, self.watch)
             .map_err(|error| NoValue(error.to_string()))?;
         let value = if word == "limit" { found.factor } else { found.safety };
-        value.ok_or_else(|| NoValue(format!("no limit: {}", found.path.end_sentence())))
+        value.ok_or_else(|| NoValue(format!("no limit: {}", found.end_sentence())))
     }
 
     fn history(&self) -> Result<&'a History, NoValue> {

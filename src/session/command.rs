@@ -234,6 +234,8 @@ pub enum Command {
         through: bool,
     },
     /// Find the limit of a load: its factor, the safety, how the structure collapses
+    ///
+    /// A load whose present value is negative grows downwards.
     #[command(after_help = "Example:\n  limit pull\n  limit F2")]
     Limit {
         /// Load case, or a parameter in which the loads are linear

@@ -210,7 +210,8 @@ impl Session {
                     "safety": found.safety,
                     "collapse": found.collapse,
                     "confirmed": found.confirmed,
-                    "end": found.path.end_sentence(),
+                    "answer_beyond": found.beyond,
+                    "end": found.end_sentence(),
                 })
             },
             |out, style| view::path::write_limit(out, &found, unit.as_deref(), style),

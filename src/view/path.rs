@@ -129,7 +129,7 @@ pub fn write_friction(out: &mut dyn Write, path: &FrictionPath, units: &Units, s
 pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style: &Style) -> io::Result<()> {
     let name = &limit.path.parameter.name;
     let Some(factor) = limit.factor else {
-        let text = format!("no limit was found: {}", limit.path.end_sentence());
+        let text = format!("no limit was found: {}", limit.end_sentence());
         return sentences(out, &text, Role::Plain, style);
     };
     let safety = match limit.safety {
@@ -153,10 +153,13 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
         };
         sentences(out, &format!("collapse ({class}{verdict}): {}", collapse.mode), Role::Warning, style)?;
     }
+    if factor == 0.0 {
+        return Ok(());
+    }
     let confirmed = if limit.confirmed {
         "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001"
     } else {
-        "not confirmed: a run of its own at 0.999999 or 1.000001 of it says otherwise (there may be several answers)"
+        "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer and none"
     };
     sentences(out, confirmed, Role::Muted, style)
 }

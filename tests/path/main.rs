@@ -6,6 +6,7 @@ mod find;
 mod friction;
 mod hertz;
 mod history;
+mod limit;
 mod load;
 mod load_amounts;
 mod random;
