@@ -461,6 +461,11 @@ impl<'d> Builder<'d> {
         false
     }
 
+    /// Whether the structure consists of springs, rigid bodies or a superelement alone.
+    pub fn has_no_elements(&self) -> bool {
+        self.structure.elements.is_empty() && self.elements_complete
+    }
+
     /// Reports a rotation asked of a node that has none. Silent while elements are missing for other reasons.
     pub fn demand_rotation(&self, cursor: Cursor<'d>, node: usize, what: &str) -> bool {
         if self.has_rotation[node] || !self.elements_complete {

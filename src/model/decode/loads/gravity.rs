@@ -7,6 +7,15 @@ use crate::model::structure::Load;
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     let fields = cursor.fields(&["acceleration", "on"])?;
+    if builder.has_no_elements() {
+        let (what, help) = if builder.structure.superelement.is_some() {
+            ("a superelement has none", "put the weights into its loads")
+        } else {
+            ("there are none", "give the weights as `point` loads")
+        };
+        cursor.problem(format!("gravity needs elements with a density; {what}"), help);
+        return None;
+    }
     let acceleration = fields.required("acceleration").and_then(Cursor::vector);
     let elements = elements(builder, fields.optional("on"));
     let (acceleration, elements) = (acceleration?, elements?);
