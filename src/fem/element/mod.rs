@@ -102,8 +102,9 @@ pub fn stiffness<T: Real>(structure: &Structure, index: usize) -> Result<Stiffne
                 .ok_or_else(|| refuse("it is not convex, or its nodes do not go round counter-clockwise".to_owned()))?;
         }
     }
-    // A row of zeros is a released or an idle one.
-    let unusable = |k: &f64| *k != 0.0 && !STIFFNESSES.contains(k);
+    // A row of zeros is a released or an idle one; nothing but zeros is a stiffness below every number.
+    let all_zero = stiffness.diagonal().iter().all(|k| k.to_f64() == 0.0);
+    let unusable = |k: &f64| (*k != 0.0 || all_zero) && !STIFFNESSES.contains(k);
     if let Some(k) = stiffness.diagonal().iter().map(|k| k.to_f64()).find(unusable) {
         let advice = "check its material, section and thickness, or use other units";
         return Err(refuse(beyond("stiffness", k, &STIFFNESSES, advice)));

@@ -155,6 +155,7 @@ fn beyond_numbers() {
     };
     for (e, length, what) in [
         (1e-320, 1.0, "stiffness is 1.0e-320"),
+        (1e-322, 1000.0, "stiffness is 0.0e0"),
         (1e-210, 1.0, "stiffness is 1.0e-210"),
         (1e300, 1.0, "stiffness is 1.0e300"),
         (1.0, 1e-110, "size is 1.0e-110"),
