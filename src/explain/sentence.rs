@@ -1,5 +1,6 @@
 //! Pivots as changes of the working scheme, told in sentences.
 
+use super::remedy::told_apart;
 use super::words::{list, short};
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
 use crate::contact::complementarity::{ContactLcp, Couple, Quantity};
@@ -171,16 +172,18 @@ impl Sentence<'_> {
 
 /// What happens to p at a pivot.
 fn course(degenerate: bool, before: f64, after: f64) -> String {
-    let [from, to] = [before, after].map(short);
+    let [mut from, mut to] = [before, after].map(short);
     if degenerate {
-        format!("nothing moves: a degenerate pivot at p = {to}")
-    } else if (after - before).abs() <= 1e-12 * before.abs() {
-        format!("p stays at {to}")
-    } else if after < before {
-        format!("p falls from {from} to {to}")
-    } else {
-        format!("p rises from {from} to {to}")
+        return format!("nothing moves: a degenerate pivot at p = {to}");
     }
+    if (after - before).abs() <= 1e-12 * before.abs() {
+        return format!("p stays at {to}");
+    }
+    if from == to {
+        (from, to) = told_apart(before, after);
+    }
+    let way = if after < before { "falls" } else { "rises" };
+    format!("p {way} from {from} to {to}")
 }
 
 /// The records of a bare LCP; `names` are the names of its rows.
@@ -218,5 +221,19 @@ pub fn plain_name(variable: Variable, names: &[String]) -> String {
         Variable::P => "p".to_owned(),
         Variable::W(row) => format!("w[{}]", names[row]),
         Variable::Z(row) => format!("z[{}]", names[row]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::course;
+
+    #[test]
+    fn a_change_of_p_shows_digits_that_differ() {
+        assert_eq!(course(false, 50.0, 25.0), "p falls from 50.0 to 25.0");
+        assert_eq!(course(false, 25.0802, 25.0754), "p falls from 25.0802 to 25.0754");
+        assert_eq!(course(false, 1.000_000_01, 1.000_000_02), "p rises from 1.00000001 to 1.00000002");
+        assert_eq!(course(false, 3.0, 3.0), "p stays at 3.0");
+        assert_eq!(course(true, 3.0, 3.0), "nothing moves: a degenerate pivot at p = 3.0");
     }
 }
