@@ -407,7 +407,8 @@ fn run(cli: Cli) -> Result<u8, Failure> {
         Some(Command::Merge { files, out: to }) => merge(&files, to.as_deref(), &style, &mut out),
         Some(Command::Check { scenarios, format }) => check(&scenarios, format, &style, &mut out),
         Some(Command::Import { file }) => {
-            let (written, rows) = import::import(&file)?;
+            let watch = TerminalWatch::new(&Signals::install()?);
+            let (written, rows) = import::import(&file, &watch)?;
             writeln!(out, "wrote {}: an LCP of {rows} rows", written.display())?;
             Ok(0)
         }

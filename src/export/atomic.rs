@@ -58,13 +58,9 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     let target = target(path)?;
     let before = match fs::metadata(&target) {
         Ok(metadata) if metadata.is_file() => Some(metadata.permissions()),
-        // A device or a pipe cannot be replaced by a file: write into it.
-        Ok(metadata) if !metadata.is_dir() => {
-            let mut out = BufWriter::new(fs::OpenOptions::new().write(true).open(&target)?);
-            content(&mut out)?;
-            return out.flush();
-        }
-        Ok(_) => return Err(io::Error::from(io::ErrorKind::IsADirectory)),
+        Ok(metadata) if metadata.is_dir() => return Err(io::Error::from(io::ErrorKind::IsADirectory)),
+        // A pipe would wait for its reader; none of them can be there whole or not at all.
+        Ok(_) => return Err(io::Error::other("it is a device or a pipe, expected a file")),
         Err(_) => None,
     };
     if before.as_ref().is_some_and(fs::Permissions::readonly) {
@@ -139,6 +135,18 @@ mod tests {
         let round = folder.path().join("round");
         std::os::unix::fs::symlink("round", &round).expect("link");
         assert!(write(&round, |_| Ok(())).is_err());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn what_is_no_file_is_not_written_to() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let fifo = folder.path().join("fifo");
+        assert!(std::process::Command::new("mkfifo").arg(&fifo).status().expect("mkfifo").success());
+        for path in [&fifo, Path::new("/dev/null")] {
+            let error = write(path, |_| unreachable!("nothing is asked for")).expect_err("no file").to_string();
+            assert!(error.contains("a device or a pipe, expected a file"), "{error}");
+        }
     }
 
     #[test]

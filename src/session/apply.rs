@@ -74,7 +74,7 @@ impl Session {
             Command::Expect { words } => self.expect(&words, io)?,
             Command::Export { what, words } => self.export(what, &words, io)?,
             Command::Import { file } => {
-                let (written, rows) = import::import(&file)?;
+                let (written, rows) = import::import(&file, io.watch)?;
                 io.say(&format!("wrote {}: an LCP of {rows} rows", written.display()))?;
             }
             Command::Echo { words } => io.say(&words.join(" "))?,

@@ -4,17 +4,18 @@ use std::fs::OpenOptions;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::CommandError;
+use super::{CommandError, worker};
 use crate::export::lcp;
 use crate::model::siconos;
 use crate::text::file::read_text;
+use crate::watch::Watch;
 
 /// Writes the LCP of a Siconos file as a scenario beside it, FILE.json for FILE.dat; an existing file stays as it is.
 /// Returns the path of the scenario and the number of rows.
 ///
 /// # Errors
-/// The file cannot be read or is no such LCP (with the line); the scenario exists or cannot be written.
-pub fn import(file: &Path) -> Result<(PathBuf, usize), CommandError> {
+/// The file cannot be read or is no such LCP (with the line); the scenario exists or cannot be written; an interruption.
+pub fn import(file: &Path, watch: &dyn Watch) -> Result<(PathBuf, usize), CommandError> {
     let refused = |text: String| CommandError::Refused(text);
     let target = file.with_extension("json");
     if target == file {
@@ -23,9 +24,12 @@ pub fn import(file: &Path) -> Result<(PathBuf, usize), CommandError> {
             file.display()
         )));
     }
-    let text = read_text(file).map_err(|error| refused(format!("import: cannot read {}: {error}", file.display())))?;
-    let found = siconos::read(&text)
-        .map_err(|error| refused(format!("import: {}:{}: {}", file.display(), error.line, error.message)))?;
+    let path = file.to_owned();
+    let found = worker::run(watch, move |_| {
+        let text = read_text(&path).map_err(|error| format!("import: cannot read {}: {error}", path.display()))?;
+        siconos::read(&text).map_err(|error| format!("import: {}:{}: {}", path.display(), error.line, error.message))
+    });
+    let found = found?.map_err(refused)?;
     let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let create = OpenOptions::new().write(true).create_new(true).open(&target);
     let created = create.map_err(|error| {

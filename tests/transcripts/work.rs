@@ -235,7 +235,7 @@ fn a_line_that_is_too_long_is_refused_whole() {
 #[cfg(unix)]
 fn reading_that_does_not_end_can_be_stopped() {
     let folder = tempfile::tempdir().unwrap();
-    let fifo = at(folder.path(), "fifo.json");
+    let fifo = at(folder.path(), "fifo");
     assert!(Command::new("mkfifo").arg(&fifo).status().unwrap().success());
     for arguments in [
         &["solve", &fifo][..],
@@ -243,6 +243,7 @@ fn reading_that_does_not_end_can_be_stopped() {
         &["sweep", &fifo, "--vary", "f=0.1"],
         &["replay", &fifo],
         &["merge", &fifo],
+        &["import", &fifo],
         &["solve", "-"],
         &["replay", "-"],
         &[&fifo],
