@@ -53,6 +53,24 @@ pub fn least_norm(
     free
 }
 
+/// Pairs with closed self-stress in a cluster with friction: their bounds change with the normal forces, so that another
+/// self-stress than the one found may hold another motion. Without friction the motion does not depend on the self-stress.
+pub fn may_hold_otherwise(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<usize> {
+    let Some(form) = &system.force_form else {
+        return Vec::new();
+    };
+    // Another motion need not slip where this one does.
+    let mut sticking = z.clone();
+    system.pairs.iter().filter_map(|pair| pair.tangential).for_each(|joint| sticking[joint] = 0.0);
+    let mut pairs: Vec<usize> = (clusters(system, &form.self_stress).into_iter())
+        .map(|pairs| Cluster { system, numbers, z: &sticking, pairs })
+        .filter(|cluster| cluster.pairs.iter().any(|&pair| friction(system, numbers, pair) > 0.0))
+        .flat_map(|cluster| cluster.undetermined(&form.self_stress))
+        .collect();
+    pairs.sort_unstable();
+    pairs
+}
+
 fn joints_of(system: &ContactSystem, pair: usize) -> impl Iterator<Item = usize> {
     std::iter::once(pair).chain(system.pairs[pair].tangential)
 }
@@ -81,6 +99,13 @@ struct Cluster<'a> {
     numbers: &'a ContactNumbers,
     z: &'a DVector<f64>,
     pairs: Vec<usize>,
+}
+
+/// Self-stress of a cluster: joints, all of it and what the laws leave of it by row.
+struct Freedom {
+    joints: Vec<usize>,
+    stress: DMatrix<f64>,
+    free: DMatrix<f64>,
 }
 
 /// A combination of joint forces, Σ factor·λ + constant.
@@ -130,21 +155,40 @@ impl Cluster<'_> {
         (zero, positive)
     }
 
-    /// Puts the forces of least norm in their place; the pairs whose forces could be others.
-    fn settle(&self, self_stress: &DMatrix<f64>, forces: &mut [Sum]) -> Vec<usize> {
+    /// The self-stress that what must be zero leaves.
+    fn freedom(&self, self_stress: &DMatrix<f64>, zero: &[Combination]) -> Option<Freedom> {
         let joints: Vec<usize> = self.pairs.iter().flat_map(|&pair| joints_of(self.system, pair)).collect();
         let columns: Vec<usize> = (0..self_stress.ncols())
             .filter(|&column| joints.iter().any(|&joint| self_stress[(joint, column)] != 0.0))
             .collect();
-        let (zero, positive) = self.laws();
         let rows = DMatrix::from_fn(zero.len(), columns.len(), |a, b| zero[a].of(|j| self_stress[(j, columns[b])]));
-        let Some(basis) = null_basis(&rows, columns.len()) else {
+        let basis = null_basis(&rows, columns.len())?;
+        let stress = DMatrix::from_fn(joints.len(), columns.len(), |a, b| self_stress[(joints[a], columns[b])]);
+        Some(Freedom { free: &stress * basis, stress, joints })
+    }
+
+    /// The pairs whose forces could be others.
+    fn moved(&self, Freedom { joints, stress, free }: &Freedom) -> Vec<usize> {
+        let place = |joint: usize| joints.iter().position(|own| *own == joint);
+        let moved = |&pair: &usize| {
+            joints_of(self.system, pair).filter_map(place).any(|a| free.row(a).amax() > NOISE * stress.row(a).amax())
+        };
+        self.pairs.iter().copied().filter(moved).collect()
+    }
+
+    fn undetermined(&self, self_stress: &DMatrix<f64>) -> Vec<usize> {
+        self.freedom(self_stress, &self.laws().0).map_or(Vec::new(), |freedom| self.moved(&freedom))
+    }
+
+    /// Puts the forces of least norm in their place; the pairs whose forces could be others.
+    fn settle(&self, self_stress: &DMatrix<f64>, forces: &mut [Sum]) -> Vec<usize> {
+        let (zero, positive) = self.laws();
+        let Some(freedom) = self.freedom(self_stress, &zero) else {
             return Vec::new();
         };
-        let stress = DMatrix::from_fn(joints.len(), columns.len(), |a, b| self_stress[(joints[a], columns[b])]);
-        let free = &stress * basis;
+        let Freedom { joints, free, .. } = &freedom;
         let place = |joint: usize| joints.iter().position(|own| *own == joint);
-        let Some(change) = shortest(&free, &|joint| forces[joint].value, &joints, &positive, &place) else {
+        let Some(change) = shortest(free, &|joint| forces[joint].value, joints, &positive, &place) else {
             return Vec::new();
         };
         for (a, &joint) in joints.iter().enumerate() {
@@ -161,10 +205,7 @@ impl Cluster<'_> {
             let bound = others.iter().map(|&(other, f)| f * forces[other].value).sum::<f64>() + limit.constant;
             forces[joint].value = -side * bound;
         }
-        let moved = |&pair: &usize| {
-            joints_of(self.system, pair).filter_map(place).any(|a| free.row(a).amax() > NOISE * stress.row(a).amax())
-        };
-        self.pairs.iter().copied().filter(moved).collect()
+        self.moved(&freedom)
     }
 }
 

@@ -20,6 +20,7 @@ use crate::answer::record::{
 use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::refine::refined;
+use crate::contact::self_stress::may_hold_otherwise;
 use crate::contact::sharpen::sharpen;
 use crate::contact::system::ContactSystem;
 use crate::explain::plain_ray::PlainRay;
@@ -398,17 +399,26 @@ impl Prepared {
         factors: &[f64],
         state: &JointState,
     ) {
-        if !state.free.is_empty() {
-            let mut ids: Vec<String> =
-                state.free.iter().take(NAMED).map(|&pair| system.pairs[pair].id.clone()).collect();
-            if state.free.len() > NAMED {
-                ids.push(format!("{} more", state.free.len() - NAMED));
+        let otherwise = may_hold_otherwise(system, numbers, &state.z);
+        let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
+        let kinds = [
+            (
+                shared,
+                "the motion does not depend on how they share what they carry, which is undetermined; shown are the \
+                      forces of least norm that obey the laws",
+            ),
+            (
+                otherwise,
+                "the forces shown are those of least norm for the motion shown; with friction in these pairs \
+                         another self-stress may hold another motion",
+            ),
+        ];
+        for (pairs, words) in kinds.iter().filter(|(pairs, _)| !pairs.is_empty()) {
+            let mut ids: Vec<String> = pairs.iter().take(NAMED).map(|&pair| system.pairs[pair].id.clone()).collect();
+            if pairs.len() > NAMED {
+                ids.push(format!("{} more", pairs.len() - NAMED));
             }
-            answer.notes.push(format!(
-                "joints of {} repeat one another: their displacements and what they carry together are certain, how they \
-                 share it is not; shown are the forces of least norm that obey the laws",
-                list(&ids)
-            ));
+            answer.notes.push(format!("joints of {} repeat one another: {words}", list(&ids)));
         }
         let equilibrium = self.recover(answer, numbers, factors, state);
         judge(answer, check_contact(system, numbers, state, equilibrium));

@@ -93,12 +93,22 @@ fn guide_without_clearance() {
         near("slip", low.z_t, slip, 1e-12, 0.01);
         near("slip", up.z_t, -slip, 1e-12, 0.01);
     }
-    let answer = case.solve(&[("P", 1.0), ("T", 0.2), ("g1", 0.0), ("g2", 0.0)]);
-    assert!(
-        answer.notes.iter().any(|note| note.contains("low and up") && note.contains("least norm")),
-        "{:?}",
-        answer.notes
-    );
+    let note = |case: &Case, t: f64, g2: f64, f: f64| {
+        let answer = case.solve(&[("P", 1.0), ("T", t), ("g1", 0.0), ("g2", g2), ("f", f)]);
+        is_answer(&answer);
+        answer.notes.join(" ")
+    };
+    // Wedged by s the sides hold f (P + 2 s) against T: sticking or slipping, other self-stress holds more.
+    for t in [0.2, 0.5] {
+        let text = note(&case, t, 0.0, 0.3);
+        assert!(text.contains("low and up") && text.contains("least norm for the motion shown"), "{text}");
+        assert!(text.contains("another self-stress may hold another motion"), "{text}");
+    }
+    // Without friction s changes no motion; with a clearance above there is none.
+    let text = note(&case, 0.2, 0.0, 0.0);
+    assert!(text.contains("low and up") && text.contains("motion does not depend on how they share"), "{text}");
+    assert!(!text.contains("another motion"), "{text}");
+    assert_eq!(note(&case, 0.2, 0.01, 0.3), "");
 }
 
 /// Sides nearer to each other than the node is wide: no displacement opens both.
