@@ -276,12 +276,12 @@ fn obeys_compliance(case: &Case, w: &DMatrix<f64>, vector: &[f64], answer: &Answ
     let pick = |i: usize, normal: f64, tangential: f64| if i < m { normal } else { tangential };
     let pair = |i: usize| &answer.pairs[i % m];
     let lambda = DVector::from_fn(2 * m, |i, _| pick(i, pair(i).x_n, pair(i).x_t));
-    for i in 0..2 * m {
+    for (i, free) in vector.iter().enumerate() {
         let z = pick(i, pair(i).z_n, pair(i).z_t);
         // Forces that share what a pair carries are known to a few ε of the largest.
         let terms = w.row(i).abs().sum() * lambda.amax();
-        let left = z - vector[i] - w.row(i).transpose().dot(&lambda);
-        near(&format!("row {i} of W"), left, 0.0, 1e-13, terms + vector[i].abs() + z.abs());
+        let left = z - free - w.row(i).transpose().dot(&lambda);
+        near(&format!("row {i} of W"), left, 0.0, 1e-13, terms + free.abs() + z.abs());
     }
     assert!(violation(&case.scenario, &case.scenario.parameter_values(), answer) < 1e-11, "{:?}", answer.pairs);
 }
