@@ -110,6 +110,8 @@ class Client(unittest.TestCase):
 
     @unittest.skipIf(os.name != "posix", "signals of POSIX")
     def test_ctrl_c_stops_the_command_and_leaves_the_session(self):
+        # A job in the background starts with SIGINT ignored.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         rows = Path(self.folder.name) / "rows.csv"
         with self.assertRaises(KeyboardInterrupt):
