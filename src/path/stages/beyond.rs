@@ -3,7 +3,8 @@
 use nalgebra::DVector;
 
 use super::course::Course;
-use super::walk::{Walk, Way};
+use super::follower::{Follower, Way};
+use super::walk::Walk;
 use crate::answer::pairs::pair_states;
 use crate::answer::record::{Ray, State, Verdict};
 use crate::contact::complementarity::{Couple, contact_lcp};
@@ -57,7 +58,7 @@ impl Walk<'_> {
 
     /// The motion as a ray, its class, and whether the equilibrium LP just beyond proves it.
     fn collapse(&self, course: &Course, t: f64, motion: &DVector<f64>, p: f64) -> Result<Ray, PathError> {
-        let system = self.laws.system;
+        let system = self.place.laws.system;
         let numbers = {
             let at = t + CERTIFIED_AT;
             self.numbers_at(&course.factors_at(at), &course.gaps_at(at))
@@ -105,14 +106,14 @@ impl Walk<'_> {
 
     /// The answer of eq. (8) at a place, in increments from the present slip.
     fn answer_at(&self, course: &Course, to: f64) -> Result<Option<There>, PathError> {
-        let system = self.laws.system;
+        let system = self.place.laws.system;
         let mut committed = self.standing.z.clone();
         for i in 0..system.pair_count() {
             committed[i] = 0.0;
         }
         let mut numbers = self.numbers_at(&course.factors_at(to), &course.gaps_at(to));
         numbers.load += &system.stiffness * &committed;
-        let found = cold(system, &numbers, self.watch)?;
+        let found = cold(system, &numbers, self.place.watch)?;
         if found.basis.is_none() {
             return Ok(None);
         }

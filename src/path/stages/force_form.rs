@@ -13,12 +13,12 @@ use nalgebra::DVector;
 
 use super::beyond::explanation;
 use super::course::Course;
-use super::energy;
-use super::record::{History, HistoryEnd, Moment, StageResult};
+use super::follower::{Follower, Limit, Place, Way, recorded};
+use super::record::History;
 use super::standing::Laws;
 use super::walk::breakdown;
 use crate::answer::pairs::{JointState, pair_states};
-use crate::answer::record::{OutcomeKind, PairState, Ray, State};
+use crate::answer::record::{PairState, Ray, State};
 use crate::contact::complementarity::{ContactLcp, load_with_gaps};
 use crate::contact::load_path::{is_answer, order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
@@ -26,7 +26,6 @@ use crate::explain::ray::full_report;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{Parametric, Reach};
 use crate::lcp::variable::Variable;
-use crate::path::change::{between, sentence};
 use crate::path::start::{PathError, cold, state_of};
 use crate::solve::Prepared;
 use crate::watch::Watch;
@@ -41,29 +40,15 @@ const PIVOTS: usize = 1_000;
 const HERE: f64 = 1e-13;
 
 /// The state from which a history goes on.
-struct Follower<'a> {
-    prepared: &'a Prepared,
-    laws: Laws<'a>,
-    watch: &'a dyn Watch,
-    factors: Vec<f64>,
-    gaps: Vec<f64>,
+struct ForcedWalk<'a> {
+    place: Place<'a>,
     /// Total z and λ.
     state: JointState,
     /// Total slips over the joints; 0 in normal ones.
     slips: DVector<f64>,
     pairs: Vec<PairState>,
-    /// What every pair did on the way here.
-    way: Vec<(State, Option<State>)>,
     /// In which sense each pair slipped last, ±1.
     last_slip: Vec<f64>,
-}
-
-/// The way through a stage.
-struct Way {
-    moments: Vec<Moment>,
-    pivots: usize,
-    /// Slip of its last stretch, over the joints.
-    last_slip: DVector<f64>,
 }
 
 /// What lies ahead of a place.
@@ -83,53 +68,30 @@ pub(super) fn follow<'a>(
     targets: &[Vec<f64>],
     watch: &'a dyn Watch,
 ) -> Result<History, PathError> {
-    let own = &laws.numbers.gap;
     let joints = laws.system.joint_count();
-    let mut follower = Follower {
-        prepared,
-        laws,
-        watch,
-        factors: vec![0.0; prepared.cases.len()],
-        gaps: own.iter().map(|gap| gap.max(0.0)).collect(),
+    let mut walk = ForcedWalk {
+        place: Place::unloaded(prepared, laws, watch),
         state: JointState::at(laws.system, laws.numbers, DVector::zeros(joints), 0.0),
         slips: DVector::zeros(joints),
         pairs: Vec::new(),
-        way: Vec::new(),
         last_slip: vec![0.0; laws.system.pair_count()],
     };
-    let numbers = follower.numbers_at(&follower.factors, &follower.gaps);
+    let numbers = walk.numbers_at(&walk.place.factors, &walk.place.gaps);
     let unloaded = cold(laws.system, &numbers, watch)?;
     if unloaded.basis.is_none() {
         let how = "in a ray: the gaps of the unloaded parts do not fit together".to_owned();
         return Err(PathError::NoStart { name: "interference".to_owned(), at: 0.0, how });
     }
-    follower.stand(&numbers, &unloaded.contact, &unloaded.point);
-    if own.iter().any(|gap| *gap < 0.0) {
-        let none = follower.factors.clone();
-        let course = Course { factors: [none.clone(), none], gaps: [follower.gaps.clone(), own.clone()] };
-        if let (_, Some((at, _))) = follower.along(&course, &|_| 0.0)? {
-            let how = "in a limit: the parts cannot be put together".to_owned();
-            return Err(PathError::NoStart { name: "interference".to_owned(), at, how });
-        }
-    }
-    follower.stages(targets)
+    walk.stand(&numbers, &unloaded.contact, &unloaded.point);
+    walk.put_together()?;
+    let (stages, end) = walk.stages(targets)?;
+    Ok(recorded(&walk.place, stages, end))
 }
 
-impl Follower<'_> {
-    /// The numbers of the laws under these factors and gaps.
-    fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
-        let mut numbers = ContactNumbers { gap: gaps.to_vec(), ..self.laws.numbers.clone() };
-        numbers.set_load(DVector::zeros(self.laws.system.joint_count()));
-        for (load, factor) in self.laws.system.loads.iter().zip(factors) {
-            numbers.add_load(*factor, &load.vector, &load.terms);
-        }
-        numbers.file_load = self.laws.system.file.as_ref().map(|file| file.load(factors));
-        numbers
-    }
-
-    /// The same for slips that count from the committed ones.
+impl ForcedWalk<'_> {
+    /// The numbers for slips that count from the committed ones.
     fn beyond_slips(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
-        let system = self.laws.system;
+        let system = self.place.laws.system;
         let mut numbers = self.numbers_at(factors, gaps);
         for joint in (0..self.slips.len()).filter(|&joint| self.slips[joint] != 0.0) {
             let slip = self.slips[joint];
@@ -144,11 +106,11 @@ impl Follower<'_> {
 
     /// Stands at a point of an LCP of increments of slip.
     fn stand(&mut self, numbers: &ContactNumbers, contact: &ContactLcp, point: &Point) {
-        let system = self.laws.system;
+        let system = self.place.laws.system;
         let mut state = state_of(system, numbers, contact, point);
         state.left.clear();
         let mut pairs = pair_states(system, numbers, contact, &state);
-        self.way = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
+        self.place.way = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
         for (i, (pair, shown)) in system.pairs.iter().zip(&mut pairs).enumerate() {
             let Some(joint) = pair.tangential else { continue };
             if state.z[joint] != 0.0 {
@@ -172,120 +134,16 @@ impl Follower<'_> {
         self.pairs = pairs;
     }
 
-    fn moment(&self, t: f64, jump: bool) -> Moment {
-        let mut pairs = self.pairs.clone();
-        let numbers = self.numbers_at(&self.factors, &self.gaps);
-        self.prepared.add_released_slips(&mut pairs, &numbers, &self.factors, &self.state.z);
-        for (pair, way) in pairs.iter_mut().zip(&self.way) {
-            (pair.state, pair.held) = *way;
-        }
-        Moment {
-            t,
-            factors: self.factors.clone(),
-            pairs,
-            changes: Vec::new(),
-            sentence: String::new(),
-            jump,
-            way: self.way.clone(),
-            state: self.state.clone(),
-        }
-    }
-
-    fn stages(mut self, targets: &[Vec<f64>]) -> Result<History, PathError> {
-        let mut stages = Vec::new();
-        let mut end = HistoryEnd::Complete;
-        for (index, target) in targets.iter().enumerate() {
-            let report = |t: f64| (index as f64 + t) / targets.len() as f64;
-            let course = Course {
-                factors: [self.factors.clone(), target.clone()],
-                gaps: [self.gaps.clone(), self.gaps.clone()],
-            };
-            let before = self.moment(0.0, false).pairs;
-            let (way, limit) = self.along(&course, &report)?;
-            stages.push(self.result(way, &before, limit.as_ref()));
-            if let Some((t, collapse)) = limit {
-                end = HistoryEnd::Limit { stage: index, t, collapse: Box::new(collapse) };
-                break;
-            }
-        }
-        let cases = self.prepared.cases.iter().map(|(name, _)| name.clone()).collect();
-        let mut history = History { cases, stages, end };
-        energy::balance(self.prepared, self.laws.numbers, &mut history);
-        Ok(history)
-    }
-
-    /// A stage that has been followed, from the pairs `before` it.
-    fn result(&self, mut way: Way, before: &[PairState], limit: Option<&(f64, Ray)>) -> StageResult {
-        let system = self.laws.system;
-        let ids = || system.pairs.iter().map(|pair| pair.id.as_str());
-        for k in 0..way.moments.len().saturating_sub(1) {
-            let changes = between(ids(), &way.moments[k].way, &way.moments[k + 1].way);
-            way.moments[k].sentence = sentence(&changes);
-            way.moments[k].changes = changes;
-        }
-        let numbers = self.numbers_at(&self.factors, &self.gaps);
-        let mut pairs = self.pairs.clone();
-        self.prepared.add_released_slips(&mut pairs, &numbers, &self.factors, &self.state.z);
-        let slip = pairs.iter().zip(before).map(|(pair, before)| pair.z_t - before.z_t).collect();
-        let mut end = self.prepared.history_answer(system, &numbers, &self.factors, &self.state, &way.last_slip, pairs);
-        if let Some((_, collapse)) = limit
-            && end.is_answer()
-        {
-            end.outcome = OutcomeKind::Ray;
-            end.p = collapse.p;
-            end.ray = Some(collapse.clone());
-        }
-        StageResult {
-            dissipated: energy::dissipated(system, &way.moments),
-            moments: way.moments,
-            pivots: way.pivots,
-            slip,
-            energy: None,
-            end,
-        }
-    }
-
-    /// Follows one stage; the place and the collapse where it ends in a limit.
-    fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Option<(f64, Ray)>), PathError> {
-        let none = DVector::zeros(self.slips.len());
-        let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
-        let (mut t, mut events) = (0.0, 0);
-        let constants =
-            |at: f64| load_with_gaps(self.laws.system, &self.numbers_at(&course.factors_at(at), &course.gaps_at(at)));
-        let rate = constants(1.0) - constants(0.0);
-        while t < 1.0 {
-            self.watch.progress("stages", report(t));
-            events += 1;
-            if events > EVENTS {
-                return Err(breakdown(t, &format!("the limit of {EVENTS} events in a stage was reached")));
-            }
-            let (to, contact, point, jump) = match self.ahead(course, &rate, t, &mut way)? {
-                Ahead::Event(to, contact, point) => (to, contact, point, false),
-                Ahead::Jump(to, contact, point) => (to, contact, point, true),
-                Ahead::Limit(ray) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
-            };
-            let (factors, gaps) = (course.factors_at(to), course.gaps_at(to));
-            let numbers = self.beyond_slips(&factors, &gaps);
-            let before = self.slips.clone();
-            (self.factors, self.gaps) = (factors, gaps);
-            self.stand(&numbers, &contact, &point);
-            way.last_slip = &self.slips - before;
-            way.moments.push(self.moment(to, jump));
-            t = to;
-        }
-        Ok((way, None))
-    }
-
     /// The next event after t, found from the scheme a little ahead.
     fn ahead(&self, course: &Course, rate: &DVector<f64>, t: f64, way: &mut Way) -> Result<Ahead, PathError> {
-        let system = self.laws.system;
+        let system = self.place.laws.system;
         let here = self.beyond_slips(&course.factors_at(t), &course.gaps_at(t));
         let path = path_lcp(system, &here, rate);
         let (mut jump, mut limit) = (None, None);
         for step in AHEAD {
             let to = (t + step).min(1.0);
             let numbers = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
-            let found = cold(system, &numbers, self.watch)?;
+            let found = cold(system, &numbers, self.place.watch)?;
             let Some(basis) = &found.basis else {
                 let p = found.point.p * found.contact.force_unit;
                 limit = found.ray().cloned().map(|ray| Box::new((found.contact.clone(), ray, p)));
@@ -299,7 +157,7 @@ impl Follower<'_> {
             let Some(mut engine) = Parametric::new(Arc::clone(&path.lcp), basis, order(&path)) else { continue };
             let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
             let followed = engine.follow(reach, &mut |_| {
-                if self.watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                if self.place.watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
             way.pivots += followed.pivots;
             if let Some(knot) = followed.knots.iter().find(|knot| knot.t > HERE) {
@@ -313,12 +171,12 @@ impl Follower<'_> {
 
     /// The collapse at place t of a stage, from the ray met just beyond it.
     fn collapse(&self, course: &Course, t: f64, ray: Option<Box<(ContactLcp, RayDirection, f64)>>) -> Ray {
-        let system = self.laws.system;
+        let system = self.place.laws.system;
         // At the limit itself the forces still balance.
         let (factors, gaps) = (course.factors_at(t + AHEAD[1]), course.gaps_at(t + AHEAD[1]));
         let numbers = self.beyond_slips(&factors, &gaps);
-        let cases = self.prepared.named_factors(&factors);
-        let subject = self.prepared.subject(system, &numbers, &cases);
+        let cases = self.place.prepared.named_factors(&factors);
+        let subject = self.place.prepared.subject(system, &numbers, &cases);
         let (contact, direction, p) = match ray {
             Some(found) => *found,
             // The run ended in no ray: there is no motion to show.
@@ -332,5 +190,63 @@ impl Follower<'_> {
         let mut collapse = full_report(&subject, &contact, &direction, p);
         collapse.explanation = explanation(&collapse).to_owned();
         collapse
+    }
+}
+
+impl<'a> Follower<'a> for ForcedWalk<'a> {
+    fn place(&self) -> &Place<'a> {
+        &self.place
+    }
+
+    fn state(&self) -> JointState {
+        self.state.clone()
+    }
+
+    fn states(&self) -> Vec<PairState> {
+        let Place { prepared, factors, gaps, .. } = &self.place;
+        let mut pairs = self.pairs.clone();
+        prepared.add_released_slips(&mut pairs, &self.numbers_at(factors, gaps), factors, &self.state.z);
+        pairs
+    }
+
+    fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
+        let mut numbers = ContactNumbers { gap: gaps.to_vec(), ..self.place.laws.numbers.clone() };
+        numbers.set_load(DVector::zeros(self.place.laws.system.joint_count()));
+        for (load, factor) in self.place.laws.system.loads.iter().zip(factors) {
+            numbers.add_load(*factor, &load.vector, &load.terms);
+        }
+        numbers.file_load = self.place.laws.system.file.as_ref().map(|file| file.load(factors));
+        numbers
+    }
+
+    fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
+        let none = DVector::zeros(self.slips.len());
+        let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
+        let (mut t, mut events) = (0.0, 0);
+        let constants = |at: f64| {
+            load_with_gaps(self.place.laws.system, &self.numbers_at(&course.factors_at(at), &course.gaps_at(at)))
+        };
+        let rate = constants(1.0) - constants(0.0);
+        while t < 1.0 {
+            self.place.watch.progress("stages", report(t));
+            events += 1;
+            if events > EVENTS {
+                return Err(breakdown(t, &format!("the limit of {EVENTS} events in a stage was reached")));
+            }
+            let (to, contact, point, jump) = match self.ahead(course, &rate, t, &mut way)? {
+                Ahead::Event(to, contact, point) => (to, contact, point, false),
+                Ahead::Jump(to, contact, point) => (to, contact, point, true),
+                Ahead::Limit(ray) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
+            };
+            let (factors, gaps) = (course.factors_at(to), course.gaps_at(to));
+            let numbers = self.beyond_slips(&factors, &gaps);
+            let before = self.slips.clone();
+            (self.place.factors, self.place.gaps) = (factors, gaps);
+            self.stand(&numbers, &contact, &point);
+            way.last_slip = &self.slips - before;
+            way.moments.push(self.moment(to, jump));
+            t = to;
+        }
+        Ok((way, None))
     }
 }

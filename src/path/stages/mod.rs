@@ -11,6 +11,7 @@ mod beyond;
 mod course;
 mod energy;
 mod event;
+mod follower;
 mod force_form;
 mod rate_problem;
 mod record;

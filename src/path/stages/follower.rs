@@ -1,0 +1,162 @@
+//! What every way of following a history shares: the stages one after the other, the record of each, and the parts with
+//! interference that are put together first. How a single stage is gone through is the follower's own.
+
+use nalgebra::DVector;
+
+use super::course::Course;
+use super::energy;
+use super::record::{History, HistoryEnd, Moment, StageResult};
+use super::standing::Laws;
+use crate::answer::pairs::JointState;
+use crate::answer::record::{OutcomeKind, PairState, Ray, State};
+use crate::contact::numbers::ContactNumbers;
+use crate::path::change::{between, sentence};
+use crate::path::start::PathError;
+use crate::solve::Prepared;
+use crate::watch::Watch;
+
+/// The place from which a history goes on.
+pub(super) struct Place<'a> {
+    pub(super) prepared: &'a Prepared,
+    pub(super) laws: Laws<'a>,
+    pub(super) watch: &'a dyn Watch,
+    /// Factor of each load case.
+    pub(super) factors: Vec<f64>,
+    /// Gap of each pair; those below 0 only once the parts are put together.
+    pub(super) gaps: Vec<f64>,
+    /// What every pair did on the way here.
+    pub(super) way: Vec<(State, Option<State>)>,
+}
+
+impl<'a> Place<'a> {
+    /// Without loads, interfering parts apart.
+    pub(super) fn unloaded(prepared: &'a Prepared, laws: Laws<'a>, watch: &'a dyn Watch) -> Place<'a> {
+        let factors = vec![0.0; prepared.cases.len()];
+        let gaps = laws.numbers.gap.iter().map(|gap| gap.max(0.0)).collect();
+        Place { prepared, laws, watch, factors, gaps, way: Vec::new() }
+    }
+}
+
+/// The way through a stage.
+pub(super) struct Way {
+    pub(super) moments: Vec<Moment>,
+    pub(super) pivots: usize,
+    /// z_τ of its last stretch, over the joints.
+    pub(super) last_slip: DVector<f64>,
+}
+
+/// Where a stage ends in a limit: the place in it and the collapse.
+pub(super) type Limit = Option<(f64, Ray)>;
+
+/// One who follows a history.
+pub(super) trait Follower<'a> {
+    /// Where it stands.
+    fn place(&self) -> &Place<'a>;
+
+    /// Displacements and forces of the joints there.
+    fn state(&self) -> JointState;
+
+    /// The pairs there.
+    fn states(&self) -> Vec<PairState>;
+
+    /// The numbers of the laws under these factors and gaps.
+    fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers;
+
+    /// Goes through one stage.
+    fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError>;
+
+    /// Puts parts with interference (gaps below 0) together.
+    fn put_together(&mut self) -> Result<(), PathError> {
+        let Place { laws, factors, gaps, .. } = self.place();
+        let own = laws.numbers.gap.clone();
+        if own.iter().all(|gap| *gap >= 0.0) {
+            return Ok(());
+        }
+        let course = Course { factors: [factors.clone(), factors.clone()], gaps: [gaps.clone(), own] };
+        if let (_, Some((at, _))) = self.along(&course, &|_| 0.0)? {
+            let how = "in a limit: the parts cannot be put together".to_owned();
+            return Err(PathError::NoStart { name: "interference".to_owned(), at, how });
+        }
+        Ok(())
+    }
+
+    /// The present place as a moment of the record.
+    fn moment(&self, t: f64, jump: bool) -> Moment {
+        let place = self.place();
+        let mut pairs = self.states();
+        for (pair, way) in pairs.iter_mut().zip(&place.way) {
+            (pair.state, pair.held) = *way;
+        }
+        Moment {
+            t,
+            factors: place.factors.clone(),
+            pairs,
+            changes: Vec::new(),
+            sentence: String::new(),
+            jump,
+            way: place.way.clone(),
+            state: self.state(),
+        }
+    }
+
+    /// Follows the given factors of all load cases, stage by stage, up to the first limit. The record is without energies:
+    /// see [`recorded`].
+    fn stages(&mut self, targets: &[Vec<f64>]) -> Result<(Vec<StageResult>, HistoryEnd), PathError> {
+        let mut stages = Vec::new();
+        for (index, target) in targets.iter().enumerate() {
+            let report = |t: f64| (index as f64 + t) / targets.len() as f64;
+            let Place { factors, gaps, .. } = self.place();
+            let course = Course { factors: [factors.clone(), target.clone()], gaps: [gaps.clone(), gaps.clone()] };
+            let before = self.states();
+            let (way, limit) = self.along(&course, &report)?;
+            stages.push(self.result(way, &before, limit.as_ref()));
+            if let Some((t, collapse)) = limit {
+                return Ok((stages, HistoryEnd::Limit { stage: index, t, collapse: Box::new(collapse) }));
+            }
+        }
+        Ok((stages, HistoryEnd::Complete))
+    }
+
+    /// A stage that has been followed, from the pairs `before` it.
+    fn result(&self, mut way: Way, before: &[PairState], limit: Option<&(f64, Ray)>) -> StageResult {
+        let Place { prepared, laws, factors, gaps, .. } = self.place();
+        let system = laws.system;
+        tell_changes(&mut way.moments, || system.pairs.iter().map(|pair| pair.id.as_str()));
+        let numbers = self.numbers_at(factors, gaps);
+        let pairs = self.states();
+        let slip = pairs.iter().zip(before).map(|(pair, before)| pair.z_t - before.z_t).collect();
+        let mut end = prepared.history_answer(system, &numbers, factors, &self.state(), &way.last_slip, pairs);
+        if let Some((_, collapse)) = limit
+            && end.is_answer()
+        {
+            end.outcome = OutcomeKind::Ray;
+            end.p = collapse.p;
+            end.ray = Some(collapse.clone());
+        }
+        StageResult {
+            dissipated: energy::dissipated(system, &way.moments),
+            moments: way.moments,
+            pivots: way.pivots,
+            slip,
+            energy: None,
+            end,
+        }
+    }
+}
+
+/// The record of followed stages with its energies.
+pub(super) fn recorded(place: &Place<'_>, stages: Vec<StageResult>, end: HistoryEnd) -> History {
+    let cases = place.prepared.cases.iter().map(|(name, _)| name.clone()).collect();
+    let mut history = History { cases, stages, end };
+    energy::balance(place.prepared, place.laws.numbers, &mut history);
+    history
+}
+
+/// What changes at each moment: what the pairs did on the way to it and do after it differs.
+fn tell_changes<'i, I: Iterator<Item = &'i str>>(moments: &mut [Moment], ids: impl Fn() -> I) {
+    for k in 0..moments.len().saturating_sub(1) {
+        let changes = between(ids(), &moments[k].way, &moments[k + 1].way);
+        moments[k].sentence = sentence(&changes);
+        moments[k].changes = changes;
+    }
+}
