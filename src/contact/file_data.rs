@@ -7,9 +7,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::doubled::dot;
 use super::pivoted::PivotedCholesky;
 use super::sums::Sum;
+use crate::lcp::doubled::dot;
 
 /// Rounds of refinement of a solution whose residual is summed in doubled precision.
 const ROUNDS: usize = 3;

@@ -20,7 +20,6 @@ pub(crate) mod answer_box;
 mod ball;
 pub mod complementarity;
 pub mod critical;
-pub(crate) mod doubled;
 pub mod enumerate;
 pub mod exact_check;
 pub(crate) mod exact_system;

@@ -9,7 +9,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::doubled::dot;
+use crate::lcp::doubled::dot;
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 const DIGITS: f64 = 64.0 * f64::EPSILON;

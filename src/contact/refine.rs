@@ -8,11 +8,11 @@
 use nalgebra::DVector;
 
 use super::complementarity::{ContactLcp, Couple, RowMeaning};
-use super::doubled::dot;
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces, pair_sums};
 use super::system::ContactSystem;
 use super::whole::{fixed_bound, friction};
+use crate::lcp::doubled::dot;
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::NOISE;
 use crate::lcp::vertex::{Basis, corrected};

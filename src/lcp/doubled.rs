@@ -42,9 +42,17 @@ impl Sum {
     }
 }
 
+/// Σ a_i b_i + start, rounded once.
+pub fn dot<'a>(start: f64, terms: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
+    let mut sum = Sum::default();
+    sum.add(start);
+    terms.filter(|(a, b)| **a != 0.0 && **b != 0.0).for_each(|(a, b)| sum.add_product(*a, *b));
+    sum.value()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Sum;
+    use super::{Sum, dot};
 
     #[test]
     fn terms_that_cancel_leave_what_f64_loses() {
@@ -58,5 +66,13 @@ mod tests {
         let mut sum = Sum::default();
         [1e17, 1.0, -1e17].into_iter().for_each(|term| sum.add(term));
         assert_eq!(sum.value(), 1.0);
+    }
+
+    #[test]
+    fn what_cancels_is_kept() {
+        // (1 + ε)² − 1 − 2ε = ε².
+        let a = 1.0 + f64::EPSILON;
+        let sum = dot(-1.0, [a, -2.0].iter().zip([a, f64::EPSILON].iter()));
+        assert_eq!(sum, f64::EPSILON * f64::EPSILON);
     }
 }
