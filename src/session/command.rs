@@ -720,6 +720,10 @@ pub fn parse(text: &str) -> Result<Option<Command>, GrammarError> {
     };
     let name = resolve(first)?;
     first.clone_from(&name);
+    // Commands whose words may begin with a sign would take it for one of them.
+    if name != "echo" && matches!(&words[1..], [word] if word == "--help") {
+        return Ok(Some(Command::Help { command: Some(name) }));
+    }
     if name == "sweep" {
         // Its options may follow its ranges: a range from below zero would be taken for one of them.
         let below_zero = |word: &&mut String| word.starts_with('-') && !word.starts_with("--") && word.contains("..");
@@ -784,6 +788,15 @@ mod tests {
         assert_eq!(words("set F2 -10%"), ["F2", "-10%"]);
         assert_eq!(words("set F2 -= 10"), ["F2", "-=", "10"]);
         assert!(matches!(parse("echo --at -x"), Ok(Some(Command::Echo { words })) if words.len() == 2));
+    }
+
+    #[test]
+    fn every_command_has_its_help() {
+        for command in grammar().get_subcommands().map(clap::Command::get_name).filter(|name| *name != "echo") {
+            let help = Command::Help { command: Some(command.to_owned()) };
+            assert_eq!(parse(&format!("{command} --help")).unwrap(), Some(help));
+        }
+        assert!(matches!(parse("echo --help"), Ok(Some(Command::Echo { .. }))));
     }
 
     #[test]
