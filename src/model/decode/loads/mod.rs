@@ -14,7 +14,7 @@ use super::structure::{Builder, Settlement};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::edge::Edge;
 use crate::model::parameter::Number;
-use crate::model::structure::{Load, LoadCase};
+use crate::model::structure::{ElementKind, Load, LoadCase};
 use crate::model::uses::Region;
 
 /// Reads one kind of load.
@@ -170,14 +170,32 @@ fn between<const N: usize>([first, last]: [[f64; N]; 2], share: f64) -> [f64; N]
 
 /// The elements of `on`: those of the named bars, plates, triangles and quads, each once; all without the key.
 fn elements<'d>(builder: &Builder<'d>, on: Option<Cursor<'d>>) -> Option<Vec<usize>> {
-    let Some(on) = on else { return Some((0..builder.structure.elements.len()).collect()) };
+    match on {
+        Some(on) => named_elements(builder, on, |_, _| true),
+        None => Some((0..builder.structure.elements.len()).collect()),
+    }
+}
+
+/// The elements named in `on`, each once. `suits` says at the place of a name what is wrong with an element of it.
+fn named_elements<'d>(
+    builder: &Builder<'d>,
+    on: Cursor<'d>,
+    suits: impl Fn(Cursor<'d>, &ElementKind) -> bool,
+) -> Option<Vec<usize>> {
+    let names = on.list()?;
+    if names.len() == 0 {
+        on.problem("the load is on nothing", "name the elements that it acts on");
+        return None;
+    }
     let mut elements = Vec::new();
     let mut is_right = true;
-    for at in on.list()? {
-        match builder.elements_of(at) {
-            Some(found) => elements.extend(found),
-            None => is_right = false,
-        }
+    for at in names {
+        let Some(found) = builder.elements_of(at) else {
+            is_right = false;
+            continue;
+        };
+        is_right &= found.iter().all(|&element| suits(at, &builder.structure.elements[element].kind));
+        elements.extend(found);
     }
     elements.sort_unstable();
     elements.dedup();
