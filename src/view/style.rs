@@ -177,10 +177,16 @@ impl Style {
         lines
     }
 
-    /// `label` and behind it `text`, broken into lines that hang under the text's first word.
+    /// `label` and behind it `text`, broken into lines that hang under the text's first word; under the label where that
+    /// takes more than half of the width.
     pub fn hanging(&self, label: &str, text: &str) -> Vec<String> {
         let label = self.text(label);
-        let indent = label.width().min(self.width / 2);
+        if label.width() > self.width / 2 {
+            let lines = self.wrap(&format!("{label}{text}"), self.width.saturating_sub(2));
+            let under = |(i, line): (usize, String)| if i == 0 { line } else { format!("  {line}") };
+            return lines.into_iter().enumerate().map(under).collect();
+        }
+        let indent = label.width();
         let mut lines = self.wrap(text, self.width.saturating_sub(indent));
         if lines.is_empty() {
             lines.push(String::new());
@@ -234,4 +240,21 @@ pub fn pad_right(text: &str, width: usize) -> String {
 /// `text` padded with spaces to `width` characters, at its left.
 pub fn pad_left(text: &str, width: usize) -> String {
     format!("{}{text}", " ".repeat(width.saturating_sub(text.width())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_label_is_never_cut() {
+        let style = Style { width: 40, ..Style::default() };
+        assert_eq!(
+            style.hanging("note: ", "one two three four five six seven eight"),
+            ["note: one two three four five six seven", "      eight",]
+        );
+        let label = "pivot 4 (p enters at 0) of 4: ";
+        let lines = style.hanging(label, "pair c3 slips +; p falls to 0");
+        assert_eq!(lines, ["pivot 4 (p enters at 0) of 4: pair c3", "  slips +; p falls to 0"]);
+    }
 }
