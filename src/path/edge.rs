@@ -134,7 +134,8 @@ pub fn edge(basis: Basis<'_>, name: &str, range: [f64; 2], which: Which) -> Resu
     Ok(Edge {
         value: exact.unwrap_or(answer.value),
         exact: exact.is_some(),
-        beyond: which == Which::Least && collapse.is_proved() && is_friction_alone(basis, name),
+        // A motion that certifies the collapse does so under less friction too; a search through the schemes holds only there.
+        beyond: which == Which::Least && collapse.verdict == Some(Verdict::Certified) && is_friction_alone(basis, name),
         answer,
         collapse: Some(collapse),
     })

@@ -128,6 +128,21 @@ fn block() -> Session {
     session(load_text("block", text, None).unwrap_or_else(|problems| panic!("{problems}")))
 }
 
+/// Three nodes in a row, each held down by a spring of its own (R_nn = k I), so that statics alone would let x_n grow: the
+/// collapse where f · 240 < 110 is found by the search through the schemes, which speaks of that f only.
+#[test]
+fn a_proof_by_search_is_claimed_for_no_other_friction() {
+    let text = r#"{ "format": "stickslip/1", "title": "row", "parameters": { "f": 0.5 },
+        "contact_system": { "pairs": ["c1", "c2", "c3"], "friction": ["f", "f", "f"],
+            "stiffness": [[1000, 0, 0, 0, 0, 0], [0, 1000, 0, 0, 0, 0], [0, 0, 1000, 0, 0, 0],
+                [0, 0, 0, 1000, -1000, 0], [0, 0, 0, -1000, 2000, -1000], [0, 0, 0, 0, -1000, 1000]],
+            "loads": { "weight": { "vector": [40, 100, 100, 0, 0, 0] }, "pull": { "vector": [0, 0, 0, 0, 0, -110] } } } }"#;
+    let mut session = session(load_text("row", text, None).unwrap_or_else(|problems| panic!("{problems}")));
+    let found = report(&mut session, "find least f 0.1..1 where outcome answer").unwrap();
+    near(&found["value"], 110.0 / 240.0, 1e-8);
+    assert_eq!((&found["collapse"]["verdict"], &found["beyond"]), (&"proved".into(), &Value::Bool(false)), "{found}");
+}
+
 #[test]
 fn overturning_against_sliding() {
     let mut session = block();
