@@ -108,15 +108,17 @@ fn rows(
 ) -> Vec<Sum> {
     let z = contact.joint_displacements(system, &point.z) * contact.length_unit;
     let mut forces = joint_forces(system, numbers, &z);
-    let open: Vec<bool> = z.iter().take(system.pair_count()).map(|z| *z > 0.0).collect();
+    let mut unpressed: Vec<bool> = z.iter().take(system.pair_count()).map(|z| *z > 0.0).collect();
     if doubled && system.file.is_none() {
         let mut moved = z;
         moved.iter_mut().zip(&numbers.gap).for_each(|(z, gap)| *z -= gap);
         add_doubled(system, &numbers.load, &moved, &mut forces);
     }
+    // A pressure that is rounding bounds no friction: the slip is then as exact as its own row.
+    unpressed.iter_mut().zip(&forces).for_each(|(unpressed, force)| *unpressed |= force.is_zero());
     (contact.rows.iter())
         .map(|row| {
-            let sums = pair_sums(system, numbers, &forces, (row.pair, open[row.pair]));
+            let sums = pair_sums(system, numbers, &forces, (row.pair, unpressed[row.pair]));
             let reserve = |side: usize| sums.reserves.map(|reserves| reserves[side]);
             let sum = match row.couple {
                 Couple::Normal => sums.normal,
