@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::session::{AllAnswers, Next};
 
-use super::app::Pane;
+use super::entry::Edit;
+use super::pane::Pane;
 use super::shown::Shown;
 
 /// What a key can be bound to.
@@ -76,20 +77,8 @@ pub enum Do {
     Suspend,
     /// Take the mouse or leave it to the terminal.
     Mouse,
-    /// Enlarge the structure.
-    ZoomIn,
-    /// Shrink it.
-    ZoomOut,
-    /// The whole structure.
-    Fit,
-    /// Move the picture: left, right, up, down.
-    Pan(i8, i8),
-    /// Displacements larger.
-    DeformMore,
-    /// Displacements smaller.
-    DeformLess,
-    /// Displacements at the automatic scale.
-    DeformAuto,
+    /// Look at the structure otherwise.
+    Look(LookChange),
     /// Sort the pairs by the next key.
     Sort,
     /// Turn the order round.
@@ -116,22 +105,27 @@ pub enum Do {
     HistoryBack,
     /// The line after.
     HistoryOn,
-    /// Cursor left.
-    CursorLeft,
-    /// Cursor right.
-    CursorRight,
-    /// Cursor to the start.
-    CursorHome,
-    /// Cursor to the end.
-    CursorEnd,
-    /// Delete before the cursor.
-    Backspace,
-    /// Delete at the cursor.
-    Delete,
-    /// Delete to the start of the line.
-    DeleteToStart,
-    /// Delete the word before the cursor.
-    DeleteWord,
+    /// Change the line.
+    Edit(Edit),
+}
+
+/// How the structure is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LookChange {
+    /// Enlarge it.
+    ZoomIn,
+    /// Shrink it.
+    ZoomOut,
+    /// The whole structure.
+    Fit,
+    /// Move the picture: right, up.
+    Pan(i8, i8),
+    /// Displacements larger.
+    DeformMore,
+    /// Displacements smaller.
+    DeformLess,
+    /// Displacements at the automatic scale.
+    DeformAuto,
 }
 
 /// What the mouse did, at a character of the screen.

@@ -105,7 +105,8 @@ pub fn parse(text: &str) -> Config {
 mod tests {
     use super::*;
     use crate::tui::action::Do;
-    use crate::tui::keymap::{Context, Key};
+    use crate::tui::bindings::Context;
+    use crate::tui::key::Key;
 
     #[test]
     fn keys_are_taken_over_and_mistakes_told() {

@@ -13,9 +13,11 @@ use crate::view::number::{short, with_unit};
 use crate::view::status::{class_word, outcome_word, pivot_count};
 use crate::view::style::Role;
 
-use super::app::{Pane, State};
+use super::app::State;
+use super::bindings::Context;
 use super::layout::{self, Places};
-use super::{keymap, overlay, panes, tour};
+use super::pane::Pane;
+use super::{input, overlay, panes, tour};
 
 /// Draws everything.
 pub fn draw(state: &State, frame: &mut Frame<'_>) {
@@ -229,9 +231,9 @@ fn draw_bottom(state: &State, area: Rect, buffer: &mut Buffer) {
         return;
     }
     let mut x = area.x;
-    let mut contexts = keymap::contexts(state);
+    let mut contexts = input::contexts(state);
     // the tour tells its keys itself
-    contexts.retain(|context| *context != keymap::Context::Tour);
+    contexts.retain(|context| *context != Context::Tour);
     for (keys, word) in state.keys.hints(&contexts, look.ascii) {
         let room = usize::from(area.right().saturating_sub(x));
         let need = keys.width() + 1 + word.width();

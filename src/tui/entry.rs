@@ -2,6 +2,27 @@
 
 use crate::session::complete::{Candidate, Vocabulary, completions};
 
+/// A change of the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Edit {
+    /// Cursor left.
+    Left,
+    /// Cursor right.
+    Right,
+    /// Cursor to the start.
+    Home,
+    /// Cursor to the end.
+    End,
+    /// Delete before the cursor.
+    Backspace,
+    /// Delete at the cursor.
+    Delete,
+    /// Delete to the start of the line.
+    DeleteToStart,
+    /// Delete the word before the cursor.
+    DeleteWord,
+}
+
 /// The line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entry {
@@ -40,70 +61,42 @@ impl Entry {
         self.cursor += clean.len();
     }
 
-    fn before(&self) -> Option<usize> {
-        self.text[..self.cursor].char_indices().next_back().map(|(at, _)| at)
+    /// The boundary of characters before the cursor.
+    fn before(&self) -> usize {
+        self.text[..self.cursor].char_indices().next_back().map_or(0, |(at, _)| at)
     }
 
-    fn after(&self) -> Option<usize> {
-        let next = self.text[self.cursor..].chars().next()?;
-        Some(self.cursor + next.len_utf8())
+    /// The one after it.
+    fn after(&self) -> usize {
+        self.cursor + self.text[self.cursor..].chars().next().map_or(0, char::len_utf8)
     }
 
-    /// Cursor left.
-    pub fn left(&mut self) {
-        self.cursor = self.before().unwrap_or(0);
+    /// Moves the cursor or deletes.
+    pub fn edit(&mut self, edit: Edit) {
         self.forget_candidates();
-    }
-
-    /// Cursor right.
-    pub fn right(&mut self) {
-        self.cursor = self.after().unwrap_or(self.text.len());
-        self.forget_candidates();
-    }
-
-    /// Cursor to the start.
-    pub fn home(&mut self) {
-        self.cursor = 0;
-        self.forget_candidates();
-    }
-
-    /// Cursor to the end.
-    pub fn end(&mut self) {
-        self.cursor = self.text.len();
-        self.forget_candidates();
-    }
-
-    /// Deletes before the cursor.
-    pub fn backspace(&mut self) {
-        self.forget_candidates();
-        if let Some(at) = self.before() {
-            self.text.replace_range(at..self.cursor, "");
-            self.cursor = at;
+        match edit {
+            Edit::Left => self.cursor = self.before(),
+            Edit::Right => self.cursor = self.after(),
+            Edit::Home => self.cursor = 0,
+            Edit::End => self.cursor = self.text.len(),
+            Edit::Backspace => self.delete(self.before()),
+            Edit::Delete => {
+                let end = self.after();
+                self.text.replace_range(self.cursor..end, "");
+            }
+            Edit::DeleteToStart => self.delete(0),
+            Edit::DeleteWord => {
+                let head = self.text[..self.cursor].trim_end();
+                let blank = head.char_indices().rev().find(|(_, c)| c.is_whitespace());
+                self.delete(blank.map_or(0, |(at, c)| at + c.len_utf8()));
+            }
         }
     }
 
-    /// Deletes at the cursor.
-    pub fn delete(&mut self) {
-        self.forget_candidates();
-        if let Some(end) = self.after() {
-            self.text.replace_range(self.cursor..end, "");
-        }
-    }
-
-    /// Deletes to the start.
-    pub fn delete_to_start(&mut self) {
-        self.forget_candidates();
-        self.text.replace_range(..self.cursor, "");
-        self.cursor = 0;
-    }
-
-    /// Deletes the word before the cursor.
-    pub fn delete_word(&mut self) {
-        self.forget_candidates();
-        let head = self.text[..self.cursor].trim_end();
-        let start = head.char_indices().rev().find(|(_, c)| c.is_whitespace()).map_or(0, |(at, c)| at + c.len_utf8());
-        self.text.replace_range(start..self.cursor, "");
-        self.cursor = start;
+    /// Deletes from here to the cursor.
+    fn delete(&mut self, from: usize) {
+        self.text.replace_range(from..self.cursor, "");
+        self.cursor = from;
     }
 
     /// Completes the word: first what all candidates share, then one after the other.
@@ -179,22 +172,22 @@ mod tests {
     #[test]
     fn editing_keeps_the_cursor_on_characters() {
         let mut entry = Entry::with("aü");
-        entry.left();
+        entry.edit(Edit::Left);
         entry.insert("漢");
         assert_eq!(entry.text, "a漢ü");
-        entry.backspace();
-        entry.delete();
+        entry.edit(Edit::Backspace);
+        entry.edit(Edit::Delete);
         assert_eq!(entry.text, "a");
-        entry.right();
-        entry.delete();
-        entry.home();
-        entry.backspace();
-        entry.end();
+        entry.edit(Edit::Right);
+        entry.edit(Edit::Delete);
+        entry.edit(Edit::Home);
+        entry.edit(Edit::Backspace);
+        entry.edit(Edit::End);
         entry.insert(" b\ncd");
         assert_eq!(entry.text, "a b cd");
-        entry.delete_word();
+        entry.edit(Edit::DeleteWord);
         assert_eq!(entry.text, "a b ");
-        entry.delete_to_start();
+        entry.edit(Edit::DeleteToStart);
         assert_eq!((entry.text.as_str(), entry.cursor), ("", 0));
     }
 

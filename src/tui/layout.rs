@@ -2,7 +2,8 @@
 
 use ratatui::layout::Rect;
 
-use super::app::{Pane, State};
+use super::app::State;
+use super::pane::Pane;
 use super::{panes, tour};
 
 /// No pane makes sense below this.
@@ -148,6 +149,11 @@ fn is_flat(structure: &crate::model::structure::Structure) -> bool {
         high - low
     };
     side(1) < 0.12 * side(0)
+}
+
+/// Where a pane stands, if it is shown.
+pub fn area_of(state: &State, pane: Pane) -> Option<Rect> {
+    places(state)?.panes.into_iter().find(|(shown, _)| *shown == pane).map(|(_, area)| area)
 }
 
 /// The pane at a place of the screen.

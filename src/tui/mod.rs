@@ -2,17 +2,21 @@
 //!
 //! event → [`action::Action`] → [`update::update`] (pure: state and action → state and effects) → [`draw::draw`].
 //! Only [`runtime`] and [`terminal`] know threads, clocks and the terminal; the session lives on the thread of
-//! [`worker`], so that the screen answers while it computes. The keys are one table, [`keymap::BINDINGS`].
+//! [`worker`], so that the screen answers while it computes. The keys are one table, [`bindings::BINDINGS`].
 
 pub mod action;
 pub mod app;
+pub mod bindings;
 pub mod config;
 pub mod draw;
 pub mod entry;
 pub mod frame;
+pub mod input;
+pub mod key;
 pub mod keymap;
 pub mod layout;
 pub mod overlay;
+pub mod pane;
 pub mod panes;
 pub mod runtime;
 pub mod shown;

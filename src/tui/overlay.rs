@@ -15,7 +15,7 @@ use crate::view::pairs::state_words;
 use crate::view::style::{Role, pad_left, pad_right};
 
 use super::app::{Input, Overlay, State};
-use super::keymap::Context;
+use super::bindings::Context;
 use super::theme::Look;
 
 /// Width of the text of an overlay.

@@ -16,7 +16,7 @@ use crate::view::style::{Role, Style};
 use super::action::{Action, Effect, Leave, Mouse};
 use super::app::State;
 use super::config;
-use super::keymap;
+use super::input;
 use super::overlay;
 use super::shown::Shown;
 use super::terminal::{Asked, Screen, asked};
@@ -263,7 +263,7 @@ impl Loop {
 
     fn translate(&self, event: Event) -> Option<Action> {
         match event {
-            Event::Key(key) => keymap::action(&self.state, &key),
+            Event::Key(key) => input::action(&self.state, &key),
             Event::Paste(text) => Some(Action::Paste(text)),
             Event::Resize(width, height) => Some(Action::Resize(width, height)),
             Event::Mouse(mouse) => {

@@ -1,7 +1,8 @@
 //! The guided tour: six steps through the paper's Example 1, from sticking to the ray.
 
-use super::app::{Pane, Plot, State};
-use super::keymap::Context;
+use super::app::State;
+use super::bindings::Context;
+use super::pane::{Pane, Plot};
 
 /// One step.
 pub struct Step {

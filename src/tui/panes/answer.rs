@@ -5,8 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::tui::action::Job;
-use crate::tui::app::{Pane, State};
-use crate::tui::layout;
+use crate::tui::app::State;
 use crate::view::style::Role;
 use crate::view::{self, status};
 
@@ -34,12 +33,9 @@ fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
     }
 }
 
-/// The last line that may stand at the top.
-pub fn last_line(state: &State) -> usize {
-    let area = layout::places(state).and_then(|places| {
-        places.panes.iter().find(|(pane, _)| *pane == Pane::Answer).map(|(_, area)| super::inside(*area))
-    });
-    area.map_or(0, |area| lines(state, usize::from(area.width)).len().saturating_sub(usize::from(area.height)))
+/// The last line that may stand at the top of the `area`.
+pub fn last_line(state: &State, area: Rect) -> usize {
+    lines(state, usize::from(area.width)).len().saturating_sub(usize::from(area.height))
 }
 
 /// Draws the pane.

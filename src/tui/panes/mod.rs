@@ -16,7 +16,8 @@ use ratatui::text::Line;
 
 use crate::view::style;
 
-use super::app::{Pane, State};
+use super::app::State;
+use super::pane::Pane;
 use super::theme::Look;
 
 /// Draws the inside of a pane.

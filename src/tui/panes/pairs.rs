@@ -6,7 +6,8 @@ use ratatui::style::Modifier;
 use ratatui::text::Line;
 
 use crate::session::results::PairState;
-use crate::tui::app::{Pane, SortKey, State};
+use crate::tui::app::State;
+use crate::tui::pane::{Pane, SortKey};
 use crate::view::number::{short, with_unit};
 use crate::view::pairs::{state_words, write};
 use crate::view::style::Role;

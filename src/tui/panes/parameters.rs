@@ -5,7 +5,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use unicode_width::UnicodeWidthStr;
 
-use crate::tui::app::{Pane, State};
+use crate::tui::app::State;
+use crate::tui::pane::Pane;
 use crate::tui::vary;
 use crate::view::number::{short, with_unit};
 use crate::view::style::{Role, pad_left, pad_right};

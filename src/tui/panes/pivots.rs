@@ -6,7 +6,8 @@ use ratatui::style::Modifier;
 use unicode_width::UnicodeWidthStr;
 
 use crate::session::results::PivotRecord;
-use crate::tui::app::{Pane, State};
+use crate::tui::app::State;
+use crate::tui::pane::Pane;
 use crate::view::force_unit;
 use crate::view::number::{in_column, largest, short, with_unit};
 use crate::view::pivots::of_contact;

@@ -6,7 +6,8 @@ use ratatui::text::Line;
 
 use crate::session::diagram::Internal;
 use crate::session::results::PairState;
-use crate::tui::app::{Plot, State};
+use crate::tui::app::State;
+use crate::tui::pane::Plot;
 use crate::view::plot::scene::{Magnification, Picture};
 use crate::view::plot::structure::write_with_diagrams;
 use crate::view::plot::trace;

@@ -6,7 +6,8 @@ use ratatui::style::{Modifier, Style};
 
 use crate::model::structure::Structure;
 use crate::session::results::{PairDirection, PairState, State as PairMotion};
-use crate::tui::app::{PERIOD, Pane, State};
+use crate::tui::app::{PERIOD, State};
+use crate::tui::pane::Pane;
 use crate::view::number::short;
 use crate::view::plot::canvas::{Canvas, Stroke};
 use crate::view::plot::chart::{dotted, range};

@@ -1,0 +1,114 @@
+//! What the screen is made of: panes, plots, orders of the pairs.
+
+/// A pane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pane {
+    /// The structure, deformed, with the states of its pairs.
+    Structure,
+    /// The parameters as sliders.
+    Parameters,
+    /// The table of the pairs.
+    Pairs,
+    /// The pivots.
+    Pivots,
+    /// Curves over the contact zone and over the pivots.
+    Plot,
+    /// Outcome, check, rules.
+    Answer,
+}
+
+impl Pane {
+    /// All panes, in the order of their numbers.
+    pub const ALL: [Pane; 6] = [Pane::Structure, Pane::Parameters, Pane::Pairs, Pane::Pivots, Pane::Plot, Pane::Answer];
+
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Pane::Structure => "Structure",
+            Pane::Parameters => "Parameters",
+            Pane::Pairs => "Pairs",
+            Pane::Pivots => "Pivots",
+            Pane::Plot => "Plots",
+            Pane::Answer => "Answer",
+        }
+    }
+
+    /// What it is for, in a line; `plain` says that there is a bare LCP and no contact.
+    pub fn explanation(self, plain: bool) -> &'static str {
+        match (self, plain) {
+            (Pane::Structure, false) => "what sticks, slips, opens",
+            (Pane::Structure, true) => "",
+            (Pane::Parameters, _) => "+ and - vary it at once",
+            (Pane::Pairs, false) => "forces and motion of each contact pair",
+            (Pane::Pairs, true) => "z and w at the pivot shown",
+            (Pane::Pivots, false) => "each turns one joint",
+            (Pane::Pivots, true) => "each swaps two variables",
+            (Pane::Plot, false) => "along the contact; p: the next plot",
+            (Pane::Plot, true) => "p falls to 0, or ends in a ray",
+            (Pane::Answer, _) => "how the run ended, and its check",
+        }
+    }
+
+    /// Its place in [`Pane::ALL`].
+    pub fn index(self) -> usize {
+        Pane::ALL.iter().position(|pane| *pane == self).unwrap_or_default()
+    }
+}
+
+/// What is plotted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plot {
+    /// z_τ.
+    Slip,
+    /// x_τ within its bounds.
+    Force,
+    /// x_n.
+    Pressure,
+    /// z_n.
+    Gap,
+    /// p over the pivots.
+    P,
+    /// M along the bars.
+    Moment,
+    /// Q along the bars.
+    Shear,
+    /// N along the bars.
+    Axial,
+    /// Direction of the ray.
+    Ray,
+}
+
+/// Order of the pairs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SortKey {
+    /// As in the file.
+    File,
+    /// By state.
+    State,
+    /// By |z_τ|.
+    Slip,
+    /// By x_n.
+    Pressure,
+    /// By the smaller reserve.
+    Reserve,
+    /// By z_n.
+    Gap,
+}
+
+impl SortKey {
+    /// In the order in which they follow each other.
+    pub const ALL: [SortKey; 6] =
+        [SortKey::File, SortKey::State, SortKey::Slip, SortKey::Pressure, SortKey::Reserve, SortKey::Gap];
+
+    /// In words.
+    pub fn word(self) -> &'static str {
+        match self {
+            SortKey::File => "as in the file",
+            SortKey::State => "by state",
+            SortKey::Slip => "by slip",
+            SortKey::Pressure => "by x_n",
+            SortKey::Reserve => "by reserve",
+            SortKey::Gap => "by opening",
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The line of commands.
+
+use super::*;
+
+#[test]
+fn commands_run_in_the_same_session() {
+    let mut rig = Rig::new("beam", 80, 24);
+    rig.command("set F2 120; set covering weight");
+    assert_eq!(rig.state.shown.values["F2"], 120.0);
+    assert_eq!(rig.state.shown.rules.covering.to_string(), "weight");
+    rig.command("pairs");
+    assert!(matches!(&rig.state.overlay, Overlay::Output { title, .. } if title == "pairs"));
+    rig.press(&["esc"]);
+    rig.command("echo one line");
+    assert_eq!(rig.state.message.as_ref().unwrap().text, "one line");
+    rig.command("pears");
+    assert!(rig.screen().contains("did you mean"), "{}", rig.screen());
+    rig.press(&["esc"]);
+    rig.command("load greco");
+    assert_eq!(rig.state.shown.scenario.name, "greco");
+    assert_eq!(rig.state.parameter, 0);
+    rig.command("load no/such/file.json");
+    assert_eq!(rig.state.shown.scenario.name, "greco");
+    rig.press(&["esc", ":", "up", "up"]);
+    assert!(matches!(&rig.state.input, Input::Command(entry) if entry.text == "load greco"));
+    rig.press(&["esc"]);
+    assert_eq!(rig.command("quit"), [Effect::Leave(Leave::Quit)]);
+    assert_eq!(rig.press(&["q"]), [Effect::Leave(Leave::Quit)]);
+    assert_eq!(rig.press(&["R"]), [Effect::Leave(Leave::Repl)]);
+    assert_eq!(rig.press(&["ctrl-z"]), [Effect::Suspend]);
+    assert_eq!(rig.press(&["M"]), [Effect::Mouse(false)]);
+}
+
+#[test]
+fn auto_off_leaves_the_panes_empty_and_alive() {
+    let mut rig = Rig::new("beam", 140, 45);
+    rig.command("set auto off");
+    rig.press(&["+"]);
+    assert!(rig.state.shown.solved.is_none());
+    assert!(rig.screen().contains("not solved yet"));
+    rig.press(&["left", "space", "m", "a", "3", "down", "5", "p", "6", "down"]);
+    rig.screen();
+    rig.press(&["esc"]);
+    rig.command("solve");
+    assert!(rig.state.shown.solved.is_some());
+}
+
+#[test]
+fn everything_typed_is_shown_as_typed() {
+    let mut rig = Rig::new("beam", 80, 24);
+    rig.press(&[":"]);
+    for c in "echo ü漢\u{301}".chars() {
+        rig.act(Action::Type(c));
+    }
+    assert!(rig.screen().contains("echo ü漢"), "{}", rig.screen());
+    rig.act(Action::Paste("x".repeat(300)));
+    rig.screen();
+    rig.press(&["enter"]);
+    assert!(rig.screen().contains("漢"));
+}

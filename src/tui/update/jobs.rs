@@ -1,0 +1,157 @@
+//! Work for the session: ordered one job at a time; what comes back is taken over.
+
+use std::sync::Arc;
+
+use crate::session::Next;
+use crate::view::style::Role;
+
+use super::{output, selection, tour};
+use crate::tui::action::{Done, Effect, Job, Leave};
+use crate::tui::app::{Overlay, PERIOD, State};
+use crate::tui::tour::STEPS;
+
+/// Runs a job now, or after the one at work. Of the same slider only the newest value counts: an older solve is
+/// stopped. Of the steps only the last counts.
+pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
+    let Some(running) = &state.running else {
+        state.running = Some(job.clone());
+        state.progress = None;
+        return vec![Effect::Run(job)];
+    };
+    let mut effects = Vec::new();
+    if *running == Job::Remedies {
+        effects.push(Effect::Stop);
+    }
+    match &job {
+        Job::Set { name, .. } => {
+            state.waiting.retain(|waiting| {
+                !matches!(waiting, Job::Set { name: other, .. } if other == name) && !matches!(waiting, Job::Step(_))
+            });
+            state.wanted_step = None;
+            let older = match running {
+                Job::Set { name: other, .. } => other == name,
+                Job::Pivots => true,
+                _ => false,
+            };
+            if older {
+                effects.push(Effect::Stop);
+            }
+        }
+        Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
+        Job::Answers | Job::Line { .. } | Job::Pivots | Job::Remedies => {}
+    }
+    state.waiting.push_back(job);
+    effects
+}
+
+/// A command line for the session.
+pub(super) fn line(state: &mut State, text: String, shows: bool) -> Vec<Effect> {
+    order(state, Job::Line { text, shows })
+}
+
+pub(super) fn stop(state: &mut State) -> Vec<Effect> {
+    state.playing = false;
+    state.moving = false;
+    state.waiting.clear();
+    state.wanted_step = None;
+    if state.running.is_some() { vec![Effect::Stop] } else { Vec::new() }
+}
+
+/// A job ended: its result is shown, the next one begins.
+pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
+    let new_scenario = !Arc::ptr_eq(&state.shown.scenario, &done.shown.scenario);
+    state.running = None;
+    state.progress = None;
+    state.shown = done.shown;
+    if new_scenario {
+        // Sliders and steps meant the old one; lines (those of the tour, too) are carried out in their order.
+        state.waiting.retain(|job| matches!(job, Job::Line { .. }));
+        state.wanted_step = None;
+        state.new_scenario();
+    }
+    settle(state, &done.job);
+    let changed = matches!(done.job, Job::Set { .. } | Job::Pivots | Job::Remedies);
+    let looked = done.job == Job::Remedies;
+    let followed = changed && !done.interrupted && done.error.is_none();
+    if let Some(error) = done.error {
+        if done.interrupted {
+            // a slider that moved on stops its older solve: nothing to tell
+            if !changed || state.waiting.is_empty() {
+                state.say(Role::Warning, "stopped: the session is as it was");
+            }
+        } else {
+            output::tell(state, &done.job, &error, Role::Bad);
+        }
+    } else if let Some(answers) = done.answers {
+        state.overlay = Overlay::Answers { answers, scroll: 0 };
+    } else {
+        output::show_output(state, &done.job, &done.output);
+    }
+    let mut effects = Vec::new();
+    match done.next {
+        Next::Continue => {}
+        Next::Quit => return vec![Effect::Leave(Leave::Quit)],
+        Next::FullScreen { tour: true } => effects.extend(tour::begin_tour(state, 0)),
+        Next::FullScreen { tour: false } => {
+            state.say(Role::Plain, "this is the full screen: `q` leaves it");
+        }
+    }
+    if state.running.is_none()
+        && let Some(next) = state.waiting.pop_front()
+    {
+        state.running = Some(next.clone());
+        effects.push(Effect::Run(next));
+    }
+    if followed && state.shown.is_warm() {
+        // The answer is there; its pivots follow unless a slider moves on.
+        effects.extend(order(state, Job::Pivots));
+    }
+    if !looked {
+        effects.extend(background(state));
+    }
+    effects
+}
+
+/// What is computed while nothing else is asked for: the remedies of a collapse. Whatever is asked for stops it.
+pub fn background(state: &mut State) -> Vec<Effect> {
+    if state.running.is_some() || !state.waiting.is_empty() || !state.shown.lacks_remedies() {
+        return Vec::new();
+    }
+    order(state, Job::Remedies)
+}
+
+/// Brings the selections and what was asked for in line with what is shown.
+fn settle(state: &mut State, job: &Job) {
+    let waits = |name: &str, state: &State| {
+        state.waiting.iter().any(|job| matches!(job, Job::Set { name: other, .. } if other == name))
+    };
+    let kept: Vec<String> = state.wanted.keys().filter(|name| waits(name, state)).cloned().collect();
+    state.wanted.retain(|name, _| kept.contains(name));
+    if !state.waiting.iter().any(|job| matches!(job, Job::Step(_))) {
+        state.wanted_step = None;
+    }
+    let count = state.shown.pairs.len();
+    state.pair = state.pair.min(count.saturating_sub(1));
+    state.parameter = state.parameter.min(state.shown.values.len().saturating_sub(1));
+    if let (Some(at), Job::Line { shows: false, .. }) = (state.tour, job)
+        && let Some(step) = STEPS.get(at)
+    {
+        state.plot = step.plot;
+        if at == 0 && (state.shown.previous.is_some() || !state.shown.changes.is_empty()) {
+            // the tour begins here: there is nothing before it
+            let mut shown = (*state.shown).clone();
+            shown.previous = None;
+            shown.changes.clear();
+            state.shown = Arc::new(shown);
+        }
+    }
+    let plots = state.plots();
+    if !plots.contains(&state.plot) {
+        state.plot = plots[0];
+    }
+    if !state.shown.at_ray() {
+        state.moving = false;
+        state.phase = PERIOD / 4;
+    }
+    state.answer_scroll = state.answer_scroll.min(selection::last_answer_line(state));
+}

@@ -1,0 +1,81 @@
+//! What has the focus, and what is selected in it.
+
+use super::steps::step_by;
+use crate::tui::action::Effect;
+use crate::tui::app::{Overlay, State};
+use crate::tui::pane::{Pane, SortKey};
+use crate::tui::{layout, overlay, panes};
+
+pub(super) fn neighbour(pane: Pane, by: usize) -> Pane {
+    Pane::ALL[(pane.index() + by) % Pane::ALL.len()]
+}
+
+pub(super) fn focus(state: &mut State, pane: Pane) {
+    state.focus = pane;
+    if layout::SHARED.contains(&pane) {
+        state.tab = pane;
+    }
+}
+
+pub(super) fn turn_plot(state: &mut State, by: isize) {
+    let plots = state.plots();
+    let count = plots.len() as isize;
+    let at = plots.iter().position(|plot| *plot == state.plot).unwrap_or_default() as isize;
+    state.plot = plots[(at + by).rem_euclid(count) as usize];
+    state.tab = Pane::Plot;
+}
+
+/// Up and down in the focused pane, or in what lies over the panes.
+pub(super) fn select(state: &mut State, by: isize) -> Vec<Effect> {
+    let limit = overlay::last_line(state);
+    match &mut state.overlay {
+        Overlay::None => {}
+        Overlay::Help { scroll } | Overlay::Output { scroll, .. } | Overlay::Answers { scroll, .. } => {
+            *scroll = scroll.saturating_add_signed(by).min(limit);
+            return Vec::new();
+        }
+    }
+    let moved = |at: usize, count: usize| at.saturating_add_signed(by).min(count.saturating_sub(1));
+    match state.focus {
+        Pane::Parameters => state.parameter = moved(state.parameter, state.shown.values.len()),
+        Pane::Pairs | Pane::Structure => {
+            let order = match state.focus {
+                Pane::Pairs => state.order(),
+                _ => (0..state.shown.pairs.len()).collect(),
+            };
+            let at = order.iter().position(|pair| *pair == state.pair);
+            if let Some(pair) = order.get(moved(at.unwrap_or_default(), order.len())) {
+                state.pair = *pair;
+            }
+        }
+        Pane::Pivots => return step_by(state, by),
+        Pane::Plot => turn_plot(state, by.signum()),
+        Pane::Answer => {
+            let last = last_answer_line(state);
+            state.answer_scroll = state.answer_scroll.saturating_add_signed(by).min(last);
+        }
+    }
+    Vec::new()
+}
+
+pub(super) fn scroll_to(state: &mut State, line: usize) {
+    let limit = overlay::last_line(state);
+    match &mut state.overlay {
+        Overlay::None => {}
+        Overlay::Help { scroll } | Overlay::Output { scroll, .. } | Overlay::Answers { scroll, .. } => {
+            *scroll = line.min(limit)
+        }
+    }
+}
+
+/// The pairs by the next key: the largest first, where large is what one looks for.
+pub(super) fn sort_by_next(state: &mut State) {
+    let at = SortKey::ALL.iter().position(|key| *key == state.sort);
+    state.sort = SortKey::ALL[at.map_or(0, |at| (at + 1) % SortKey::ALL.len())];
+    state.descending = !matches!(state.sort, SortKey::File | SortKey::State | SortKey::Reserve);
+}
+
+/// The last line that may stand at the top of the Answer pane.
+pub(super) fn last_answer_line(state: &State) -> usize {
+    layout::area_of(state, Pane::Answer).map_or(0, |area| panes::answer::last_line(state, panes::inside(area)))
+}
