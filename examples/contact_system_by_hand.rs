@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, dvector};
-use stickslip::contact::complementarity::contact_lcp;
+use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
 use stickslip::lcp::driver::run;

@@ -23,18 +23,18 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use serde_json::{Value, json};
 
 use common::{Plates, Pull, Ready};
-use stickslip::contact::complementarity::contact_lcp;
-use stickslip::contact::whole::{WholeInput, whole_lcp};
+use stickslip::contact::lcp::contact_lcp;
+use stickslip::contact::full_lcp::{WholeInput, whole_lcp};
 use stickslip::export::lcp::matrix_market;
 use stickslip::fem::MainSystem;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
-use stickslip::lcp::vertex::vertex;
+use stickslip::lcp::basis_solution::vertex;
 use stickslip::model::pair::joints;
 use stickslip::model::rules::TieBreak;
 use stickslip::model::scenario::Source;
 use stickslip::solve::prepare;
-use stickslip::solve::resume::same_answer;
+use stickslip::solve::follow::same_answer;
 use stickslip::watch::Quiet;
 
 /// Seconds that `work` takes.

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stickslip::contact::enumerate::enumerate;
+use stickslip::contact::schemes::enumerate::enumerate;
 use stickslip::contact::given::orthonormal;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};

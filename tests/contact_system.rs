@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, OutcomeKind, State, Verdict};
-use stickslip::contact::exact_check::{ExactCheck, Finding};
+use stickslip::contact::schemes::exact_check::{ExactCheck, Finding};
 use stickslip::model::load::load_text;
 use stickslip::solve::all_answers::Exactly;
 use stickslip::solve::prepare;

@@ -6,13 +6,13 @@ use std::ops::ControlFlow;
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stickslip::contact::complementarity::contact_lcp;
+use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::ContactSystem;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::outcome::Outcome;
-use stickslip::lcp::vertex::vertex;
+use stickslip::lcp::basis_solution::vertex;
 use stickslip::model::pair::Law;
 use stickslip::model::rules::{Covering, TieBreak};
 

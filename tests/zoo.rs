@@ -15,7 +15,7 @@ use stickslip::lcp::mirrored::MirroredLcp;
 use stickslip::lcp::outcome::{Outcome, Run};
 use stickslip::lcp::problem::{Lcp, Scale};
 use stickslip::lcp::ratio_test::TieRule;
-use stickslip::lcp::vertex::Basis;
+use stickslip::lcp::basis_solution::Basis;
 use stickslip::model::load::load_text;
 use stickslip::solve::{Solved, prepare};
 use stickslip::watch::Quiet;

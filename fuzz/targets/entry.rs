@@ -7,8 +7,8 @@ use std::time::Duration;
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
 use stickslip::model::scenario::{Scenario, Source};
-use stickslip::session::command::{self, Command};
-use stickslip::session::{Output, Session, complete, paths, words};
+use stickslip::session::language::command::{self, Command};
+use stickslip::session::{Output, Session, language::complete, commands::paths, language::tokens};
 use stickslip::solve::prepare;
 use stickslip::view::style::Style;
 use stickslip::watch::{Budget, Quiet};
@@ -81,7 +81,7 @@ pub fn line(bytes: &[u8]) -> bool {
         assert!(found.start <= at && line.is_char_boundary(found.start));
     }
     complete::hint(line, &vocabulary);
-    words::commands(line).into_iter().all(|command| match command::parse(command) {
+    tokens::commands(line).into_iter().all(|command| match command::parse(command) {
         Ok(_) => true,
         Err(error) => {
             assert!(!error.to_string().is_empty());
@@ -95,7 +95,7 @@ pub fn script(bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let mut session = Session::new(embedded::load("beam").expect("embedded"), &Quiet).expect("solved");
     let mut all = true;
-    for command in text.lines().flat_map(words::commands).take(20) {
+    for command in text.lines().flat_map(tokens::commands).take(20) {
         let Ok(Some(parsed)) = command::parse(command) else {
             all = false;
             continue;

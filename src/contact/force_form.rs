@@ -24,12 +24,12 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::complementarity::{ContactLcp, Couple, CoveringError, RowMeaning, load_with_gaps, power_of_two};
+use crate::contact::lcp::{ContactLcp, Couple, CoveringError, RowMeaning, load_with_gaps, power_of_two};
 use super::given::orthonormal;
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces};
 use super::system::{ContactSystem, JointLoad};
-use super::whole::{fixed_bound, friction, rows};
+use crate::contact::full_lcp::{fixed_bound, friction, rows};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::{Lcp, Scale};
 use crate::model::rules::Covering;

@@ -1,7 +1,7 @@
 //! Unilateral joints: from the condensed structure to the complementarity problem and back.
 //!
 //! ```
-//! use stickslip::contact::complementarity::contact_lcp;
+//! use stickslip::contact::lcp::contact_lcp;
 //! use stickslip::model::{embedded, rules::Covering};
 //! use stickslip::{solve::{numbers::{contact_numbers, factors}, prepare}, watch::Quiet};
 //!
@@ -16,23 +16,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub(crate) mod answer_box;
-mod ball;
-pub mod complementarity;
-pub mod critical;
-pub mod enumerate;
-pub mod exact_check;
-pub(crate) mod exact_system;
 pub mod file_data;
 pub mod force_form;
 pub mod given;
+pub mod full_lcp;
+pub mod kernel_correction;
+pub mod lcp;
 pub mod load_path;
 pub mod numbers;
 pub mod pivoted;
 pub mod refine;
-pub mod scheme_word;
+pub mod schemes;
 pub mod self_stress;
-pub mod sharpen;
 pub mod sums;
 pub mod system;
-pub mod whole;

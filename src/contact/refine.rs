@@ -7,15 +7,15 @@
 
 use nalgebra::DVector;
 
-use super::complementarity::{ContactLcp, Couple, RowMeaning};
+use crate::contact::lcp::{ContactLcp, Couple, RowMeaning};
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces, pair_sums};
 use super::system::ContactSystem;
-use super::whole::{fixed_bound, friction};
+use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::lcp::doubled::dot;
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::NOISE;
-use crate::lcp::vertex::{Basis, corrected};
+use crate::lcp::basis_solution::{Basis, corrected};
 
 /// Rounds at most.
 const ROUNDS: usize = 4;
@@ -143,8 +143,8 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     use super::*;
-    use crate::contact::complementarity::contact_lcp;
-    use crate::contact::whole::tests::{coulomb, plain};
+    use crate::contact::lcp::contact_lcp;
+    use crate::contact::full_lcp::tests::{coulomb, plain};
     use crate::model::rules::Covering;
 
     #[test]

@@ -20,14 +20,14 @@ use nalgebra::{DMatrix, DVector};
 use super::numbers::ContactNumbers;
 use super::sums::Sum;
 use super::system::ContactSystem;
-use super::whole::{fixed_bound, friction};
+use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::lcp::driver::run;
 use crate::lcp::lemke::SchemeEngine;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Outcome;
 use crate::lcp::problem::{Lcp, NOISE, Scale};
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::vertex::vertex;
+use crate::lcp::basis_solution::vertex;
 use crate::model::pair::Law;
 
 /// Pivots after which the forces are left as they were found.
@@ -285,7 +285,7 @@ fn shortest(
 mod tests {
     use super::*;
     use crate::contact::force_form::ForceForm;
-    use crate::contact::whole::tests::{coulomb, plain};
+    use crate::contact::full_lcp::tests::{coulomb, plain};
 
     /// Two opposed pairs at one node: their normals and their tangents are opposed.
     fn guide() -> ContactSystem {

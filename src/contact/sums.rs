@@ -8,7 +8,7 @@ use nalgebra::DVector;
 
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
-use super::whole::{fixed_bound, friction};
+use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
 

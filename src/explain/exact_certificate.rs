@@ -14,12 +14,12 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 use super::certificate::{Bounds, Certificate, Search, bounds};
-use crate::contact::exact_system::ExactSystem;
+use crate::contact::schemes::exact_system::ExactSystem;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::lcp::dyadic::{WholeRows, nearest, rational};
-use crate::lcp::polyhedron::{Polyhedron, State};
-use crate::lcp::rational_solve::null_space;
+use crate::lcp::exact::dyadic::{WholeRows, nearest, rational};
+use crate::lcp::exact::polyhedron::{Polyhedron, State};
+use crate::lcp::exact::rational_solve::null_space;
 use crate::watch::until;
 
 /// Most pairs.

@@ -6,7 +6,7 @@ use std::time::Instant;
 use num_rational::BigRational;
 use num_traits::Zero;
 
-use crate::lcp::scalar;
+use crate::lcp::exact::scalar;
 
 /// The free unknowns are rounded to this: short numbers stay short.
 const GRID: f64 = (1u64 << 40) as f64;

@@ -6,12 +6,12 @@
 use serde::Serialize;
 
 use super::vertex::value;
-use crate::contact::complementarity::{ContactLcp, Couple, CoveringError, Quantity, contact_lcp};
+use crate::contact::lcp::{ContactLcp, Couple, CoveringError, Quantity, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::outcome::Point;
 use crate::lcp::variable::Variable;
-use crate::lcp::vertex::{Basis, vertex};
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::rules::Covering;
 
 /// Points of the search in a friction parameter, each way.

@@ -5,7 +5,7 @@ use super::words::{list, short};
 use crate::answer::record::{Direction, Ray, RayClass, VariableRate, Verdict};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::RayDirection;
-use crate::lcp::trace::PivotLog;
+use crate::lcp::pivot::PivotLog;
 use crate::lcp::variable::Variable;
 
 /// Variables named in the sentence of the motion.

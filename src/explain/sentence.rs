@@ -3,9 +3,9 @@
 use super::remedy::told_apart;
 use super::words::{list, short};
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
-use crate::contact::complementarity::{ContactLcp, Couple, Quantity};
+use crate::contact::lcp::{ContactLcp, Couple, Quantity};
 use crate::contact::system::ContactSystem;
-use crate::lcp::trace::Pivot;
+use crate::lcp::pivot::Pivot;
 use crate::lcp::variable::Variable;
 use crate::model::pair::Law;
 

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::vertex::{Naming, basics, value};
 use crate::lcp::outcome::Point;
-use crate::lcp::trace::PivotLog;
+use crate::lcp::pivot::PivotLog;
 use crate::lcp::variable::Variable;
-use crate::lcp::vertex::{Basis, direction, vertex};
+use crate::lcp::basis_solution::{Basis, direction, vertex};
 
 /// Most rows that are printed.
 pub const MOST_ROWS: usize = 12;

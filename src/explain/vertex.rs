@@ -1,11 +1,11 @@
 //! A vertex of a run with names: its basic variables and their values, in the user's units.
 
-use crate::contact::complementarity::ContactLcp;
+use crate::contact::lcp::ContactLcp;
 use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::variable::Variable;
-use crate::lcp::vertex::Basis;
+use crate::lcp::basis_solution::Basis;
 
 use super::sentence::plain_name;
 

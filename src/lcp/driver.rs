@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::outcome::{Outcome, Point, Run};
-use super::trace::{Pivot, PivotLog};
+use crate::lcp::pivot::{Pivot, PivotLog};
 
 /// What one step of an engine did.
 #[derive(Clone, Debug, PartialEq)]

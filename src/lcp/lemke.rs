@@ -16,8 +16,8 @@ use super::mirrored::MirroredLcp;
 use super::outcome::{Outcome, Point, RayDirection};
 use super::parametric::Parametric;
 use super::ratio_test::{TieRule, choose};
-use super::stand::{Candidate, NOISE, Sizes, Stand};
-use super::trace::{Pivot, PivotLog};
+use crate::lcp::pivot_state::{Candidate, NOISE, Sizes, Stand};
+use crate::lcp::pivot::{Pivot, PivotLog};
 use super::variable::Variable;
 
 /// The engine; see the module.
@@ -270,7 +270,7 @@ mod tests {
     use super::*;
     use crate::lcp::driver::run;
     use crate::lcp::problem::{Lcp, Scale};
-    use crate::lcp::tableau::Tableau;
+    use crate::lcp::exact::tableau::Tableau;
 
     /// w = q + z: a load of the smallest number there is has an answer, z = −q; p must come
     /// in over some row.

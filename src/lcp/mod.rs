@@ -4,7 +4,7 @@
 //!
 //! ```
 //! use std::ops::ControlFlow;
-//! use stickslip::lcp::{driver::run, problem::{Lcp, Scale}, ratio_test::TieRule, tableau::Tableau};
+//! use stickslip::lcp::{driver::run, problem::{Lcp, Scale}, ratio_test::TieRule, exact::tableau::Tableau};
 //!
 //! let matrix = vec![vec![2.0, 1.0], vec![1.0, 2.0]];
 //! let lcp = Lcp { scale: Scale::plain(&matrix), matrix, q: vec![-5.0, -6.0], covering: vec![1.0, 1.0] };
@@ -19,32 +19,22 @@
 //!
 //! [`tableau`] is generic over its numbers and obviously right; [`lemke`] is the fast engine on [`mirrored`] rows.
 
-pub mod all_solutions;
-pub mod classes;
-pub mod corners;
 mod dense;
 mod dictionary;
 pub mod doubled;
+pub mod basis_solution;
 pub mod driver;
-pub mod dyadic;
 pub mod exact;
-pub mod farkas;
-pub mod filtered;
 pub mod lemke;
 pub mod linear_program;
 pub mod mirrored;
 pub mod outcome;
 pub mod parametric;
-pub mod polyhedron;
+pub mod pivot;
+mod pivot_state;
 pub mod problem;
 pub mod ratio_test;
-pub mod rational_solve;
-pub mod scalar;
-mod stand;
-pub mod tableau;
-pub mod trace;
 mod updated_matrix;
 pub mod variable;
-pub mod vertex;
 
 pub(crate) use dense::compute_sequentially;

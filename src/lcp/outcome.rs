@@ -1,6 +1,6 @@
 //! How a run of Lemke's algorithm ends.
 
-use super::trace::{Cycle, PivotLog};
+use crate::lcp::pivot::{Cycle, PivotLog};
 use super::variable::Variable;
 
 /// Values of all variables of the LCP at one vertex.

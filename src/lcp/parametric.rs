@@ -21,9 +21,9 @@ use super::dictionary::{Dictionary, Local, Place};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
 use super::ratio_test::{TieRule, choose};
-use super::stand::{Candidate, NOISE, SUSPICIOUS, Sizes, Stand};
+use crate::lcp::pivot_state::{Candidate, NOISE, SUSPICIOUS, Sizes, Stand};
 use super::variable::Variable;
-use super::vertex::{Basis, direction, vertex};
+use crate::lcp::basis_solution::{Basis, direction, vertex};
 
 /// A load increment counts as a multiple of another up to this, relative to the load.
 const MULTIPLE: f64 = 16.0 * f64::EPSILON;

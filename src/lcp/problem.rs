@@ -1,7 +1,7 @@
 //! The whole LCP written out: w = M z + q + d p, w ≥ 0, z ≥ 0, wᵀz = 0.
 
 use super::outcome::Point;
-use super::scalar::Scalar;
+use crate::lcp::exact::scalar::Scalar;
 
 /// A value or rate counts as zero below this multiple of its natural size (method §4, "Zero"), see [`Scale`].
 pub const NOISE: f64 = 256.0 * f64::EPSILON;

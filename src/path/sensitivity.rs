@@ -9,7 +9,7 @@ use crate::answer::record::PairState;
 use crate::contact::force_form::unknowns;
 use crate::contact::sums::{is_still, joint_forces};
 use crate::contact::system::ContactSystem;
-use crate::lcp::vertex::vertex;
+use crate::lcp::basis_solution::vertex;
 use crate::model::scenario::Scenario;
 use crate::model::uses::Region;
 use crate::solve::solved::Trace;

@@ -1,12 +1,12 @@
 //! Where a path starts, and why it cannot.
 
 use crate::answer::pairs::{JointState, joint_state};
-use crate::contact::complementarity::{ContactLcp, contact_lcp};
+use crate::contact::lcp::{ContactLcp, contact_lcp};
 use crate::contact::load_path::is_answer;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::outcome::{Outcome, Point, RayDirection};
-use crate::lcp::vertex::{Basis, vertex};
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::rules::{Covering, TieBreak};
 use crate::solve::attempt::run_scheme;
 use crate::solve::{Solved, solved::Trace};

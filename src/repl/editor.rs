@@ -10,8 +10,8 @@ use rustyline::highlight::{CmdKind, Highlighter};
 use rustyline::hint::Hinter;
 use rustyline::{Cmd, ConditionalEventHandler, Event, EventContext, Helper, Validator};
 
-use crate::session::complete::{self, Candidate, Vocabulary};
-use crate::session::{command, values, words};
+use crate::session::language::complete::{self, Candidate, Vocabulary};
+use crate::session::{language::command, language::setting, language::tokens};
 use crate::view::style::{Role, Style};
 
 /// Completes, hints and colours by the grammar and the names of the session.
@@ -159,7 +159,7 @@ impl Highlighter for Editing {
 fn coloured(line: &str, style: &Style) -> String {
     let mut text = String::with_capacity(line.len() + 32);
     let mut done = 0;
-    for (from, to) in words::spans(line) {
+    for (from, to) in tokens::spans(line) {
         text.push_str(&line[done..from]);
         done = to;
         let mut first = true;
@@ -176,7 +176,7 @@ fn coloured(line: &str, style: &Style) -> String {
                     Err(command::GrammarError::Ambiguous { .. }) => Role::Plain,
                     Err(_) => Role::Bad,
                 }
-            } else if values::number(word.trim_end_matches('%')).is_some() {
+            } else if setting::number(word.trim_end_matches('%')).is_some() {
                 Role::Warning
             } else {
                 Role::Plain

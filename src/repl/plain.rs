@@ -4,8 +4,8 @@ use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use crate::session::script::{self, expects_error};
-use crate::session::{Next, Output, Session, words};
+use crate::session::commands::script::{self, expects_error};
+use crate::session::{Next, Output, Session, language::tokens};
 use crate::text::printable::Printable;
 use crate::view::style::Style;
 
@@ -62,11 +62,11 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
             None => Err(session.refuse_long_line(line_number)),
         };
         watch.clear();
-        let asked_for = words::commands(line).first().is_some_and(|first| expects_error(first));
+        let asked_for = tokens::commands(line).first().is_some_and(|first| expects_error(first));
         match &result {
             // the failure before was expected
             Ok(_) if asked_for => pending = 0,
-            Ok(_) if words::commands(line).is_empty() => {}
+            Ok(_) if tokens::commands(line).is_empty() => {}
             _ => {
                 if status == 0 {
                     status = pending;

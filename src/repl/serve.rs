@@ -6,9 +6,9 @@ use std::sync::mpsc::RecvTimeoutError;
 use serde_json::{Value, json};
 
 use crate::export::json as json_export;
-use crate::session::command::did_you_mean;
-use crate::session::script::{LONGEST, expects_error};
-use crate::session::{CommandError, Format, Next, Output, Session, words};
+use crate::session::language::command::did_you_mean;
+use crate::session::commands::script::{LONGEST, expects_error};
+use crate::session::{CommandError, Format, Next, Output, Session, language::tokens};
 use crate::signals::{Signals, TerminalWatch};
 use crate::text::printable;
 use crate::view::style::Style;
@@ -110,7 +110,7 @@ fn failure(id: Value, error: String, status: u8) -> Value {
 
 /// Runs the commands of a request up to the first that fails (unless `expect error` follows it).
 fn carry_out(session: &mut Session, request: &Request, style: Style, watch: &TerminalWatch) -> (Value, Next) {
-    let commands: Vec<&str> = request.command.lines().flat_map(words::commands).collect();
+    let commands: Vec<&str> = request.command.lines().flat_map(tokens::commands).collect();
     let mut nowhere = io::sink();
     let mut io = Output::new(&mut nowhere, style, Format::Values, watch);
     io.unattended = true;

@@ -3,35 +3,13 @@
 //!
 //! `words` → `command` (the grammar) → `apply` (changes) or `reports` (read-only) → [`Output`].
 
-mod apply;
-mod combinations;
-pub mod command;
-pub mod complete;
+pub mod commands;
 mod error;
-pub mod expect;
-mod exports;
-mod find;
-pub mod help;
 mod history;
-pub mod import;
 pub mod journal;
+pub mod language;
 pub mod load;
 mod output;
-pub mod paths;
-mod plots;
-mod quantities;
-mod questions;
-mod record;
-mod reports;
-mod restore;
-pub mod save;
-pub mod script;
-mod selection;
-mod side;
-mod summary;
-pub mod values;
-mod why;
-pub mod words;
 pub mod worker;
 
 use std::sync::Arc;
@@ -56,14 +34,16 @@ pub use crate::solve::{Prepared, Solved};
 use crate::text::printable;
 use crate::watch::Watch;
 
-pub use apply::write_scenarios;
+pub use commands::dispatch::write_scenarios;
 pub use error::CommandError;
 pub use output::{Format, Output};
-pub use side::{AllAnswers, OneAnswer};
+pub use commands::side::{AllAnswers, OneAnswer};
 
 use journal::{Journal, LeftOver};
-use record::Recorder;
-use values::Setting;
+use commands::record::Recorder;
+use commands::{combinations, script};
+use language::{command, setting, tokens};
+use language::setting::Setting;
 
 /// What comes after a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -187,7 +167,7 @@ impl Session {
     ) -> Result<Self, CommandError> {
         let mut now = Setup::of(scenario);
         for words in settings {
-            match values::read(words, &now.scenario, &now.values)? {
+            match setting::read(words, &now.scenario, &now.values)? {
                 Setting::Parameter(name, value) => {
                     now.values.insert(name, value);
                 }
@@ -382,7 +362,7 @@ impl Session {
     /// # Errors
     /// [`CommandError`]; the command that failed has left the session as it was.
     pub fn execute(&mut self, line: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
-        let commands = words::commands(line);
+        let commands = tokens::commands(line);
         for (index, command) in commands.iter().enumerate() {
             match self.run(command, io) {
                 Ok(Next::Continue) => {}
@@ -465,7 +445,7 @@ impl Session {
     /// Whether a command may run after a `load` that failed: one that comes by itself was meant for the scenario that is
     /// not there, and would change another.
     fn needs_scenario(&self, command: &command::Command, io: &Output<'_>) -> Result<(), CommandError> {
-        use command::Command::{Echo, Expect, Help, Load, Quit, Scenarios};
+        use language::command::Command::{Echo, Expect, Help, Load, Quit, Scenarios};
         let allowed = match command {
             Load { .. } | Help { .. } | Quit | Echo { .. } | Scenarios => true,
             Expect { words } => words.first().is_some_and(|word| word == "error"),
@@ -487,7 +467,7 @@ impl Session {
         // a file may bear the name of an embedded scenario
         let embedded = scenario.path.is_some() && crate::model::embedded::text(&scenario.name).is_some();
         let place = if embedded { "./" } else { "" };
-        let mut commands = vec![format!("load {}", words::quote(&format!("{place}{}", scenario.name)))];
+        let mut commands = vec![format!("load {}", tokens::quote(&format!("{place}{}", scenario.name)))];
         let mut sets: Vec<String> = self
             .now
             .values

@@ -14,18 +14,18 @@ use crate::answer::check_plain::{ROUNDING, check_plain};
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{Answer, OutcomeKind, PairDirection, PlainSolution, State};
 use crate::contact;
-use crate::contact::complementarity::{Couple, contact_lcp};
-use crate::contact::critical::{CriticalFriction, critical_friction};
-use crate::contact::enumerate::{EnumeratedAnswer, enumerate};
-use crate::contact::exact_check::{ExactCheck, Finding, exact_check};
+use crate::contact::lcp::{Couple, contact_lcp};
+use crate::contact::schemes::critical::{CriticalFriction, critical_friction};
+use crate::contact::schemes::enumerate::{EnumeratedAnswer, enumerate};
+use crate::contact::schemes::exact_check::{ExactCheck, Finding, exact_check};
 use crate::contact::numbers::ContactNumbers;
-use crate::contact::scheme_word::{PairScheme, Tangential};
+use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::{ContactPair, ContactSystem};
 use nalgebra::DVector;
 
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
-use crate::lcp::trace::PivotLog;
+use crate::lcp::pivot::PivotLog;
 use crate::model::jet::Dependence;
 use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
@@ -184,7 +184,7 @@ impl Prepared {
             };
             Moving::Pairs(system.pairs.iter().enumerate().map(pair).collect())
         };
-        let continuum = |piece: &contact::enumerate::Continuum| Continuum {
+        let continuum = |piece: &contact::schemes::enumerate::Continuum| Continuum {
             corners: piece.corners.clone(),
             directions: piece.directions.iter().map(pairs).collect(),
         };

@@ -10,8 +10,8 @@ use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::parametric::Parametric;
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::trace::Pivot;
-use crate::lcp::vertex::{direction, vertex};
+use crate::lcp::pivot::Pivot;
+use crate::lcp::basis_solution::{direction, vertex};
 use crate::watch::Watch;
 
 /// No run makes more pivots than this; reaching it is an outcome of its own.

@@ -9,9 +9,9 @@ use crate::answer::pairs::JointState;
 use crate::answer::record::{Answer, PairState, Size};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::contact::whole::rows;
+use crate::contact::full_lcp::rows;
 use crate::lcp::outcome::{Outcome, Point, Run};
-use crate::lcp::trace::PivotLog;
+use crate::lcp::pivot::PivotLog;
 use crate::model::rules::Rules;
 
 impl Prepared {

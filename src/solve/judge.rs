@@ -7,18 +7,18 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 use super::attempt::{polish, watched};
-use crate::contact::complementarity::ContactLcp;
+use crate::contact::lcp::ContactLcp;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::contact::whole::{WholeInput, whole_lcp_of};
+use crate::contact::full_lcp::{WholeInput, whole_lcp_of};
 use crate::explain::kernel::clean;
-use crate::lcp::exact::Exact;
+use crate::lcp::exact::lemke::Exact;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, RayDirection, Run};
 use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::tableau::Tableau;
-use crate::lcp::trace::PivotLog;
+use crate::lcp::exact::tableau::Tableau;
+use crate::lcp::pivot::PivotLog;
 use crate::lcp::variable::Variable;
 use crate::model::rules::Covering;
 use crate::watch::Watch;
@@ -109,7 +109,7 @@ fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run
 }
 
 fn rational(value: f64) -> BigRational {
-    <BigRational as crate::lcp::scalar::Scalar>::from_f64(value)
+    <BigRational as crate::lcp::exact::scalar::Scalar>::from_f64(value)
 }
 
 /// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ; `None` if it was stopped.
@@ -229,5 +229,5 @@ fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
 }
 
 fn nearest(value: &BigRational) -> f64 {
-    crate::lcp::scalar::Scalar::to_f64(value)
+    crate::lcp::exact::scalar::Scalar::to_f64(value)
 }

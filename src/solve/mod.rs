@@ -16,9 +16,10 @@
 
 pub mod all_answers;
 pub mod attempt;
-mod by_path;
 pub mod compare;
 pub mod explain;
+pub mod follow;
+mod from_zero_load;
 mod history_answer;
 pub mod judge;
 mod ladder;
@@ -27,12 +28,11 @@ pub mod numbers;
 mod plain;
 pub mod plain_answers;
 pub mod prepared;
-pub mod resume;
 pub mod retry;
 mod settle;
 pub mod solved;
 pub mod warm;
-mod written;
+mod written_out;
 
 pub use prepared::{PrepareError, Prepared, prepare, prepare_at};
 pub use solved::{SolveError, Solved};

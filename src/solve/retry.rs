@@ -8,14 +8,14 @@
 use std::time::Duration;
 
 use super::all_answers::{ENUMERATION, others};
-use super::by_path::AlongLoad;
+use crate::solve::from_zero_load::AlongLoad;
 use super::judge::EXACT_PAIRS;
 use super::ladder::{Deadline, EXACT_BUDGET, Ladder, within_budget};
 use super::numbers::{contact_numbers, factors};
 use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved};
 use crate::answer::record::{RayClass, Verdict};
-use crate::contact::enumerate::Enumeration;
+use crate::contact::schemes::enumerate::Enumeration;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::ray::{Subject, all_answers, certify_ray, explain};

@@ -9,7 +9,7 @@ use super::attempt::{keep_scheme, kind};
 use super::judge::{EXACT_PAIRS, run_exact_contact, run_tableau};
 use super::plain::{PlainProblem, solve_plain_judged};
 use super::prepared::{Geometry, Prepared};
-use super::resume::Seat;
+use crate::solve::follow::Seat;
 use super::warm::Kept;
 use crate::answer::check::check_contact;
 use crate::answer::pairs::{JointState, joint_state, pair_states};
@@ -17,11 +17,11 @@ use crate::answer::record::{
     Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, PlainSolution, Reaction,
     Size, Start, Timings,
 };
-use crate::contact::complementarity::{ContactLcp, CoveringError, contact_lcp};
+use crate::contact::lcp::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::refine::refined;
 use crate::contact::self_stress::may_hold_otherwise;
-use crate::contact::sharpen::sharpen;
+use crate::contact::kernel_correction::sharpen;
 use crate::contact::system::ContactSystem;
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::ray::{self, RayReport};
@@ -30,8 +30,8 @@ use crate::explain::words::{list, short};
 use crate::fem::Displacements;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
-use crate::lcp::trace::{Cycle, PivotLog};
-use crate::lcp::vertex::{Basis, vertex};
+use crate::lcp::pivot::{Cycle, PivotLog};
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules};

@@ -7,7 +7,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crate::contact::complementarity::{ContactLcp, load_with_gaps};
+use crate::contact::lcp::{ContactLcp, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::MirroredLcp;

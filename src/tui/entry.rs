@@ -1,6 +1,6 @@
 //! A line being typed: text, cursor, completion.
 
-use crate::session::complete::{Candidate, Vocabulary, completions};
+use crate::session::language::complete::{Candidate, Vocabulary, completions};
 
 /// A change of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -8,7 +8,7 @@ use ratatui::widgets::{Block, Clear, Widget};
 use unicode_width::UnicodeWidthStr;
 
 use crate::session::AllAnswers;
-use crate::session::complete;
+use crate::session::language::complete;
 use crate::session::results::PairState;
 use crate::view::number::{in_column, largest};
 use crate::view::pairs::state_words;

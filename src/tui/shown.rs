@@ -6,7 +6,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
-use crate::session::complete::Vocabulary;
+use crate::session::language::complete::Vocabulary;
 use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, RayClass, Start};
 use crate::session::{Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use super::number::short;
 use super::style::Style;
-use crate::contact::critical::{Coverage, CriticalFriction};
-use crate::contact::scheme_word::{PairScheme, Tangential};
+use crate::contact::schemes::critical::{Coverage, CriticalFriction};
+use crate::contact::schemes::scheme::{PairScheme, Tangential};
 
 /// "c1 open, c2 slip+".
 pub fn scheme_words(ids: &[&str], scheme: &[PairScheme]) -> String {

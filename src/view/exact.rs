@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::number::short;
 use super::style::{Role, Style};
-use crate::contact::exact_check::{ExactSign, Finding};
+use crate::contact::schemes::exact_check::{ExactSign, Finding};
 use crate::solve::all_answers::Exactly;
 
 fn signs(signs: &[ExactSign]) -> String {

@@ -11,9 +11,9 @@ use std::sync::Arc;
 
 use rand::{Rng, SeedableRng};
 use stickslip::model::embedded;
-use stickslip::session::help::{GROUPS, help, overview};
+use stickslip::session::language::help::{GROUPS, help, overview};
 use stickslip::session::journal::Journal;
-use stickslip::session::{CommandError, Format, Next, Output, Session, script};
+use stickslip::session::{CommandError, Format, Next, Output, Session, commands::script};
 use stickslip::view::style::Style;
 use stickslip::watch::{Quiet, Watch};
 
@@ -592,9 +592,9 @@ fn ten_thousand_random_lines_neither_panic_nor_change_the_session_wrongly() {
             let words: Vec<&str> = (0..count).map(|_| WORDS[random.random_range(0..WORDS.len())]).collect();
             words.join(if random.random_bool(0.05) { "" } else { " " })
         };
-        for command in stickslip::session::words::commands(&text) {
+        for command in stickslip::session::language::tokens::commands(&text) {
             // nothing outside the folder of this test is written
-            let writes = stickslip::session::words::split(command).is_ok_and(|words| {
+            let writes = stickslip::session::language::tokens::split(command).is_ok_and(|words| {
                 words.first().is_some_and(|word| {
                     ["save", "sa", "sav", "export", "exp", "expo", "expor", "record", "rec", "reco", "recor"]
                         .contains(&word.as_str())

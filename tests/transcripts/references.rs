@@ -9,7 +9,7 @@ use serde_json::Value;
 use stickslip::model::embedded;
 use stickslip::model::expression::Expression;
 use stickslip::model::jet::Jet;
-use stickslip::session::{Format, Output, Session, words};
+use stickslip::session::{Format, Output, Session, language::tokens};
 use stickslip::view::number::{short, with_unit};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
@@ -46,7 +46,7 @@ fn rows(script: &Path, table: &mut String) -> usize {
     let mut count = 0;
     for line in fs::read_to_string(script).unwrap().lines() {
         let referred = line.split_once("# ref: ");
-        for command in words::commands(line) {
+        for command in tokens::commands(line) {
             let expectation = command.trim().strip_prefix("expect ");
             if let (Some((_, source)), Some(expectation)) = (referred, expectation) {
                 let (quantity, bound) = expectation.split_once(" = ").expect("an equation");

@@ -7,7 +7,7 @@ use super::follower::{Follower, Way};
 use super::walk::Walk;
 use crate::answer::pairs::pair_states;
 use crate::answer::record::{Ray, State, Verdict};
-use crate::contact::complementarity::{Couple, contact_lcp};
+use crate::contact::lcp::{Couple, contact_lcp};
 use crate::explain::ray;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::variable::Variable;

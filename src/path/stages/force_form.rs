@@ -19,7 +19,7 @@ use super::standing::Laws;
 use super::walk::breakdown;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State};
-use crate::contact::complementarity::{ContactLcp, load_with_gaps};
+use crate::contact::lcp::{ContactLcp, load_with_gaps};
 use crate::contact::load_path::{is_answer, order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::explain::ray::full_report;

@@ -15,11 +15,11 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::released::Released;
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
-use crate::contact::complementarity::{ContactLcp, Couple, RowMeaning, power_of_two};
+use crate::contact::lcp::{ContactLcp, Couple, RowMeaning, power_of_two};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::problem::{NOISE, Scale};
-use crate::lcp::vertex::{Basis, vertex};
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::rules::TieBreak;
 use crate::solve::attempt::run_scheme;
 use crate::watch::Watch;

@@ -12,7 +12,7 @@ use super::record::History;
 use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales, scheme_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
-use crate::contact::complementarity::{ContactLcp, Couple, RowMeaning};
+use crate::contact::lcp::{ContactLcp, Couple, RowMeaning};
 use crate::contact::numbers::ContactNumbers;
 use crate::explain::sentence::pivot_records;
 use crate::lcp::outcome::Run;

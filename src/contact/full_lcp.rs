@@ -1,0 +1,204 @@
+//! The contact problem as one LCP with every row written out (method §3), in any number type.
+//!
+//! Coulomb, with f and c diagonal, laws mixed pair by pair:
+//!
+//! ```text
+//! [x_n]   [ Rnn           RnT           −RnT         ] [z_n]   [ RFn               ]
+//! [x⁺ ] = [ RTn + f·Rnn   RTT + f·RnT   −RTT − f·RnT ] [z⁺ ] + [ RFτ + f·RFn + c   ]
+//! [x⁻ ]   [−RTn + f·Rnn  −RTT + f·RnT    RTT − f·RnT ] [z⁻ ]   [−RFτ + f·RFn + c   ]
+//! ```
+//!
+//! with RF − R·(g, 0) in the place of RF. Rows: x_n of all pairs but the bound ones, then x⁺ of all Coulomb and
+//! bound pairs, then their x⁻. A frictionless pair has only x_n; a bound pair only x^± = r_f ± x_τ.
+//! The sums are formed in the number type asked for: exact from the f64 data in rationals.
+
+use crate::lcp::problem::{Lcp, Scale};
+use crate::lcp::exact::scalar::Scalar;
+use crate::model::pair::Law;
+use crate::model::rules::Covering;
+
+use crate::contact::lcp::{Couple, RowMeaning};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::system::ContactSystem;
+
+/// What [`whole_lcp`] needs.
+#[derive(Clone, Copy, Debug)]
+pub struct WholeInput<'a> {
+    /// Pairs and R.
+    pub system: &'a ContactSystem,
+    /// Numbers of the laws and the load.
+    pub numbers: &'a ContactNumbers,
+    /// Covering vector.
+    pub covering: Covering,
+}
+
+/// The rows of the LCP in order.
+pub fn rows(system: &ContactSystem) -> Vec<RowMeaning> {
+    let of = |couple: Couple, has: fn(&Law) -> bool| {
+        system
+            .pairs
+            .iter()
+            .enumerate()
+            .filter(move |(_, pair)| has(&pair.law))
+            .map(move |(pair, _)| RowMeaning { pair, couple })
+    };
+    let normal: fn(&Law) -> bool = |law| !matches!(law, Law::Bound { .. });
+    let tangential: fn(&Law) -> bool = |law| !matches!(law, Law::Frictionless { .. });
+    of(Couple::Normal, normal).chain(of(Couple::Plus, tangential)).chain(of(Couple::Minus, tangential)).collect()
+}
+
+/// Row of R of the tangential joint of a pair that has one by its law.
+///
+/// # Panics
+/// If a Coulomb or bound pair has no tangential joint: a [`ContactSystem`] is never built so.
+pub(crate) fn tangential_joint(system: &ContactSystem, pair: usize) -> usize {
+    system.pairs[pair].tangential.expect("a coulomb or bound pair has a tangential joint")
+}
+
+/// f of a pair as its law uses it: 0 for frictionless and bound pairs.
+pub(crate) fn friction(system: &ContactSystem, numbers: &ContactNumbers, pair: usize) -> f64 {
+    match system.pairs[pair].law {
+        Law::Coulomb { .. } => numbers.friction[pair],
+        Law::Frictionless { .. } | Law::Bound { .. } => 0.0,
+    }
+}
+
+/// The part of the friction bound that does not depend on x_n: c, or r_f of a bound pair.
+pub(crate) fn fixed_bound(system: &ContactSystem, numbers: &ContactNumbers, pair: usize) -> f64 {
+    match system.pairs[pair].law {
+        Law::Coulomb { .. } => numbers.cohesion[pair],
+        Law::Bound { .. } => numbers.bound[pair],
+        Law::Frictionless { .. } => 0.0,
+    }
+}
+
+/// The quantities of a row as a combination of joints: Σ factor·λ_joint + fixed.
+fn combination<T: Scalar>(input: &WholeInput, row: RowMeaning) -> (Vec<(usize, T)>, T) {
+    let WholeInput { system, numbers, .. } = *input;
+    let pair = row.pair;
+    let side = match row.couple {
+        Couple::Normal => return (vec![(pair, T::one())], T::zero()),
+        Couple::Plus => T::one(),
+        Couple::Minus => T::one().neg(),
+    };
+    let mut terms = vec![(tangential_joint(system, pair), side)];
+    let f = T::from_f64(friction(system, numbers, pair));
+    if !f.is_zero() {
+        terms.push((pair, f));
+    }
+    (terms, T::from_f64(fixed_bound(system, numbers, pair)))
+}
+
+/// R in another number type, exactly where that type can.
+fn stiffness_in<T: Scalar>(system: &ContactSystem) -> Vec<Vec<T>> {
+    let k = system.joint_count();
+    (0..k).map(|i| (0..k).map(|j| T::from_f64(system.stiffness[(i, j)])).collect()).collect()
+}
+
+/// RF − R·(g, 0): the joint forces of the main system with all gaps closed by force.
+pub fn joint_constants<T: Scalar>(system: &ContactSystem, numbers: &ContactNumbers) -> Vec<T> {
+    let closed = |i: usize, k: usize| T::from_f64(system.stiffness[(i, k)]);
+    constants_with(system, numbers, &closed)
+}
+
+/// [`joint_constants`] with the entries of R from `stiffness`.
+fn constants_with<T: Scalar>(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    stiffness: &dyn Fn(usize, usize) -> T,
+) -> Vec<T> {
+    let gaps: Vec<(usize, T)> = system
+        .pairs
+        .iter()
+        .zip(&numbers.gap)
+        .enumerate()
+        .filter(|(_, (pair, gap))| **gap != 0.0 && !matches!(pair.law, Law::Bound { .. }))
+        .map(|(k, (_, gap))| (k, T::from_f64(*gap)))
+        .collect();
+    (0..system.joint_count())
+        .map(|i| {
+            let load = T::from_f64(numbers.load[i]);
+            gaps.iter().fold(load, |sum, (k, gap)| match system.is_forced(*k) {
+                false => sum.sub(&stiffness(i, *k).mul(gap)),
+                true if *k == i => sum.add(gap),
+                true => sum,
+            })
+        })
+        .collect()
+}
+
+/// Forms the LCP, see the [module documentation](self).
+pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
+    whole_lcp_of(input, &stiffness_in(input.system))
+}
+
+/// Forms the LCP with an R of its own, one row per joint, in place of that of the system.
+pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T> {
+    let WholeInput { system, numbers, covering } = *input;
+    let rows = rows(system);
+    let combinations: Vec<(Vec<(usize, T)>, T)> = rows.iter().map(|row| combination(input, *row)).collect();
+    let joint = |row: &RowMeaning| match row.couple {
+        Couple::Normal => row.pair,
+        Couple::Plus | Couple::Minus => tangential_joint(system, row.pair),
+    };
+    let constants = constants_with(system, numbers, &|i, j| stiffness[i][j].clone());
+
+    let matrix = combinations
+        .iter()
+        .map(|(terms, _)| {
+            let responses: Vec<T> = (0..system.joint_count())
+                .map(|j| terms.iter().fold(T::zero(), |sum, (i, factor)| sum.add(&factor.mul(&stiffness[*i][j]))))
+                .collect();
+            rows.iter()
+                .map(|column| match column.couple {
+                    Couple::Normal | Couple::Plus => responses[joint(column)].clone(),
+                    Couple::Minus => responses[joint(column)].neg(),
+                })
+                .collect()
+        })
+        .collect();
+    let q = combinations
+        .iter()
+        .map(|(terms, fixed)| terms.iter().fold(fixed.clone(), |sum, (i, factor)| sum.add(&factor.mul(&constants[*i]))))
+        .collect();
+    let cover = rows.iter().map(|row| covering_entry::<T>(input, *row, covering)).collect();
+    let root = |i: usize| system.stiffness[(i, i)].max(0.0).sqrt();
+    let load = combinations.iter().flat_map(|(terms, _)| terms);
+    let load = load.map(|(i, factor)| (factor.to_f64() * constants[*i].to_f64()).abs()).fold(0.0, f64::max);
+    let scale = Scale {
+        load: Some(load),
+        row: rows
+            .iter()
+            .map(|row| match row.couple {
+                Couple::Normal => root(row.pair),
+                Couple::Plus | Couple::Minus => friction(system, numbers, row.pair) * root(row.pair) + root(joint(row)),
+            })
+            .collect(),
+        column: rows
+            .iter()
+            .map(|row| {
+                let root = root(joint(row));
+                if root > 0.0 { root } else { 1.0 }
+            })
+            .collect(),
+    };
+    Lcp { matrix, q, covering: cover, scale }
+}
+
+/// d_n or d_τ of a row (method §4).
+fn covering_entry<T: Scalar>(input: &WholeInput, row: RowMeaning, covering: Covering) -> T {
+    let law = &input.system.pairs[row.pair].law;
+    if row.couple == Couple::Normal || !matches!(law, Law::Coulomb { .. }) {
+        return T::one();
+    }
+    let f = T::from_f64(input.numbers.friction[row.pair]);
+    match covering {
+        Covering::Cohesive => T::one().add(&f),
+        Covering::Ones => T::one(),
+        Covering::Weight => f,
+    }
+}
+
+#[cfg(test)]
+#[path = "whole_tests.rs"]
+pub(crate) mod tests;

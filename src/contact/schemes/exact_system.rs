@@ -1,0 +1,293 @@
+//! The contact problem in rationals, as enumeration works on it: every statement of the laws is the sign of a linear
+//! form in z.
+
+use nalgebra::DMatrix;
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+
+use crate::lcp::exact::dyadic::{WholeRows, rational};
+use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
+use crate::lcp::exact::rational_solve::rank_modulo_prime;
+use crate::model::pair::Law;
+
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::contact::system::ContactSystem;
+use crate::contact::full_lcp::{fixed_bound, friction};
+
+/// Entries of the kernel this close to a whole number are that number: they come out of f64 linear algebra.
+const WHOLE: f64 = 64.0 * f64::EPSILON;
+
+/// λ = R z + constants, exactly.
+pub(crate) struct ExactSystem<'a> {
+    pub system: &'a ContactSystem,
+    pub numbers: &'a ContactNumbers,
+    /// R, its kernel exact.
+    pub stiffness: Vec<Vec<BigRational>>,
+    /// RF − R·(g, 0).
+    pub constants: Vec<BigRational>,
+}
+
+/// The variables of a pair in the polyhedron.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PairVariables {
+    pub z_n: usize,
+    /// `None`: bilateral.
+    pub x_n: Option<usize>,
+    /// z_τ, x⁺, x⁻; `None`: frictionless.
+    pub tangential: Option<[usize; 3]>,
+}
+
+impl<'a> ExactSystem<'a> {
+    pub fn new(system: &'a ContactSystem, numbers: &'a ContactNumbers) -> Self {
+        let (stored, mut constants) = stored(system, numbers);
+        let stiffness = with_exact_kernel(system, stored);
+        let gaps = numbers.gap.iter().enumerate().filter(|(_, gap)| **gap != 0.0);
+        for (k, gap) in gaps {
+            let gap = rational(*gap);
+            constants.iter_mut().zip(&stiffness).for_each(|(constant, row)| *constant -= &row[k] * &gap);
+        }
+        Self { system, numbers, stiffness, constants }
+    }
+
+    /// Variables: z of all joints, then x_n, x⁺, x⁻ pair by pair.
+    pub fn variables(&self) -> Vec<PairVariables> {
+        let mut next = self.system.joint_count();
+        let mut take = || {
+            next += 1;
+            next - 1
+        };
+        self.system
+            .pairs
+            .iter()
+            .enumerate()
+            .map(|(i, pair)| PairVariables {
+                z_n: i,
+                x_n: (!matches!(pair.law, Law::Bound { .. })).then(&mut take),
+                tangential: pair.tangential.map(|joint| [joint, take(), take()]),
+            })
+            .collect()
+    }
+
+    /// What every answer obeys whatever its scheme: all signs but those of the slips, and the `sides` (joint, lowest and
+    /// highest displacement) of a box that holds it.
+    pub fn polyhedron(&self, sides: &[(usize, f64, f64)], go_on: &mut GoOn) -> (Polyhedron, State) {
+        let k = self.system.joint_count();
+        let mut rows = WholeRows::default();
+        for i in 0..self.system.pair_count() {
+            let law = &self.system.pairs[i].law;
+            if !matches!(law, Law::Bound { .. }) {
+                rows.push_rational(&self.form(i, None));
+            }
+            if self.system.pairs[i].tangential.is_some() {
+                rows.push_rational(&self.form(i, Some(true)));
+                rows.push_rational(&self.form(i, Some(false)));
+            }
+        }
+        for &(joint, low, high) in sides {
+            let mut row = vec![0.0; k + 1];
+            for (sign, end) in [(1.0, -low), (-1.0, high)] {
+                (row[joint], row[k]) = (sign, end);
+                // A normal is ≥ 0 as it is.
+                if end.is_finite() && (joint >= self.system.pair_count() || sign < 0.0) {
+                    rows.push(&row);
+                }
+            }
+        }
+        let slips: Vec<usize> = self.system.pairs.iter().filter_map(|pair| pair.tangential).collect();
+        let mut made = Polyhedron::new(k, rows, &slips);
+        let mut state = made.restore(go_on);
+        for i in 0..self.system.pair_count() {
+            if matches!(self.system.pairs[i].law, Law::Bound { .. }) && state == State::Feasible {
+                state = made.fix(i, go_on);
+            }
+        }
+        (made, state)
+    }
+
+    /// x_n of a pair, or its x⁺ or x⁻: coefficients over z, the constant last.
+    fn form(&self, pair: usize, reserve: Option<bool>) -> Vec<BigRational> {
+        let whole = |joint: usize| self.stiffness[joint].iter().chain([&self.constants[joint]]);
+        let Some((plus, joint)) = reserve.zip(self.system.pairs[pair].tangential) else {
+            return whole(pair).cloned().collect();
+        };
+        let f = rational(friction(self.system, self.numbers, pair));
+        let mut row: Vec<BigRational> = whole(joint)
+            .zip(whole(pair))
+            .map(|(t, n)| {
+                let bound = if f.is_zero() { BigRational::zero() } else { &f * n };
+                if plus { bound + t } else { bound - t }
+            })
+            .collect();
+        if let Some(constant) = row.last_mut() {
+            *constant += rational(fixed_bound(self.system, self.numbers, pair));
+        }
+        row
+    }
+
+    /// λ at z.
+    pub fn force(&self, z: &[BigRational]) -> Vec<BigRational> {
+        self.stiffness
+            .iter()
+            .zip(&self.constants)
+            .map(|(row, constant)| {
+                let terms = row.iter().zip(z).filter(|(r, z)| !r.is_zero() && !z.is_zero());
+                terms.map(|(r, z)| r * z).sum::<BigRational>() + constant
+            })
+            .collect()
+    }
+}
+
+impl PairVariables {
+    /// What a scheme of this pair asks for.
+    pub fn impose(&self, polyhedron: &mut Polyhedron, scheme: PairScheme, holds: bool, go_on: &mut GoOn) -> State {
+        let mut state = State::Feasible;
+        let mut fix = |polyhedron: &mut Polyhedron, variable: usize| {
+            if state == State::Feasible {
+                state = polyhedron.fix(variable, go_on);
+            }
+            state
+        };
+        if let Some(x_n) = self.x_n {
+            fix(polyhedron, if scheme.open { x_n } else { self.z_n });
+        }
+        let Some([z, plus, minus]) = self.tangential else { return state };
+        // An open pair that nothing holds slips freely: both reserves are zero.
+        if scheme.open && !holds {
+            fix(polyhedron, plus);
+            return fix(polyhedron, minus);
+        }
+        let state = fix(
+            polyhedron,
+            [z, plus, minus][match scheme.tangential {
+                Tangential::Stick => 0,
+                Tangential::SlipPlus => 1,
+                Tangential::SlipMinus => 2,
+            }],
+        );
+        if state != State::Feasible || scheme.tangential == Tangential::Stick {
+            return state;
+        }
+        if scheme.tangential == Tangential::SlipMinus {
+            polyhedron.negate(z);
+        }
+        polyhedron.restrict(z, go_on)
+    }
+}
+
+/// R and RF as they are stored; of a file with frictionless pairs from its own entries, the released tangential joints
+/// condensed out exactly.
+fn stored(system: &ContactSystem, numbers: &ContactNumbers) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
+    let all = |matrix: &DMatrix<f64>| -> Vec<Vec<BigRational>> {
+        matrix.row_iter().map(|row| row.iter().map(|entry| rational(*entry)).collect()).collect()
+    };
+    let (Some(file), Some(load)) = (&system.file, &numbers.file_load) else {
+        return (all(&system.stiffness), numbers.load.iter().map(|entry| rational(*entry)).collect());
+    };
+    if file.compliance {
+        return (all(&system.stiffness), numbers.load.iter().map(|entry| rational(*entry)).collect());
+    }
+    let mut rows = all(&file.matrix);
+    rows.iter_mut().zip(load.vector.iter()).for_each(|(row, load)| row.push(rational(*load)));
+    for released in file.factor.independent().iter().map(|&row| file.released[row]) {
+        let pivot = rows[released].clone();
+        if pivot[released].is_zero() {
+            continue;
+        }
+        for row in &mut rows {
+            if row[released].is_zero() {
+                continue;
+            }
+            let factor = &row[released] / &pivot[released];
+            row.iter_mut().zip(&pivot).for_each(|(entry, pivot)| *entry -= &factor * pivot);
+        }
+    }
+    let last = file.matrix.ncols();
+    let row_of = |&i: &usize| file.kept.iter().map(|&j| rows[i][j].clone()).collect();
+    (file.kept.iter().map(row_of).collect(), file.kept.iter().map(|&i| rows[i][last].clone()).collect())
+}
+
+/// R with Z exactly in its kernel. Some joints P as many as there are motions, chosen so that their displacements tell
+/// the motion: Z = [G; 1] over the others N and P. Then only R_NN is taken from R, and R = Tᵀ R_NN T with
+/// T = [1, −G], which differs from what is stored by its rounding.
+fn with_exact_kernel(system: &ContactSystem, stored: Vec<Vec<BigRational>>) -> Vec<Vec<BigRational>> {
+    let k = system.joint_count();
+    let Some((telling, motion)) = telling_joints(&system.kernel) else {
+        return stored;
+    };
+    let mut whole = WholeRows::default();
+    stored.iter().for_each(|row| whole.push_rational(row));
+    // Its own digits may have the kernel already.
+    if rank_modulo_prime(&whole.rows) + system.kernel.ncols() == k {
+        return stored;
+    }
+    let others: Vec<usize> = (0..k).filter(|j| !telling.contains(j)).collect();
+    // T over all joints, one row for each of N.
+    let t: Vec<Vec<BigRational>> = others
+        .iter()
+        .map(|&n| {
+            let mut row = vec![BigRational::zero(); k];
+            row[n] = BigRational::one();
+            for (column, &p) in telling.iter().enumerate() {
+                row[p] = -rational(motion[(n, column)]);
+            }
+            row
+        })
+        .collect();
+    let product = |a: &[Vec<BigRational>], i: usize, j: usize, transposed: bool| -> BigRational {
+        (0..others.len())
+            .map(|n| {
+                let left = if transposed { &t[n][i] } else { &a[i][n] };
+                let right = if transposed { &a[n][j] } else { &t[n][j] };
+                if left.is_zero() || right.is_zero() { BigRational::zero() } else { left * right }
+            })
+            .sum()
+    };
+    let inner: Vec<Vec<BigRational>> =
+        others.iter().map(|&i| others.iter().map(|&j| stored[i][j].clone()).collect()).collect();
+    let half: Vec<Vec<BigRational>> =
+        (0..others.len()).map(|i| (0..k).map(|j| product(&inner, i, j, false)).collect()).collect();
+    (0..k).map(|i| (0..k).map(|j| product(&half, i, j, true)).collect()).collect()
+}
+
+/// Rows P of Z with a safe inverse, and Z Z_P⁻¹; `None` without a kernel.
+fn telling_joints(kernel: &DMatrix<f64>) -> Option<(Vec<usize>, DMatrix<f64>)> {
+    let (k, r) = kernel.shape();
+    if r == 0 {
+        return None;
+    }
+    // Gauss–Jordan over the columns with the largest entry as pivot.
+    let mut z = kernel.clone();
+    let mut telling = Vec::with_capacity(r);
+    for column in 0..r {
+        let mut best = (0, column, 0.0);
+        for j in column..r {
+            for i in (0..k).filter(|i| !telling.contains(i)) {
+                if z[(i, j)].abs() > best.2 {
+                    best = (i, j, z[(i, j)].abs());
+                }
+            }
+        }
+        let (row, from, size) = best;
+        if size <= WHOLE {
+            return None; // dependent columns: an orthonormal basis never is
+        }
+        z.swap_columns(column, from);
+        let pivot = z[(row, column)];
+        z.column_mut(column).iter_mut().for_each(|entry| *entry /= pivot);
+        let own = z.column(column).into_owned();
+        for j in (0..r).filter(|&j| j != column) {
+            let factor = z[(row, j)];
+            for i in 0..k {
+                z[(i, j)] -= factor * own[i];
+            }
+        }
+        telling.push(row);
+    }
+    for entry in z.iter_mut() {
+        if (*entry - entry.round()).abs() <= WHOLE {
+            *entry = entry.round();
+        }
+    }
+    Some((telling, z))
+}

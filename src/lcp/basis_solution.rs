@@ -1,0 +1,213 @@
+//! A vertex of a run rebuilt from its pivots: which variables are basic, and their values from the data.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::lcp::dense::Factor;
+use crate::lcp::mirrored::MirroredLcp;
+use crate::lcp::outcome::{Point, RayDirection};
+use crate::lcp::pivot::Pivot;
+use crate::lcp::variable::Variable;
+
+/// The basis after some pivots.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Basis {
+    /// Rows whose z is basic, ascending.
+    pub z: Vec<usize>,
+    /// Rows whose w is nonbasic, ascending. Differs from `z` while p is basic.
+    pub active: Vec<usize>,
+    /// Whether p is basic.
+    pub p: bool,
+}
+
+impl Basis {
+    /// The basis after the given pivots of a run that started from z = 0.
+    pub fn after(pivots: &[Pivot]) -> Basis {
+        use std::collections::BTreeSet;
+        let (mut z, mut active, mut p) = (BTreeSet::new(), BTreeSet::new(), false);
+        for pivot in pivots {
+            match pivot.leaving {
+                Variable::W(i) => {
+                    active.insert(i);
+                }
+                Variable::Z(i) => {
+                    z.remove(&i);
+                }
+                Variable::P => p = false,
+            }
+            match pivot.entering {
+                Variable::W(i) => {
+                    active.remove(&i);
+                }
+                Variable::Z(i) => {
+                    z.insert(i);
+                }
+                Variable::P => p = true,
+            }
+        }
+        Basis { z: z.into_iter().collect(), active: active.into_iter().collect(), p }
+    }
+}
+
+/// Rows and columns of the whole LCP read from the mirrored one.
+struct Whole<'a> {
+    lcp: &'a MirroredLcp,
+    /// Primary row and whether it is the mirror, of each whole row.
+    rows: Vec<(usize, bool)>,
+}
+
+/// What a row of M is made of: S_i + f S_n, or f S_n − S_i in a mirror.
+struct Parts {
+    row: usize,
+    mirrored: bool,
+    coupling: Option<(usize, f64)>,
+}
+
+impl<'a> Whole<'a> {
+    fn new(lcp: &'a MirroredLcp) -> Whole<'a> {
+        let rows = lcp.primary_rows();
+        Whole { lcp, rows }
+    }
+
+    /// Row k of what `read` gives for the primary rows; see [`Mirror::reflect`].
+    fn combine(&self, k: usize, read: impl Fn(usize) -> f64, p: f64, shift: f64) -> f64 {
+        let (i, mirrored) = self.rows[k];
+        match (&self.lcp.mirrors[i], mirrored) {
+            (Some(mirror), true) => mirror.reflect(i, read, p, shift),
+            _ => read(i),
+        }
+    }
+
+    fn parts(&self, k: usize) -> Parts {
+        let (row, mirrored) = self.rows[k];
+        Parts { row, mirrored, coupling: self.lcp.coupling(row) }
+    }
+
+    /// Entries of a column of M in the rows made of the given parts.
+    fn column<'b>(&'b self, column: usize, rows: &'b [Parts]) -> impl Iterator<Item = f64> + 'b {
+        let (j, negative) = self.rows[column];
+        let sign = if negative { -1.0 } else { 1.0 };
+        let stored = self.lcp.base.column(j);
+        rows.iter().map(move |parts| {
+            let own = stored[parts.row];
+            let own = if parts.mirrored { -own } else { own };
+            sign * (own + parts.coupling.map_or(0.0, |(n, f)| f * stored[n]))
+        })
+    }
+
+    fn q(&self, k: usize) -> f64 {
+        self.combine(k, |i| self.lcp.q[i], 0.0, 1.0)
+    }
+
+    fn d(&self, k: usize) -> f64 {
+        self.combine(k, |i| self.lcp.covering[i], 1.0, 0.0)
+    }
+
+    fn system(&self, basis: &Basis) -> Factor {
+        let n = basis.active.len();
+        let rows = self.active_parts(basis);
+        let mut entries = Vec::with_capacity(n * n);
+        for &column in &basis.z {
+            entries.extend(self.column(column, &rows));
+        }
+        if basis.p {
+            entries.extend(basis.active.iter().map(|&k| self.d(k)));
+        }
+        Factor::new(DMatrix::from_vec(n, n, entries))
+    }
+
+    fn active_parts(&self, basis: &Basis) -> Vec<Parts> {
+        basis.active.iter().map(|&k| self.parts(k)).collect()
+    }
+
+    /// w = M z + shift q + d p of all whole rows, exact zero in the active ones.
+    fn response(&self, basis: &Basis, z: &[f64], p: f64, shift: f64) -> Vec<f64> {
+        let mut primary = vec![0.0; self.lcp.size()];
+        for (k, &value) in z.iter().enumerate() {
+            let (j, negative) = self.rows[k];
+            primary[j] += if negative { -value } else { value };
+        }
+        let mut w = self.lcp.times(&primary);
+        w += shift * &self.lcp.q + p * &self.lcp.covering;
+        let mut whole: Vec<f64> = (0..self.lcp.whole_size).map(|k| self.combine(k, |i| w[i], p, shift)).collect();
+        for &k in &basis.active {
+            whole[k] = 0.0;
+        }
+        whole
+    }
+}
+
+/// Values of all variables at a basis; `None` where its equations are singular.
+pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
+    let whole = Whole::new(lcp);
+    let n = basis.active.len();
+    if basis.z.len() + usize::from(basis.p) != n {
+        return None;
+    }
+    let right = DVector::from_fn(n, |a, _| -whole.q(basis.active[a]));
+    let solution = whole.system(basis).solve(&right)?;
+    let mut z = vec![0.0; lcp.whole_size];
+    for (b, &k) in basis.z.iter().enumerate() {
+        z[k] = solution[b];
+    }
+    let p = if basis.p { solution[n - 1] } else { 0.0 };
+    let w = whole.response(basis, &z, p, 1.0);
+    Some(Point { z, w, p })
+}
+
+/// The point of a basis after one step of Newton's method from `point`, whose w (of all rows, better known than from
+/// the data) is given; no sign is looked at. `None` where the equations are singular.
+pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> Option<Point> {
+    let whole = Whole::new(lcp);
+    let n = basis.active.len();
+    if basis.z.len() + usize::from(basis.p) != n {
+        return None;
+    }
+    let right = DVector::from_fn(n, |a, _| -w[basis.active[a]]);
+    let step = whole.system(basis).solve(&right)?;
+    let mut point = point.clone();
+    for (b, &k) in basis.z.iter().enumerate() {
+        point.z[k] += step[b];
+    }
+    if basis.p {
+        point.p += step[n - 1];
+    }
+    point.w = whole.response(basis, &point.z, point.p, 1.0);
+    Some(point)
+}
+
+/// Direction at a basis in which `entering` grows by 1; `None` where the equations are singular.
+pub fn direction(lcp: &MirroredLcp, basis: &Basis, entering: Variable) -> Option<RayDirection> {
+    let whole = Whole::new(lcp);
+    let n = basis.active.len();
+    if basis.z.len() + usize::from(basis.p) != n {
+        return None;
+    }
+    let right: Vec<f64> = match entering {
+        Variable::Z(k) => {
+            let rows = whole.active_parts(basis);
+            whole.column(k, &rows).map(|entry| -entry).collect()
+        }
+        Variable::W(k) => {
+            let active = basis.active.iter();
+            active.map(|&row| f64::from(row == k)).collect()
+        }
+        Variable::P => basis.active.iter().map(|&row| -whole.d(row)).collect(),
+    };
+    let right = DVector::from_vec(right);
+    let solution = whole.system(basis).solve(&right)?;
+    let mut z = vec![0.0; lcp.whole_size];
+    for (b, &k) in basis.z.iter().enumerate() {
+        z[k] = solution[b];
+    }
+    let mut p = if basis.p { solution[n - 1] } else { 0.0 };
+    match entering {
+        Variable::Z(k) => z[k] = 1.0,
+        Variable::P => p = 1.0,
+        Variable::W(_) => {}
+    }
+    let mut w = whole.response(basis, &z, p, 0.0);
+    if let Variable::W(k) = entering {
+        w[k] = 1.0;
+    }
+    Some(RayDirection { entering, z, w, p })
+}

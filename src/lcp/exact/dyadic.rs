@@ -1,0 +1,89 @@
+//! f64 numbers as what they are, integers times powers of two: exact sums without a greatest common divisor.
+
+use num_rational::BigRational;
+use num_traits::One;
+
+use crate::lcp::exact::rational_solve::clear_denominators;
+use crate::lcp::exact::scalar::{BigInt, Scalar};
+
+/// Mantissa and exponent of a finite number: mantissa · 2^exponent, the mantissa odd or zero.
+pub fn parts(value: f64) -> (i64, i64) {
+    if value == 0.0 {
+        return (0, 0);
+    }
+    let bits = value.to_bits();
+    let biased = (bits >> 52 & 0x7ff) as i64;
+    let fraction = (bits & ((1 << 52) - 1)) as i64;
+    let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+    let twos = i64::from(mantissa.trailing_zeros());
+    let mantissa = mantissa >> twos;
+    (if value < 0.0 { -mantissa } else { mantissa }, exponent + twos)
+}
+
+/// The number that a finite f64 stands for.
+pub fn rational(value: f64) -> BigRational {
+    <BigRational as Scalar>::from_f64(value)
+}
+
+/// The nearest f64.
+pub fn nearest(value: &BigRational) -> f64 {
+    Scalar::to_f64(value)
+}
+
+/// Rows of integers, each a positive multiple `scale` of the row it stands for: signs are those of the data.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WholeRows {
+    /// The integers.
+    pub rows: Vec<Vec<BigInt>>,
+    /// > 0, one a row.
+    pub scale: Vec<BigInt>,
+}
+
+impl WholeRows {
+    /// Adds a row of finite f64 numbers.
+    pub fn push(&mut self, row: &[f64]) {
+        let parts: Vec<(i64, i64)> = row.iter().map(|value| parts(*value)).collect();
+        // At most 0: integers stay as they are.
+        let least = parts.iter().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0).min(0);
+        let whole = |&(mantissa, exponent): &(i64, i64)| {
+            if mantissa == 0 { BigInt::default() } else { BigInt::from(mantissa) << (exponent - least) as u64 }
+        };
+        self.rows.push(parts.iter().map(whole).collect());
+        self.scale.push(BigInt::one() << (-least) as u64);
+    }
+
+    /// Adds a row of rationals.
+    pub fn push_rational(&mut self, row: &[BigRational]) {
+        let (whole, scale) = clear_denominators(row);
+        self.rows.push(whole);
+        self.scale.push(scale);
+    }
+
+    /// M and q side by side, row by row.
+    pub fn of_lcp(matrix: &nalgebra::DMatrix<f64>, q: &nalgebra::DVector<f64>) -> Self {
+        let mut made = Self::default();
+        for (row, q) in matrix.row_iter().zip(q.iter()) {
+            let row: Vec<f64> = row.iter().copied().chain([*q]).collect();
+            made.push(&row);
+        }
+        made
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_its_mantissa_times_a_power_of_two() {
+        for value in [1.0, -0.1, 3.0e300, 5e-324, f64::MIN_POSITIVE, -2.5, 6.0, f64::MAX] {
+            let mut rows = WholeRows::default();
+            rows.push(&[value, 0.0]);
+            let back = BigRational::new(rows.rows[0][0].clone(), rows.scale[0].clone());
+            assert_eq!(back, rational(value));
+            assert_eq!(rows.rows[0][1], BigInt::default());
+        }
+        assert_eq!(parts(6.0), (3, 1));
+        assert_eq!(parts(0.0), (0, 0));
+    }
+}

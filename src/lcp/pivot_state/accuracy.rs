@@ -1,0 +1,192 @@
+//! The watch over errors: the numbers of a stand against the data, their refinement, the dictionary built afresh.
+
+use nalgebra::DVector;
+
+use crate::lcp::dictionary::{Local, Place};
+use super::{Candidate, SUSPICIOUS, Stand};
+
+/// Relative error of the dictionary against the data above which it is built afresh.
+const DRIFT: f64 = 1e-10;
+
+/// Relative error of a column against the data that building it afresh would not make smaller.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// A column is refined, and the dictionary not built afresh, up to this error relative to the small rate at stake.
+const REFINED: f64 = 1e-5;
+
+impl Stand {
+    /// Rate of decrease of a tied row along column c, relative to its natural size.
+    pub(super) fn relative_fall(&self, c: usize, tied: &Candidate) -> f64 {
+        let p_rate = self.dictionary.rate(Local::P, c, &self.column);
+        tied.fall / self.rate_size(tied.variable, self.rate_total(c), p_rate).max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it: a small residual
+    /// of the column does not show that a small rate in it is right. One such row is enough: it may be no row at all.
+    pub(crate) fn is_suspicious(&self, c: usize, tied: &[Candidate]) -> bool {
+        !self.fresh && (tied.is_empty() || tied.iter().any(|tied| self.relative_fall(c, tied) <= SUSPICIOUS))
+    }
+
+    /// The values at the vertex beside those that the data give.
+    fn values(&self) -> Numbers<'_> {
+        Numbers::new(self, &self.dictionary.value, None, 1.0)
+    }
+
+    /// The rates along column c, which was fetched last, beside those that the data give.
+    fn rates(&self, c: usize) -> Numbers<'_> {
+        Numbers::new(self, &self.column, Some(c), 0.0)
+    }
+
+    /// By how much rounding may move a value, relative to the largest load: where the responses of single
+    /// displacements are much larger than the load and cancel.
+    pub(crate) fn blur(&self) -> f64 {
+        let row = self.lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let load = self.lcp.load_size().max(f64::MIN_POSITIVE);
+        ROUNDING * row * self.size_of(&self.dictionary.value) / load
+    }
+
+    /// Refines the values.
+    pub(crate) fn refine(&mut self) {
+        self.dictionary.value = self.values().corrected();
+    }
+
+    /// Makes the column fetched last, on whose small rate in the `tied` rows a decision hangs, as true to the data as it
+    /// can be made: by refinement, or where the dictionary is too far off, its row as well, by building it afresh.
+    /// `false` (and nothing changed): the equations of the scheme are singular.
+    pub(crate) fn confirm(&mut self, c: usize, tied: &[Candidate]) -> bool {
+        let surest = tied.iter().map(|tied| self.relative_fall(c, tied)).fold(0.0, f64::max);
+        let bearable = REFINED * surest;
+        let rates = self.rates(c);
+        if rates.error(self.rate_total(c)) <= bearable {
+            let refined = rates.corrected();
+            self.set_column(refined);
+            return true;
+        }
+        if !self.refresh() {
+            return false;
+        }
+        self.fetch(c);
+        self.refine_column(c);
+        true
+    }
+
+    /// Refines the column fetched last.
+    pub(crate) fn refine_column(&mut self, c: usize) {
+        let refined = self.rates(c).corrected();
+        self.set_column(refined);
+    }
+
+    /// Whether the dictionary's values still agree with the data.
+    fn agrees(&self) -> bool {
+        let size = self.size_of(&self.dictionary.value);
+        self.values().error(size) <= DRIFT
+    }
+
+    /// Builds the dictionary afresh from the data; `false` where the equations of the scheme are singular.
+    pub(crate) fn refresh(&mut self) -> bool {
+        if self.dictionary.rebuild(&self.lcp) {
+            self.fresh = true;
+            self.refreshes += 1;
+        }
+        self.fresh
+    }
+
+    /// After each flush the values are compared with the data. `false`: they are wrong and the equations are singular.
+    pub(crate) fn keep_true(&mut self) -> bool {
+        let flushes = self.dictionary.flushes();
+        if std::mem::replace(&mut self.compared, flushes) == flushes {
+            return true;
+        }
+        self.fresh || self.agrees() || self.refresh()
+    }
+}
+
+/// The numbers of all variables, values or rates, as the dictionary holds them, and w as the data give it.
+struct Numbers<'a> {
+    stand: &'a Stand,
+    /// Of the basic variables, row by row.
+    held: &'a [f64],
+    /// Column of the variable that grows; the others are zero.
+    entering: Option<usize>,
+    /// 1 for values, 0 for rates: whether the constants count.
+    shift: f64,
+    p: f64,
+    /// M z + shift q + d p over the primary rows.
+    w: DVector<f64>,
+}
+
+impl<'a> Numbers<'a> {
+    fn new(stand: &'a Stand, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a> {
+        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: DVector::zeros(0) };
+        let z: Vec<f64> = std::iter::zip(0.., &stand.dictionary.turned)
+            .map(|(i, &turned)| {
+                let z = numbers.of(Local::Z(i));
+                // z⁺ − z⁻ for couples.
+                if turned { -z } else { z }
+            })
+            .collect();
+        numbers.p = numbers.of(Local::P);
+        let lcp = &stand.lcp;
+        numbers.w = lcp.times(&z) + shift * &lcp.q + numbers.p * &lcp.covering;
+        numbers
+    }
+
+    fn nonbasic(&self, c: usize) -> f64 {
+        f64::from(self.entering == Some(c))
+    }
+
+    /// As the dictionary holds it.
+    fn of(&self, local: Local) -> f64 {
+        match self.stand.dictionary.place(local) {
+            Place::Row(r) => self.held[r],
+            Place::Column(c) => self.nonbasic(c),
+        }
+    }
+
+    /// `w` of row i where it is turned round, from the w of the primary rows, and the other way.
+    fn turned(&self, i: usize, w: impl Fn(usize) -> f64) -> f64 {
+        match &self.stand.lcp.mirrors[i] {
+            Some(mirror) if self.stand.dictionary.turned[i] => mirror.reflect(i, w, self.p, self.shift),
+            _ => w(i),
+        }
+    }
+
+    /// The largest difference between the dictionary and the data, relative to the natural sizes of the rows; `size`: Σ
+    /// column_k |z_k|.
+    fn error(&self, size: f64) -> f64 {
+        let stand = self.stand;
+        (0..stand.lcp.size())
+            .map(|i| {
+                let held = self.turned(i, |row| self.of(Local::W(row)));
+                let natural = stand.rate_size(Local::W(i), size, self.p) + self.shift * stand.sizes.q[i];
+                (self.w[i] - held).abs() / natural.max(f64::MIN_POSITIVE)
+            })
+            .fold(0.0, larger)
+    }
+
+    /// One step of iterative refinement: the equations of the scheme as the data give them, solved by the dictionary.
+    fn corrected(&self) -> Vec<f64> {
+        let d = &self.stand.dictionary;
+        let from_data = |i: usize| self.turned(i, |row| self.w[row]);
+        let wrong: Vec<(usize, f64)> = d
+            .column
+            .iter()
+            .enumerate()
+            .filter_map(|(c, &local)| match local {
+                Local::W(i) => Some((c, self.nonbasic(c) - from_data(i))),
+                _ => None,
+            })
+            .collect();
+        let change = d.combined_columns(&wrong);
+        std::iter::zip(&d.row, std::iter::zip(self.held, change))
+            .map(|(&local, (held, change))| match local {
+                Local::W(i) => from_data(i) + change,
+                _ => held + change,
+            })
+            .collect()
+    }
+}
+
+/// The larger one; NaN if one of them is.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b <= a { a } else { b }
+}

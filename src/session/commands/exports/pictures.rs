@@ -1,0 +1,121 @@
+//! Pictures as SVG: what `plot` draws with characters.
+
+use std::path::Path;
+
+use crate::answer::diagram::{Diagram, Internal};
+use crate::answer::record::OutcomeKind;
+use crate::export::atomic;
+use crate::session::language::command::Export;
+use crate::session::commands::plots::Shape;
+use crate::session::{CommandError, Session};
+use crate::view::members::extremes;
+use crate::view::number::{short, with_unit};
+use crate::view::plot::chart::Chart;
+use crate::view::plot::scene::{Scene, arrows};
+use crate::view::plot::zone::Quantity;
+use crate::view::plot::{diagram, trace, zone};
+use crate::view::status::{class_word, outcome_word};
+use crate::view::svg::{self, Caption};
+use crate::watch::Watch;
+
+/// More parameters than this are counted, not named.
+const MOST_PARAMETERS: usize = 12;
+
+impl Session {
+    /// A picture to FILE.svg.
+    pub(super) fn export_picture(
+        &self,
+        what: Export,
+        of: &[String],
+        path: &Path,
+        watch: &dyn Watch,
+    ) -> Result<(), CommandError> {
+        let figure = self.figure(what, of, watch)?;
+        atomic::write(path, |out| out.write_all(figure.as_bytes()))
+            .map_err(|error| CommandError::Refused(error.to_string()))
+    }
+
+    /// The text of a picture.
+    pub(super) fn figure(&self, what: Export, of: &[String], watch: &dyn Watch) -> Result<String, CommandError> {
+        let units = &self.now.scenario.units;
+        let zone = |quantity| -> Result<String, CommandError> {
+            let states = self.zone_states(of)?;
+            let borrowed: Vec<_> = states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect();
+            Ok(self.chart_figure(&zone::drawing(quantity, &borrowed, units), ""))
+        };
+        match what {
+            Export::Slip => zone(Quantity::Slip),
+            Export::Force => zone(Quantity::Force),
+            Export::Gap => zone(Quantity::Gap),
+            Export::Pressure => zone(Quantity::Pressure),
+            Export::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
+            Export::Path => Ok(self.chart_figure(&self.path_chart(of, watch)?.0, &self.need_path()?.end)),
+            Export::Mode => self.shape_figure(&self.mode_shape()?),
+            Export::Moment => self.forces_figure(Internal::Moment, of),
+            Export::Shear => self.forces_figure(Internal::Shear, of),
+            Export::Axial => self.forces_figure(Internal::Axial, of),
+            // the only picture that is left
+            _ => self.shape_figure(&self.shape()?),
+        }
+    }
+
+    fn chart_figure(&self, chart: &Chart, note: &str) -> String {
+        svg::chart::figure(chart, &self.caption(&chart.title), note)
+    }
+
+    fn shape_figure(&self, shape: &Shape<'_>) -> Result<String, CommandError> {
+        let scene = Scene::new(&shape.picture(0), &arrows(shape.structure, &self.now.values));
+        Ok(svg::structure::figure(&scene, self.now.scenario.units.length.as_deref(), &self.caption(&scene.title)))
+    }
+
+    /// The forces of one bar over its length, or of all bars on the structure.
+    fn forces_figure(&self, force: Internal, of: &[String]) -> Result<String, CommandError> {
+        let units = &self.now.scenario.units;
+        let (members, bars) = self.bars(of.first().map(String::as_str))?;
+        let notes = bars.iter().filter_map(|bar| {
+            let found = Diagram::of(members, bar)?;
+            Some(format!("{bar}: {}", extremes(&found, force, units)))
+        });
+        if let ([bar], false) = (&bars[..], of.is_empty()) {
+            let note = notes.collect::<Vec<_>>().join("; ");
+            let chart = diagram::chart(members, bar, force, units)
+                .ok_or_else(|| CommandError::Refused(format!("no member forces of bar {bar}")))?;
+            return Ok(self.chart_figure(&chart, &note));
+        }
+        let mut shape = self.shape()?;
+        (shape.displacements, shape.pairs) = (None, None);
+        let (name, unit) = diagram::name(force, units);
+        let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+        let side = if force == Internal::Moment { ", on the tension side" } else { ", > 0 on the +y side of each bar" };
+        let caption = self.caption(&format!("{}: {name}{unit}{side}", self.short_name()));
+        let scene = Scene::new(&shape.picture(0), &[]);
+        let bars = svg::forces::Bars { structure: shape.structure, members, bars: &bars, force };
+        Ok(svg::forces::figure(&scene, &bars, units.length.as_deref(), &caption))
+    }
+
+    /// A title, and of what with which parameters.
+    fn caption(&self, title: &str) -> Caption {
+        let scenario = &self.now.scenario;
+        let mut about = vec![scenario.title.clone()];
+        let named: Vec<String> = self
+            .now
+            .values
+            .free()
+            .map(|(name, value)| {
+                let unit = scenario.parameters.get(name).and_then(|parameter| parameter.unit.as_deref());
+                // kept together where the line is broken
+                format!("{name} = {}", with_unit(&short(value), unit)).replace(' ', "\u{a0}")
+            })
+            .collect();
+        if !named.is_empty() {
+            let more = named.len().saturating_sub(MOST_PARAMETERS);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            about.push(format!("{}{more}", named[..named.len().min(MOST_PARAMETERS)].join(", ")));
+        }
+        about.extend(self.quantity_answer().map(|answer| match (&answer.ray, answer.outcome) {
+            (Some(ray), OutcomeKind::Ray) => format!("ray: {}", class_word(ray.class)),
+            (_, outcome) => outcome_word(outcome).to_owned(),
+        }));
+        Caption { title: title.to_owned(), about: about.join(" · ") }
+    }
+}

@@ -1,0 +1,199 @@
+//! Tables as CSV and JSON. Those that a command shows are made from its report.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use crate::answer::record::Answer;
+use crate::answer::stress::StressPlace;
+use crate::export::table::{Table, unfolded};
+use crate::export::{atomic, csv, json as json_export, path as path_export};
+use crate::session::language::command::Export;
+use crate::session::{CommandError, Format, Output, Session};
+
+impl Session {
+    /// A table to a file.
+    pub(super) fn export_table(
+        &mut self,
+        what: Export,
+        of: &[String],
+        path: &Path,
+        csv: bool,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let written = match what {
+            Export::Pairs | Export::Pivots | Export::Displacements | Export::Members | Export::Reactions if csv => {
+                let shown = self.shown(what)?;
+                atomic::write(path, |out| records_csv(what, &shown, out))
+            }
+            Export::Path if csv => {
+                let record = self.need_path()?;
+                atomic::write(path, |out| path_export::csv(out, record))
+            }
+            _ => {
+                let value = self.table_json(what, of, io)?;
+                if csv {
+                    let table = self.table(what, &value);
+                    atomic::write(path, |out| table.csv(out))
+                } else {
+                    let text = json_export::pretty(&json_export::without_signed_zeros(value))?;
+                    atomic::write(path, |out| writeln!(out, "{text}"))
+                }
+            }
+        };
+        written.map_err(|error| CommandError::Refused(error.to_string()))
+    }
+
+    /// The answer that the tables mean: at the pivot shown, or at the end of the history.
+    fn shown(&self, what: Export) -> Result<Answer, CommandError> {
+        if what == Export::Pivots {
+            return Ok(self.need_answer()?.clone());
+        }
+        let answer = self.need_quantities()?;
+        let mut shown = answer.clone();
+        shown.pairs = self.quantity_pairs();
+        shown.displacements = self.quantity_displacements();
+        let missing = match what {
+            Export::Displacements if shown.displacements.is_none() => "displacements",
+            Export::Members if shown.members.is_none() => "member forces",
+            Export::Reactions if shown.reactions.is_none() => "reactions",
+            _ => return Ok(shown),
+        };
+        Err(self.none(missing, answer))
+    }
+
+    fn table_json(&mut self, what: Export, of: &[String], io: &mut Output<'_>) -> Result<Value, CommandError> {
+        Ok(match what {
+            Export::Pairs => json_export::pairs(&self.shown(what)?),
+            Export::Pivots => json_export::pivots(&self.shown(what)?),
+            Export::Displacements => json_export::displacements(&self.shown(what)?),
+            Export::Members => json_export::members(&self.shown(what)?),
+            Export::Reactions => json_export::reactions(&self.shown(what)?),
+            Export::Path => json!(self.need_path()?),
+            Export::Result => {
+                self.need_quantities()?;
+                self.result(false).unwrap_or_default()
+            }
+            Export::Stresses => Value::Array(self.stresses(io)?),
+            Export::Resultants => self.resultants_json(io)?,
+            Export::Stages => self.stages_json()?,
+            Export::Sweep => {
+                let table = self.swept.as_ref().ok_or_else(|| {
+                    CommandError::Refused("no sweep was shown yet: `sweep PARAMETER A..B`".to_owned())
+                })?;
+                let record = |row: &Vec<Value>| table.columns.iter().cloned().zip(row.iter().cloned()).collect();
+                table.rows.iter().map(record).map(Value::Object).collect()
+            }
+            Export::Quantities if of.is_empty() => {
+                return Err(CommandError::Refused("export: of which quantities? `help show` lists them".to_owned()));
+            }
+            Export::Quantities | Export::Probes => report(io, |io| self.show(of, io))?,
+            Export::Parameters => report(io, |io| self.report_parameters(io))?,
+            Export::Combinations => report(io, |io| self.combine(None, io))?,
+            Export::Envelope => report(io, |io| self.envelope(of, io))?,
+            Export::Answers => report(io, |io| self.enumerate(None, io))?,
+            Export::Compare => report(io, |io| self.compare(io))?,
+            Export::Sensitivity => report(io, |io| self.sensitivity(of.first().map(String::as_str), io))?,
+            Export::Summary => report(io, |io| self.summary(io))?,
+            // the others have formats of their own
+            _ => Value::Null,
+        })
+    }
+
+    /// The rows of what [`Session::table_json`] gave.
+    fn table(&self, what: Export, value: &Value) -> Table {
+        let list = |key: &str| value[key].as_array().cloned().unwrap_or_default();
+        let without = |mut records: Vec<Value>, keys: &[&str]| {
+            for record in &mut records {
+                if let Value::Object(record) = record {
+                    record.retain(|key, _| !keys.contains(&key.as_str()));
+                }
+            }
+            records
+        };
+        match what {
+            Export::Sweep => self.swept.as_deref().cloned().unwrap_or_default(),
+            Export::Combinations => Table::of(&without(list("combinations"), &["pairs"])),
+            Export::Envelope => Table::of(&list("envelope")),
+            Export::Compare => Table::of(&list("rows")),
+            Export::Sensitivity => Table::of(&unfolded(&list("parameters"), "pairs")),
+            Export::Stages => Table::of(&without(list("stages"), &["changes", "pairs"])),
+            Export::Answers => {
+                let numbered = list("answers").into_iter().enumerate().map(
+                    |(index, answer)| json!({"answer": index + 1, "exact": answer["exact"], "pairs": answer["pairs"]}),
+                );
+                Table::of(&unfolded(&numbered.collect::<Vec<_>>(), "pairs"))
+            }
+            _ => Table::of(value.as_array().map_or(&[], Vec::as_slice)),
+        }
+    }
+
+    fn stresses(&self, io: &Output<'_>) -> Result<Vec<Value>, CommandError> {
+        let answer = self.need_quantities()?;
+        if !answer.is_answer() {
+            return Err(self.none("stresses", answer));
+        }
+        let all = self.with_facts(io.watch, |facts| facts.stresses());
+        let at_nodes = all.iter().filter(|stress| matches!(stress.place, StressPlace::Node(_)));
+        let rows: Vec<Value> = at_nodes.map(|stress| json!(stress)).collect();
+        if rows.is_empty() {
+            return Err(CommandError::Refused(
+                "no stresses: the structure has no plates, quads or triangles".to_owned(),
+            ));
+        }
+        Ok(rows)
+    }
+
+    fn resultants_json(&self, io: &Output<'_>) -> Result<Value, CommandError> {
+        let answer = self.need_quantities()?;
+        if !answer.is_answer() {
+            return Err(self.none("resultants", answer));
+        }
+        let all = self.with_facts(io.watch, |facts| self.resultants(facts));
+        if all.is_empty() {
+            return Err(CommandError::Refused("no resultants: the scenario has no edge contacts".to_owned()));
+        }
+        Ok(json!(all))
+    }
+
+    /// The stages followed, each with its number and the factors by the names of their cases.
+    fn stages_json(&self) -> Result<Value, CommandError> {
+        let Some(history) = &self.followed else {
+            return Err(CommandError::Refused("no history was followed: `stages` first".to_owned()));
+        };
+        let mut report = crate::session::history::history_json(history);
+        for (index, stage) in report["stages"].as_array_mut().into_iter().flatten().enumerate() {
+            let Value::Object(fields) = stage.take() else { continue };
+            let mut numbered = Map::new();
+            numbered.insert("stage".to_owned(), (index + 1).into());
+            numbered.extend(fields);
+            let factors = numbered.get("factors").and_then(Value::as_array).cloned().unwrap_or_default();
+            let named: Map<String, Value> = history.cases.iter().cloned().zip(factors).collect();
+            numbered.insert("factors".to_owned(), named.into());
+            *stage = numbered.into();
+        }
+        Ok(report)
+    }
+}
+
+/// The report of a command.
+pub(super) fn report(
+    io: &Output<'_>,
+    command: impl FnOnce(&mut Output<'_>) -> Result<(), CommandError>,
+) -> Result<Value, CommandError> {
+    let mut nowhere = io::sink();
+    let mut inner = Output::new(&mut nowhere, io.style, Format::Values, io.watch);
+    command(&mut inner)?;
+    Ok(inner.report.take().unwrap_or_default())
+}
+
+fn records_csv(what: Export, shown: &Answer, out: &mut dyn Write) -> io::Result<()> {
+    match what {
+        Export::Pairs => csv::pairs(out, shown),
+        Export::Pivots => csv::pivots(out, shown),
+        Export::Displacements => csv::displacements(out, shown),
+        Export::Members => csv::members(out, shown),
+        _ => csv::reactions(out, shown),
+    }
+}

@@ -1,0 +1,168 @@
+//! `find`: values of a parameter at which a quantity is as wanted, or up to which there is an answer.
+
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+use serde_json::{Value as Json, json};
+
+use crate::model::quantity::Quantity;
+use crate::path::edge::{Which, edge};
+use crate::path::find::{Found, Wanted, find};
+use crate::path::route::Basis;
+use crate::view;
+
+use crate::session::language::expect::{self, Expectation, Operator};
+use crate::session::language::selection::no_such;
+use crate::session::{CommandError, Output, Session, worker};
+
+/// What stands behind `find`.
+struct Request {
+    which: Option<Which>,
+    name: String,
+    range: [f64; 2],
+    quantity: Quantity,
+    wanted: Wanted,
+    /// The condition as written.
+    condition: String,
+}
+
+fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
+    Err(CommandError::Refused(text.into()))
+}
+
+/// `A..B`, upwards.
+pub(in crate::session) fn range(word: &str, command: &str) -> Result<[f64; 2], CommandError> {
+    let number = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
+    let ends = word.split_once("..").and_then(|(from, to)| Some([number(from)?, number(to)?]));
+    match ends {
+        Some([from, to]) if from < to => Ok([from, to]),
+        Some([from, to]) => {
+            refused(format!("{command}: the range {from}..{to} is empty: the smaller value comes first"))
+        }
+        None => refused(format!("{command}: `{word}` is no range; expected A..B, e.g. 0..1")),
+    }
+}
+
+impl Session {
+    /// The name of a parameter that can be set, or of a load case.
+    pub(in crate::session) fn varied<'w>(&self, name: &'w str) -> Result<&'w str, CommandError> {
+        let scenario = &self.now.scenario;
+        let cases = self.vocabulary().cases;
+        if cases.iter().any(|case| case == name) {
+            return Ok(name);
+        }
+        if !self.now.values.contains_key(name) {
+            let names = self.now.values.iter().map(|(name, _)| name.as_str()).chain(cases.iter().map(String::as_str));
+            return refused(no_such("parameter or load case", name, names));
+        }
+        match scenario.refusal(name, self.now.values[name]) {
+            Some(refusal) => refused(refusal),
+            None => Ok(name),
+        }
+    }
+
+    /// The range of the slider of a parameter.
+    pub(in crate::session) fn slider(&self, name: &str, command: &str) -> Result<[f64; 2], CommandError> {
+        let parameter = self.now.scenario.parameters.get(name);
+        match parameter.and_then(|parameter| Some([parameter.min?, parameter.max?])) {
+            Some(range) => Ok(range),
+            None => refused(format!(
+                "{command}: in which range? {name} has no slider with `min` and `max`: write `{command} {name} A..B …`"
+            )),
+        }
+    }
+
+    fn request(&self, words: &[String]) -> Result<Request, CommandError> {
+        let form = "find: expected `find NAME [A..B] where QUANTITY = VALUE` or `find least|most NAME [A..B] where outcome \
+                    answer`";
+        let at = words.iter().position(|word| word == "where");
+        let Some((head, condition)) = at.map(|at| (&words[..at], &words[at + 1..])) else { return refused(form) };
+        let (which, head) = match head {
+            [word, rest @ ..] if word == "least" && !rest.is_empty() => (Some(Which::Least), rest),
+            [word, rest @ ..] if word == "most" && !rest.is_empty() => (Some(Which::Most), rest),
+            head => (None, head),
+        };
+        let (name, range) = match head {
+            [name] => (self.varied(name)?, self.slider(name, "find")?),
+            [name, text] => (self.varied(name)?, range(text, "find")?),
+            _ => return refused(form),
+        };
+        let read = expect::read(condition, &self.names(), &self.now.values)
+            .map_err(|error| CommandError::Refused(error.to_string().replace("expect", "find")))?;
+        let (quantity, wanted) = match read {
+            Expectation::Word { quantity, word, equal: true } => (quantity, Wanted::Word(word)),
+            Expectation::Number { quantity, bound } => {
+                let order = match bound.parts() {
+                    (Operator::Less | Operator::LessEqual, ..) => Ordering::Less,
+                    (Operator::Greater | Operator::GreaterEqual, ..) => Ordering::Greater,
+                    (Operator::Equal, _, 0.0) => Ordering::Equal,
+                    _ => return refused("find: expected < = or > and a number, without a tolerance"),
+                };
+                (quantity, Wanted::Compared(order, bound.parts().1))
+            }
+            _ => return refused("find: expected QUANTITY < | = | > VALUE, or QUANTITY and a word"),
+        };
+        let (name, condition) = (name.to_owned(), condition.join(" "));
+        Ok(Request { which, name, range, quantity, wanted, condition })
+    }
+
+    /// `find NAME [A..B] where …`, `find least|most NAME [A..B] where …`.
+    pub(in crate::session) fn find(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let request = self.request(words)?;
+        let ground = self.ground(io.watch)?;
+        let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
+        let (name, range) = (request.name.clone(), request.range);
+        let unit = scenario.parameters.get(&name).and_then(|parameter| parameter.unit.clone());
+        let head = |extra: Json| {
+            let mut report =
+                json!({"parameter": name, "from": range[0], "to": range[1], "condition": request.condition});
+            if let (Json::Object(report), Json::Object(extra)) = (&mut report, extra) {
+                report.extend(extra);
+            }
+            report
+        };
+        let prepared = ground.prepared;
+        let outcome = matches!(&request.quantity, Quantity::Plain("outcome"))
+            && request.wanted == Wanted::Word("answer".to_owned());
+        let name = request.name.clone();
+        if let (Some(which), true) = (request.which, outcome) {
+            let found = worker::run(io.watch, move |watch| {
+                let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
+                edge(basis, &name, range, which)
+            })??;
+            let word = if which == Which::Least { "least" } else { "most" };
+            io.report(
+                || {
+                    let mut report = head(json!(found));
+                    report["which"] = json!(word);
+                    report
+                },
+                |out, style| view::find::write_edge(out, (&request.name, word), unit.as_deref(), &found, style),
+            )?;
+            return Ok(());
+        }
+        let (quantity, wanted) = (request.quantity.clone(), request.wanted.clone());
+        let mut found = worker::run(io.watch, move |watch| {
+            let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
+            find(basis, &name, range, &quantity, &wanted)
+        })??;
+        if let Some(which) = request.which {
+            keep_end(&mut found, which);
+        }
+        let asked =
+            view::find::Asked { name: &request.name, unit: unit.as_deref(), range, condition: &request.condition };
+        io.report(|| head(json!(found)), |out, style| view::find::write(out, &asked, &found, style))?;
+        Ok(())
+    }
+}
+
+/// Keeps the first or the last value at which the condition holds.
+fn keep_end(found: &mut Found, which: Which) {
+    let values = || found.holds.iter().flatten().copied().chain(found.places.iter().map(|place| place.value));
+    let end = match which {
+        Which::Least => values().fold(f64::INFINITY, f64::min),
+        Which::Most => values().fold(f64::NEG_INFINITY, f64::max),
+    };
+    found.holds.retain(|ends| ends.contains(&end));
+    found.places.retain(|place| place.value == end);
+}

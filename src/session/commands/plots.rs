@@ -1,0 +1,302 @@
+//! `plot`: what is drawn of the state shown, and at which pivots.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::answer::diagram::Internal;
+use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PivotRecord};
+use crate::model::structure::Structure;
+use crate::view::plot::chart::Chart;
+use crate::view::plot::diagram;
+use crate::view::plot::scene::{Magnification, Picture};
+use crate::view::plot::zone::{self, Quantity};
+use crate::view::plot::{structure, trace};
+
+use crate::session::language::command::Picture as Wanted;
+use crate::session::{CommandError, Output, Session};
+
+/// Lines of a plot if the user names none.
+const HEIGHT: usize = 14;
+/// Lines of the picture of a structure if the user names none.
+const STRUCTURE_HEIGHT: usize = 20;
+
+impl Session {
+    /// `plot PICTURE [OF] [--at PIVOTS] [--width N] [--height N]`.
+    pub(in crate::session) fn plot(
+        &self,
+        picture: Wanted,
+        at: &[String],
+        width: Option<u16>,
+        height: Option<u16>,
+        of: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let saved = io.style;
+        if let Some(width) = width {
+            io.style.width = usize::from(width);
+        }
+        let height = height.map(usize::from);
+        let most = match picture {
+            Wanted::Moment | Wanted::Shear | Wanted::Axial => 1,
+            Wanted::Path => usize::MAX,
+            _ => 0,
+        };
+        let bar = of.first().map(String::as_str);
+        let result = if let Some(word) = of.get(most) {
+            Err(CommandError::Refused(format!(
+                "plot: `{word}` makes no sense here; a bar belongs to moment, shear and axial, pairs to path"
+            )))
+        } else {
+            match picture {
+                Wanted::Slip => self.plot_zone(Quantity::Slip, at, height, io),
+                Wanted::Force => self.plot_zone(Quantity::Force, at, height, io),
+                Wanted::Gap => self.plot_zone(Quantity::Gap, at, height, io),
+                Wanted::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
+                _ if !at.is_empty() => Err(CommandError::Refused(
+                    "plot: `--at` belongs to slip, force, gap and pressure; use `step` for the others".into(),
+                )),
+                Wanted::P => self.plot_p(height, io),
+                Wanted::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
+                Wanted::Structure => self.plot_structure(height, io),
+                Wanted::Mode => self.plot_mode(height, io),
+                Wanted::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
+                Wanted::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
+                Wanted::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
+            }
+        };
+        io.style = saved;
+        result
+    }
+
+    fn plot_zone(
+        &self,
+        quantity: Quantity,
+        at: &[String],
+        height: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let states = self.zone_states(at)?;
+        io.report(
+            || states.iter().map(|(label, pairs)| json!({"at": label, "pairs": pairs})).collect(),
+            |out, style| {
+                let chart = zone::drawing(quantity, &borrowed(&states), &self.now.scenario.units);
+                Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)
+            },
+        )?;
+        Ok(())
+    }
+
+    /// The pairs that a plot over the contact zone shows, each with its title: those shown, or those at some pivots.
+    pub(in crate::session) fn zone_states(&self, at: &[String]) -> Result<Vec<(String, Vec<PairState>)>, CommandError> {
+        let answer = self.need_quantities()?;
+        if answer.pairs.is_empty() {
+            return Err(CommandError::Refused("nothing to plot: there are no contact pairs in this answer".into()));
+        }
+        if at.is_empty() {
+            return Ok(vec![(self.shown_place().unwrap_or_default(), self.quantity_pairs())]);
+        }
+        let answer = self.need_answer()?;
+        let last = answer.pivot_count.checked_sub(1);
+        at.iter().map(|word| self.pairs_named(word, last)).collect()
+    }
+
+    /// The pairs at a pivot named `first`, `last` or by its number.
+    fn pairs_named(&self, word: &str, last: Option<usize>) -> Result<(String, Vec<PairState>), CommandError> {
+        let (Some(solved), Some(prepared), Some(last)) = (&self.solved, &self.now.prepared, last) else {
+            return Err(CommandError::Refused(
+                "plot: no pivots to choose with `--at`: the main system is the answer".into(),
+            ));
+        };
+        let step = match word {
+            "first" => 0,
+            "last" => last,
+            _ => word.parse().ok().filter(|step| *step <= last).ok_or_else(|| {
+                CommandError::Refused(format!("plot: no pivot `{word}`; expected first, last or 0 … {last}"))
+            })?,
+        };
+        let pairs = if step == last {
+            solved.answer.pairs.clone()
+        } else {
+            solved
+                .pairs_at(prepared, step)
+                .ok_or_else(|| CommandError::Refused(format!("plot: pivot {step} cannot be shown")))?
+        };
+        Ok((format!("pivot {step}"), pairs))
+    }
+
+    fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let pivots = self.some_pivots()?;
+        io.report(
+            || pivots.iter().map(|pivot| json!([pivot.step, pivot.p])).collect(),
+            |out, style| {
+                let units = &self.now.scenario.units;
+                trace::write(out, pivots, self.position, units, height.unwrap_or(HEIGHT), style)
+            },
+        )?;
+        Ok(())
+    }
+
+    pub(in crate::session) fn some_pivots(&self) -> Result<&[PivotRecord], CommandError> {
+        let pivots = &self.need_answer()?.pivots;
+        if pivots.is_empty() {
+            return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
+        }
+        Ok(pivots)
+    }
+
+    fn plot_structure(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let shown = self.shape()?;
+        io.report(
+            || json!({"displacements": shown.displacements, "pairs": shown.pairs}),
+            |out, style| structure::write(out, &shown.picture(height.unwrap_or(STRUCTURE_HEIGHT)), style),
+        )?;
+        Ok(())
+    }
+
+    /// The motion of the structure along the ray.
+    fn plot_mode(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let shown = self.mode_shape()?;
+        io.report(
+            || json!({"displacements": shown.displacements}),
+            |out, style| structure::write(out, &shown.picture(height.unwrap_or(STRUCTURE_HEIGHT)), style),
+        )?;
+        Ok(())
+    }
+
+    /// The name of the scenario without folders, for titles.
+    pub(in crate::session) fn short_name(&self) -> &str {
+        let name = self.now.scenario.name.as_str();
+        Path::new(name).file_name().and_then(|name| name.to_str()).unwrap_or(name)
+    }
+
+    /// The structure as it is shown.
+    pub(in crate::session) fn shape(&self) -> Result<Shape<'_>, CommandError> {
+        self.need_quantities()?;
+        let title = match self.shown_place() {
+            Some(place) => format!("{} · {place}", self.short_name()),
+            None => self.short_name().to_owned(),
+        };
+        Ok(Shape {
+            title,
+            structure: self.structure().ok_or_else(not_a_structure)?,
+            displacements: self.quantity_displacements(),
+            pairs: Some(self.quantity_pairs()),
+        })
+    }
+
+    /// Where the state shown stands, if it is not the answer itself.
+    fn shown_place(&self) -> Option<String> {
+        self.history_place().or_else(|| Some(crate::view::pivots::title(self.position?)))
+    }
+
+    /// The motion along the ray.
+    pub(in crate::session) fn mode_shape(&self) -> Result<Shape<'_>, CommandError> {
+        self.need_answer()?;
+        let structure = self.structure().ok_or_else(not_a_structure)?;
+        let mode = self
+            .solved
+            .as_ref()
+            .and_then(|solved| solved.ray.as_ref())
+            .and_then(|ray| ray.mode.as_ref())
+            .ok_or_else(|| {
+                CommandError::Refused("no mode to draw: the run did not end in a motion that costs no energy".into())
+            })?;
+        let displacements = structure
+            .nodes
+            .iter()
+            .zip(&mode.displacements)
+            .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
+            .collect();
+        let title = format!("{}: collapse mode", self.short_name());
+        Ok(Shape { title, structure, displacements: Some(displacements), pairs: None })
+    }
+
+    /// The forces of the bars and the bars that are meant: the one named, or all.
+    pub(in crate::session) fn bars(&self, bar: Option<&str>) -> Result<(&[MemberForces], Vec<&str>), CommandError> {
+        let answer = self.need_quantities()?;
+        let structure = self.structure().ok_or_else(not_a_structure)?;
+        let Some(members) = &answer.members else {
+            return Err(CommandError::Refused("no member forces: there is no answer".into()));
+        };
+        let names = || structure.bars.iter().map(|bar| bar.id.as_str());
+        match bar {
+            Some(bar) => match names().find(|name| *name == bar) {
+                Some(name) => Ok((members, vec![name])),
+                None => Err(CommandError::Refused(crate::session::language::selection::no_such("bar", bar, names()))),
+            },
+            None if structure.bars.is_empty() => Err(CommandError::Refused("the structure has no bars".into())),
+            None => Ok((members, names().collect())),
+        }
+    }
+
+    fn plot_diagram(
+        &self,
+        force: Internal,
+        bar: Option<&str>,
+        height: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let (members, bars) = self.bars(bar)?;
+        let &[bar] = &bars[..] else {
+            let structure = self.structure().ok_or_else(not_a_structure)?;
+            let title = self.shape()?.title;
+            let shown = Shape { title, structure, displacements: None, pairs: Some(self.quantity_pairs()) };
+            io.report(
+                || {
+                    let points = |bar: &&str| {
+                        let points = diagram::series(members, bar, force).map(|series| series.points);
+                        json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
+                    };
+                    bars.iter().map(points).collect()
+                },
+                |out, style| {
+                    let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
+                    structure::write_with_diagrams(out, &picture, (members, force), &self.now.scenario.units, style)
+                },
+            )?;
+            return Ok(());
+        };
+        io.report(
+            || {
+                let points = diagram::series(members, bar, force).map(|series| series.points);
+                json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
+            },
+            |out, style| {
+                let diagram = diagram::Drawing { members, bar, force, height: height.unwrap_or(HEIGHT) };
+                diagram::write(out, &diagram, &self.now.scenario.units, style)
+            },
+        )?;
+        Ok(())
+    }
+}
+
+/// A structure with what is shown on it.
+pub(in crate::session) struct Shape<'a> {
+    pub(in crate::session) title: String,
+    pub(in crate::session) structure: &'a Structure,
+    pub(in crate::session) displacements: Option<Vec<NodeDisplacement>>,
+    pub(in crate::session) pairs: Option<Vec<PairState>>,
+}
+
+impl Shape<'_> {
+    /// Its picture, so many rows high.
+    pub(in crate::session) fn picture(&self, height: usize) -> Picture<'_> {
+        Picture {
+            title: &self.title,
+            structure: self.structure,
+            displacements: self.displacements.as_deref(),
+            pairs: self.pairs.as_deref(),
+            magnification: Magnification::Auto,
+            height,
+        }
+    }
+}
+
+fn borrowed(states: &[(String, Vec<PairState>)]) -> Vec<(&str, &[PairState])> {
+    states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect()
+}
+
+fn not_a_structure() -> CommandError {
+    CommandError::Refused("the scenario is no structure: there is nothing to draw".into())
+}

@@ -1,0 +1,190 @@
+//! `show`: quantities of the present answer; probes and resultants as they stand in results.
+
+use serde_json::{Map, Value as Json, json};
+
+use crate::export::{history as history_export, json as json_export};
+use crate::model::quantity::{self, Arguments, Names, Quantity, WORDS};
+use crate::path::quantity::{Facts, NoValue, Resultant, Value};
+use crate::view;
+use crate::view::style::Style;
+use crate::watch::{Quiet, Watch};
+
+use crate::session::{CommandError, Output, Session};
+
+impl Session {
+    /// The names quantities may have as arguments.
+    pub(in crate::session) fn names(&self) -> Names<'_> {
+        Names::of(&self.now.scenario)
+    }
+
+    /// What quantities are read from: the answer, or its pivot that is shown.
+    pub(in crate::session) fn with_facts<T>(&self, watch: &dyn Watch, read: impl FnOnce(&Facts<'_>) -> T) -> T {
+        let scenario = &self.now.scenario;
+        let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
+            return read(&Facts::of_nothing(scenario, &self.now.values, watch));
+        };
+        let shown = self.combination.as_ref().map_or(prepared, |combination| &combination.prepared);
+        let facts = Facts::of_answer(scenario, shown, &self.now.values, solved, watch);
+        if let Some(history) = &self.followed {
+            return read(&facts.of_history(history));
+        }
+        if self.position.is_none() {
+            return read(&facts);
+        }
+        let (pairs, displacements) = (self.pairs(), self.displacements());
+        read(&facts.at_pivot(&pairs, displacements.as_deref(), self.p()))
+    }
+
+    /// Quantities named in the words of a command.
+    pub(in crate::session) fn quantities(&self, words: &[String]) -> Result<Vec<Quantity>, CommandError> {
+        quantity::read_all(words, &self.names()).map_err(|error| CommandError::Refused(error.to_string()))
+    }
+
+    /// `show QUANTITY …`; without one, all probes.
+    pub(in crate::session) fn show(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let quantities = if words.is_empty() { self.all_probes()? } else { self.quantities(words)? };
+        let values: Vec<(Quantity, Result<Value, NoValue>)> = self.with_facts(io.watch, |facts| {
+            quantities.into_iter().map(|quantity| (quantity.clone(), facts.value(&quantity))).collect()
+        });
+        if io.watch.stop() {
+            return Err(CommandError::Interrupted);
+        }
+        let units = &self.now.scenario.units;
+        io.report(
+            || {
+                values
+                    .iter()
+                    .map(|(quantity, value)| {
+                        json!({
+                            "quantity": quantity.to_string(),
+                            "value": value.as_ref().map_or(Json::Null, Value::json),
+                            "unit": quantity.unit(units),
+                            "reason": value.as_ref().err().map(|reason| reason.0.clone()),
+                        })
+                    })
+                    .collect()
+            },
+            |out, style| view::quantities::write(out, &values, units, style),
+        )?;
+        Ok(())
+    }
+
+    /// The probes of the scenario as quantities.
+    pub(in crate::session) fn all_probes(&self) -> Result<Vec<Quantity>, CommandError> {
+        let probes = &self.now.scenario.probes;
+        if probes.is_empty() {
+            return Err(CommandError::Refused(
+                "which quantity? The scenario has no `probes`; `help show` lists the quantities".into(),
+            ));
+        }
+        Ok(probes.iter().map(|(name, quantity)| Quantity::Probe(name.clone(), Box::new(quantity.clone()))).collect())
+    }
+
+    /// The value of every probe, null where it has none.
+    pub(in crate::session) fn probe_values(&self, facts: &Facts<'_>) -> Map<String, Json> {
+        let probes = self.now.scenario.probes.iter();
+        probes.map(|(name, quantity)| (name.clone(), facts.value(quantity).map_or(Json::Null, |v| v.json()))).collect()
+    }
+
+    /// The resultants of all edge contacts.
+    pub(in crate::session) fn resultants(&self, facts: &Facts<'_>) -> Vec<Resultant> {
+        self.names().joints().into_iter().filter_map(|joint| facts.resultant(joint)).collect()
+    }
+
+    /// The present answer, or the load history that was followed, as `solve --format json` prints it; `None` while there
+    /// is none.
+    pub fn result(&self, timings: bool) -> Option<Json> {
+        let (name, values) = (&self.now.scenario.name, &self.now.values);
+        let mut result = match &self.followed {
+            Some(history) => history_export::result(history, name, values, timings)?,
+            None => json_export::result(self.answer()?, name, values, timings),
+        };
+        let is_answer = self.quantity_answer().is_some_and(crate::answer::record::Answer::is_answer);
+        self.with_facts(&Quiet, |facts| {
+            self.add_quantities(&mut result, facts, is_answer);
+            let stages = result.get_mut("stages").and_then(Json::as_array_mut);
+            let Some((history, stages)) = self.followed.as_ref().zip(stages) else { return };
+            for (number, stage) in stages.iter_mut().enumerate() {
+                let is_answer = history.stages[number].end.is_answer();
+                self.add_quantities(stage, &facts.at_stage(history, number), is_answer);
+            }
+        });
+        Some(result)
+    }
+
+    /// Adds the probes, resultants and stresses of a state to its result.
+    fn add_quantities(&self, result: &mut Json, facts: &Facts<'_>, is_answer: bool) {
+        let Json::Object(object) = result else { return };
+        let probes = self.probe_values(facts);
+        if !probes.is_empty() {
+            object.insert("probes".into(), Json::Object(probes));
+        }
+        if !is_answer {
+            return;
+        }
+        let (resultants, stresses) = (self.resultants(facts), facts.stresses());
+        if !resultants.is_empty() {
+            object.insert("resultants".into(), json!(resultants));
+        }
+        if !stresses.is_empty() {
+            object.insert("stresses".into(), json_export::without_signed_zeros(json!(stresses)));
+        }
+    }
+}
+
+/// The table of all quantities, for `help show`.
+pub(in crate::session) fn help() -> String {
+    let style = Style { width: 79, ..Style::default() };
+    let rows = WORDS.iter().flat_map(|entry| {
+        let usage = format!("{} {}", entry.word, entry.arguments.usage());
+        style.hanging(&format!("  {:<33} ", usage.trim_end()), entry.about)
+    });
+    let rows: Vec<String> = rows.collect();
+    format!(
+        "Quantities:\n{}\n\nPATTERN is a pair, an edge contact, or has `*` for any letters:\nsum x_n joint[*]. The probes of \
+         the scenario are quantities by their names;\nquote names with blanks.",
+        rows.join("\n")
+    )
+}
+
+/// The names that may follow the words of a quantity, for completion: the next argument of the last quantity.
+pub(in crate::session) fn next_names(given: &[String], vocabulary: &crate::session::language::complete::Vocabulary) -> Vec<String> {
+    let at = given.iter().rposition(|word| quantity::entry(word).is_some());
+    let words = || {
+        let words = WORDS.iter().map(|entry| entry.word.to_owned());
+        words.chain(vocabulary.probes.iter().map(|probe| crate::session::language::tokens::quote(probe))).collect()
+    };
+    let Some((entry, after)) = at.and_then(|at| Some((quantity::entry(&given[at])?, &given[at + 1..]))) else {
+        return words();
+    };
+    let fixed = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    let pairs = || {
+        let patterns = vocabulary.joints.iter().map(|joint| format!("{joint}[*]"));
+        vocabulary.pairs.iter().cloned().chain(patterns).chain(["*".to_owned()]).collect::<Vec<_>>()
+    };
+    let over = at.and_then(|at| at.checked_sub(1)).is_some_and(|before| {
+        quantity::entry(&given[before]).is_some_and(|before| before.arguments == Arguments::Over)
+    });
+    match (entry.arguments, after) {
+        (Arguments::Pair, []) if over => pairs(),
+        (Arguments::Pair, []) => vocabulary.pairs.clone(),
+        (Arguments::Node, []) => vocabulary.nodes.clone(),
+        (Arguments::NodeOrElement, []) => vocabulary.nodes.iter().chain(&vocabulary.elements).cloned().collect(),
+        (Arguments::Bar, []) => vocabulary.bars.clone(),
+        (Arguments::Bar, [_]) if !over => fixed(&["at", "start", "end"]),
+        (Arguments::Joint, []) => vocabulary.joints.clone(),
+        (Arguments::Joint, [_]) => fixed(&["N", "T", "e"]),
+        (Arguments::Case, []) => vocabulary.cases.clone(),
+        (Arguments::Parameter, []) => vocabulary.parameters.iter().map(|(name, _)| name.clone()).collect(),
+        (Arguments::Over, []) => WORDS
+            .iter()
+            .filter(|entry| matches!(entry.arguments, Arguments::Pair | Arguments::Bar) && entry.word != "state")
+            .map(|entry| entry.word.to_owned())
+            .chain(["u".to_owned()])
+            .collect(),
+        (Arguments::Count, []) => fixed(quantity::STATES),
+        (Arguments::Count, [_]) => pairs(),
+        (Arguments::Stage, [_]) => words(),
+        _ => Vec::new(),
+    }
+}

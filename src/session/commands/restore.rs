@@ -1,0 +1,243 @@
+//! What a session writes into its journal, and `restore`: the changes of one that ended without `quit`, brought back.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::model::embedded;
+use crate::text::hash::Hash;
+
+use crate::session::journal::{self, Chosen, Record};
+use crate::session::{Change, CommandError, Output, Session, Setup, load};
+
+impl Setup {
+    /// As it is written into the journal.
+    fn chosen(&self) -> Chosen {
+        let rules = self.rules;
+        Chosen {
+            scenario: self.scenario.name.clone(),
+            file: self.scenario.path.is_some(),
+            text: Hash::of(&self.scenario.text).long(),
+            values: self.values.free().map(|(name, value)| (name.clone(), value)).collect(),
+            rules: [rules.covering.to_string(), rules.tie_break.to_string(), rules.engine.to_string()],
+        }
+    }
+}
+
+/// The scenarios of a journal, each loaded once.
+#[derive(Default)]
+struct Scenarios(HashMap<(String, bool), Setup>);
+
+impl Scenarios {
+    /// What was chosen, on the scenario as it is now.
+    fn setup(&mut self, chosen: &Chosen, io: &Output<'_>) -> Result<Setup, CommandError> {
+        let key = (chosen.scenario.clone(), chosen.file);
+        let mut setup = match self.0.get(&key) {
+            Some(setup) => setup.clone(),
+            None => {
+                let scenario = match chosen.file {
+                    true => load::file(Path::new(&chosen.scenario), io.watch)?,
+                    false => embedded::load(&chosen.scenario).map_err(CommandError::Scenario)?,
+                };
+                let setup = Setup::of(scenario);
+                self.0.insert(key, setup.clone());
+                setup
+            }
+        };
+        let mut refusal = None;
+        for (name, value) in &chosen.values {
+            if !setup.values.contains_key(name) {
+                refusal = Some(format!("there is no parameter `{name}` any more"));
+            } else if setup.values.formula(name).is_some() {
+                refusal = Some(format!("`{name}` is a formula now"));
+            } else {
+                setup.values.insert(name.clone(), *value);
+            }
+        }
+        if let Some(refusal) = refusal.or_else(|| setup.scenario.law_refusal(&setup.values)) {
+            return Err(CommandError::Refused(format!(
+                "{} has changed so that what was set before does not fit it: {refusal}; bring the file back, or \
+                 `restore discard`",
+                chosen.scenario
+            )));
+        }
+        let [covering, tie_break, engine] = &chosen.rules;
+        setup.rules.covering = covering.parse().map_err(crate::session::language::setting::SetError::Choice)?;
+        setup.rules.tie_break = tie_break.parse().map_err(crate::session::language::setting::SetError::Choice)?;
+        setup.rules.engine = engine.parse().map_err(crate::session::language::setting::SetError::Choice)?;
+        Ok(setup)
+    }
+}
+
+/// A state while a session is rebuilt: one of this session, or one that is only written down.
+#[derive(Clone)]
+enum State {
+    Here(Box<Setup>),
+    Written(Chosen),
+}
+
+impl State {
+    fn setup(self, scenarios: &mut Scenarios, io: &Output<'_>) -> Result<Setup, CommandError> {
+        match self {
+            State::Here(setup) => Ok(*setup),
+            State::Written(chosen) => scenarios.setup(&chosen, io),
+        }
+    }
+}
+
+/// A session being rebuilt from records.
+struct Rebuilt {
+    now: State,
+    undo: Vec<(String, State)>,
+    redo: Vec<(String, State)>,
+    auto: bool,
+}
+
+impl Rebuilt {
+    fn of(session: &Session) -> Self {
+        let states = |changes: &[Change]| {
+            changes.iter().map(|change| (change.command.clone(), State::Here(Box::new(change.setup.clone())))).collect()
+        };
+        Rebuilt {
+            now: State::Here(Box::new(session.now.clone())),
+            undo: states(&session.undo),
+            redo: states(&session.redo),
+            auto: session.auto,
+        }
+    }
+
+    fn take(&mut self, record: Record) {
+        match record {
+            Record::Start(chosen) => self.take(Record::Change(load_command(&chosen), chosen)),
+            Record::Change(command, chosen) => {
+                let before = std::mem::replace(&mut self.now, State::Written(chosen));
+                self.undo.push((command, before));
+                self.redo.clear();
+            }
+            Record::Saved(chosen) => {
+                let before = std::mem::replace(&mut self.now, State::Written(chosen.clone()));
+                let State::Written(before) = before else { return };
+                for (_, state) in self.undo.iter_mut().chain(&mut self.redo) {
+                    if let State::Written(state) = state
+                        && (&state.scenario, state.file) == (&before.scenario, before.file)
+                    {
+                        state.scenario.clone_from(&chosen.scenario);
+                        state.file = chosen.file;
+                    }
+                }
+            }
+            Record::Undo => turn(&mut self.now, &mut self.undo, &mut self.redo),
+            Record::Redo => turn(&mut self.now, &mut self.redo, &mut self.undo),
+            Record::Auto(auto) => self.auto = auto,
+        }
+    }
+}
+
+fn turn(now: &mut State, from: &mut Vec<(String, State)>, to: &mut Vec<(String, State)>) {
+    if let Some((command, state)) = from.pop() {
+        to.push((command, std::mem::replace(now, state)));
+    }
+}
+
+fn load_command(chosen: &Chosen) -> String {
+    format!("load {}", crate::session::language::tokens::quote(&chosen.scenario))
+}
+
+impl Session {
+    /// Writes a change into the journal; gives a note where that cannot be done: the change itself is done.
+    pub(in crate::session) fn note_in_journal(&mut self, before: &Setup, record: impl FnOnce(Chosen) -> Record) -> Option<String> {
+        let journal = self.journal.as_mut()?;
+        let written = journal.append(|| before.chosen(), &[record(self.now.chosen())]);
+        written.err().map(|error| not_kept(&error))
+    }
+
+    /// Brings back what an earlier session left behind. Nothing is run: each record says all values and rules.
+    pub(in crate::session) fn restore(&mut self, discard: bool, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let Some(left) = self.left_over.take() else {
+            return Err(CommandError::Refused(
+                "nothing to restore: no session in this directory ended without `quit`".into(),
+            ));
+        };
+        let changes = left.changes();
+        if discard {
+            left.discard().map_err(|source| CommandError::File {
+                doing: "remove the journal in",
+                path: journal::state_directory().unwrap_or_default(),
+                source,
+            })?;
+            return Ok(io.say(&format!("{changes} changes forgotten"))?);
+        }
+        let before = self.now.clone();
+        let notes = match self.rebuild(&left.records, io) {
+            Ok(notes) => notes,
+            Err(error) => {
+                self.left_over = Some(left);
+                return Err(error);
+            }
+        };
+        let records: Vec<Record> = left
+            .records
+            .iter()
+            .map(|record| match record.clone() {
+                Record::Start(chosen) => Record::Change(load_command(&chosen), chosen),
+                other => other,
+            })
+            .collect();
+        let kept = self.journal.as_mut().map_or(Ok(()), |journal| journal.append(|| before.chosen(), &records));
+        let s = if changes == 1 { "" } else { "s" };
+        let mut said = vec![format!("{changes} change{s} restored")];
+        said.extend(notes);
+        match kept {
+            // the new journal holds everything: a file that stays behind is only offered once more
+            Ok(()) => drop(left.discard()),
+            Err(error) => said.push(not_kept(&error)),
+        }
+        self.say_what_changed(&said, io)
+    }
+
+    /// Takes the records over, with an answer, or leaves everything as it was.
+    fn rebuild(&mut self, records: &[Record], io: &Output<'_>) -> Result<Vec<String>, CommandError> {
+        let mut scenarios = Scenarios::default();
+        let mut rebuilt = Rebuilt::of(self);
+        records.iter().cloned().for_each(|record| rebuilt.take(record));
+        let written = match &rebuilt.now {
+            State::Written(chosen) => Some(chosen.text.clone()),
+            State::Here(_) => None,
+        };
+        let mut now = rebuilt.now.setup(&mut scenarios, io)?;
+        let solved = if rebuilt.auto { Some(now.solve(io.watch)?) } else { None };
+        let mut changes = |states: Vec<(String, State)>| -> Result<Vec<Change>, CommandError> {
+            let mut changes = Vec::new();
+            // from the last one back: what cannot be had any more ends the way
+            for (command, state) in states.into_iter().rev() {
+                match state.setup(&mut scenarios, io) {
+                    Ok(mut setup) => {
+                        if Arc::ptr_eq(&setup.scenario, &now.scenario) {
+                            setup.prepared.clone_from(&now.prepared);
+                        }
+                        changes.push(Change { command, setup });
+                    }
+                    Err(error) if error.is_interrupted() => return Err(error),
+                    Err(_) => break,
+                }
+            }
+            changes.reverse();
+            Ok(changes)
+        };
+        let (undo, redo) = (changes(rebuilt.undo)?, changes(rebuilt.redo)?);
+        let changed = written.is_some_and(|text| text != Hash::of(&now.scenario.text).long());
+        (self.now, self.undo, self.redo, self.auto) = (now, undo, redo, rebuilt.auto);
+        self.take_answer(solved);
+        self.previous = None;
+        self.path = None;
+        let name = &self.now.scenario.name;
+        let note =
+            format!("{name} is not as it was: the values and rules are those of before, the rest is as it is now");
+        Ok(if changed { vec![note] } else { Vec::new() })
+    }
+}
+
+fn not_kept(error: &std::io::Error) -> String {
+    let folder = journal::state_directory().unwrap_or_default();
+    format!("a crash would lose this change: the journal in {} cannot be written: {error}", folder.display())
+}

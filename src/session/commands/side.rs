@@ -1,0 +1,130 @@
+//! What only a picture asks for: the motion of a ray as displacements of the nodes, and all answers of a small
+//! problem side by side.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use crate::answer::pairs::{JointState, pair_states};
+use crate::answer::record::{NodeDisplacement, PairState};
+use crate::contact::schemes::enumerate::enumerate;
+use crate::solve::prepared::Geometry;
+use crate::solve::solved::Trace;
+use crate::watch::Watch;
+
+use crate::session::{CommandError, Session, worker};
+
+/// One of several answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OneAnswer {
+    /// Its pairs.
+    pub pairs: Vec<PairState>,
+    /// Whether it holds in exact arithmetic; otherwise up to rounding.
+    pub exact: bool,
+    /// Whether others may lie right beside it.
+    pub continuum: bool,
+    /// Whether it is the present answer of the session.
+    pub shown: bool,
+}
+
+/// All answers found by a search over working schemes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AllAnswers {
+    /// The answers, in the order of the search.
+    pub answers: Vec<OneAnswer>,
+    /// Whether these are all: the search came to its end and left no scheme undecided.
+    pub complete: bool,
+}
+
+/// Most pairs whose answers are shown side by side.
+const MOST_PAIRS: usize = 10;
+/// Relative difference up to which an enumerated answer is the present one.
+const SAME: f64 = 1e-6;
+
+impl Session {
+    /// The motion of the ray as displacements of the nodes (largest mutual displacement 1); `None` without a ray or
+    /// a structure.
+    pub fn mode(&self) -> Option<Vec<NodeDisplacement>> {
+        let solved = self.solved.as_ref()?;
+        let ray = solved.answer.ray.as_ref()?;
+        let prepared = self.now.prepared.as_ref()?;
+        let Geometry::Structure { system, main, structure } = &*prepared.geometry else {
+            return None;
+        };
+        let mut z = DVector::zeros(system.joint_count());
+        for (i, (pair, direction)) in system.pairs.iter().zip(ray.direction.pairs()).enumerate() {
+            z[i] = direction.z_n;
+            if let Some(joint) = pair.tangential {
+                z[joint] = direction.z_t;
+            }
+        }
+        if z.amax() == 0.0 {
+            return None;
+        }
+        let u = main.displacements(&vec![0.0; prepared.cases.len()], &z);
+        let nodes = structure.nodes.iter().zip(&u.0);
+        Some(nodes.map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] }).collect())
+    }
+
+    /// Searches all working schemes of the present problem for answers.
+    ///
+    /// # Errors
+    /// No contact problem, too many pairs, nothing solved yet, an interruption.
+    pub fn all_answers(&self, watch: &dyn Watch) -> Result<AllAnswers, CommandError> {
+        let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
+            return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
+        };
+        let (solved, prepared) = (Arc::clone(solved), Arc::clone(prepared));
+        worker::run(watch, move |watch| {
+            let (Trace::Contact { contact, numbers, factors, .. }, Some(system)) = (&solved.trace, prepared.system())
+            else {
+                return Err(CommandError::Refused(
+                    "answers are enumerated for contact problems, this is a bare LCP".into(),
+                ));
+            };
+            if system.pair_count() > MOST_PAIRS {
+                return Err(CommandError::Refused(format!(
+                    "{} contact pairs are too many for all answers side by side: at most {MOST_PAIRS}; `enumerate` goes on \
+                     until it is stopped",
+                    system.pair_count()
+                )));
+            }
+            let found = enumerate(system, numbers, &mut |progress| {
+                watch.progress("all answers", progress.share);
+                if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            let answers = found
+                .answers
+                .iter()
+                .map(|answer| {
+                    let state = JointState::at(system, numbers, answer.state.z.clone(), 0.0);
+                    let mut pairs = pair_states(system, numbers, contact, &state);
+                    prepared.add_released_slips(&mut pairs, numbers, factors, &state.z);
+                    OneAnswer {
+                        shown: solved.answer.is_answer() && same(&pairs, &solved.answer.pairs),
+                        pairs,
+                        exact: true,
+                        continuum: answer.continuum,
+                    }
+                })
+                .collect();
+            Ok(AllAnswers { answers, complete: found.complete && found.undecided == 0 })
+        })?
+    }
+}
+
+/// Whether two lists of pairs are one state.
+fn same(a: &[PairState], b: &[PairState]) -> bool {
+    let largest = |value: fn(&PairState) -> f64| a.iter().chain(b).map(|pair| value(pair).abs()).fold(0.0, f64::max);
+    let near = |value: fn(&PairState) -> f64, size: f64| {
+        a.iter().zip(b).all(|(a, b)| (value(a) - value(b)).abs() <= SAME * size)
+    };
+    let force = largest(|p| p.x_n).max(largest(|p| p.x_t));
+    let length = largest(|p| p.z_n).max(largest(|p| p.z_t));
+    a.len() == b.len()
+        && near(|p| p.x_n, force)
+        && near(|p| p.x_t, force)
+        && near(|p| p.z_n, length)
+        && near(|p| p.z_t, length)
+}

@@ -1,0 +1,121 @@
+//! `summary`: the answer on one screen.
+
+use serde_json::{Value as Json, json};
+
+use crate::model::quantity::{BarPlace, Names, Over, Quantity};
+use crate::path::quantity::{Facts, Resultant};
+use crate::view;
+use crate::view::summary::{Peak, Safety, Summary};
+
+use crate::session::{CommandError, Output, Session};
+
+impl Session {
+    /// `summary`.
+    pub(in crate::session) fn summary(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_quantities()?.clone();
+        let units = self.now.scenario.units.clone();
+        let summary = self.with_facts(io.watch, |facts| Summary {
+            resultants: if answer.is_answer() { self.resultants(facts) } else { Vec::new() },
+            peaks: if answer.is_answer() { peaks(facts, &self.names()) } else { Vec::new() },
+            reactions: answer.reactions.clone().unwrap_or_default(),
+            safety: self.safeties(facts),
+            probes: self
+                .now
+                .scenario
+                .probes
+                .iter()
+                .map(|(name, q)| (name.clone(), q.clone(), facts.value(q)))
+                .collect(),
+        });
+        if io.watch.stop() {
+            return Err(CommandError::Interrupted);
+        }
+        io.report(
+            || {
+                let sum = summary.sum_of_reactions();
+                json!({
+                    "status": self.status_json(),
+                    "resultants": summary.resultants.iter().map(resultant).collect::<Vec<_>>(),
+                    "extremes": summary.peaks.iter().map(|peak| json!({
+                        "quantity": peak.what, "value": peak.value, "at": peak.at,
+                    })).collect::<Vec<_>>(),
+                    "reactions": summary.reactions,
+                    "sum_of_reactions": { "fx": sum[0], "fy": sum[1] },
+                    "safety": summary.safety.iter().map(|safety| json!({
+                        "case": safety.case, "limit": safety.limit, "safety": safety.safety, "reason": safety.reason,
+                    })).collect::<Vec<_>>(),
+                    "probes": summary.probes.iter().map(|(name, _, value)| {
+                        (name.clone(), value.as_ref().map_or(Json::Null, |value| value.json()))
+                    }).collect::<serde_json::Map<_, _>>(),
+                })
+            },
+            |out, style| {
+                writeln!(out, "{}", view::status::line(&answer, None, &units, style))?;
+                view::summary::write(out, &summary, &units, style)
+            },
+        )?;
+        Ok(())
+    }
+
+    fn safeties(&self, facts: &Facts<'_>) -> Vec<Safety> {
+        let cases = self.now.prepared.as_ref().map(|prepared| prepared.cases.iter().map(|(case, _)| case.clone()));
+        let value = |word, case: &str| facts.value(&Quantity::Load(word, case.to_owned()));
+        cases
+            .into_iter()
+            .flatten()
+            .filter(|_| !self.names().pairs.is_empty())
+            .map(|case| {
+                let limit = value("limit", &case);
+                let safety = value("safety", &case).ok().and_then(|value| value.number());
+                let reason = limit.as_ref().err().map(|reason| reason.0.clone());
+                Safety { limit: limit.ok().and_then(|value| value.number()), safety, reason, case }
+            })
+            .collect()
+    }
+}
+
+fn resultant(resultant: &Resultant) -> Json {
+    json!(resultant)
+}
+
+/// The largest of everything, with its place.
+fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
+    let largest = |what: &'static str, word: &'static str| {
+        let value = |id: &&str| {
+            let value = facts.value(&Quantity::Pair(word, (*id).to_owned())).ok()?.number()?;
+            Some((value, (*id).to_owned()))
+        };
+        let all = names.pairs.iter().filter_map(value);
+        let most = all.reduce(|best, next| if next.0.abs() > best.0.abs() { next } else { best });
+        most.map(|(value, at)| Peak { what, quantity: Quantity::Pairs(Over::Max, word, String::new()), value, at })
+    };
+    let bars = |what: &'static str, word: &'static str| {
+        let value = |bar: &&str| {
+            let value = facts.value(&Quantity::Bar(word, (*bar).to_owned(), BarPlace::Extreme)).ok()?.number()?;
+            Some((value, (*bar).to_owned()))
+        };
+        let most = names.bars().iter().filter_map(value).reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a });
+        let quantity = |bar: &str| Quantity::Bar(word, bar.to_owned(), BarPlace::Extreme);
+        most.map(|(value, at)| Peak { what, quantity: quantity(&at), value, at })
+    };
+    let displacement = facts.value(&Quantity::LargestDisplacement).ok().and_then(|value| value.number());
+    let displacement = displacement.map(|value| Peak {
+        what: "displacement",
+        quantity: Quantity::LargestDisplacement,
+        value,
+        at: String::new(),
+    });
+    [
+        largest("compressive force", "x_n"),
+        largest("friction force", "x_t"),
+        largest("slip", "z_t"),
+        largest("opening", "z_n"),
+        displacement,
+        bars("normal force", "N"),
+        bars("shear force", "Q"),
+        bars("bending moment", "M"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

@@ -1,0 +1,157 @@
+//! `why PAIR`: its state from its numbers, and the pivots that turned it; `why z[NAME]` of a bare LCP.
+
+use serde_json::json;
+
+use crate::answer::record::State;
+use crate::explain::plain_why::Vertex;
+use crate::solve::prepared::Geometry;
+use crate::solve::solved::Trace;
+use crate::view;
+use crate::view::number::{short, with_unit};
+
+use crate::session::language::selection::{no_pair, no_such};
+use crate::session::{CommandError, Output, Session};
+
+impl Session {
+    /// `why PAIR`: its state from its numbers, and the pivots that turned it.
+    pub(in crate::session) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let answer = self.need_answer()?;
+        if answer.solution.is_some() {
+            return self.report_plain_why(id, io);
+        }
+        let pairs = self.pairs();
+        let pair = pairs.iter().find(|pair| pair.id == id).ok_or_else(|| no_pair(id, &pairs))?;
+        let units = &self.now.scenario.units;
+        let force = |value: f64| with_unit(&short(value), units.force.as_deref());
+        let length = |value: f64| with_unit(&short(value), units.length.as_deref());
+        let state = view::pairs::state_words(pair);
+        let cause = match (pair.state, pair.law) {
+            (State::Open, _) => {
+                format!("nothing presses it together: x_n = {} and it is open by {}", force(pair.x_n), length(pair.z_n))
+            }
+            (State::Closed, _) => {
+                format!("it is pressed together with x_n = {}, and without friction x_t = 0", force(pair.x_n))
+            }
+            (State::Stick, _) if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() => {
+                format!(
+                    "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
+                    force(pair.x_t.abs()),
+                    force(pair.bound)
+                )
+            }
+            (State::Stick, _) => format!(
+                "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
+                force(pair.x_t.abs()),
+                force(pair.bound),
+                force(pair.reserve_plus),
+                force(pair.reserve_minus)
+            ),
+            (State::SlipPlus, _) => format!(
+                "its reserve x+ is used up: x_t = {} stands at the bound -{}, and it has slipped {} along +t",
+                force(pair.x_t),
+                force(pair.bound),
+                length(pair.z_t)
+            ),
+            (State::SlipMinus, _) => format!(
+                "its reserve x- is used up: x_t = {} stands at the bound {}, and it has slipped {} along -t",
+                force(pair.x_t),
+                force(pair.bound),
+                length(-pair.z_t)
+            ),
+        };
+        let shown = self.shown_step();
+        let margins = self.margins(id);
+        let moved = answer.ray.as_ref().filter(|_| self.position.is_none()).and_then(|ray| {
+            let direction = ray.direction.pairs().iter().find(|direction| direction.pair == id)?;
+            Some((direction, view::ray::motion_words(direction)))
+        });
+        let turned: Vec<_> = answer
+            .pivots
+            .iter()
+            .filter(|pivot| shown.is_none_or(|shown| pivot.step <= shown))
+            .filter(|pivot| pivot.turned.as_ref().is_some_and(|turned| turned.pair == id))
+            .collect();
+        io.report(
+            || {
+                json!({"pair": pair, "cause": cause, "pivots": turned, "margins": margins,
+                       "ray": moved.as_ref().map(|(direction, _)| direction)})
+            },
+            |out, style| {
+                let label = format!("{id} {state}: ");
+                for line in style.hanging(&style.text(&label), &style.text(&cause)) {
+                    writeln!(out, "{line}")?;
+                }
+                if let Some((direction, words)) = &moved {
+                    let text = match words {
+                        Some(words) => format!(
+                            "it {words}: z̄_n = {}, z̄_τ = {} of the largest displacement",
+                            short(direction.z_n),
+                            short(direction.z_t)
+                        ),
+                        None => "it does not move".to_owned(),
+                    };
+                    for line in style.hanging("in the ray: ", &style.text(&text)) {
+                        writeln!(out, "{line}")?;
+                    }
+                }
+                if turned.is_empty() {
+                    writeln!(out, "no pivot turned it: it is as in the main system")?;
+                }
+                for pivot in &turned {
+                    let label = format!("  pivot {}: ", pivot.step);
+                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
+                        writeln!(out, "{line}")?;
+                    }
+                }
+                if !margins.is_empty() {
+                    writeln!(out, "How far the working scheme holds:")?;
+                }
+                view::why::write(out, id, &margins, style)
+            },
+        )?;
+        Ok(())
+    }
+
+    /// `why z[NAME]`, `why w[NAME]`: the row of the couple, and the pivots at which it changed places.
+    fn report_plain_why(&self, variable: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (Some(solved), Some(prepared), Some(solution)) = (&self.solved, &self.now.prepared, self.solution()) else {
+            return Err(CommandError::Refused("not solved yet: `solve`".into()));
+        };
+        let (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) = (&solved.trace, &*prepared.geometry) else {
+            return Err(CommandError::Refused(format!("no pair `{variable}`")));
+        };
+        let done = self.position.map_or(solved.answer.pivots.len(), |step| step + 1);
+        let pivots = &solved.answer.pivots[..done.min(solved.answer.pivots.len())];
+        let p = self.p().unwrap_or(0.0);
+        let vertex = Vertex { lcp, names, solution: &solution, p, pivots };
+        let Some((letter, row)) = vertex.find(variable) else {
+            let known: Vec<String> =
+                ['z', 'w'].iter().flat_map(|l| names.iter().map(move |name| format!("{l}[{name}]"))).collect();
+            let said = no_such("variable", variable, known.iter().map(String::as_str));
+            return Err(CommandError::Refused(said));
+        };
+        let why = vertex.why(letter, row);
+        io.report(
+            || json!(why),
+            |out, style| {
+                for line in style.wrap(&style.text(&why.cause), style.width) {
+                    writeln!(out, "{line}")?;
+                }
+                for line in style.hanging("  ", &style.text(&why.row)) {
+                    writeln!(out, "{line}")?;
+                }
+                if why.pivots.is_empty() {
+                    writeln!(out, "no pivot moved it or its complement")?;
+                }
+                for pivot in &why.pivots {
+                    let label = format!("  pivot {}: ", pivot.step);
+                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
+                        writeln!(out, "{line}")?;
+                    }
+                }
+                Ok(())
+            },
+        )?;
+        Ok(())
+    }
+}

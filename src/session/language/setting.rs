@@ -1,0 +1,215 @@
+//! The words after `set`: which parameter or rule, and what becomes of it.
+
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::{Covering, Engine, TieBreak, UnknownChoice};
+use crate::model::scenario::{Scenario, Source};
+
+use crate::session::language::command::did_you_mean;
+
+/// A `set` that cannot be done.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum SetError {
+    /// Name without value.
+    #[error("`{name}` to what? Write `set {name} VALUE`, `set {name} += 10`, `set {name} 110%` …")]
+    NoValue {
+        /// The name.
+        name: String,
+    },
+    /// No such parameter.
+    #[error(
+        "unknown parameter `{name}`{near}: the scenario has {known}; rules are covering, tie-break, engine and auto"
+    )]
+    UnknownParameter {
+        /// The name.
+        name: String,
+        /// "(did you mean …?)".
+        near: String,
+        /// What there is.
+        known: String,
+    },
+    /// No number.
+    #[error(
+        "`{text}` is no value for {name}: expected a number, `110%`, `+10%`, `-10%`, or one of += -= *= /= and a number"
+    )]
+    NoNumber {
+        /// The parameter.
+        name: String,
+        /// What was written.
+        text: String,
+    },
+    /// A value that the scenario cannot have.
+    #[error("{0}")]
+    Value(String),
+    /// An unknown rule word.
+    #[error(transparent)]
+    Choice(#[from] UnknownChoice),
+    /// `set auto maybe`.
+    #[error("`set auto` takes on or off, not `{0}`")]
+    Auto(String),
+    /// A covering for a bare LCP.
+    #[error(
+        "the covering of a bare LCP is given in its file (`lcp.covering`, ones by default): `set covering` is for contact problems"
+    )]
+    CoveringOfLcp,
+}
+
+/// What `set` does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setting {
+    /// A parameter and its new value.
+    Parameter(String, f64),
+    /// Covering vector.
+    Covering(Covering),
+    /// Tie-break.
+    TieBreak(TieBreak),
+    /// Engine.
+    Engine(Engine),
+    /// Whether changes are solved at once.
+    Auto(bool),
+}
+
+/// The words of `set`, read against the scenario and the present values.
+///
+/// # Errors
+/// [`SetError`].
+pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> Result<Setting, SetError> {
+    let text = words.join(" ");
+    let (name, rest) = name_and_rest(&text);
+    let no_value = || SetError::NoValue { name: name.to_owned() };
+    let choice = || {
+        let word = rest.strip_prefix('=').unwrap_or(rest).trim();
+        if word.is_empty() { Err(no_value()) } else { Ok(word) }
+    };
+    match name {
+        "covering" if matches!(scenario.source, Source::Lcp(_)) => Err(SetError::CoveringOfLcp),
+        "covering" => Ok(Setting::Covering(Covering::from_str(choice()?)?)),
+        "tie-break" => Ok(Setting::TieBreak(TieBreak::from_str(choice()?)?)),
+        "engine" => Ok(Setting::Engine(Engine::from_str(choice()?)?)),
+        "auto" => match choice()? {
+            "on" => Ok(Setting::Auto(true)),
+            "off" => Ok(Setting::Auto(false)),
+            other => Err(SetError::Auto(other.to_owned())),
+        },
+        _ => {
+            let present = *values.get(name).ok_or_else(|| unknown_parameter(name, scenario))?;
+            if rest.is_empty() || rest == "=" {
+                return Err(no_value());
+            }
+            let value = changed(rest, present).ok_or_else(|| SetError::NoNumber {
+                name: name.to_owned(),
+                text: rest.strip_prefix('=').unwrap_or(rest).trim().to_owned(),
+            })?;
+            if let Some(refusal) = scenario.refusal(name, value) {
+                return Err(SetError::Value(refusal));
+            }
+            Ok(Setting::Parameter(name.to_owned(), value))
+        }
+    }
+}
+
+/// The error for a name that is no parameter.
+pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
+    let names: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
+    let rules = ["covering", "tie-break", "engine", "auto"];
+    SetError::UnknownParameter {
+        name: name.to_owned(),
+        near: did_you_mean(name, names.iter().copied().chain(rules)),
+        known: match names.len() {
+            0 => "none".to_owned(),
+            _ => names.join(", "),
+        },
+    }
+}
+
+/// Splits `F2 += 10`, `F2+=10`, `f=0.3`, `f 0.3` behind the name.
+fn name_and_rest(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    let mut end = text.find(|c: char| c.is_whitespace() || c == '=').unwrap_or(text.len());
+    let before = text[..end].ends_with(['+', '-', '*', '/']);
+    if before && text[end..].starts_with('=') {
+        // the operator's first character belongs to the value: `F2+=10`
+        end -= 1;
+    }
+    (&text[..end], text[end..].trim())
+}
+
+/// The new value; `None` if it cannot be read.
+fn changed(rest: &str, present: f64) -> Option<f64> {
+    for (operator, of) in [
+        ("+=", (|a, b| a + b) as fn(f64, f64) -> f64),
+        ("-=", |a, b| a - b),
+        ("*=", |a, b| a * b),
+        ("/=", |a, b| a / b),
+    ] {
+        if let Some(operand) = rest.strip_prefix(operator) {
+            let operand = operand.trim();
+            let number = match operand.strip_suffix('%') {
+                // a share of the present value where it is added, a plain factor where it multiplies
+                Some(percent) if operator.starts_with(['+', '-']) => present * number(percent)? / 100.0,
+                Some(percent) => number(percent)? / 100.0,
+                None => number(operand)?,
+            };
+            return Some(of(present, number));
+        }
+    }
+    let rest = rest.strip_prefix('=').unwrap_or(rest).trim();
+    let Some(percent) = rest.strip_suffix('%') else {
+        return number(rest);
+    };
+    let share = number(percent)?;
+    if percent.trim_start().starts_with(['+', '-']) {
+        Some(present * (100.0 + share) / 100.0)
+    } else {
+        Some(present * share / 100.0)
+    }
+}
+
+/// A decimal number; the words `inf` and `nan` are none.
+pub fn number(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let plain = text.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
+    text.parse().ok().filter(|_| plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_forms_of_a_value() {
+        for (rest, value) in [
+            ("120", 120.0),
+            ("= 120", 120.0),
+            ("=1.2e2", 120.0),
+            ("+= 10", 110.0),
+            ("-=10", 90.0),
+            ("*= 2", 200.0),
+            ("/= 4", 25.0),
+            ("110%", 110.0),
+            ("+10%", 110.0),
+            ("-10%", 90.0),
+            ("+= 10%", 110.0),
+            ("*= 50%", 50.0),
+            ("-5", -5.0),
+        ] {
+            assert_eq!(changed(rest, 100.0), Some(value), "{rest}");
+        }
+        for rest in ["", "x", "inf", "nan", "1 2", "%", "+=", "1,5", "0x10", "infinity%"] {
+            assert_eq!(changed(rest, 100.0), None, "{rest}");
+        }
+    }
+
+    #[test]
+    fn names_with_and_without_blanks() {
+        assert_eq!(name_and_rest("F2 120"), ("F2", "120"));
+        assert_eq!(name_and_rest("F2=120"), ("F2", "=120"));
+        assert_eq!(name_and_rest("F2+=10"), ("F2", "+=10"));
+        assert_eq!(name_and_rest("my-name -= 10"), ("my-name", "-= 10"));
+        assert_eq!(name_and_rest("F2"), ("F2", ""));
+        assert_eq!(name_and_rest("="), ("", "="));
+    }
+}

@@ -1,0 +1,130 @@
+//! Solving from the last answer: warm where that works, cold otherwise.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use crate::solve::numbers::{contact_numbers, factors};
+use crate::solve::prepared::Prepared;
+use crate::solve::solved::{SolveError, Solved};
+use crate::solve::warm::Kept;
+use crate::answer::record::{Answer, PairState, Start};
+use crate::contact::lcp::contact_lcp_like;
+use crate::contact::numbers::ContactNumbers;
+use crate::lcp::outcome::Point;
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::{Engine, Rules};
+use crate::model::scenario::Scenario;
+use crate::watch::Watch;
+
+/// Below this number of pairs a cold start is as quick as anyone can see, and it has the pivots.
+pub const WARM_PAIRS: usize = 150;
+/// Two answers whose forces and slips differ by less than this, relative to the largest, are the same.
+const SAME: f64 = 1e-7;
+
+/// What an answer keeps for the next change; shared by the answers of one chain.
+pub(super) type Seat = Arc<Mutex<Option<Kept>>>;
+
+impl Prepared {
+    /// Solves for other parameter values, from the last answer where the model has [`WARM_PAIRS`] pairs or more, the
+    /// rules are the defaults and the last answer can be followed; otherwise as [`Prepared::solve`]. A warm answer
+    /// passes the same fresh check; it has no pivots of Lemke's algorithm (`answer.start` says so).
+    ///
+    /// # Errors
+    /// As [`Prepared::solve`].
+    pub fn solve_from(
+        &self,
+        last: &Solved,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        let large = self.system().is_some_and(|system| system.pairs.len() >= WARM_PAIRS);
+        let usual = rules.are_default() && rules.engine == Engine::Scheme;
+        if large
+            && usual
+            && last.answer.is_answer()
+            && scenario.law_refusal(values).is_none()
+            && let Some(solved) = self.follow(last, values, rules, watch)
+        {
+            return Ok(solved);
+        }
+        self.solve(scenario, values, rules, watch)
+    }
+
+    /// The answer reached from the last one, if it passes its check. Public for tests and measurements of the warm
+    /// start alone: any number of pairs.
+    pub fn follow(&self, last: &Solved, values: &ParameterValues, rules: Rules, watch: &dyn Watch) -> Option<Solved> {
+        let system = self.system()?;
+        let seat = last.kept.as_ref()?;
+        let mut guard = seat.lock().unwrap_or_else(PoisonError::into_inner);
+        // Taken out, so that nothing half-way stays behind where the path fails.
+        let mut kept = guard.take()?;
+        let start = Instant::now();
+        let factors = factors(self, values);
+        let numbers = contact_numbers(system, &factors, values);
+        let numbers_seconds = start.elapsed().as_secs_f64();
+        let (mut solved, mut seconds) = self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
+        if !solved.answer.is_answer() {
+            // The way is made; only its end was not sharp enough.
+            let way = solved.answer.start;
+            kept.refine();
+            let (refined, more) = self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
+            solved = refined;
+            solved.answer.start = way;
+            seconds += more;
+        }
+        if !solved.answer.is_answer() {
+            return None;
+        }
+        let answer = &mut solved.answer;
+        *guard = Some(kept);
+        drop(guard);
+        answer.timings.factor = self.factor_seconds;
+        answer.timings.condense = self.condense_seconds;
+        answer.timings.lemke = numbers_seconds + seconds;
+        answer.timings.total = self.seconds + start.elapsed().as_secs_f64();
+        solved.kept = Some(Arc::clone(seat));
+        Some(solved)
+    }
+
+    /// The checked state at the numbers, followed in the kept dictionary, and the seconds that the following took.
+    fn follow_kept(
+        &self,
+        kept: &mut Kept,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Option<(Solved, f64)> {
+        let system = self.system()?;
+        let start = Instant::now();
+        let found = kept.follow(system, numbers, watch)?;
+        let contact = contact_lcp_like(Some(kept.contact()), system, numbers, rules.covering).ok()?;
+        let length = found.length_unit / contact.length_unit;
+        let point =
+            Point { z: found.point.z.iter().map(|z| z * length).collect(), w: vec![0.0; contact.rows.len()], p: 0.0 };
+        let seconds = start.elapsed().as_secs_f64();
+        let words = rules.words();
+        let mut solved = self.answer_at(system, numbers, factors, contact, point, words);
+        solved.answer.start = Start::Warm { changes: found.pivots };
+        Some((solved, seconds))
+    }
+}
+
+/// Whether two answers are the same: states and forces and displacements of all pairs.
+pub fn same_answer(a: &Answer, b: &Answer) -> bool {
+    let largest = |pick: fn(&PairState) -> [f64; 2]| {
+        a.pairs.iter().chain(&b.pairs).flat_map(pick).fold(0.0, |m: f64, x| m.max(x.abs()))
+    };
+    let force = largest(|pair| [pair.x_n, pair.x_t]);
+    let length = largest(|pair| [pair.z_n, pair.z_t]);
+    a.outcome == b.outcome
+        && a.pairs.len() == b.pairs.len()
+        && a.pairs.iter().zip(&b.pairs).all(|(a, b)| {
+            (a.x_n - b.x_n).abs() <= SAME * force
+                && (a.x_t - b.x_t).abs() <= SAME * force
+                && (a.z_n - b.z_n).abs() <= SAME * length
+                && (a.z_t - b.z_t).abs() <= SAME * length
+        })
+}
