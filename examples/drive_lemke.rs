@@ -4,10 +4,10 @@
 
 use num_rational::BigRational;
 use stickslip::lcp::driver::{Engine, Step};
+use stickslip::lcp::exact::tableau::Tableau;
 use stickslip::lcp::outcome::Outcome;
 use stickslip::lcp::problem::{Lcp, Scale};
 use stickslip::lcp::ratio_test::TieRule;
-use stickslip::lcp::exact::tableau::Tableau;
 
 /// w = M z + q with M of Murty's exponential examples (lower triangular, 2 below the diagonal), here for three rows.
 const M: [[i64; 3]; 3] = [[1, 0, 0], [2, 1, 0], [2, 2, 1]];

@@ -23,18 +23,18 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use serde_json::{Value, json};
 
 use common::{Plates, Pull, Ready};
+use stickslip::contact::full_lcp::{WholeInput, full_lcp};
 use stickslip::contact::lcp::contact_lcp;
-use stickslip::contact::full_lcp::{WholeInput, whole_lcp};
 use stickslip::export::lcp::matrix_market;
 use stickslip::fem::MainSystem;
+use stickslip::lcp::basis_solution::vertex;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
-use stickslip::lcp::basis_solution::vertex;
 use stickslip::model::pair::joints;
 use stickslip::model::rules::TieBreak;
 use stickslip::model::scenario::Source;
-use stickslip::solve::prepare;
 use stickslip::solve::follow::same_answer;
+use stickslip::solve::prepare;
 use stickslip::watch::Quiet;
 
 /// Seconds that `work` takes.
@@ -75,7 +75,7 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
     let covering = ready.scenario.rules.covering;
     let numbers = ready.numbers(&ready.values(&[]));
     if let Some(folder) = arguments.get(4) {
-        let whole = whole_lcp::<f64>(&WholeInput { system, numbers: &numbers, covering });
+        let whole = full_lcp::<f64>(&WholeInput { system, numbers: &numbers, covering });
         let column = |entries: &[f64]| entries.iter().map(|entry| vec![*entry]).collect::<Vec<_>>();
         let folder = Path::new(folder);
         for (name, rows) in [("M", &whole.matrix), ("q", &column(&whole.q)), ("d", &column(&whole.covering))] {

@@ -17,7 +17,7 @@ use crate::model::problem::Problems;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::model::schema;
-use crate::session::{Answer, exit_status, commands::import, load, commands::paths, commands::script};
+use crate::session::{Answer, commands::import, commands::paths, commands::script, exit_status, load};
 use crate::session::{CommandError, Format, History, Output, Session, diagnose};
 use crate::signals::{self, Signals, TerminalWatch, is_dumb};
 use crate::text::printable::{self, Printable};

@@ -7,19 +7,19 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use stickslip::contact::full_lcp::{WholeInput, full_lcp};
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::ContactSystem;
-use stickslip::contact::full_lcp::{WholeInput, whole_lcp};
+use stickslip::lcp::basis_solution::{Basis, vertex};
 use stickslip::lcp::driver::{Engine, Step, run};
+use stickslip::lcp::exact::tableau::Tableau;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::mirrored::MirroredLcp;
 use stickslip::lcp::outcome::{Outcome, Run};
 use stickslip::lcp::parametric::{End, Parametric, Reach};
 use stickslip::lcp::problem::{Lcp, Scale};
 use stickslip::lcp::ratio_test::TieRule;
-use stickslip::lcp::exact::tableau::Tableau;
-use stickslip::lcp::basis_solution::{Basis, vertex};
 use stickslip::model::rules::{Covering, TieBreak};
 
 mod common;
@@ -74,7 +74,7 @@ fn agree(system: &ContactSystem, numbers: &ContactNumbers, what: &str) -> (usize
     let contact = contact_lcp(system, numbers, covering).expect("cohesive covers everything");
     let rule = contact.tie_rule(TieBreak::Lexicographic);
     let fast = finished(&mut SchemeEngine::new(Arc::clone(&contact.lcp), rule.clone()));
-    let whole = whole_lcp::<f64>(&WholeInput { system, numbers, covering });
+    let whole = full_lcp::<f64>(&WholeInput { system, numbers, covering });
     let judge = finished(&mut Tableau::new(&whole, rule));
     let normal = Outcome::Normal { marginal: false };
     assert_eq!((&fast.outcome, &judge.outcome), (&normal, &normal), "{what}");
@@ -199,7 +199,7 @@ fn errors_of_a_long_walk(n: usize, pivots: usize) -> (f64, f64) {
             column: matrix.diagonal().map(f64::sqrt).as_slice().to_vec(),
             load: None,
         },
-        whole_size: n,
+        full_size: n,
     };
     let start = Basis { z: Vec::new(), active: Vec::new(), p: false };
     let order = (0..n).collect();

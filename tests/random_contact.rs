@@ -9,10 +9,10 @@ use rand_chacha::ChaCha8Rng;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::ContactSystem;
+use stickslip::lcp::basis_solution::vertex;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::outcome::Outcome;
-use stickslip::lcp::basis_solution::vertex;
 use stickslip::model::pair::Law;
 use stickslip::model::rules::{Covering, TieBreak};
 

@@ -8,7 +8,7 @@ use stickslip::model::embedded;
 use stickslip::model::load::load_text;
 use stickslip::model::scenario::{Scenario, Source};
 use stickslip::session::language::command::{self, Command};
-use stickslip::session::{Output, Session, language::complete, commands::paths, language::tokens};
+use stickslip::session::{Output, Session, commands::paths, language::complete, language::tokens};
 use stickslip::solve::prepare;
 use stickslip::view::style::Style;
 use stickslip::watch::{Budget, Quiet};

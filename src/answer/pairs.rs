@@ -3,13 +3,13 @@
 use nalgebra::DVector;
 
 use super::record::{PairState, State};
-use crate::contact::lcp::ContactLcp;
 use crate::contact::force_form::unknowns;
+use crate::contact::full_lcp::{fixed_bound, friction};
+use crate::contact::lcp::ContactLcp;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::self_stress::least_norm;
 use crate::contact::sums::{StateForces, Sum, is_still, state_forces};
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::lcp::outcome::Point;
 use crate::model::pair::Law;
 

@@ -24,12 +24,12 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::contact::lcp::{ContactLcp, Couple, CoveringError, RowMeaning, load_with_gaps, power_of_two};
 use super::given::orthonormal;
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces};
 use super::system::{ContactSystem, JointLoad};
 use crate::contact::full_lcp::{fixed_bound, friction, rows};
+use crate::contact::lcp::{ContactLcp, CoveringError, RowId, RowKind, load_with_gaps, power_of_two};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::{Lcp, Scale};
 use crate::model::rules::Covering;
@@ -135,11 +135,11 @@ pub fn unknowns(
         let unit = if contact.swapped[row] { contact.force_unit } else { contact.length_unit };
         let value = z[row] * unit;
         match (meaning.couple, system.pairs[meaning.pair].tangential) {
-            (Couple::Normal, _) => unknowns[meaning.pair] += value,
-            (Couple::Plus, Some(joint)) if system.is_forced(joint) => slipping.push((meaning.pair, joint, value)),
-            (Couple::Minus, Some(joint)) if system.is_forced(joint) => {}
-            (Couple::Plus, Some(joint)) => unknowns[joint] += value,
-            (Couple::Minus, Some(joint)) => unknowns[joint] -= value,
+            (RowKind::Normal, _) => unknowns[meaning.pair] += value,
+            (RowKind::Plus, Some(joint)) if system.is_forced(joint) => slipping.push((meaning.pair, joint, value)),
+            (RowKind::Minus, Some(joint)) if system.is_forced(joint) => {}
+            (RowKind::Plus, Some(joint)) => unknowns[joint] += value,
+            (RowKind::Minus, Some(joint)) => unknowns[joint] -= value,
             (_, None) => {}
         }
     }
@@ -200,7 +200,7 @@ struct Constants<'a> {
 /// Pairs, rows and frictions under which an LCP is written, and the unit of R.
 struct Writer<'a> {
     system: &'a ContactSystem,
-    rows: &'a [RowMeaning],
+    rows: &'a [RowId],
     friction: &'a [f64],
     stiffness_unit: f64,
 }
@@ -230,12 +230,12 @@ impl Writer<'_> {
         response.column_mut(width).copy_from(constants.joints);
         for (r, meaning) in self.rows.iter().enumerate().take(width) {
             let joint = match meaning.couple {
-                Couple::Normal => meaning.pair,
+                RowKind::Normal => meaning.pair,
                 _ => system.pairs[meaning.pair].tangential.unwrap_or(meaning.pair),
             };
-            let sign = if meaning.couple == Couple::Minus { -1.0 } else { 1.0 };
+            let sign = if meaning.couple == RowKind::Minus { -1.0 } else { 1.0 };
             match (meaning.couple, self.forced(joint)) {
-                (Couple::Normal, true) => force[(joint, r)] = 1.0,
+                (RowKind::Normal, true) => force[(joint, r)] = 1.0,
                 // x⁺ follows below; z⁻ moves nothing but its own couple.
                 (_, true) => continue,
                 (_, false) => displacement[(joint, r)] = sign,
@@ -252,7 +252,7 @@ impl Writer<'_> {
             let pressed = force.row(pair) * self.friction[pair];
             let mut own = -pressed;
             own[width] -= constants.fixed[pair];
-            if with_unknowns && let Some(plus) = self.row_of(pair, Couple::Plus) {
+            if with_unknowns && let Some(plus) = self.row_of(pair, RowKind::Plus) {
                 own[plus] += 1.0;
             }
             for i in 0..k {
@@ -279,8 +279,8 @@ impl Writer<'_> {
         pairs.filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint))).filter(|(_, joint)| self.forced(*joint))
     }
 
-    fn row_of(&self, pair: usize, couple: Couple) -> Option<usize> {
-        self.rows.iter().position(|row| *row == RowMeaning { pair, couple })
+    fn row_of(&self, pair: usize, couple: RowKind) -> Option<usize> {
+        self.rows.iter().position(|row| *row == RowId { pair, couple })
     }
 
     /// The rows of the LCP, the constant in the last column.
@@ -291,25 +291,25 @@ impl Writer<'_> {
             let i = meaning.pair;
             let mut row = written.row_mut(r);
             let side = match meaning.couple {
-                Couple::Normal if self.forced(i) => {
+                RowKind::Normal if self.forced(i) => {
                     row.copy_from(&forms.displacement.row(i));
                     continue;
                 }
-                Couple::Normal => {
+                RowKind::Normal => {
                     row.copy_from(&forms.force.row(i));
                     continue;
                 }
-                Couple::Plus => 1.0,
-                Couple::Minus => -1.0,
+                RowKind::Plus => 1.0,
+                RowKind::Minus => -1.0,
             };
             let joint = self.system.pairs[i].tangential.unwrap_or(i);
             let mut bound = forms.force.row(i) * self.friction[i];
             bound[width] += constants.fixed[i];
             match (meaning.couple, self.forced(joint)) {
-                (Couple::Plus, true) => {
+                (RowKind::Plus, true) => {
                     row.copy_from(&forms.displacement.row(joint));
                     if width > 0
-                        && let Some(minus) = self.row_of(i, Couple::Minus)
+                        && let Some(minus) = self.row_of(i, RowKind::Minus)
                     {
                         row[minus] += 1.0;
                     }
@@ -317,7 +317,7 @@ impl Writer<'_> {
                 (_, true) => {
                     row.copy_from(&(bound * 2.0));
                     if width > 0
-                        && let Some(plus) = self.row_of(i, Couple::Plus)
+                        && let Some(plus) = self.row_of(i, RowKind::Plus)
                     {
                         row[plus] -= 1.0;
                     }
@@ -330,11 +330,11 @@ impl Writer<'_> {
 }
 
 /// Whether w of a row is a displacement and its z the force.
-fn is_swapped(system: &ContactSystem, row: RowMeaning) -> bool {
+fn is_swapped(system: &ContactSystem, row: RowId) -> bool {
     match row.couple {
-        Couple::Normal => system.is_forced(row.pair),
-        Couple::Plus => system.pairs[row.pair].tangential.is_some_and(|joint| system.is_forced(joint)),
-        Couple::Minus => false,
+        RowKind::Normal => system.is_forced(row.pair),
+        RowKind::Plus => system.pairs[row.pair].tangential.is_some_and(|joint| system.is_forced(joint)),
+        RowKind::Minus => false,
     }
 }
 
@@ -401,15 +401,15 @@ pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: C
     let q: Vec<f64> = (0..n).map(|i| written[(i, n)] / force_unit).collect();
     let cover: Vec<f64> =
         rows.iter().zip(&swapped).map(|(row, swapped)| cover(system, &frictions, *row, *swapped, covering)).collect();
-    let of = |couple: Couple| (0..system.pairs.len()).map(|pair| writer.row_of(pair, couple)).collect::<Vec<_>>();
+    let of = |couple: RowKind| (0..system.pairs.len()).map(|pair| writer.row_of(pair, couple)).collect::<Vec<_>>();
     let scale = Scale::plain(&matrix);
     let lcp = MirroredLcp::plain(&Lcp { matrix, q, covering: cover, scale });
     ContactLcp {
         lcp: Arc::new(lcp),
         friction: numbers.friction.clone(),
-        normal_row: of(Couple::Normal),
-        plus_row: of(Couple::Plus),
-        minus_row: of(Couple::Minus),
+        normal_row: of(RowKind::Normal),
+        plus_row: of(RowKind::Plus),
+        minus_row: of(RowKind::Minus),
         force_unit,
         length_unit: force_unit / stiffness_unit,
         swapped,
@@ -419,9 +419,9 @@ pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: C
 
 /// Entry of the covering vector: as everywhere for forces and reserves; 1 for displacements; and for the second reserve of
 /// a couple in force form what both have together.
-fn cover(system: &ContactSystem, friction: &[f64], row: RowMeaning, swapped: bool, covering: Covering) -> f64 {
+fn cover(system: &ContactSystem, friction: &[f64], row: RowId, swapped: bool, covering: Covering) -> f64 {
     let pair = &system.pairs[row.pair];
-    if row.couple == Couple::Normal || swapped {
+    if row.couple == RowKind::Normal || swapped {
         return 1.0;
     }
     let f = friction[row.pair];

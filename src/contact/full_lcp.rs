@@ -12,16 +12,16 @@
 //! bound pairs, then their x⁻. A frictionless pair has only x_n; a bound pair only x^± = r_f ± x_τ.
 //! The sums are formed in the number type asked for: exact from the f64 data in rationals.
 
-use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::exact::scalar::Scalar;
+use crate::lcp::problem::{Lcp, Scale};
 use crate::model::pair::Law;
 use crate::model::rules::Covering;
 
-use crate::contact::lcp::{Couple, RowMeaning};
+use crate::contact::lcp::{RowId, RowKind};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 
-/// What [`whole_lcp`] needs.
+/// What [`full_lcp`] needs.
 #[derive(Clone, Copy, Debug)]
 pub struct WholeInput<'a> {
     /// Pairs and R.
@@ -33,18 +33,18 @@ pub struct WholeInput<'a> {
 }
 
 /// The rows of the LCP in order.
-pub fn rows(system: &ContactSystem) -> Vec<RowMeaning> {
-    let of = |couple: Couple, has: fn(&Law) -> bool| {
+pub fn rows(system: &ContactSystem) -> Vec<RowId> {
+    let of = |couple: RowKind, has: fn(&Law) -> bool| {
         system
             .pairs
             .iter()
             .enumerate()
             .filter(move |(_, pair)| has(&pair.law))
-            .map(move |(pair, _)| RowMeaning { pair, couple })
+            .map(move |(pair, _)| RowId { pair, couple })
     };
     let normal: fn(&Law) -> bool = |law| !matches!(law, Law::Bound { .. });
     let tangential: fn(&Law) -> bool = |law| !matches!(law, Law::Frictionless { .. });
-    of(Couple::Normal, normal).chain(of(Couple::Plus, tangential)).chain(of(Couple::Minus, tangential)).collect()
+    of(RowKind::Normal, normal).chain(of(RowKind::Plus, tangential)).chain(of(RowKind::Minus, tangential)).collect()
 }
 
 /// Row of R of the tangential joint of a pair that has one by its law.
@@ -73,13 +73,13 @@ pub(crate) fn fixed_bound(system: &ContactSystem, numbers: &ContactNumbers, pair
 }
 
 /// The quantities of a row as a combination of joints: Σ factor·λ_joint + fixed.
-fn combination<T: Scalar>(input: &WholeInput, row: RowMeaning) -> (Vec<(usize, T)>, T) {
+fn combination<T: Scalar>(input: &WholeInput, row: RowId) -> (Vec<(usize, T)>, T) {
     let WholeInput { system, numbers, .. } = *input;
     let pair = row.pair;
     let side = match row.couple {
-        Couple::Normal => return (vec![(pair, T::one())], T::zero()),
-        Couple::Plus => T::one(),
-        Couple::Minus => T::one().neg(),
+        RowKind::Normal => return (vec![(pair, T::one())], T::zero()),
+        RowKind::Plus => T::one(),
+        RowKind::Minus => T::one().neg(),
     };
     let mut terms = vec![(tangential_joint(system, pair), side)];
     let f = T::from_f64(friction(system, numbers, pair));
@@ -128,18 +128,18 @@ fn constants_with<T: Scalar>(
 }
 
 /// Forms the LCP, see the [module documentation](self).
-pub fn whole_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
-    whole_lcp_of(input, &stiffness_in(input.system))
+pub fn full_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
+    full_lcp_of(input, &stiffness_in(input.system))
 }
 
 /// Forms the LCP with an R of its own, one row per joint, in place of that of the system.
-pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T> {
+pub fn full_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T> {
     let WholeInput { system, numbers, covering } = *input;
     let rows = rows(system);
     let combinations: Vec<(Vec<(usize, T)>, T)> = rows.iter().map(|row| combination(input, *row)).collect();
-    let joint = |row: &RowMeaning| match row.couple {
-        Couple::Normal => row.pair,
-        Couple::Plus | Couple::Minus => tangential_joint(system, row.pair),
+    let joint = |row: &RowId| match row.couple {
+        RowKind::Normal => row.pair,
+        RowKind::Plus | RowKind::Minus => tangential_joint(system, row.pair),
     };
     let constants = constants_with(system, numbers, &|i, j| stiffness[i][j].clone());
 
@@ -151,8 +151,8 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
                 .collect();
             rows.iter()
                 .map(|column| match column.couple {
-                    Couple::Normal | Couple::Plus => responses[joint(column)].clone(),
-                    Couple::Minus => responses[joint(column)].neg(),
+                    RowKind::Normal | RowKind::Plus => responses[joint(column)].clone(),
+                    RowKind::Minus => responses[joint(column)].neg(),
                 })
                 .collect()
         })
@@ -170,8 +170,10 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
         row: rows
             .iter()
             .map(|row| match row.couple {
-                Couple::Normal => root(row.pair),
-                Couple::Plus | Couple::Minus => friction(system, numbers, row.pair) * root(row.pair) + root(joint(row)),
+                RowKind::Normal => root(row.pair),
+                RowKind::Plus | RowKind::Minus => {
+                    friction(system, numbers, row.pair) * root(row.pair) + root(joint(row))
+                }
             })
             .collect(),
         column: rows
@@ -186,9 +188,9 @@ pub fn whole_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<
 }
 
 /// d_n or d_τ of a row (method §4).
-fn covering_entry<T: Scalar>(input: &WholeInput, row: RowMeaning, covering: Covering) -> T {
+fn covering_entry<T: Scalar>(input: &WholeInput, row: RowId, covering: Covering) -> T {
     let law = &input.system.pairs[row.pair].law;
-    if row.couple == Couple::Normal || !matches!(law, Law::Coulomb { .. }) {
+    if row.couple == RowKind::Normal || !matches!(law, Law::Coulomb { .. }) {
         return T::one();
     }
     let f = T::from_f64(input.numbers.friction[row.pair]);
@@ -200,5 +202,5 @@ fn covering_entry<T: Scalar>(input: &WholeInput, row: RowMeaning, covering: Cove
 }
 
 #[cfg(test)]
-#[path = "whole_tests.rs"]
+#[path = "full_lcp_tests.rs"]
 pub(crate) mod tests;

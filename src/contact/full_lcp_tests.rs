@@ -9,9 +9,9 @@ use super::*;
 use crate::contact::system::ContactPair;
 use crate::lcp::driver::run;
 use crate::lcp::exact::lemke::Exact;
+use crate::lcp::exact::tableau::Tableau;
 use crate::lcp::outcome::Outcome;
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::exact::tableau::Tableau;
 use crate::model::parameter::Number;
 use crate::watch::Quiet;
 
@@ -55,7 +55,7 @@ pub(crate) fn plain(f: f64, load: &[f64]) -> ContactNumbers {
 /// Normals last: the default rule.
 pub(crate) fn tangential_first(system: &ContactSystem) -> TieRule {
     let rows = rows(system);
-    let normals = rows.iter().filter(|r| r.couple == Couple::Normal).count();
+    let normals = rows.iter().filter(|r| r.couple == RowKind::Normal).count();
     TieRule::Lexicographic((normals..rows.len()).chain(0..normals).collect())
 }
 
@@ -106,7 +106,7 @@ fn bar_on_six_supports_in_both_number_types() {
 }
 
 fn check<T: Scalar>(input: &WholeInput, expected: Option<[f64; 6]>, d_t: f64) {
-    let lcp = whole_lcp::<T>(input);
+    let lcp = full_lcp::<T>(input);
     let rule = tangential_first(input.system);
     let run = run(&mut Tableau::new(&lcp, rule), 100, &mut |_| ControlFlow::Continue(()));
     match expected {
@@ -144,9 +144,9 @@ fn laws_mix() {
         load_terms: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
         file_load: None,
     };
-    let lcp = whole_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
+    let lcp = full_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
     let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();
-    use Couple::*;
+    use RowKind::*;
     assert_eq!(kinds, [(0, Normal), (2, Normal), (1, Plus), (2, Plus), (1, Minus), (2, Minus)]);
     let r = |i: usize, j: usize| system.stiffness[(i, j)];
     let v = |i: usize| numbers.load[i] - r(i, 0);
@@ -191,7 +191,7 @@ fn p_at_the_limit_of_the_bar() {
                 load[n] = -pull;
                 let numbers = plain(0.3, &load);
                 for (covering, d_t) in Covering::ALL.into_iter().zip([1.3, 1.0, 0.3]) {
-                    let lcp = whole_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering });
+                    let lcp = full_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering });
                     let got =
                         run(
                             &mut Tableau::new(&lcp, tangential_first(&system)),
@@ -211,7 +211,7 @@ fn p_at_the_limit_of_the_bar() {
                     ..numbers
                 };
                 let lcp =
-                    whole_lcp::<f64>(&WholeInput { system: &system, numbers: &below, covering: Covering::Cohesive });
+                    full_lcp::<f64>(&WholeInput { system: &system, numbers: &below, covering: Covering::Cohesive });
                 let got =
                     run(&mut Tableau::new(&lcp, tangential_first(&system)), 200, &mut |_| ControlFlow::Continue(()));
                 assert!(matches!(got.outcome, Outcome::Normal { marginal: false }), "{:?}", got.outcome);
@@ -231,7 +231,7 @@ fn random_contact(random: &mut rand_chacha::ChaCha8Rng, m: usize, contrast: f64)
 }
 
 fn run_exact(input: &WholeInput) -> crate::lcp::outcome::Run<BigRational> {
-    let lcp = whole_lcp::<BigRational>(input);
+    let lcp = full_lcp::<BigRational>(input);
     let mut engine = Exact::new(lcp, tangential_first(input.system), &Quiet);
     run(&mut engine, 5000, &mut |_| ControlFlow::Continue(()))
 }
@@ -280,7 +280,7 @@ fn engines_agree(problems: usize, most_pairs: usize) {
         for covering in Covering::ALL {
             let input = WholeInput { system: &system, numbers: &numbers, covering };
             let rounded =
-                run(&mut Tableau::new(&whole_lcp::<f64>(&input), tangential_first(&system)), 5000, &mut |_| {
+                run(&mut Tableau::new(&full_lcp::<f64>(&input), tangential_first(&system)), 5000, &mut |_| {
                     ControlFlow::Continue(())
                 });
             let exact = run_exact(&input);

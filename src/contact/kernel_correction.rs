@@ -6,11 +6,11 @@
 
 use nalgebra::DVector;
 
-use crate::contact::lcp::{ContactLcp, Couple, load_with_gaps};
+use crate::contact::lcp::{ContactLcp, RowKind, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::lcp::outcome::Point;
 use crate::lcp::basis_solution::{Basis, corrected};
+use crate::lcp::outcome::Point;
 
 /// w of all rows at a point, dimensionless, from forces whose kernel part is exact.
 fn balanced_rows(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: &Point) -> Vec<f64> {
@@ -31,9 +31,9 @@ fn balanced_rows(system: &ContactSystem, numbers: &ContactNumbers, contact: &Con
             let extra = contact.normal_row[i].map_or(numbers.bound[i], |_| numbers.cohesion[i]);
             let bound = numbers.friction[i] * force[i] + extra;
             match row.couple {
-                Couple::Normal => force[i] / contact.force_unit + d_n * point.p,
-                Couple::Plus => (bound + tangential) / contact.force_unit + d_t * point.p,
-                Couple::Minus => (bound - tangential) / contact.force_unit + d_t * point.p,
+                RowKind::Normal => force[i] / contact.force_unit + d_n * point.p,
+                RowKind::Plus => (bound + tangential) / contact.force_unit + d_t * point.p,
+                RowKind::Minus => (bound - tangential) / contact.force_unit + d_t * point.p,
             }
         })
         .collect()

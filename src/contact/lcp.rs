@@ -12,10 +12,10 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use crate::contact::force_form;
+use crate::contact::full_lcp::{joint_constants, rows};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::sums::joint_forces;
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::{joint_constants, rows};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::{NOISE, Scale};
@@ -26,7 +26,7 @@ use crate::model::rules::{Covering, TieBreak};
 
 /// What a row of the whole LCP stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Couple {
+pub enum RowKind {
     /// (x_n, z_n).
     Normal,
     /// (x⁺, z⁺).
@@ -46,20 +46,20 @@ pub enum Quantity {
 
 /// A row of the whole LCP: which pair, which couple.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct RowMeaning {
+pub struct RowId {
     /// Index of the pair.
     pub pair: usize,
     /// Which couple of it.
-    pub couple: Couple,
+    pub couple: RowKind,
 }
 
-impl RowMeaning {
+impl RowId {
     /// Name of the force (`letter` x) or displacement (z) of this row: `x_n[c1]`, `z+[c1]`.
     pub fn name(self, letter: char, system: &ContactSystem) -> String {
         let index = match self.couple {
-            Couple::Normal => "_n",
-            Couple::Plus => "+",
-            Couple::Minus => "-",
+            RowKind::Normal => "_n",
+            RowKind::Plus => "+",
+            RowKind::Minus => "-",
         };
         format!("{letter}{index}[{}]", system.pairs[self.pair].id)
     }
@@ -87,7 +87,7 @@ pub struct ContactLcp {
     /// f of each pair: what the matrix depends on, apart from R.
     pub friction: Vec<f64>,
     /// What each row of the whole LCP stands for.
-    pub rows: Vec<RowMeaning>,
+    pub rows: Vec<RowId>,
     /// User's force = dimensionless × this.
     pub force_unit: f64,
     /// User's length = dimensionless × this.
@@ -264,7 +264,7 @@ pub fn contact_lcp_like(
             column: (0..count).map(|row| column_scale[joint_of(row)]).collect(),
             load: Some(if largest_load > 0.0 { largest_load } else { largest } / force_unit),
         },
-        whole_size: rows.len(),
+        full_size: rows.len(),
     };
     Ok(ContactLcp {
         lcp: Arc::new(lcp),
@@ -282,7 +282,7 @@ pub fn contact_lcp_like(
 impl ContactLcp {
     /// The tie rule over the rows of this LCP.
     pub fn tie_rule(&self, tie_break: TieBreak) -> TieRule {
-        let normals = self.rows.iter().filter(|row| row.couple == Couple::Normal).count();
+        let normals = self.rows.iter().filter(|row| row.couple == RowKind::Normal).count();
         let n = self.rows.len();
         match tie_break {
             TieBreak::Lexicographic => TieRule::Lexicographic((normals..n).chain(0..normals).collect()),
@@ -328,9 +328,9 @@ impl ContactLcp {
         let mut joints = DVector::zeros(system.joint_count());
         for (row, meaning) in self.rows.iter().enumerate() {
             match (meaning.couple, system.pairs[meaning.pair].tangential) {
-                (Couple::Normal, _) => joints[meaning.pair] += z[row],
-                (Couple::Plus, Some(joint)) => joints[joint] += z[row],
-                (Couple::Minus, Some(joint)) => joints[joint] -= z[row],
+                (RowKind::Normal, _) => joints[meaning.pair] += z[row],
+                (RowKind::Plus, Some(joint)) => joints[joint] += z[row],
+                (RowKind::Minus, Some(joint)) => joints[joint] -= z[row],
                 (_, None) => {}
             }
         }

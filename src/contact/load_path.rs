@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use crate::contact::lcp::{ContactLcp, contact_lcp, load_with_gaps};
 use super::force_form::constants;
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
 use crate::contact::full_lcp::fixed_bound;
+use crate::contact::lcp::{ContactLcp, contact_lcp, load_with_gaps};
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::pair::Law;
 use crate::model::rules::{Covering, TieBreak};
 

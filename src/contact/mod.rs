@@ -12,14 +12,14 @@
 //! let numbers = contact_numbers(system, &factors(&prepared, &values), &values);
 //! let lcp = contact_lcp(system, &numbers, Covering::Cohesive)?;
 //! // One Coulomb pair: x_n, x⁺ and x⁻, of which two rows carry the third.
-//! assert_eq!((lcp.lcp.whole_size, lcp.lcp.size()), (3, 2));
+//! assert_eq!((lcp.lcp.full_size, lcp.lcp.size()), (3, 2));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod file_data;
 pub mod force_form;
-pub mod given;
 pub mod full_lcp;
+pub mod given;
 pub mod kernel_correction;
 pub mod lcp;
 pub mod load_path;

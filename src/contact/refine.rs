@@ -7,15 +7,15 @@
 
 use nalgebra::DVector;
 
-use crate::contact::lcp::{ContactLcp, Couple, RowMeaning};
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces, pair_sums};
 use super::system::ContactSystem;
 use crate::contact::full_lcp::{fixed_bound, friction};
+use crate::contact::lcp::{ContactLcp, RowId, RowKind};
+use crate::lcp::basis_solution::{Basis, corrected};
 use crate::lcp::doubled::dot;
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::NOISE;
-use crate::lcp::basis_solution::{Basis, corrected};
 
 /// Rounds at most.
 const ROUNDS: usize = 4;
@@ -63,9 +63,9 @@ fn settle_signs(system: &ContactSystem, numbers: &ContactNumbers, contact: &Cont
         let i = meaning.pair;
         let is_open = contact.normal_row[i].is_some_and(|normal| point.z[normal] > 0.0);
         let other = match meaning.couple {
-            Couple::Normal => None,
-            Couple::Plus => contact.minus_row[i],
-            Couple::Minus => contact.plus_row[i],
+            RowKind::Normal => None,
+            RowKind::Plus => contact.minus_row[i],
+            RowKind::Minus => contact.plus_row[i],
         };
         let moved = std::mem::take(&mut point.z[row]);
         if let Some(other) = other.filter(|_| is_open && fixed_bound(system, numbers, i) == 0.0) {
@@ -82,10 +82,10 @@ fn equations(
     point: &Point,
     sums: &[Sum],
 ) -> Vec<f64> {
-    let row_of = |(row, sum): (&RowMeaning, &Sum)| {
+    let row_of = |(row, sum): (&RowId, &Sum)| {
         let normal = contact.normal_row[row.pair].filter(|&normal| point.z[normal] > 0.0);
         let coupled = match (row.couple, normal) {
-            (Couple::Normal, _) | (_, None) => 0.0,
+            (RowKind::Normal, _) | (_, None) => 0.0,
             (_, Some(normal)) => friction(system, numbers, row.pair) * sums[normal].value,
         };
         (sum.value + coupled) / contact.force_unit
@@ -121,9 +121,9 @@ fn rows(
             let sums = pair_sums(system, numbers, &forces, (row.pair, unpressed[row.pair]));
             let reserve = |side: usize| sums.reserves.map(|reserves| reserves[side]);
             let sum = match row.couple {
-                Couple::Normal => sums.normal,
-                Couple::Plus => reserve(0),
-                Couple::Minus => reserve(1),
+                RowKind::Normal => sums.normal,
+                RowKind::Plus => reserve(0),
+                RowKind::Minus => reserve(1),
             };
             sum.unwrap_or_default()
         })
@@ -143,8 +143,8 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     use super::*;
-    use crate::contact::lcp::contact_lcp;
     use crate::contact::full_lcp::tests::{coulomb, plain};
+    use crate::contact::lcp::contact_lcp;
     use crate::model::rules::Covering;
 
     #[test]

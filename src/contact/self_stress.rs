@@ -21,13 +21,13 @@ use super::numbers::ContactNumbers;
 use super::sums::Sum;
 use super::system::ContactSystem;
 use crate::contact::full_lcp::{fixed_bound, friction};
+use crate::lcp::basis_solution::vertex;
 use crate::lcp::driver::run;
 use crate::lcp::lemke::SchemeEngine;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Outcome;
 use crate::lcp::problem::{Lcp, NOISE, Scale};
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::basis_solution::vertex;
 use crate::model::pair::Law;
 
 /// Pivots after which the forces are left as they were found.

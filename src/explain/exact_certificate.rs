@@ -14,8 +14,8 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 use super::certificate::{Bounds, Certificate, Search, bounds};
-use crate::contact::schemes::exact_system::ExactSystem;
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::schemes::exact_system::ExactSystem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::exact::dyadic::{WholeRows, nearest, rational};
 use crate::lcp::exact::polyhedron::{Polyhedron, State};

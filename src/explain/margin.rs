@@ -6,12 +6,12 @@
 use serde::Serialize;
 
 use super::vertex::value;
-use crate::contact::lcp::{ContactLcp, Couple, CoveringError, Quantity, contact_lcp};
+use crate::contact::lcp::{ContactLcp, CoveringError, Quantity, RowKind, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::outcome::Point;
 use crate::lcp::variable::Variable;
-use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::rules::Covering;
 
 /// Points of the search in a friction parameter, each way.
@@ -79,7 +79,7 @@ fn watched(scheme: &FinalScheme) -> Vec<Variable> {
             let open = contact.normal_row[meaning.pair]
                 .is_some_and(|row| basis.z.binary_search(&row).is_ok() != contact.swapped[row]);
             let loose = open && numbers.cohesion[meaning.pair] == 0.0;
-            !loose || meaning.couple == Couple::Normal
+            !loose || meaning.couple == RowKind::Normal
         })
         .collect()
 }
@@ -91,10 +91,10 @@ fn what(scheme: &FinalScheme, variable: Variable) -> (usize, &'static str) {
     let force = quantity == Quantity::Force;
     let meaning = scheme.contact.rows[row];
     let words = match (meaning.couple, force) {
-        (Couple::Normal, true) => "loses its contact force",
-        (Couple::Normal, false) => "comes into contact",
-        (Couple::Plus, true) => "uses up its reserve x+",
-        (Couple::Minus, true) => "uses up its reserve x-",
+        (RowKind::Normal, true) => "loses its contact force",
+        (RowKind::Normal, false) => "comes into contact",
+        (RowKind::Plus, true) => "uses up its reserve x+",
+        (RowKind::Minus, true) => "uses up its reserve x-",
         (_, false) => "stops slipping",
     };
     (meaning.pair, words)

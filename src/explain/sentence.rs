@@ -3,7 +3,7 @@
 use super::remedy::told_apart;
 use super::words::{list, short};
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
-use crate::contact::lcp::{ContactLcp, Couple, Quantity};
+use crate::contact::lcp::{ContactLcp, Quantity, RowKind};
 use crate::contact::system::ContactSystem;
 use crate::lcp::pivot::Pivot;
 use crate::lcp::variable::Variable;
@@ -39,7 +39,7 @@ pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSys
     // What a run starts from: the joints on, those in force form off.
     for meaning in contact.rows.iter().zip(&contact.swapped).filter(|(_, swapped)| **swapped).map(|(row, _)| row) {
         match meaning.couple {
-            Couple::Normal => schemes[meaning.pair].open = true,
+            RowKind::Normal => schemes[meaning.pair].open = true,
             _ => schemes[meaning.pair].tangential = Tangential::Plus,
         }
     }
@@ -78,19 +78,19 @@ fn turn(schemes: &mut [Scheme], entering: Variable, contact: &ContactLcp, system
     let frictionless = matches!(system.pairs[meaning.pair].law, Law::Frictionless { .. });
     let closed_word = if frictionless { "closed" } else { scheme.tangential.word() };
     let (joint, from, to) = match (meaning.couple, released) {
-        (Couple::Normal, true) => {
+        (RowKind::Normal, true) => {
             scheme.open = true;
             (TurnedJoint::Normal, closed_word, "open")
         }
-        (Couple::Normal, false) => {
+        (RowKind::Normal, false) => {
             scheme.open = false;
             (TurnedJoint::Normal, "open", closed_word)
         }
         (couple, released) => {
             let from = scheme.tangential.word();
             scheme.tangential = match (couple, released) {
-                (Couple::Plus, true) => Tangential::Plus,
-                (Couple::Minus, true) => Tangential::Minus,
+                (RowKind::Plus, true) => Tangential::Plus,
+                (RowKind::Minus, true) => Tangential::Minus,
                 _ => Tangential::Stick,
             };
             (TurnedJoint::Tangential, from, scheme.tangential.word())
@@ -160,10 +160,10 @@ impl Sentence<'_> {
         let pair = &self.system.pairs[meaning.pair].id;
         let open = schemes[meaning.pair].open;
         match (meaning.couple, force) {
-            (Couple::Normal, true) => format!("pair {pair} loses its contact force"),
-            (Couple::Normal, false) => format!("pair {pair} comes back into contact"),
-            (Couple::Plus, true) => format!("pair {pair} uses up its reserve x+"),
-            (Couple::Minus, true) => format!("pair {pair} uses up its reserve x-"),
+            (RowKind::Normal, true) => format!("pair {pair} loses its contact force"),
+            (RowKind::Normal, false) => format!("pair {pair} comes back into contact"),
+            (RowKind::Plus, true) => format!("pair {pair} uses up its reserve x+"),
+            (RowKind::Minus, true) => format!("pair {pair} uses up its reserve x-"),
             (_, false) if open => format!("the slip of open pair {pair} comes back to zero"),
             (_, false) => format!("pair {pair} has slipped back to zero"),
         }

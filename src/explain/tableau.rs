@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::vertex::{Naming, basics, value};
+use crate::lcp::basis_solution::{Basis, direction, vertex};
 use crate::lcp::outcome::Point;
 use crate::lcp::pivot::PivotLog;
 use crate::lcp::variable::Variable;
-use crate::lcp::basis_solution::{Basis, direction, vertex};
 
 /// Most rows that are printed.
 pub const MOST_ROWS: usize = 12;
@@ -48,7 +48,7 @@ pub enum NoDictionary {
 pub fn dictionary(naming: &Naming, log: &PivotLog, step: Option<usize>) -> Result<Dictionary, NoDictionary> {
     let pivots = log.recorded();
     let lcp = naming.lcp();
-    let n = lcp.whole_size;
+    let n = lcp.full_size;
     if n > MOST_ROWS {
         return Err(NoDictionary::TooLarge(n));
     }

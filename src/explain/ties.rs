@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::vertex::{Naming, zero_basics};
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::outcome::Point;
 use crate::lcp::pivot::{Pivot, PivotLog};
 use crate::lcp::variable::Variable;
-use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::rules::TieBreak;
 
 /// Most vertices that are computed afresh to look for zeros.

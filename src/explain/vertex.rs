@@ -2,10 +2,10 @@
 
 use crate::contact::lcp::ContactLcp;
 use crate::contact::system::ContactSystem;
+use crate::lcp::basis_solution::Basis;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::variable::Variable;
-use crate::lcp::basis_solution::Basis;
 
 use super::sentence::plain_name;
 
@@ -58,7 +58,7 @@ pub fn value(point: &Point, variable: Variable) -> f64 {
 
 /// The basic variables: w, then z, then p.
 pub fn basics(lcp: &MirroredLcp, basis: &Basis) -> Vec<Variable> {
-    let w = (0..lcp.whole_size).filter(|i| basis.active.binary_search(i).is_err()).map(Variable::W);
+    let w = (0..lcp.full_size).filter(|i| basis.active.binary_search(i).is_err()).map(Variable::W);
     w.chain(basis.z.iter().map(|i| Variable::Z(*i))).chain(basis.p.then_some(Variable::P)).collect()
 }
 

@@ -128,7 +128,7 @@ impl<'a> Whole<'a> {
         }
         let mut w = self.lcp.times(&primary);
         w += shift * &self.lcp.q + p * &self.lcp.covering;
-        let mut whole: Vec<f64> = (0..self.lcp.whole_size).map(|k| self.combine(k, |i| w[i], p, shift)).collect();
+        let mut whole: Vec<f64> = (0..self.lcp.full_size).map(|k| self.combine(k, |i| w[i], p, shift)).collect();
         for &k in &basis.active {
             whole[k] = 0.0;
         }
@@ -145,7 +145,7 @@ pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
     }
     let right = DVector::from_fn(n, |a, _| -whole.q(basis.active[a]));
     let solution = whole.system(basis).solve(&right)?;
-    let mut z = vec![0.0; lcp.whole_size];
+    let mut z = vec![0.0; lcp.full_size];
     for (b, &k) in basis.z.iter().enumerate() {
         z[k] = solution[b];
     }
@@ -195,7 +195,7 @@ pub fn direction(lcp: &MirroredLcp, basis: &Basis, entering: Variable) -> Option
     };
     let right = DVector::from_vec(right);
     let solution = whole.system(basis).solve(&right)?;
-    let mut z = vec![0.0; lcp.whole_size];
+    let mut z = vec![0.0; lcp.full_size];
     for (b, &k) in basis.z.iter().enumerate() {
         z[k] = solution[b];
     }

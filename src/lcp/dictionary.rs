@@ -16,7 +16,7 @@ use crate::lcp::basis_solution::Basis;
 /// A variable of the dictionary. `W(i)` and `Z(i)` of a mirrored row stand for the member of the couple that
 /// its orientation selects; the other w is known from [`Dictionary::hidden`], the other z is zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Local {
+pub(crate) enum Slot {
     W(usize),
     Z(usize),
     P,
@@ -37,9 +37,9 @@ pub(crate) struct Dictionary {
     /// Values of the basic variables where all nonbasic ones are zero.
     pub(crate) value: Vec<f64>,
     /// Variable of each row.
-    pub(crate) row: Vec<Local>,
+    pub(crate) row: Vec<Slot>,
     /// Variable of each column.
-    pub(crate) column: Vec<Local>,
+    pub(crate) column: Vec<Slot>,
     place_w: Vec<Place>,
     place_z: Vec<Place>,
     place_p: Place,
@@ -54,13 +54,13 @@ impl Dictionary {
         let mut entries = Vec::with_capacity(size * (size + 1));
         lcp.write_matrix(&mut entries);
         entries.extend_from_slice(lcp.covering.as_slice());
-        let mut column: Vec<Local> = (0..size).map(Local::Z).collect();
-        column.push(Local::P);
+        let mut column: Vec<Slot> = (0..size).map(Slot::Z).collect();
+        column.push(Slot::P);
         Dictionary {
             size,
             entries: UpdatedMatrix::new(size, size + 1, entries),
             value: lcp.q.as_slice().to_vec(),
-            row: (0..size).map(Local::W).collect(),
+            row: (0..size).map(Slot::W).collect(),
             column,
             place_w: (0..size).map(Place::Row).collect(),
             place_z: (0..size).map(Place::Column).collect(),
@@ -85,8 +85,8 @@ impl Dictionary {
             }
             dictionary.turned[i] = mirrored;
             if plain || mirrored {
-                dictionary.row[i] = Local::Z(i);
-                dictionary.column[i] = Local::W(i);
+                dictionary.row[i] = Slot::Z(i);
+                dictionary.column[i] = Slot::W(i);
                 dictionary.place_z[i] = Place::Row(i);
                 dictionary.place_w[i] = Place::Column(i);
             }
@@ -120,14 +120,14 @@ impl Dictionary {
             .iter()
             .enumerate()
             .filter_map(|(column, &local)| match local {
-                Local::W(i) => Some((column, -increment(i))),
+                Slot::W(i) => Some((column, -increment(i))),
                 _ => None,
             })
             .filter(|term| term.1 != 0.0)
             .collect();
         let mut rates = self.entries.combined(&held);
         for (rate, &local) in rates.iter_mut().zip(&self.row) {
-            if let Local::W(i) = local {
+            if let Slot::W(i) = local {
                 *rate += increment(i);
             }
         }
@@ -139,19 +139,19 @@ impl Dictionary {
         self.entries.flushes()
     }
 
-    pub(crate) fn place(&self, variable: Local) -> Place {
+    pub(crate) fn place(&self, variable: Slot) -> Place {
         match variable {
-            Local::W(i) => self.place_w[i],
-            Local::Z(i) => self.place_z[i],
-            Local::P => self.place_p,
+            Slot::W(i) => self.place_w[i],
+            Slot::Z(i) => self.place_z[i],
+            Slot::P => self.place_p,
         }
     }
 
-    fn set_place(&mut self, variable: Local, place: Place) {
+    fn set_place(&mut self, variable: Slot, place: Place) {
         match variable {
-            Local::W(i) => self.place_w[i] = place,
-            Local::Z(i) => self.place_z[i] = place,
-            Local::P => self.place_p = place,
+            Slot::W(i) => self.place_w[i] = place,
+            Slot::Z(i) => self.place_z[i] = place,
+            Slot::P => self.place_p = place,
         }
     }
 
@@ -176,7 +176,7 @@ impl Dictionary {
     }
 
     /// Value of a variable at the vertex.
-    pub(crate) fn value_of(&self, variable: Local) -> f64 {
+    pub(crate) fn value_of(&self, variable: Slot) -> f64 {
         match self.place(variable) {
             Place::Row(r) => self.value[r],
             Place::Column(_) => 0.0,
@@ -185,7 +185,7 @@ impl Dictionary {
 
     /// Rate of a variable along the column `c`, whose entries are `rates`.
     #[inline]
-    pub(crate) fn rate(&self, variable: Local, c: usize, rates: &[f64]) -> f64 {
+    pub(crate) fn rate(&self, variable: Slot, c: usize, rates: &[f64]) -> f64 {
         match self.place(variable) {
             Place::Row(r) => rates[r],
             Place::Column(j) => f64::from(j == c),
@@ -194,18 +194,18 @@ impl Dictionary {
 
     /// Value of the hidden member of the couple of row i; 0 where it has none.
     pub(crate) fn hidden_value(&self, lcp: &MirroredLcp, i: usize) -> f64 {
-        let value = |row| self.value_of(Local::W(row));
-        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| mirror.reflect(i, value, self.value_of(Local::P), 1.0))
+        let value = |row| self.value_of(Slot::W(row));
+        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| mirror.reflect(i, value, self.value_of(Slot::P), 1.0))
     }
 
     /// Rate of the hidden member of the couple of row i along the column `c`; 0 where it has none.
     pub(crate) fn hidden_rate(&self, lcp: &MirroredLcp, i: usize, c: usize, rates: &[f64]) -> f64 {
-        let rate = |row| self.rate(Local::W(row), c, rates);
-        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| mirror.reflect(i, rate, self.rate(Local::P, c, rates), 0.0))
+        let rate = |row| self.rate(Slot::W(row), c, rates);
+        lcp.mirrors[i].as_ref().map_or(0.0, |mirror| mirror.reflect(i, rate, self.rate(Slot::P, c, rates), 0.0))
     }
 
     /// Adds `factor` times the row of `variable` (the unit row if it is nonbasic) to a combination.
-    fn add_row(&self, variable: Local, factor: f64, to: &mut Combination) {
+    fn add_row(&self, variable: Slot, factor: f64, to: &mut Combination) {
         if factor == 0.0 {
             return;
         }
@@ -220,10 +220,10 @@ impl Dictionary {
         let mut row = Combination::default();
         if let Some(mirror) = &lcp.mirrors[i] {
             if let Some(n) = mirror.normal {
-                self.add_row(Local::W(n), 2.0 * mirror.friction * factor, &mut row);
+                self.add_row(Slot::W(n), 2.0 * mirror.friction * factor, &mut row);
             }
-            self.add_row(Local::P, mirror.covering * factor, &mut row);
-            self.add_row(Local::W(i), -factor, &mut row);
+            self.add_row(Slot::P, mirror.covering * factor, &mut row);
+            self.add_row(Slot::W(i), -factor, &mut row);
         }
         row
     }
@@ -314,17 +314,17 @@ impl Dictionary {
             return false;
         }
         // All nonbasic columns of w = M z + d p + q, and q last.
-        let coefficient = |i: usize, variable: Local| match variable {
-            Local::Z(j) => matrix[(i, j)],
-            Local::P => d[i],
-            Local::W(_) => 0.0,
+        let coefficient = |i: usize, variable: Slot| match variable {
+            Slot::Z(j) => matrix[(i, j)],
+            Slot::P => d[i],
+            Slot::W(_) => 0.0,
         };
-        let basic: Vec<Local> = columns.iter().map(|&j| Local::Z(j)).chain(with_p.then_some(Local::P)).collect();
+        let basic: Vec<Slot> = columns.iter().map(|&j| Slot::Z(j)).chain(with_p.then_some(Slot::P)).collect();
         let system = DMatrix::from_fn(s, s, |a, b| coefficient(rows[a], basic[b]));
         let width = self.size + 1;
         // 0 = system x_S + (nonbasic) x_N + q − w_A
         let right = DMatrix::from_fn(s, width, |a, c| match self.column[c] {
-            Local::W(i) => f64::from(i == rows[a]),
+            Slot::W(i) => f64::from(i == rows[a]),
             other => -coefficient(rows[a], other),
         });
         let constant = DVector::from_fn(s, |a, _| -q[rows[a]]);

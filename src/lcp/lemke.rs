@@ -10,25 +10,25 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::dictionary::{Dictionary, Local, Place};
+use super::dictionary::{Dictionary, Place, Slot};
 use super::driver::{Engine, Step};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Outcome, Point, RayDirection};
 use super::parametric::Parametric;
 use super::ratio_test::{TieRule, choose};
-use crate::lcp::pivot_state::{Candidate, NOISE, Sizes, Stand};
-use crate::lcp::pivot::{Pivot, PivotLog};
 use super::variable::Variable;
+use crate::lcp::pivot::{Pivot, PivotLog};
+use crate::lcp::pivot_state::{Candidate, NOISE, PivotState, Sizes};
 
 /// The engine; see the module.
 #[derive(Clone, Debug)]
 pub struct SchemeEngine {
-    stand: Stand,
+    stand: PivotState,
     rule: TieRule,
     random: ChaCha8Rng,
     pivots: PivotLog,
     /// What enters next; `None` before the entry of p.
-    entering: Option<Local>,
+    entering: Option<Slot>,
     ended: Option<Outcome>,
     /// Row of every basic variable in the whole tableau (see [`TieRule::FirstRow`]).
     table_row: HashMap<Variable, usize>,
@@ -54,9 +54,9 @@ impl SchemeEngine {
             pivots: PivotLog::default(),
             entering: None,
             ended: None,
-            table_row: (0..lcp.whole_size).map(|row| (Variable::W(row), row)).collect(),
+            table_row: (0..lcp.full_size).map(|row| (Variable::W(row), row)).collect(),
             artefact_point: None,
-            stand: Stand::new(Arc::clone(&lcp), Dictionary::new(&lcp), sizes),
+            stand: PivotState::new(Arc::clone(&lcp), Dictionary::new(&lcp), sizes),
         }
     }
 
@@ -104,14 +104,14 @@ impl SchemeEngine {
     fn start(&mut self) -> Step<f64> {
         let lcp = Arc::clone(&self.stand.lcp);
         // q and d of all rows, mirrors included. q itself is data, a mirror's is a sum that carries its rounding.
-        let mut rows: Vec<(Local, bool, f64, f64)> =
-            (0..lcp.size()).map(|i| (Local::W(i), false, lcp.q[i], lcp.covering[i])).collect();
+        let mut rows: Vec<(Slot, bool, f64, f64)> =
+            (0..lcp.size()).map(|i| (Slot::W(i), false, lcp.q[i], lcp.covering[i])).collect();
         for (i, mirror) in lcp.mirrors.iter().enumerate() {
             if let Some(mirror) = mirror {
                 let (q, d) = lcp.mirror_start(i, mirror);
                 let normal = mirror.normal.map_or(0.0, |n| 2.0 * mirror.friction * lcp.q[n].abs());
                 let noise = NOISE * (normal + mirror.constant + lcp.q[i].abs());
-                rows.push((Local::W(i), true, if q.abs() <= noise { 0.0 } else { q }, d));
+                rows.push((Slot::W(i), true, if q.abs() <= noise { 0.0 } else { q }, d));
             }
         }
         let negative: Vec<_> = rows.iter().filter(|row| row.2 < 0.0).collect();
@@ -129,7 +129,7 @@ impl SchemeEngine {
                 // The row that needs the most is one of them, even where the noise of its numbers rounds to 0.
                 -row.2 / row.3 == needed || row.2 + row.3 * needed <= NOISE * (row.2.abs() + row.3 * needed)
             })
-            .map(|row| Candidate { variable: row.0, hidden: row.1, value: -row.2, fall: row.3, noise: 0.0 })
+            .map(|row| Candidate { variable: row.0, mirror_row: row.1, value: -row.2, fall: row.3, noise: 0.0 })
             .collect();
         let c = lcp.size();
         self.stand.fetch(c);
@@ -156,8 +156,8 @@ impl SchemeEngine {
         let mut ties: Vec<Variable> = tied.iter().map(|tie| self.stand.name(tie)).collect();
         ties.sort_unstable();
         let p_before = if self.pivots.is_empty() { step } else { self.stand.p() };
-        let slipping = match (leaving.variable, leaving.hidden) {
-            (Local::W(i), true) => match self.stand.dictionary.place(Local::W(i)) {
+        let slipping = match (leaving.variable, leaving.mirror_row) {
+            (Slot::W(i), true) => match self.stand.dictionary.place(Slot::W(i)) {
                 Place::Column(j) if j != c => Some(i),
                 _ => None,
             },
@@ -201,10 +201,10 @@ impl SchemeEngine {
             Variable::Z(k) => point.z[k] = step,
             Variable::P => point.p = step,
         }
-        let n = stand.lcp.whole_size;
+        let n = stand.lcp.full_size;
         let mut z = vec![0.0; n];
-        let other = stand.variable(Local::Z(i), true);
-        for variable in [stand.variable(Local::Z(i), false), other] {
+        let other = stand.variable(Slot::Z(i), true);
+        for variable in [stand.variable(Slot::Z(i), false), other] {
             if let Variable::Z(k) = variable {
                 z[k] = 1.0;
             }
@@ -227,7 +227,7 @@ impl Engine for SchemeEngine {
         if let Some(cycle) = self.pivots.cycle(self.rule.returns_allowed()) {
             return self.end(self.at_limit_of_p().unwrap_or(Outcome::Cycle(cycle)));
         }
-        if !self.stand.keep_true() {
+        if !self.stand.check_drift() {
             return self.broken("the equations of the working scheme are singular");
         }
         let Some(c) = self.stand.column_of(entering) else {
@@ -235,7 +235,7 @@ impl Engine for SchemeEngine {
         };
         self.stand.fetch(c);
         let (mut tied, mut step) = self.stand.blocking(c, true);
-        if self.stand.is_suspicious(c, &tied) && self.stand.confirm(c, &tied) {
+        if self.stand.is_suspicious(c, &tied) && self.stand.refine_if_doubtful(c, &tied) {
             (tied, step) = self.stand.blocking(c, true);
         }
         if tied.is_empty() {
@@ -243,7 +243,9 @@ impl Engine for SchemeEngine {
         }
         let mut chosen = self.choose(c, &tied, false);
         // A pivot on a small rate needs a row of the dictionary that is right beside it.
-        if self.stand.is_suspicious(c, &tied[chosen..=chosen]) && self.stand.confirm(c, &tied[chosen..=chosen]) {
+        if self.stand.is_suspicious(c, &tied[chosen..=chosen])
+            && self.stand.refine_if_doubtful(c, &tied[chosen..=chosen])
+        {
             (tied, step) = self.stand.blocking(c, true);
             if tied.is_empty() {
                 return self.nothing_blocks(c);
@@ -269,8 +271,8 @@ mod tests {
 
     use super::*;
     use crate::lcp::driver::run;
-    use crate::lcp::problem::{Lcp, Scale};
     use crate::lcp::exact::tableau::Tableau;
+    use crate::lcp::problem::{Lcp, Scale};
 
     /// w = q + z: a load of the smallest number there is has an answer, z = −q; p must come
     /// in over some row.

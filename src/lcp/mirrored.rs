@@ -58,7 +58,7 @@ pub struct MirroredLcp {
     /// Against what rounding noise is judged, over the primary rows and columns.
     pub scale: Scale,
     /// Number of rows n of the whole LCP.
-    pub whole_size: usize,
+    pub full_size: usize,
 }
 
 impl MirroredLcp {
@@ -77,7 +77,7 @@ impl MirroredLcp {
             whole: (0..n).collect(),
             mirrors: vec![None; n],
             scale: lcp.scale.clone(),
-            whole_size: n,
+            full_size: n,
         }
     }
 
@@ -137,7 +137,7 @@ impl MirroredLcp {
 
     /// Primary row of each row of the whole LCP, and whether it is the mirror of that.
     pub(crate) fn primary_rows(&self) -> Vec<(usize, bool)> {
-        let mut rows = vec![(0, false); self.whole_size];
+        let mut rows = vec![(0, false); self.full_size];
         for (i, mirror) in self.mirrors.iter().enumerate() {
             rows[self.whole[i]] = (i, false);
             if let Some(mirror) = mirror {

@@ -19,10 +19,10 @@
 //!
 //! [`tableau`] is generic over its numbers and obviously right; [`lemke`] is the fast engine on [`mirrored`] rows.
 
+pub mod basis_solution;
 mod dense;
 mod dictionary;
 pub mod doubled;
-pub mod basis_solution;
 pub mod driver;
 pub mod exact;
 pub mod lemke;

@@ -1,7 +1,7 @@
 //! How a run of Lemke's algorithm ends.
 
-use crate::lcp::pivot::{Cycle, PivotLog};
 use super::variable::Variable;
+use crate::lcp::pivot::{Cycle, PivotLog};
 
 /// Values of all variables of the LCP at one vertex.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,7 +8,7 @@
 mod friction;
 mod path;
 
-pub use path::{End, Knot, Path, Reach};
+pub use path::{Breakpoint, End, Path, Reach};
 
 use std::collections::{BTreeSet, HashSet};
 use std::ops::ControlFlow;
@@ -17,13 +17,13 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::dictionary::{Dictionary, Local, Place};
+use super::dictionary::{Dictionary, Place, Slot};
 use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
 use super::ratio_test::{TieRule, choose};
-use crate::lcp::pivot_state::{Candidate, NOISE, SUSPICIOUS, Sizes, Stand};
 use super::variable::Variable;
 use crate::lcp::basis_solution::{Basis, direction, vertex};
+use crate::lcp::pivot_state::{Candidate, NOISE, PivotState, SUSPICIOUS, Sizes};
 
 /// A load increment counts as a multiple of another up to this, relative to the load.
 const MULTIPLE: f64 = 16.0 * f64::EPSILON;
@@ -35,12 +35,12 @@ const BLURRED: f64 = 3e-9;
 /// The engine; see the module. It keeps its dictionary from one path to the next.
 #[derive(Clone, Debug)]
 pub struct Parametric {
-    stand: Stand,
+    stand: PivotState,
     rule: TieRule,
     /// Rows of the whole LCP whose z is basic.
     scheme: BTreeSet<usize>,
     /// What grows; p (that is t) at the start.
-    driver: Local,
+    driver: Slot,
 }
 
 /// Natural sizes of a path: the largest of all rows, because q may be zero and everything degenerate.
@@ -93,16 +93,16 @@ impl Parametric {
         let dictionary = Dictionary::at_basis(&lcp, basis)?;
         let sizes = sizes(&lcp);
         Some(Parametric {
-            stand: Stand::new(lcp, dictionary, sizes),
+            stand: PivotState::new(lcp, dictionary, sizes),
             rule: TieRule::Lexicographic(order),
             scheme: basis.z.iter().copied().collect(),
-            driver: Local::P,
+            driver: Slot::P,
         })
     }
 
     /// Stands where a run of Lemke's algorithm ended; `None` while p is basic.
-    pub(crate) fn standing(stand: Stand, order: Vec<usize>) -> Option<Parametric> {
-        stand.column_of(Local::P)?;
+    pub(crate) fn standing(stand: PivotState, order: Vec<usize>) -> Option<Parametric> {
+        stand.column_of(Slot::P)?;
         let scheme = stand
             .dictionary
             .row
@@ -112,14 +112,14 @@ impl Parametric {
                 _ => None,
             })
             .collect();
-        Some(Parametric { stand, rule: TieRule::Lexicographic(order), scheme, driver: Local::P })
+        Some(Parametric { stand, rule: TieRule::Lexicographic(order), scheme, driver: Slot::P })
     }
 
     /// Takes the next load increment after a path that ended at its target. q and the constants of the mirrors are those
     /// of that target, M and the mirrors' friction are the same; only the increment (d, e) is new. `false` where the
     /// dictionary cannot be carried over.
     pub fn reload(&mut self, lcp: Arc<MirroredLcp>) -> bool {
-        if self.stand.column_of(Local::P).is_none() {
+        if self.stand.column_of(Slot::P).is_none() {
             return false;
         }
         match multiple(&lcp, &self.stand.lcp) {
@@ -129,7 +129,7 @@ impl Parametric {
         let sizes = sizes(&lcp);
         self.stand.reload(lcp, sizes);
         self.stand.fresh = false;
-        self.driver = Local::P;
+        self.driver = Slot::P;
         true
     }
 
@@ -207,7 +207,7 @@ impl Parametric {
     /// Makes the pivot; says what left.
     fn exchange(&mut self, leaving: Candidate, c: usize, step: f64, tied: &[Candidate]) -> Variable {
         let name = self.stand.name(&leaving);
-        self.driver = self.stand.exchange(&leaving, c, step, tied).unwrap_or(Local::P);
+        self.driver = self.stand.exchange(&leaving, c, step, tied).unwrap_or(Slot::P);
         match name {
             Variable::W(k) => {
                 self.scheme.insert(k);
@@ -222,12 +222,12 @@ impl Parametric {
 
     /// t leaves: the path ends at the target, the dictionary stands on its answer and p is nonbasic again.
     fn settle(&mut self, c: usize, step: f64) {
-        if let Place::Row(r) = self.stand.dictionary.place(Local::P) {
+        if let Place::Row(r) = self.stand.dictionary.place(Slot::P) {
             self.stand.pivot(r, c, step);
         } else {
             self.stand.dictionary.advance(&self.stand.column, step);
         }
-        self.driver = Local::P;
+        self.driver = Slot::P;
         self.stand.fresh = false;
     }
 
@@ -235,11 +235,11 @@ impl Parametric {
     /// on its last digits.
     fn faint_t_rate(&self, c: usize) -> Option<(f64, f64)> {
         let stand = &self.stand;
-        if self.driver == Local::P {
+        if self.driver == Slot::P {
             return None;
         }
-        let rate = stand.dictionary.rate(Local::P, c, &stand.column);
-        let size = stand.rate_size(Local::P, stand.rate_total(c), 0.0);
+        let rate = stand.dictionary.rate(Slot::P, c, &stand.column);
+        let size = stand.rate_size(Slot::P, stand.rate_total(c), 0.0);
         (rate.abs() <= SUSPICIOUS * size).then_some((rate, size))
     }
 
@@ -248,7 +248,7 @@ impl Parametric {
     fn t_rate(&self, c: usize, recorded: bool) -> f64 {
         let stand = &self.stand;
         let Some((faint, size)) = self.faint_t_rate(c) else {
-            return stand.dictionary.rate(Local::P, c, &stand.column);
+            return stand.dictionary.rate(Slot::P, c, &stand.column);
         };
         let entering = stand.variable(self.driver, false);
         let rate = match entering {
@@ -287,8 +287,12 @@ impl Parametric {
     /// of the target.
     pub fn follow(&mut self, reach: Reach, observer: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Path {
         let point = self.point_at(0.0).unwrap_or_else(|| self.stand.point());
-        let mut knots =
-            Some(vec![Knot { t: 0.0, point, leaving: Vec::new(), scheme: self.scheme.iter().copied().collect() }]);
+        let mut knots = Some(vec![Breakpoint {
+            t: 0.0,
+            point,
+            leaving: Vec::new(),
+            scheme: self.scheme.iter().copied().collect(),
+        }]);
         let (end, pivots) = self.run(reach, &mut knots, observer);
         Path { knots: knots.unwrap_or_default(), end, pivots }
     }
@@ -301,7 +305,7 @@ impl Parametric {
     fn run(
         &mut self,
         reach: Reach,
-        knots: &mut Option<Vec<Knot>>,
+        knots: &mut Option<Vec<Breakpoint>>,
         observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> (End, usize) {
         let mut met: HashSet<(Vec<usize>, Variable)> = HashSet::new();
@@ -314,7 +318,7 @@ impl Parametric {
                 ControlFlow::Break(end) => break end,
                 ControlFlow::Continue(()) => pivots += 1,
             }
-            if observer(self.stand.dictionary.value_of(Local::P)).is_break() {
+            if observer(self.stand.dictionary.value_of(Slot::P)).is_break() {
                 break End::Interrupted;
             }
         };
@@ -332,12 +336,12 @@ impl Parametric {
     fn advance(
         &mut self,
         reach: Reach,
-        knots: &mut Option<Vec<Knot>>,
+        knots: &mut Option<Vec<Breakpoint>>,
         met: &mut HashSet<(Vec<usize>, Variable)>,
     ) -> ControlFlow<End> {
         let lost = || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
         let singular = "the equations of the working scheme are singular";
-        if !self.stand.keep_true() {
+        if !self.stand.check_drift() {
             return ControlFlow::Break(End::Breakdown(singular.to_owned()));
         }
         let Some(c) = self.fetch() else {
@@ -348,13 +352,13 @@ impl Parametric {
         }
         let (mut tied, mut step) = self.blocking(c);
         // Where the target comes before any row that blocks, no rate near the noise decides anything.
-        let raw = self.stand.dictionary.rate(Local::P, c, &self.stand.column);
+        let raw = self.stand.dictionary.rate(Slot::P, c, &self.stand.column);
         let ends_here = reach.target.is_finite() && raw > 0.0 && (reach.target - self.stand.p()).max(0.0) / raw <= step;
-        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.confirm(c, &tied) {
+        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.refine_if_doubtful(c, &tied) {
             (tied, step) = self.blocking(c);
         }
         let t_rate = self.t_rate(c, knots.is_some());
-        let t = self.stand.dictionary.value_of(Local::P);
+        let t = self.stand.dictionary.value_of(Slot::P);
         if t_rate < 0.0 && step > 0.0 {
             if !reach.through {
                 return ControlFlow::Break(End::Turning);
@@ -386,7 +390,7 @@ impl Parametric {
             met.clear();
             if let Some(knots) = knots {
                 let point = vertex(&self.stand.lcp, &self.knot_basis(row)).unwrap_or_else(|| self.stand.point());
-                knots.push(Knot { t: point.p, point, leaving: vec![name], scheme: scheme(self) });
+                knots.push(Breakpoint { t: point.p, point, leaving: vec![name], scheme: scheme(self) });
             }
         } else {
             let scheme = scheme(self);
@@ -402,13 +406,13 @@ impl Parametric {
     }
 
     /// Ends at t = `end` after the last step.
-    fn finish(&mut self, c: usize, step: f64, end: f64, knots: &mut Option<Vec<Knot>>) {
+    fn finish(&mut self, c: usize, step: f64, end: f64, knots: &mut Option<Vec<Breakpoint>>) {
         self.settle(c, step);
         let Some(knots) = knots else {
             return;
         };
         let mut point = self.point_at(end).unwrap_or_else(|| self.stand.point());
         point.p = end;
-        knots.push(Knot { t: end, point, leaving: Vec::new(), scheme: self.scheme.iter().copied().collect() });
+        knots.push(Breakpoint { t: end, point, leaving: Vec::new(), scheme: self.scheme.iter().copied().collect() });
     }
 }

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::lcp::variable::Variable;
 use crate::lcp::basis_solution::Basis;
+use crate::lcp::variable::Variable;
 
 /// Pivots of a run that are recorded one by one; the later ones are only counted.
 pub const RECORDED: usize = 20_000;

@@ -6,7 +6,7 @@ mod inverse_row;
 
 use std::sync::Arc;
 
-use crate::lcp::dictionary::{Dictionary, Local, Place};
+use crate::lcp::dictionary::{Dictionary, Place, Slot};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Point, RayDirection};
 pub(crate) use crate::lcp::problem::NOISE;
@@ -18,8 +18,8 @@ pub(crate) const SUSPICIOUS: f64 = 1e-7;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Candidate {
     /// The variable whose row it is; for `hidden` the couple's visible one.
-    pub(crate) variable: Local,
-    pub(crate) hidden: bool,
+    pub(crate) variable: Slot,
+    pub(crate) mirror_row: bool,
     pub(crate) value: f64,
     /// Rate of decrease, > 0.
     pub(crate) fall: f64,
@@ -42,11 +42,11 @@ pub(crate) struct Sizes {
 
 impl Sizes {
     /// Natural size of the response of a variable where Σ column_k |Δz_k| = 1.
-    fn response(&self, local: Local, lcp: &MirroredLcp) -> f64 {
+    fn response(&self, local: Slot, lcp: &MirroredLcp) -> f64 {
         match local {
-            Local::W(i) => lcp.scale.row[i],
-            Local::Z(k) => 1.0 / lcp.scale.column[k],
-            Local::P => self.p_per_force,
+            Slot::W(i) => lcp.scale.row[i],
+            Slot::Z(k) => 1.0 / lcp.scale.column[k],
+            Slot::P => self.p_per_force,
         }
     }
 }
@@ -64,7 +64,7 @@ struct RowSizes {
 
 /// See the module.
 #[derive(Clone, Debug)]
-pub(crate) struct Stand {
+pub(crate) struct PivotState {
     pub(crate) lcp: Arc<MirroredLcp>,
     pub(crate) dictionary: Dictionary,
     pub(crate) sizes: Sizes,
@@ -85,9 +85,9 @@ pub(crate) struct Stand {
     compared: usize,
 }
 
-impl Stand {
-    pub(crate) fn new(lcp: Arc<MirroredLcp>, dictionary: Dictionary, sizes: Sizes) -> Stand {
-        let mut stand = Stand {
+impl PivotState {
+    pub(crate) fn new(lcp: Arc<MirroredLcp>, dictionary: Dictionary, sizes: Sizes) -> PivotState {
+        let mut stand = PivotState {
             primary: lcp.primary_rows(),
             lcp,
             dictionary,
@@ -126,9 +126,9 @@ impl Stand {
         let sizes = &mut self.row_sizes;
         sizes.response[r] = self.sizes.response(local, &self.lcp);
         (sizes.covering[r], sizes.displacement[r]) = match local {
-            Local::W(i) => (self.sizes.d[i], 0.0),
-            Local::Z(k) => (0.0, scale.column[k]),
-            Local::P => (0.0, 0.0),
+            Slot::W(i) => (self.sizes.d[i], 0.0),
+            Slot::Z(k) => (0.0, scale.column[k]),
+            Slot::P => (0.0, 0.0),
         };
     }
 
@@ -139,25 +139,25 @@ impl Stand {
     }
 
     /// The variable of the whole LCP.
-    pub(crate) fn variable(&self, local: Local, hidden: bool) -> Variable {
+    pub(crate) fn variable(&self, local: Slot, mirror_row: bool) -> Variable {
         let whole = |i: usize| match &self.lcp.mirrors[i] {
-            Some(mirror) if self.dictionary.turned[i] != hidden => mirror.whole,
+            Some(mirror) if self.dictionary.turned[i] != mirror_row => mirror.whole,
             _ => self.lcp.whole[i],
         };
         match local {
-            Local::W(i) => Variable::W(whole(i)),
-            Local::Z(i) => Variable::Z(whole(i)),
-            Local::P => Variable::P,
+            Slot::W(i) => Variable::W(whole(i)),
+            Slot::Z(i) => Variable::Z(whole(i)),
+            Slot::P => Variable::P,
         }
     }
 
     /// The name of a candidate.
     pub(crate) fn name(&self, candidate: &Candidate) -> Variable {
-        self.variable(candidate.variable, candidate.hidden)
+        self.variable(candidate.variable, candidate.mirror_row)
     }
 
     /// Column of a nonbasic variable.
-    pub(crate) fn column_of(&self, local: Local) -> Option<usize> {
+    pub(crate) fn column_of(&self, local: Slot) -> Option<usize> {
         match self.dictionary.place(local) {
             Place::Column(c) => Some(c),
             Place::Row(_) => None,
@@ -177,7 +177,7 @@ impl Stand {
     }
 
     pub(crate) fn p(&self) -> f64 {
-        self.dictionary.value_of(Local::P)
+        self.dictionary.value_of(Slot::P)
     }
 
     /// Σ column_k |z_k| over the basic z, with `values` per row.
@@ -189,35 +189,35 @@ impl Stand {
     /// Σ column_k |Δz_k| along column c, which was fetched last, the entering variable included.
     pub(crate) fn rate_total(&self, c: usize) -> f64 {
         let entering = match self.dictionary.column[c] {
-            Local::Z(k) => self.lcp.scale.column[k],
+            Slot::Z(k) => self.lcp.scale.column[k],
             _ => 0.0,
         };
         self.column_size + entering
     }
 
     /// Natural size of the rate of a row, where Σ column_k |Δz_k| = `size` and Δp = `p_rate`.
-    pub(crate) fn rate_size(&self, local: Local, size: f64, p_rate: f64) -> f64 {
+    pub(crate) fn rate_size(&self, local: Slot, size: f64, p_rate: f64) -> f64 {
         let response = size * self.sizes.response(local, &self.lcp);
         match local {
-            Local::W(i) => response + self.sizes.d[i] * p_rate.abs(),
-            Local::Z(_) | Local::P => response,
+            Slot::W(i) => response + self.sizes.d[i] * p_rate.abs(),
+            Slot::Z(_) | Slot::P => response,
         }
     }
 
     /// |Δp| along column c, against which the noise of the rows is judged. Where Δp is noise itself, no part of what it
     /// gives to a row counts: a row that nothing but p moves would be told to fall otherwise.
     fn p_rate_size(&self, c: usize) -> f64 {
-        let rate = self.dictionary.rate(Local::P, c, &self.column).abs();
-        if rate <= NOISE * self.rate_size(Local::P, self.rate_total(c), 0.0) { rate / NOISE } else { rate }
+        let rate = self.dictionary.rate(Slot::P, c, &self.column).abs();
+        if rate <= NOISE * self.rate_size(Slot::P, self.rate_total(c), 0.0) { rate / NOISE } else { rate }
     }
 
     /// Natural size of the value of a row, where Σ column_k |z_k| = `size`.
-    fn value_size(&self, local: Local, size: f64, p: f64) -> f64 {
+    fn value_size(&self, local: Slot, size: f64, p: f64) -> f64 {
         let response = size * self.sizes.response(local, &self.lcp);
         match local {
-            Local::W(i) => response + self.sizes.q[i] + self.sizes.d[i] * p.abs(),
-            Local::Z(_) => response,
-            Local::P => self.sizes.p,
+            Slot::W(i) => response + self.sizes.q[i] + self.sizes.d[i] * p.abs(),
+            Slot::Z(_) => response,
+            Slot::P => self.sizes.p,
         }
     }
 
@@ -239,7 +239,7 @@ impl Stand {
             let (variable, value, fall) = (d.row[r], d.value[r].max(0.0), -self.column[r]);
             let noise = NOISE * self.value_size(variable, value_size, p);
             if value - fall * smallest <= noise {
-                rows.push(Candidate { variable, hidden: false, value, fall, noise });
+                rows.push(Candidate { variable, mirror_row: false, value, fall, noise });
             }
         }
         rows.append(&mut tied);
@@ -275,7 +275,7 @@ impl Stand {
                 Place::Row(_) => true,
                 Place::Column(j) => j == c,
             };
-            let visible = is_visible(d.place(Local::W(i)));
+            let visible = is_visible(d.place(Slot::W(i)));
             if !visible && (mirror.covering > 0.0 || !watch_slipping) {
                 continue;
             }
@@ -284,19 +284,19 @@ impl Stand {
                 continue;
             }
             // An open pair's x_n is an exact zero and no source of noise.
-            let normal = mirror.normal.filter(|&n| is_visible(d.place(Local::W(n))));
-            let sum = |of: &dyn Fn(Local) -> f64, p: f64| {
-                let own = if visible { of(Local::W(i)) } else { 0.0 };
-                let normal = normal.map_or(0.0, |n| of(Local::W(n)));
+            let normal = mirror.normal.filter(|&n| is_visible(d.place(Slot::W(n))));
+            let sum = |of: &dyn Fn(Slot) -> f64, p: f64| {
+                let own = if visible { of(Slot::W(i)) } else { 0.0 };
+                let normal = normal.map_or(0.0, |n| of(Slot::W(n)));
                 own + 2.0 * mirror.friction * normal + (mirror.covering * p).abs()
             };
             let rate_size = sum(&|local| self.rate_size(local, size, p_rate), p_rate);
             if rate < -NOISE * rate_size {
-                let natural = |local: Local| self.value_size(local, value_size, p);
+                let natural = |local: Slot| self.value_size(local, value_size, p);
                 let noise = NOISE * (sum(&natural, p) + mirror.constant.abs());
                 falling.push(Candidate {
-                    variable: Local::W(i),
-                    hidden: true,
+                    variable: Slot::W(i),
+                    mirror_row: true,
                     value: d.hidden_value(&self.lcp, i).max(0.0),
                     fall: -rate,
                     noise,
@@ -308,16 +308,16 @@ impl Stand {
 
     /// Exchanges the variable of column c with that of the leaving row; the entering variable takes the value `step`.
     /// Returns what grows next: the complement of what left (`None` after p).
-    pub(crate) fn exchange(&mut self, leaving: &Candidate, c: usize, step: f64, tied: &[Candidate]) -> Option<Local> {
-        match (leaving.variable, leaving.hidden, self.dictionary.place(leaving.variable)) {
-            (Local::W(i), true, Place::Row(r)) => {
+    pub(crate) fn exchange(&mut self, leaving: &Candidate, c: usize, step: f64, tied: &[Candidate]) -> Option<Slot> {
+        match (leaving.variable, leaving.mirror_row, self.dictionary.place(leaving.variable)) {
+            (Slot::W(i), true, Place::Row(r)) => {
                 // Turning changes row r and the column of z_i, which is not the entering one.
                 let rate = self.dictionary.hidden_rate(&self.lcp, i, c, &self.column);
                 self.dictionary.turn(&self.lcp, i);
                 self.column[r] = rate;
                 self.pivot(r, c, step);
             }
-            (Local::W(i), true, Place::Column(_)) => {
+            (Slot::W(i), true, Place::Column(_)) => {
                 self.dictionary.pivot_hidden(&self.lcp, i, c, &self.column, step);
             }
             (_, _, Place::Row(r)) => self.pivot(r, c, step),
@@ -326,7 +326,7 @@ impl Stand {
         let d = &mut self.dictionary;
         // What was tied with the leaving row is zero now, not noise.
         for tie in tied {
-            if !tie.hidden
+            if !tie.mirror_row
                 && tie.variable != leaving.variable
                 && let Place::Row(r) = d.place(tie.variable)
             {
@@ -335,16 +335,16 @@ impl Stand {
         }
         self.fresh = false;
         match leaving.variable {
-            Local::W(i) => Some(Local::Z(i)),
-            Local::Z(i) => Some(Local::W(i)),
-            Local::P => None,
+            Slot::W(i) => Some(Slot::Z(i)),
+            Slot::Z(i) => Some(Slot::W(i)),
+            Slot::P => None,
         }
     }
 
     /// All variables at the vertex, as the dictionary holds them.
     pub(crate) fn point(&self) -> Point {
         let (d, lcp) = (&self.dictionary, &self.lcp);
-        let n = lcp.whole_size;
+        let n = lcp.full_size;
         let mut point = Point { z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
         for (&local, &value) in d.row.iter().zip(&d.value) {
             match self.variable(local, false) {
@@ -355,7 +355,7 @@ impl Stand {
         }
         for i in 0..lcp.size() {
             if lcp.mirrors[i].is_some()
-                && let Variable::W(k) = self.variable(Local::W(i), true)
+                && let Variable::W(k) = self.variable(Slot::W(i), true)
             {
                 point.w[k] = d.hidden_value(lcp, i);
             }
@@ -367,7 +367,7 @@ impl Stand {
     pub(crate) fn ray(&self, c: usize) -> RayDirection {
         let (d, lcp) = (&self.dictionary, &self.lcp);
         let entering = self.variable(d.column[c], false);
-        let n = lcp.whole_size;
+        let n = lcp.full_size;
         let mut ray = RayDirection { entering, z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
         let size = self.rate_total(c);
         let p_rate = self.p_rate_size(c);
@@ -386,9 +386,9 @@ impl Stand {
         for i in 0..lcp.size() {
             if lcp.mirrors[i].is_some() {
                 put(
-                    self.variable(Local::W(i), true),
+                    self.variable(Slot::W(i), true),
                     d.hidden_rate(lcp, i, c, &self.column),
-                    4.0 * NOISE * self.rate_size(Local::W(i), size, p_rate),
+                    4.0 * NOISE * self.rate_size(Slot::W(i), size, p_rate),
                 );
             }
         }

@@ -14,14 +14,14 @@ use super::rate::{number_rates, place_beside_laws, rate, rate_lcp};
 use super::start::{PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
-use crate::contact::lcp::{ContactLcp, Couple, contact_lcp};
+use crate::contact::lcp::{ContactLcp, RowKind, contact_lcp};
 use crate::contact::load_path::order;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::explain::words::short;
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
-use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::jet::Dependence;
 use crate::model::pair::Law;
 use crate::model::parameter::{Number, ParameterValues};
@@ -255,7 +255,7 @@ impl Follower<'_> {
         for (row, meaning) in place.contact.rows.iter().enumerate() {
             let is_active = basis.active.binary_search(&row).is_ok();
             // In an open pair without cohesion both reserves stay zero and the slip is free in sign.
-            let free = meaning.couple != Couple::Normal
+            let free = meaning.couple != RowKind::Normal
                 && place.numbers.cohesion[meaning.pair] == 0.0
                 && place.contact.normal_row[meaning.pair]
                     .is_some_and(|normal| basis.active.binary_search(&normal).is_ok() != place.contact.swapped[normal]);

@@ -1,14 +1,14 @@
 //! Rates of the answer within its scheme: what one more unit of a parameter does, from one extra solve.
 
-use crate::contact::lcp::{ContactLcp, load_with_gaps};
 use crate::contact::force_form::constants;
+use crate::contact::full_lcp::fixed_bound;
+use crate::contact::lcp::{ContactLcp, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::fixed_bound;
+use crate::lcp::basis_solution::{Basis, direction};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::variable::Variable;
-use crate::lcp::basis_solution::{Basis, direction};
 use crate::model::pair::Law;
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::scenario::Scenario;

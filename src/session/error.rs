@@ -8,11 +8,11 @@ use thiserror::Error;
 use crate::model::problem::Problems;
 use crate::solve::PrepareError;
 
+use super::worker::WorkerError;
+use crate::session::commands::save::SaveError;
 use crate::session::language::command::GrammarError;
 use crate::session::language::expect::{ExpectationSyntax, Unmet};
-use crate::session::commands::save::SaveError;
 use crate::session::language::setting::SetError;
-use super::worker::WorkerError;
 
 /// A command that failed; the session is as it was.
 #[derive(Debug, Error)]

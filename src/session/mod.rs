@@ -35,15 +35,15 @@ use crate::text::printable;
 use crate::watch::Watch;
 
 pub use commands::dispatch::write_scenarios;
+pub use commands::side::{AllAnswers, OneAnswer};
 pub use error::CommandError;
 pub use output::{Format, Output};
-pub use commands::side::{AllAnswers, OneAnswer};
 
-use journal::{Journal, LeftOver};
 use commands::record::Recorder;
 use commands::{combinations, script};
-use language::{command, setting, tokens};
+use journal::{Journal, LeftOver};
 use language::setting::Setting;
+use language::{command, setting, tokens};
 
 /// What comes after a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

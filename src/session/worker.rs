@@ -28,12 +28,12 @@ pub enum WorkerError {
 
 /// What the computation sees of the one who waits for it.
 #[derive(Default)]
-struct Desk {
+struct WatchAdapter {
     stop: AtomicBool,
     progress: Mutex<Option<(String, f64)>>,
 }
 
-impl Watch for Desk {
+impl Watch for WatchAdapter {
     fn progress(&self, what: &str, done: f64) {
         let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         *progress = Some((what.to_owned(), done));
@@ -70,7 +70,7 @@ pub fn run_patiently<T: Send + 'static>(
     if watch.stop() {
         return Err(WorkerError::Interrupted);
     }
-    let desk = Arc::new(Desk::default());
+    let desk = Arc::new(WatchAdapter::default());
     let (sender, receiver) = mpsc::channel();
     let theirs = Arc::clone(&desk);
     let spawned = std::thread::Builder::new()

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::judge::EXACT_PAIRS;
+use super::engines::EXACT_PAIRS;
 use super::ladder::{Deadline, EXACT_BUDGET};
 use super::numbers::{contact_numbers, factors};
 use super::plain_answers::{Effort, PlainCheck, check_plain_exactly, search_plain_answers};
@@ -14,11 +14,11 @@ use crate::answer::check_plain::{ROUNDING, check_plain};
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{Answer, OutcomeKind, PairDirection, PlainSolution, State};
 use crate::contact;
-use crate::contact::lcp::{Couple, contact_lcp};
+use crate::contact::lcp::{RowKind, contact_lcp};
+use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::critical::{CriticalFriction, critical_friction};
 use crate::contact::schemes::enumerate::{EnumeratedAnswer, enumerate};
 use crate::contact::schemes::exact_check::{ExactCheck, Finding, exact_check};
-use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::{ContactPair, ContactSystem};
 use nalgebra::DVector;
@@ -226,11 +226,11 @@ impl Prepared {
                 })
             };
             *value = match row.couple {
-                Couple::Normal if scheme.is_some_and(|scheme| !scheme.open) => 0.0,
-                Couple::Normal => candidate.state.z[row.pair].max(0.0),
-                Couple::Plus if free(true) => slip.max(0.0),
-                Couple::Minus if free(false) => (-slip).max(0.0),
-                Couple::Plus | Couple::Minus => 0.0,
+                RowKind::Normal if scheme.is_some_and(|scheme| !scheme.open) => 0.0,
+                RowKind::Normal => candidate.state.z[row.pair].max(0.0),
+                RowKind::Plus if free(true) => slip.max(0.0),
+                RowKind::Minus if free(false) => (-slip).max(0.0),
+                RowKind::Plus | RowKind::Minus => 0.0,
             } / contact.length_unit;
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };
@@ -421,9 +421,9 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
         let meaning = contact.rows[row];
         let scheme = &mut schemes[meaning.pair];
         match meaning.couple {
-            Couple::Normal => scheme.open = true,
-            Couple::Plus => scheme.tangential = Tangential::SlipPlus,
-            Couple::Minus => scheme.tangential = Tangential::SlipMinus,
+            RowKind::Normal => scheme.open = true,
+            RowKind::Plus => scheme.tangential = Tangential::SlipPlus,
+            RowKind::Minus => scheme.tangential = Tangential::SlipMinus,
         }
     }
     for (i, scheme) in schemes.iter_mut().enumerate() {

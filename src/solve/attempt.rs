@@ -4,14 +4,14 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::answer::record::OutcomeKind;
+use crate::lcp::basis_solution::{direction, vertex};
 use crate::lcp::driver::{Engine, run};
 use crate::lcp::lemke::SchemeEngine;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::parametric::Parametric;
-use crate::lcp::ratio_test::TieRule;
 use crate::lcp::pivot::Pivot;
-use crate::lcp::basis_solution::{direction, vertex};
+use crate::lcp::ratio_test::TieRule;
 use crate::watch::Watch;
 
 /// No run makes more pivots than this; reaching it is an outcome of its own.

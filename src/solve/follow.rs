@@ -3,10 +3,6 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use crate::solve::numbers::{contact_numbers, factors};
-use crate::solve::prepared::Prepared;
-use crate::solve::solved::{SolveError, Solved};
-use crate::solve::warm::Kept;
 use crate::answer::record::{Answer, PairState, Start};
 use crate::contact::lcp::contact_lcp_like;
 use crate::contact::numbers::ContactNumbers;
@@ -14,6 +10,10 @@ use crate::lcp::outcome::Point;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Engine, Rules};
 use crate::model::scenario::Scenario;
+use crate::solve::numbers::{contact_numbers, factors};
+use crate::solve::prepared::Prepared;
+use crate::solve::solved::{SolveError, Solved};
+use crate::solve::warm::WarmStart;
 use crate::watch::Watch;
 
 /// Below this number of pairs a cold start is as quick as anyone can see, and it has the pivots.
@@ -22,7 +22,7 @@ pub const WARM_PAIRS: usize = 150;
 const SAME: f64 = 1e-7;
 
 /// What an answer keeps for the next change; shared by the answers of one chain.
-pub(super) type Seat = Arc<Mutex<Option<Kept>>>;
+pub(super) type WarmSlot = Arc<Mutex<Option<WarmStart>>>;
 
 impl Prepared {
     /// Solves for other parameter values, from the last answer where the model has [`WARM_PAIRS`] pairs or more, the
@@ -91,7 +91,7 @@ impl Prepared {
     /// The checked state at the numbers, followed in the kept dictionary, and the seconds that the following took.
     fn follow_kept(
         &self,
-        kept: &mut Kept,
+        kept: &mut WarmStart,
         numbers: &ContactNumbers,
         factors: &[f64],
         rules: Rules,

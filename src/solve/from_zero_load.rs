@@ -5,17 +5,17 @@ use std::ops::ControlFlow;
 
 use nalgebra::DVector;
 
-use crate::solve::prepared::Prepared;
-use crate::solve::solved::{SolveError, Solved};
 use crate::answer::record::{Attempt, OutcomeKind};
 use crate::contact::lcp::contact_lcp_like;
 use crate::contact::load_path::{order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
+use crate::lcp::basis_solution::Basis;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
-use crate::lcp::basis_solution::Basis;
 use crate::model::rules::Rules;
+use crate::solve::prepared::Prepared;
+use crate::solve::solved::{SolveError, Solved};
 use crate::watch::Watch;
 
 /// What stands for the engine in the list of attempts.
@@ -97,9 +97,9 @@ impl Prepared {
 mod tests {
     use super::AlongLoad;
     use crate::model::embedded;
+    use crate::solve::follow::same_answer;
     use crate::solve::numbers::{contact_numbers, factors};
     use crate::solve::prepare;
-    use crate::solve::follow::same_answer;
     use crate::watch::Quiet;
 
     #[test]

@@ -17,11 +17,11 @@
 pub mod all_answers;
 pub mod attempt;
 pub mod compare;
+pub mod engines;
 pub mod explain;
 pub mod follow;
 mod from_zero_load;
 mod history_answer;
-pub mod judge;
 mod ladder;
 pub mod load_rates;
 pub mod numbers;

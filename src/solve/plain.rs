@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::all_answers::{ENUMERATION, others, plain_answer};
 use super::attempt::run_scheme;
-use super::judge::{EXACT_ROWS, run_exact_plain, run_tableau};
+use super::engines::{EXACT_ROWS, run_exact_plain, run_tableau};
 use super::ladder::{Deadline, EXACT_BUDGET, LAST_RESORT, Ladder, within_budget};
 use super::plain_answers::{PlainAnswers, RayProof, all_plain_answers, prove_plain_ray};
 use super::settle::{ray_holds, settled};

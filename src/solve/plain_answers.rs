@@ -12,9 +12,9 @@ use crate::lcp::exact::all_solutions::{Continuum, Progress, all_solutions};
 use crate::lcp::exact::classes::{SolvableClass, solvable_class};
 use crate::lcp::exact::dyadic::{WholeRows, nearest};
 use crate::lcp::exact::farkas::{Farkas, farkas};
-use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::exact::rational_solve::{RationalSolution, solve};
 use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
+use crate::lcp::mirrored::MirroredLcp;
 use crate::watch::Watch;
 
 /// Most rows of the exact check of a basis.
@@ -80,7 +80,7 @@ pub struct PlainCheck {
 /// Solves a basis exactly and tells every sign; `None` for more than a thousand rows, or where `watch` stops it.
 pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize], watch: &dyn Watch) -> Option<PlainCheck> {
     let n = lcp.size();
-    if n > MOST_CHECKED || lcp.whole_size != n {
+    if n > MOST_CHECKED || lcp.full_size != n {
         return None;
     }
     let WholeRows { rows, scale } = WholeRows::of_lcp(&lcp.matrix(), &lcp.q);
@@ -122,7 +122,7 @@ pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAn
 /// Every answer of a bare LCP, in exact arithmetic; `None` where nothing was searched (contact's mirrored rows).
 pub fn search_plain_answers(lcp: &MirroredLcp, effort: Effort, watch: &dyn Watch) -> Option<PlainAnswers> {
     let n = lcp.size() as u64;
-    if lcp.whole_size != lcp.size() {
+    if lcp.full_size != lcp.size() {
         return None;
     }
     let most = match effort {
@@ -165,7 +165,7 @@ pub enum RayProof {
 
 /// Looks for a proof that there is no answer, or that there must be one.
 pub fn prove_plain_ray(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<RayProof> {
-    if lcp.whole_size != lcp.size() {
+    if lcp.full_size != lcp.size() {
         return None;
     }
     let matrix = lcp.matrix();

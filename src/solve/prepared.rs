@@ -158,7 +158,7 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
         whole: (0..n).collect(),
         mirrors: vec![None; n],
         scale: Scale::plain(&given.matrix),
-        whole_size: n,
+        full_size: n,
     };
     Prepared {
         geometry: Arc::new(Geometry::Plain {

@@ -8,19 +8,19 @@
 use std::time::Duration;
 
 use super::all_answers::{ENUMERATION, others};
-use crate::solve::from_zero_load::AlongLoad;
-use super::judge::EXACT_PAIRS;
+use super::engines::EXACT_PAIRS;
 use super::ladder::{Deadline, EXACT_BUDGET, Ladder, within_budget};
 use super::numbers::{contact_numbers, factors};
 use super::prepared::{Geometry, Prepared};
 use super::solved::{SolveError, Solved};
 use crate::answer::record::{RayClass, Verdict};
-use crate::contact::schemes::enumerate::Enumeration;
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::schemes::enumerate::Enumeration;
 use crate::contact::system::ContactSystem;
 use crate::explain::ray::{Subject, all_answers, certify_ray, explain};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
+use crate::solve::from_zero_load::AlongLoad;
 use crate::watch::Watch;
 
 /// An exact attempt after a ray that is a mechanism is given up after this time: such a ray is seldom rounding, and the

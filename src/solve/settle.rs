@@ -7,13 +7,13 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use crate::answer::check_plain::{ROUNDING, check_plain, row};
+use crate::lcp::basis_solution::{Basis, corrected};
+use crate::lcp::exact::rational_solve::{Quotients, RationalSolution, clear_denominators, solve};
+use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::NOISE;
-use crate::lcp::exact::rational_solve::{Quotients, RationalSolution, clear_denominators, solve};
-use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
 use crate::lcp::variable::Variable;
-use crate::lcp::basis_solution::{Basis, corrected};
 use crate::watch::Watch;
 
 /// Steps of refinement; each gains as many digits as the first solution has.

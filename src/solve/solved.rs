@@ -6,37 +6,37 @@ use std::time::Instant;
 use nalgebra::DVector;
 
 use super::attempt::{keep_scheme, kind};
-use super::judge::{EXACT_PAIRS, run_exact_contact, run_tableau};
+use super::engines::{EXACT_PAIRS, run_exact_contact, run_tableau};
 use super::plain::{PlainProblem, solve_plain_judged};
 use super::prepared::{Geometry, Prepared};
-use crate::solve::follow::Seat;
-use super::warm::Kept;
+use super::warm::WarmStart;
 use crate::answer::check::check_contact;
 use crate::answer::pairs::{JointState, joint_state, pair_states};
 use crate::answer::record::{
     Answer, Attempt, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, PlainSolution, Reaction,
     Size, Start, Timings,
 };
+use crate::contact::kernel_correction::sharpen;
 use crate::contact::lcp::{ContactLcp, CoveringError, contact_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::refine::refined;
 use crate::contact::self_stress::may_hold_otherwise;
-use crate::contact::kernel_correction::sharpen;
 use crate::contact::system::ContactSystem;
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::ray::{self, RayReport};
 use crate::explain::sentence;
 use crate::explain::words::{list, short};
 use crate::fem::Displacements;
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::pivot::{Cycle, PivotLog};
-use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules};
 use crate::model::scenario::Scenario;
 use crate::model::uses::Redone;
+use crate::solve::follow::WarmSlot;
 use crate::watch::Watch;
 
 /// Most pairs that a note names.
@@ -123,7 +123,7 @@ pub struct Solved {
     /// Whether the run came back to a basis it had met.
     pub cycled: bool,
     /// The dictionary of the answer, for the next change; contact problems under the default engine only.
-    pub(super) kept: Option<Seat>,
+    pub(super) kept: Option<WarmSlot>,
 }
 
 impl Prepared {
@@ -295,7 +295,7 @@ impl Prepared {
         }
         let kept = engine
             .filter(|_| answer.is_answer())
-            .map(|engine| Kept::new(engine, contact.clone(), numbers.clone()))
+            .map(|engine| WarmStart::new(engine, contact.clone(), numbers.clone()))
             .map(|kept| Arc::new(Mutex::new(Some(kept))));
         let refused = answer.outcome == OutcomeKind::CheckFailed;
         let cycled = matches!(run.outcome, Outcome::Cycle(_));

@@ -25,7 +25,7 @@ const ROUNDS: usize = 8;
 
 /// The dictionary of an answer, kept for the next change.
 #[derive(Clone, Debug)]
-pub struct Kept {
+pub struct WarmStart {
     engine: Parametric,
     /// The LCP the dictionary was built for: matrix, units, rows.
     contact: ContactLcp,
@@ -46,11 +46,11 @@ pub struct WarmPoint {
     pub pivots: usize,
 }
 
-impl Kept {
+impl WarmStart {
     /// Keeps the dictionary of an answer just found.
-    pub fn new(engine: Parametric, contact: ContactLcp, numbers: ContactNumbers) -> Kept {
+    pub fn new(engine: Parametric, contact: ContactLcp, numbers: ContactNumbers) -> WarmStart {
         let extra = vec![0.0; numbers.friction.len()];
-        Kept { engine, contact, numbers, extra }
+        WarmStart { engine, contact, numbers, extra }
     }
 
     /// Refines what is kept from the data, where its answer was not good enough; then [`Kept::follow`] again.

@@ -1,16 +1,16 @@
 //! The LCP of a scenario with every row written out, for other programs.
 
-use crate::solve::judge::written_out;
-use crate::solve::numbers::{contact_numbers, factors};
-use crate::solve::prepared::{Geometry, Prepared};
 use crate::contact::force_form;
+use crate::contact::full_lcp::{WholeInput, full_lcp, rows};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::{WholeInput, rows, whole_lcp};
 use crate::lcp::problem::Lcp;
 use crate::lcp::variable::Variable;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Covering;
+use crate::solve::engines::written_out;
+use crate::solve::numbers::{contact_numbers, factors};
+use crate::solve::prepared::{Geometry, Prepared};
 
 impl Prepared {
     /// The LCP in the scenario's units (forces w, q; displacements z) and the names of its rows. The covering of a bare
@@ -22,7 +22,7 @@ impl Prepared {
                 if system.force_form.is_some() {
                     return written_in_force_form(system, &numbers, covering);
                 }
-                let lcp = whole_lcp(&WholeInput { system, numbers: &numbers, covering });
+                let lcp = full_lcp(&WholeInput { system, numbers: &numbers, covering });
                 let names = rows(system).iter().map(|row| row.name('x', system)).collect();
                 (lcp, names)
             }
@@ -56,7 +56,7 @@ fn written_in_force_form(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::lcp::Couple;
+    use crate::contact::lcp::RowKind;
     use crate::export::lcp::scenario;
     use crate::model::embedded;
     use crate::model::load::load_text;
@@ -83,9 +83,9 @@ mod tests {
                     .map(|row| {
                         let pair = &direct.answer.pairs[row.pair];
                         match row.couple {
-                            Couple::Normal => pair.z_n,
-                            Couple::Plus => pair.z_t.max(0.0),
-                            Couple::Minus => (-pair.z_t).max(0.0),
+                            RowKind::Normal => pair.z_n,
+                            RowKind::Plus => pair.z_t.max(0.0),
+                            RowKind::Minus => (-pair.z_t).max(0.0),
                         }
                     })
                     .collect(),

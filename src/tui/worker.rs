@@ -87,7 +87,8 @@ impl Worker {
         let asked = Arc::clone(&stopped);
         let work = move || {
             while let Ok((number, job, style)) = incoming.recv() {
-                let watch = Desk { number, stopped: &asked, send: &send, since: Mutex::new((Instant::now(), None)) };
+                let watch =
+                    WatchAdapter { number, stopped: &asked, send: &send, since: Mutex::new((Instant::now(), None)) };
                 let kept = job.clone();
                 let done = catch_unwind(AssertUnwindSafe(|| perform(&mut session, job, style, &watch)));
                 let done = done.unwrap_or_else(|_| Done {
@@ -131,7 +132,7 @@ impl Worker {
 }
 
 /// What the computation sees of the screen.
-struct Desk<'a> {
+struct WatchAdapter<'a> {
     number: u64,
     stopped: &'a AtomicU64,
     send: &'a (dyn Fn(Action) + Sync),
@@ -139,7 +140,7 @@ struct Desk<'a> {
     since: Mutex<(Instant, Option<Instant>)>,
 }
 
-impl Watch for Desk<'_> {
+impl Watch for WatchAdapter<'_> {
     fn progress(&self, what: &str, fraction: f64) {
         let mut since = self.since.lock().unwrap_or_else(PoisonError::into_inner);
         let due = since.1.is_none_or(|last| last.elapsed() >= PACE);

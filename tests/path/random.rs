@@ -11,13 +11,13 @@ use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::load_path::{order, path_lcp};
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::ContactSystem;
+use stickslip::lcp::basis_solution::Basis;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::outcome::Outcome;
 use stickslip::lcp::parametric::{End, Parametric, Reach};
-use stickslip::lcp::basis_solution::Basis;
 use stickslip::model::rules::{Covering, TieBreak};
-use stickslip::solve::warm::Kept;
+use stickslip::solve::warm::WarmStart;
 use stickslip::watch::Quiet;
 
 use crate::common::systems::coulomb;
@@ -38,7 +38,7 @@ fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, 
     (system, numbers)
 }
 
-fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64>, Kept) {
+fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64>, WarmStart) {
     let contact = contact_lcp(system, numbers, Covering::Cohesive).expect("covers all");
     let rule = contact.tie_rule(TieBreak::Lexicographic);
     let mut engine = SchemeEngine::new(Arc::clone(&contact.lcp), rule);
@@ -47,7 +47,7 @@ fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64
     let z = contact.joint_displacements(system, &run.point.z) * contact.length_unit;
     let basis = run.pivots.basis();
     let engine = engine.into_parametric().expect("stands on an answer");
-    (basis, z, Kept::new(engine, contact, numbers.clone()))
+    (basis, z, WarmStart::new(engine, contact, numbers.clone()))
 }
 
 #[test]

@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use rand::{Rng, SeedableRng};
 use stickslip::model::embedded;
-use stickslip::session::language::help::{GROUPS, help, overview};
 use stickslip::session::journal::Journal;
+use stickslip::session::language::help::{GROUPS, help, overview};
 use stickslip::session::{CommandError, Format, Next, Output, Session, commands::script};
 use stickslip::view::style::Style;
 use stickslip::watch::{Quiet, Watch};

@@ -14,9 +14,9 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::model::pair::Law;
 
+use crate::contact::full_lcp::tangential_joint;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::tangential_joint;
 
 /// Most pairs for which all choices of states are examined.
 pub const EXACT_PAIRS: usize = 8;

@@ -19,13 +19,13 @@ use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::exact::polyhedron::{Polyhedron, State};
 use crate::model::pair::Law;
 
-use crate::contact::schemes::bounding_box::ellipsoid;
-use crate::contact::schemes::ball::{Ball, Row, size, solved};
-use crate::contact::schemes::exact_system::{ExactSystem, PairVariables};
+use crate::contact::full_lcp::{fixed_bound, friction, tangential_joint};
 use crate::contact::numbers::ContactNumbers;
+use crate::contact::schemes::ball::{Ball, Row, size, solved};
+use crate::contact::schemes::bounding_box::ellipsoid;
+use crate::contact::schemes::exact_system::{ExactSystem, PairVariables};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::{fixed_bound, friction, tangential_joint};
 
 /// Undecided pairs from which on the exact linear program pays: without a box, when balls cut little.
 const WORTH: usize = 3;

@@ -5,14 +5,14 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::contact::lcp::Couple;
-use crate::contact::schemes::critical::tests::unit_square;
 use crate::contact::full_lcp::tests::{beam, beam_numbers, coulomb, plain, tangential_first};
-use crate::contact::full_lcp::{WholeInput, rows, whole_lcp};
+use crate::contact::full_lcp::{WholeInput, full_lcp, rows};
+use crate::contact::lcp::RowKind;
+use crate::contact::schemes::critical::tests::unit_square;
 use crate::lcp::driver::run;
-use crate::lcp::outcome::Outcome;
 use crate::lcp::exact::scalar::Scalar;
 use crate::lcp::exact::tableau::Tableau;
+use crate::lcp::outcome::Outcome;
 use crate::model::rules::Covering;
 
 fn all(system: &ContactSystem, numbers: &ContactNumbers) -> Enumeration {
@@ -106,7 +106,7 @@ fn stops_when_told() {
 
 /// Lemke's answer by the tableau, in f64.
 fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64>> {
-    let lcp = whole_lcp::<f64>(&WholeInput { system, numbers, covering: Covering::Cohesive });
+    let lcp = full_lcp::<f64>(&WholeInput { system, numbers, covering: Covering::Cohesive });
     let run = run(&mut Tableau::new(&lcp, tangential_first(system)), 2000, &mut |_| ControlFlow::Continue(()));
     if !matches!(run.outcome, Outcome::Normal { .. } | Outcome::Trivial) {
         assert!(matches!(run.outcome, Outcome::Ray(_)), "{:?}", run.outcome);
@@ -116,9 +116,9 @@ fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64
     for (row, value) in rows(system).iter().zip(&run.point.z) {
         let value = value.to_f64();
         match row.couple {
-            Couple::Normal => z[row.pair] += value,
-            Couple::Plus => z[tangential_joint(system, row.pair)] += value,
-            Couple::Minus => z[tangential_joint(system, row.pair)] -= value,
+            RowKind::Normal => z[row.pair] += value,
+            RowKind::Plus => z[tangential_joint(system, row.pair)] += value,
+            RowKind::Minus => z[tangential_joint(system, row.pair)] -= value,
         }
     }
     Some(z)

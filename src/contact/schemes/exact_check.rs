@@ -16,10 +16,10 @@ use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution, clear
 use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
 use crate::model::pair::Law;
 
+use crate::contact::full_lcp::{fixed_bound, friction, tangential_joint};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::{fixed_bound, friction, tangential_joint};
 
 /// A quantity of a pair that must not be negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

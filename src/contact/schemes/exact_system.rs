@@ -10,10 +10,10 @@ use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
 use crate::lcp::exact::rational_solve::rank_modulo_prime;
 use crate::model::pair::Law;
 
+use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::{fixed_bound, friction};
 
 /// Entries of the kernel this close to a whole number are that number: they come out of f64 linear algebra.
 const WHOLE: f64 = 64.0 * f64::EPSILON;

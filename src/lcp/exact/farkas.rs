@@ -14,14 +14,14 @@ use num_traits::{Signed, Zero};
 
 use crate::lcp::driver::run;
 use crate::lcp::exact::dyadic::WholeRows;
+use crate::lcp::exact::polyhedron::{Polyhedron, State};
+use crate::lcp::exact::rational_solve::{RationalSolution, solve};
+use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 use crate::lcp::lemke::SchemeEngine;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Outcome;
-use crate::lcp::exact::polyhedron::{Polyhedron, State};
 use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::exact::rational_solve::{RationalSolution, solve};
-use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 
 /// Most pivots of a run in f64.
 const MOST_PIVOTS: usize = 20_000;

@@ -1,6 +1,6 @@
 //! Lemke's algorithm in exact arithmetic, fast enough for some hundred rows.
 //!
-//! The [`Tableau`] runs over [`Filtered`] numbers; whenever a sign needs more bits the run is repeated with twice as
+//! The [`Tableau`] runs over [`BallModP`] numbers; whenever a sign needs more bits the run is repeated with twice as
 //! many. Vertices and rays are then computed in rationals from the basis alone (one exact linear system each) and
 //! verified: w = M z + q + d p, every sign, and at a ray the direction. The rational tableau
 //! (`Tableau<BigRational>`) makes the same pivots, slowly.
@@ -11,14 +11,14 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use crate::lcp::driver::{Engine, Step};
-use crate::lcp::exact::filtered::Filtered;
-use crate::lcp::outcome::{Outcome, Point, RayDirection};
-use crate::lcp::problem::{Lcp, MARGINAL};
-use crate::lcp::ratio_test::TieRule;
+use crate::lcp::exact::ball_mod_p::BallModP;
 use crate::lcp::exact::rational_solve::{Quotients, RationalSolution, clear_denominators, solve};
 use crate::lcp::exact::scalar::{BigInt, Scalar};
 use crate::lcp::exact::tableau::Tableau;
+use crate::lcp::outcome::{Outcome, Point, RayDirection};
 use crate::lcp::pivot::PivotLog;
+use crate::lcp::problem::{Lcp, MARGINAL};
+use crate::lcp::ratio_test::TieRule;
 use crate::lcp::variable::Variable;
 use crate::watch::Watch;
 
@@ -41,7 +41,7 @@ pub struct Exact<'a> {
     rows: Vec<WholeRow>,
     rule: TieRule,
     precision: u32,
-    tableau: Tableau<Filtered>,
+    tableau: Tableau<BallModP>,
     ended: Option<Outcome<BigRational>>,
     watch: &'a dyn Watch,
 }
@@ -175,7 +175,7 @@ impl<'a> Exact<'a> {
     }
 
     /// Turns the end of the filtered run into a proved one.
-    fn prove(&self, outcome: Outcome<Filtered>) -> Outcome<BigRational> {
+    fn prove(&self, outcome: Outcome<BallModP>) -> Outcome<BigRational> {
         let failed = || {
             if self.watch.stop() {
                 return Outcome::Interrupted;
@@ -231,15 +231,15 @@ impl Values {
     }
 }
 
-fn start(lcp: &Lcp<BigRational>, rule: &TieRule, precision: u32) -> Tableau<Filtered> {
-    let convert = |v: &[BigRational]| -> Vec<Filtered> { v.iter().map(|x| Filtered::new(x, precision)).collect() };
-    let filtered = Lcp {
+fn start(lcp: &Lcp<BigRational>, rule: &TieRule, precision: u32) -> Tableau<BallModP> {
+    let convert = |v: &[BigRational]| -> Vec<BallModP> { v.iter().map(|x| BallModP::new(x, precision)).collect() };
+    let ball_mod_p = Lcp {
         matrix: lcp.matrix.iter().map(|row| convert(row)).collect(),
         q: convert(&lcp.q),
         covering: convert(&lcp.covering),
         scale: lcp.scale.clone(),
     };
-    Tableau::new(&filtered, rule.clone())
+    Tableau::new(&ball_mod_p, rule.clone())
 }
 
 impl Engine for Exact<'_> {
@@ -290,5 +290,5 @@ impl Engine for Exact<'_> {
 }
 
 #[cfg(test)]
-#[path = "exact_tests.rs"]
+#[path = "lemke_tests.rs"]
 mod tests;

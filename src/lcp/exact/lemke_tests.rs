@@ -5,8 +5,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::lcp::driver::run;
-use crate::lcp::problem::Scale;
 use crate::lcp::pivot::Pivot;
+use crate::lcp::problem::Scale;
 use crate::watch::Quiet;
 
 fn problem(m: Vec<Vec<BigRational>>, q: Vec<BigRational>) -> Lcp<BigRational> {

@@ -22,11 +22,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::lcp::driver::{Engine, Step};
+use crate::lcp::exact::scalar::Scalar;
 use crate::lcp::outcome::{Outcome, Point, RayDirection};
+use crate::lcp::pivot::{Pivot, PivotLog};
 use crate::lcp::problem::Lcp;
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::exact::scalar::Scalar;
-use crate::lcp::pivot::{Pivot, PivotLog};
 use crate::lcp::variable::Variable;
 
 /// A basic variable below −(this × its noise) means that the f64 numbers no longer belong together.

@@ -5,24 +5,24 @@ use std::cmp::Ordering;
 use rand::Rng;
 
 use super::{Place, Tableau, Undecided};
+use crate::lcp::exact::scalar::Scalar;
 use crate::lcp::problem::NOISE;
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::exact::scalar::Scalar;
 use crate::lcp::variable::Variable;
 
 /// Relative difference below which two f64 entries of B⁻¹ / pivot count as equal in the lexicographic rule.
 const LEXICOGRAPHIC_NOISE: f64 = 1e-10;
 /// Scaled size of a direction or a vertex: Σ column_k |z_k| and |p|.
 #[derive(Clone, Copy, Default)]
-pub(in crate::lcp) struct Size {
-    pub(in crate::lcp) z: f64,
-    pub(in crate::lcp) p: f64,
-    pub(in crate::lcp) q: bool,
+pub(super) struct Size {
+    pub(super) z: f64,
+    pub(super) p: f64,
+    pub(super) q: bool,
 }
 
 impl<T: Scalar> Tableau<T> {
     /// Size of the vertex reached when the entering variable of column `column` has moved by `t`.
-    pub(in crate::lcp) fn vertex_size(&self, column: usize, t: f64) -> Size {
+    pub(super) fn vertex_size(&self, column: usize, t: f64) -> Size {
         let mut size = Size { q: true, ..Size::default() };
         for (row, variable) in self.basic.iter().enumerate() {
             let moved = self.values[row].to_f64().abs() + t * self.rows[row][column].to_f64().abs();
@@ -33,7 +33,7 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Size of the direction of column `column`.
-    pub(in crate::lcp) fn direction_size(&self, column: usize) -> Size {
+    pub(super) fn direction_size(&self, column: usize) -> Size {
         let mut size = Size::default();
         for (row, variable) in self.basic.iter().enumerate() {
             self.count(&mut size, *variable, self.rows[row][column].to_f64().abs());
@@ -42,7 +42,7 @@ impl<T: Scalar> Tableau<T> {
         size
     }
 
-    pub(in crate::lcp) fn count(&self, size: &mut Size, variable: Variable, amount: f64) {
+    pub(super) fn count(&self, size: &mut Size, variable: Variable, amount: f64) {
         match variable {
             Variable::W(_) => {}
             Variable::Z(k) => size.z += self.lcp.scale.column[k] * amount,
@@ -51,7 +51,7 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Largest amount of `variable` that counts as zero beside a direction or vertex of this size.
-    pub(in crate::lcp) fn noise(&self, variable: Variable, size: Size) -> f64 {
+    pub(super) fn noise(&self, variable: Variable, size: Size) -> f64 {
         let q = |i: usize| {
             if size.q { self.lcp.q[i].to_f64().abs() } else { 0.0 }
         };
@@ -64,7 +64,7 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Sign of a number of `variable`; in f64 up to its noise.
-    pub(in crate::lcp) fn sign(&self, number: &T, variable: Variable, size: Size) -> Result<Ordering, Undecided> {
+    pub(super) fn sign(&self, number: &T, variable: Variable, size: Size) -> Result<Ordering, Undecided> {
         let sign = number.sign().ok_or(Undecided(variable))?;
         if !T::is_exact() && number.to_f64().abs() <= self.noise(variable, size) {
             return Ok(Ordering::Equal);
@@ -73,7 +73,7 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Coefficient of the perturbation of row `j` of the LCP in row `row` of the dictionary: entry (row, j) of B⁻¹.
-    pub(in crate::lcp) fn inverse_entry(&self, row: usize, j: usize) -> T {
+    pub(super) fn inverse_entry(&self, row: usize, j: usize) -> T {
         match self.place(Variable::W(j)) {
             Place::Column(column) => self.rows[row][column].neg(),
             Place::Row(own) if own == row => T::one(),
@@ -82,12 +82,12 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Order of the rows, p last.
-    pub(in crate::lcp) fn rank(&self, row: usize) -> (bool, usize) {
+    pub(super) fn rank(&self, row: usize) -> (bool, usize) {
         (self.basic[row] == Variable::P, row)
     }
 
     /// Chooses among tied rows (not empty, ordered by [`Tableau::rank`]).
-    pub(in crate::lcp) fn choose(&mut self, ties: &[usize], column: usize) -> Result<usize, Undecided> {
+    pub(super) fn choose(&mut self, ties: &[usize], column: usize) -> Result<usize, Undecided> {
         if ties.len() == 1 {
             return Ok(ties[0]);
         }
@@ -111,7 +111,7 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Compares two rows of B⁻¹, each divided by the size of its pivot.
-    pub(in crate::lcp) fn lexicographic(
+    pub(super) fn lexicographic(
         &self,
         first: usize,
         second: usize,
@@ -148,7 +148,7 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Entry of p: the rows that need the largest p, or none when q ≥ 0.
-    pub(in crate::lcp) fn start(&mut self) -> Result<Option<Vec<usize>>, Undecided> {
+    pub(super) fn start(&mut self) -> Result<Option<Vec<usize>>, Undecided> {
         let n = self.lcp.size();
         let mut best: Option<(T, Vec<usize>)> = None;
         for i in 0..n {
@@ -175,7 +175,7 @@ impl<T: Scalar> Tableau<T> {
         Ok(best.map(|(_, rows)| rows))
     }
 
-    pub(in crate::lcp) fn compare_ratios(&self, a: &T, b: &T, variable: Variable) -> Result<Ordering, Undecided> {
+    pub(super) fn compare_ratios(&self, a: &T, b: &T, variable: Variable) -> Result<Ordering, Undecided> {
         let order = a.compare(b).ok_or(Undecided(variable))?;
         if !T::is_exact() {
             let (a, b) = (a.to_f64(), b.to_f64());
@@ -187,7 +187,7 @@ impl<T: Scalar> Tableau<T> {
     }
 
     /// Rows that block the entering variable of `column` at the smallest value, in the order of the rows.
-    pub(in crate::lcp) fn ratio_test(&self, column: usize) -> Result<Vec<usize>, Undecided> {
+    pub(super) fn ratio_test(&self, column: usize) -> Result<Vec<usize>, Undecided> {
         let size = self.direction_size(column);
         let mut candidates: Vec<(usize, T)> = Vec::new();
         for (row, variable) in self.basic.iter().enumerate() {

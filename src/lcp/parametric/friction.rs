@@ -1,7 +1,7 @@
 //! The answer after a change of friction, from the dictionary of the old one.
 
 use super::super::dense::add_response;
-use super::super::dictionary::{Local, Place};
+use super::super::dictionary::{Place, Slot};
 use super::super::outcome::Point;
 use super::super::variable::Variable;
 use super::Parametric;
@@ -20,7 +20,7 @@ impl Parametric {
         let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
         let normal_row = |i: usize| {
             let n = lcp.mirrors[i].as_ref()?.normal?;
-            match d.place(Local::W(n)) {
+            match d.place(Slot::W(n)) {
                 Place::Row(r) => Some(r),
                 Place::Column(_) => None,
             }
@@ -30,7 +30,7 @@ impl Parametric {
         let mut pressed: Vec<usize> = Vec::new();
         let mut slipping: Vec<(usize, usize, Option<usize>)> = Vec::new();
         for i in 0..lcp.size() {
-            let Place::Column(c) = d.place(Local::W(i)) else {
+            let Place::Column(c) = d.place(Slot::W(i)) else {
                 continue;
             };
             let normal = normal_row(i).filter(|_| change[i] != 0.0);
@@ -69,7 +69,7 @@ impl Parametric {
         for (value, change) in value.iter_mut().zip(d.combined_columns(&terms)) {
             *value += change;
         }
-        let n = lcp.whole_size;
+        let n = lcp.full_size;
         let mut point = Point { z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
         for (r, &local) in d.row.iter().enumerate() {
             match self.stand.variable(local, false) {
@@ -83,13 +83,13 @@ impl Parametric {
                 continue;
             };
             let w_n = normal_row(i).map_or(0.0, |r| value[r]);
-            let own = match d.place(Local::W(i)) {
+            let own = match d.place(Slot::W(i)) {
                 Place::Row(r) => value[r] - extra[i] + change[i] * w_n,
                 Place::Column(_) => 0.0,
             };
             let sum = 2.0 * (mirror.friction + change[i]) * w_n + mirror.constant - 2.0 * extra[i];
-            for (hidden, w) in [(false, own), (true, sum - own)] {
-                if let Variable::W(k) = self.stand.variable(Local::W(i), hidden) {
+            for (mirror_row, w) in [(false, own), (true, sum - own)] {
+                if let Variable::W(k) = self.stand.variable(Slot::W(i), mirror_row) {
                     point.w[k] = w;
                 }
             }

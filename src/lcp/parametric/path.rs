@@ -38,7 +38,7 @@ pub enum End {
 
 /// A breakpoint: where the scheme changes (the first: the start; the last: the end).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Knot {
+pub struct Breakpoint {
     /// t.
     pub t: f64,
     /// All variables there, computed afresh from the data; its `p` is t.
@@ -53,7 +53,7 @@ pub struct Knot {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
     /// The knots, start and end included. t rises along them except beyond turning points.
-    pub knots: Vec<Knot>,
+    pub knots: Vec<Breakpoint>,
     /// Why it ended.
     pub end: End,
     /// Pivots made.

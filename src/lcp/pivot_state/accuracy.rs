@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use crate::lcp::dictionary::{Local, Place};
-use super::{Candidate, SUSPICIOUS, Stand};
+use super::{Candidate, PivotState, SUSPICIOUS};
+use crate::lcp::dictionary::{Place, Slot};
 
 /// Relative error of the dictionary against the data above which it is built afresh.
 const DRIFT: f64 = 1e-10;
@@ -13,10 +13,10 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// A column is refined, and the dictionary not built afresh, up to this error relative to the small rate at stake.
 const REFINED: f64 = 1e-5;
 
-impl Stand {
+impl PivotState {
     /// Rate of decrease of a tied row along column c, relative to its natural size.
     pub(super) fn relative_fall(&self, c: usize, tied: &Candidate) -> f64 {
-        let p_rate = self.dictionary.rate(Local::P, c, &self.column);
+        let p_rate = self.dictionary.rate(Slot::P, c, &self.column);
         tied.fall / self.rate_size(tied.variable, self.rate_total(c), p_rate).max(f64::MIN_POSITIVE)
     }
 
@@ -52,7 +52,7 @@ impl Stand {
     /// Makes the column fetched last, on whose small rate in the `tied` rows a decision hangs, as true to the data as it
     /// can be made: by refinement, or where the dictionary is too far off, its row as well, by building it afresh.
     /// `false` (and nothing changed): the equations of the scheme are singular.
-    pub(crate) fn confirm(&mut self, c: usize, tied: &[Candidate]) -> bool {
+    pub(crate) fn refine_if_doubtful(&mut self, c: usize, tied: &[Candidate]) -> bool {
         let surest = tied.iter().map(|tied| self.relative_fall(c, tied)).fold(0.0, f64::max);
         let bearable = REFINED * surest;
         let rates = self.rates(c);
@@ -91,7 +91,7 @@ impl Stand {
     }
 
     /// After each flush the values are compared with the data. `false`: they are wrong and the equations are singular.
-    pub(crate) fn keep_true(&mut self) -> bool {
+    pub(crate) fn check_drift(&mut self) -> bool {
         let flushes = self.dictionary.flushes();
         if std::mem::replace(&mut self.compared, flushes) == flushes {
             return true;
@@ -102,7 +102,7 @@ impl Stand {
 
 /// The numbers of all variables, values or rates, as the dictionary holds them, and w as the data give it.
 struct Numbers<'a> {
-    stand: &'a Stand,
+    stand: &'a PivotState,
     /// Of the basic variables, row by row.
     held: &'a [f64],
     /// Column of the variable that grows; the others are zero.
@@ -115,16 +115,16 @@ struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    fn new(stand: &'a Stand, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a> {
+    fn new(stand: &'a PivotState, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a> {
         let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: DVector::zeros(0) };
         let z: Vec<f64> = std::iter::zip(0.., &stand.dictionary.turned)
             .map(|(i, &turned)| {
-                let z = numbers.of(Local::Z(i));
+                let z = numbers.of(Slot::Z(i));
                 // z⁺ − z⁻ for couples.
                 if turned { -z } else { z }
             })
             .collect();
-        numbers.p = numbers.of(Local::P);
+        numbers.p = numbers.of(Slot::P);
         let lcp = &stand.lcp;
         numbers.w = lcp.times(&z) + shift * &lcp.q + numbers.p * &lcp.covering;
         numbers
@@ -135,7 +135,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// As the dictionary holds it.
-    fn of(&self, local: Local) -> f64 {
+    fn of(&self, local: Slot) -> f64 {
         match self.stand.dictionary.place(local) {
             Place::Row(r) => self.held[r],
             Place::Column(c) => self.nonbasic(c),
@@ -156,8 +156,8 @@ impl<'a> Numbers<'a> {
         let stand = self.stand;
         (0..stand.lcp.size())
             .map(|i| {
-                let held = self.turned(i, |row| self.of(Local::W(row)));
-                let natural = stand.rate_size(Local::W(i), size, self.p) + self.shift * stand.sizes.q[i];
+                let held = self.turned(i, |row| self.of(Slot::W(row)));
+                let natural = stand.rate_size(Slot::W(i), size, self.p) + self.shift * stand.sizes.q[i];
                 (self.w[i] - held).abs() / natural.max(f64::MIN_POSITIVE)
             })
             .fold(0.0, larger)
@@ -172,14 +172,14 @@ impl<'a> Numbers<'a> {
             .iter()
             .enumerate()
             .filter_map(|(c, &local)| match local {
-                Local::W(i) => Some((c, self.nonbasic(c) - from_data(i))),
+                Slot::W(i) => Some((c, self.nonbasic(c) - from_data(i))),
                 _ => None,
             })
             .collect();
         let change = d.combined_columns(&wrong);
         std::iter::zip(&d.row, std::iter::zip(self.held, change))
             .map(|(&local, (held, change))| match local {
-                Local::W(i) => from_data(i) + change,
+                Slot::W(i) => from_data(i) + change,
                 _ => held + change,
             })
             .collect()

@@ -7,7 +7,7 @@ use super::follower::{Follower, Way};
 use super::walk::Walk;
 use crate::answer::pairs::pair_states;
 use crate::answer::record::{Ray, State, Verdict};
-use crate::contact::lcp::{Couple, contact_lcp};
+use crate::contact::lcp::{RowKind, contact_lcp};
 use crate::explain::ray;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::variable::Variable;
@@ -68,9 +68,9 @@ impl Walk<'_> {
         let mut z = vec![0.0; contact.rows.len()];
         for (row, meaning) in contact.rows.iter().enumerate() {
             z[row] = match (meaning.couple, system.pairs[meaning.pair].tangential) {
-                (Couple::Normal, _) => motion[meaning.pair],
-                (Couple::Plus, Some(joint)) => motion[joint].max(0.0),
-                (Couple::Minus, Some(joint)) => (-motion[joint]).max(0.0),
+                (RowKind::Normal, _) => motion[meaning.pair],
+                (RowKind::Plus, Some(joint)) => motion[joint].max(0.0),
+                (RowKind::Minus, Some(joint)) => (-motion[joint]).max(0.0),
                 (_, None) => 0.0,
             };
         }

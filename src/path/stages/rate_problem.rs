@@ -15,11 +15,11 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::released::Released;
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
-use crate::contact::lcp::{ContactLcp, Couple, RowMeaning, power_of_two};
+use crate::contact::lcp::{ContactLcp, RowId, RowKind, power_of_two};
+use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::problem::{NOISE, Scale};
-use crate::lcp::basis_solution::{Basis, vertex};
 use crate::model::rules::TieBreak;
 use crate::solve::attempt::run_scheme;
 use crate::watch::Watch;
@@ -35,7 +35,7 @@ const HIDDEN: f64 = 1e-6;
 struct Row {
     pair: usize,
     joint: usize,
-    couple: Couple,
+    couple: RowKind,
     mirrored: bool,
 }
 
@@ -64,16 +64,16 @@ pub(super) struct Rates {
     pub(super) z: DVector<f64>,
     pub(super) force: DVector<f64>,
     /// The couples whose z may grow: their x stays 0.
-    pub(super) moving: Vec<RowMeaning>,
+    pub(super) moving: Vec<RowId>,
 }
 
 /// The combination of joint forces that is the x of a couple, without its constant.
-fn terms(laws: Laws<'_>, meaning: RowMeaning, open: bool) -> Vec<(usize, f64)> {
-    let RowMeaning { pair, couple } = meaning;
+fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
+    let RowId { pair, couple } = meaning;
     let sign = match couple {
-        Couple::Normal => return vec![(pair, 1.0)],
-        Couple::Plus => 1.0,
-        Couple::Minus => -1.0,
+        RowKind::Normal => return vec![(pair, 1.0)],
+        RowKind::Plus => 1.0,
+        RowKind::Minus => -1.0,
     };
     let mut terms: Vec<(usize, f64)> =
         laws.system.pairs[pair].tangential.map(|joint| (joint, sign)).into_iter().collect();
@@ -84,12 +84,12 @@ fn terms(laws: Laws<'_>, meaning: RowMeaning, open: bool) -> Vec<(usize, f64)> {
 }
 
 /// The joint that the z of a couple moves, and in which sense.
-fn moved(laws: Laws<'_>, meaning: RowMeaning) -> (usize, f64) {
+fn moved(laws: Laws<'_>, meaning: RowId) -> (usize, f64) {
     let tangential = laws.system.pairs[meaning.pair].tangential.unwrap_or(meaning.pair);
     match meaning.couple {
-        Couple::Normal => (meaning.pair, 1.0),
-        Couple::Plus => (tangential, 1.0),
-        Couple::Minus => (tangential, -1.0),
+        RowKind::Normal => (meaning.pair, 1.0),
+        RowKind::Plus => (tangential, 1.0),
+        RowKind::Minus => (tangential, -1.0),
     }
 }
 
@@ -150,7 +150,7 @@ impl<'a> RateProblem<'a> {
     }
 
     fn rates(&self, standing: &Standing, rows: &[f64], basic: &[usize]) -> Rates {
-        let moving: Vec<RowMeaning> = basic.iter().map(|&row| self.contact.rows[row]).collect();
+        let moving: Vec<RowId> = basic.iter().map(|&row| self.contact.rows[row]).collect();
         let mut z = self.with_released(rows, self.rate);
         self.correct(standing, &moving, &[], &mut z, self.rate, |_| 0.0);
         let mut force = self.laws.force(&z, self.rate);
@@ -163,15 +163,15 @@ impl<'a> RateProblem<'a> {
     pub(super) fn settle(
         &self,
         standing: &Standing,
-        moving: &[RowMeaning],
+        moving: &[RowId],
         force: &mut DVector<f64>,
         constant: impl Fn(usize) -> f64,
     ) {
         self.released.joints.iter().for_each(|&joint| force[joint] = 0.0);
-        for meaning in moving.iter().filter(|meaning| meaning.couple == Couple::Normal) {
+        for meaning in moving.iter().filter(|meaning| meaning.couple == RowKind::Normal) {
             force[meaning.pair] = 0.0;
         }
-        for meaning in moving.iter().filter(|meaning| meaning.couple != Couple::Normal) {
+        for meaning in moving.iter().filter(|meaning| meaning.couple != RowKind::Normal) {
             let (joint, sign) = moved(self.laws, *meaning);
             let normal = if standing.is_open(meaning.pair) { 0.0 } else { force[meaning.pair] };
             force[joint] = 0.0 - sign * (self.laws.friction(meaning.pair) * normal + constant(meaning.pair));
@@ -184,7 +184,7 @@ impl<'a> RateProblem<'a> {
     pub(super) fn correct(
         &self,
         standing: &Standing,
-        moving: &[RowMeaning],
+        moving: &[RowId],
         close: &[usize],
         z: &mut DVector<f64>,
         load: &DVector<f64>,
@@ -206,7 +206,7 @@ impl<'a> RateProblem<'a> {
             after.axpy(-v, &self.laws.system.stiffness.column(joint), 1.0);
         }
         let residual = DVector::from_fn(moving.len(), |a, _| {
-            let own = if moving[a].couple == Couple::Normal { 0.0 } else { constant(moving[a].pair) };
+            let own = if moving[a].couple == RowKind::Normal { 0.0 } else { constant(moving[a].pair) };
             let terms = terms(self.laws, moving[a], standing.is_open(moving[a].pair));
             own + terms.iter().map(|(joint, by)| by * after[*joint]).sum::<f64>()
         });
@@ -224,7 +224,7 @@ impl<'a> RateProblem<'a> {
     }
 
     /// The condensed stiffness of the moving couples, factorized.
-    fn matrix_of(&self, standing: &Standing, released: &Released, moving: &[RowMeaning]) -> Option<LU<f64, Dyn, Dyn>> {
+    fn matrix_of(&self, standing: &Standing, released: &Released, moving: &[RowId]) -> Option<LU<f64, Dyn, Dyn>> {
         if moving.is_empty() {
             return None;
         }
@@ -248,7 +248,7 @@ impl<'a> RateProblem<'a> {
 /// The first basis that is an answer, where there are few rows: R alone does not make the rate problem one that Lemke's
 /// algorithm must solve. A basis whose rounding hides the load's rate decides nothing.
 fn search(lcp: &MirroredLcp) -> Option<(Vec<f64>, Vec<usize>)> {
-    let n = lcp.whole_size;
+    let n = lcp.full_size;
     if n > SEARCHED_ROWS {
         return None;
     }
@@ -289,13 +289,13 @@ fn condensed(laws: Laws<'_>, released: &Released, joints: &[usize]) -> DMatrix<f
 fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
     let pairs = &laws.system.pairs;
     let grazing = (0..pairs.len()).filter(|&i| standing.normal[i] == Normal::Grazing);
-    let normals = grazing.map(|pair| Row { pair, joint: pair, couple: Couple::Normal, mirrored: false });
+    let normals = grazing.map(|pair| Row { pair, joint: pair, couple: RowKind::Normal, mirrored: false });
     let tangentials = (0..pairs.len()).filter_map(|pair| {
         let joint = pairs[pair].tangential?;
         let (couple, mirrored) = match standing.tangential[pair] {
-            Tangential::Limit(Sense::Plus) => (Couple::Plus, false),
-            Tangential::Limit(Sense::Minus) => (Couple::Minus, false),
-            Tangential::Both => (Couple::Plus, true),
+            Tangential::Limit(Sense::Plus) => (RowKind::Plus, false),
+            Tangential::Limit(Sense::Minus) => (RowKind::Minus, false),
+            Tangential::Both => (RowKind::Plus, true),
             Tangential::Absent | Tangential::Free | Tangential::Held => return None,
         };
         Some(Row { pair, joint, couple, mirrored })
@@ -318,8 +318,8 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
     for (&joint, v) in released.joints.iter().zip(follow.iter()) {
         load.axpy(-v, &system.stiffness.column(joint), 1.0);
     }
-    let normal_of = |pair: usize| primary.iter().position(|row| row.pair == pair && row.couple == Couple::Normal);
-    let meaning_of = |row: &Row| RowMeaning { pair: row.pair, couple: row.couple };
+    let normal_of = |pair: usize| primary.iter().position(|row| row.pair == pair && row.couple == RowKind::Normal);
+    let meaning_of = |row: &Row| RowId { pair: row.pair, couple: row.couple };
     // Of a couple of both senses S holds λ_τ alone: the LCP adds f λ_n and makes the mirror.
     let stored = |row: &Row| match row.mirrored {
         true => vec![(row.joint, 1.0)],
@@ -347,7 +347,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
         sign * sum(&rows[i], &|row| stiffness[(place(row), place(joint))]) / stiffness_unit
     });
     let scales = joint_scales(system) / stiffness_unit.sqrt();
-    let mut rows: Vec<RowMeaning> = primary.iter().map(meaning_of).collect();
+    let mut rows: Vec<RowId> = primary.iter().map(meaning_of).collect();
     let mut mirrors = vec![None; count];
     for (i, row) in primary.iter().enumerate().filter(|(_, row)| row.mirrored) {
         mirrors[i] = Some(Mirror {
@@ -357,18 +357,18 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
             constant: 0.0,
             covering: 2.0,
         });
-        rows.push(RowMeaning { pair: row.pair, couple: Couple::Minus });
+        rows.push(RowId { pair: row.pair, couple: RowKind::Minus });
     }
-    let find = |pair: usize, couple: Couple| rows.iter().position(|row| *row == RowMeaning { pair, couple });
-    let rows_of = |couple: Couple| (0..system.pairs.len()).map(|pair| find(pair, couple)).collect();
-    let (normal_row, plus_row, minus_row) = (rows_of(Couple::Normal), rows_of(Couple::Plus), rows_of(Couple::Minus));
+    let find = |pair: usize, couple: RowKind| rows.iter().position(|row| *row == RowId { pair, couple });
+    let rows_of = |couple: RowKind| (0..system.pairs.len()).map(|pair| find(pair, couple)).collect();
+    let (normal_row, plus_row, minus_row) = (rows_of(RowKind::Normal), rows_of(RowKind::Plus), rows_of(RowKind::Minus));
     let lcp = MirroredLcp {
         base: Arc::new(base),
         q,
         covering: DVector::from_iterator(
             count,
             primary.iter().map(|row| match row.couple {
-                Couple::Normal => 1.0,
+                RowKind::Normal => 1.0,
                 _ => 1.0 + laws.friction(row.pair),
             }),
         ),
@@ -378,7 +378,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
             row: primary
                 .iter()
                 .map(|row| match row.couple {
-                    Couple::Normal => scales[row.joint],
+                    RowKind::Normal => scales[row.joint],
                     _ => scales[row.joint] + laws.friction(row.pair) * scales[row.pair],
                 })
                 .collect(),
@@ -386,7 +386,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
             // Dimensionless: the largest |q| is about 1.
             load: Some(1.0),
         },
-        whole_size: rows.len(),
+        full_size: rows.len(),
     };
     ContactLcp {
         swapped: vec![false; rows.len()],

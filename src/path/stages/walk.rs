@@ -12,7 +12,7 @@ use super::record::History;
 use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales, scheme_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
-use crate::contact::lcp::{ContactLcp, Couple, RowMeaning};
+use crate::contact::lcp::{ContactLcp, RowId, RowKind};
 use crate::contact::numbers::ContactNumbers;
 use crate::explain::sentence::pivot_records;
 use crate::lcp::outcome::Run;
@@ -136,9 +136,9 @@ impl<'a> Walk<'a> {
         self.place.way = self.way_of(rates);
         for meaning in &rates.moving {
             let sense = match meaning.couple {
-                Couple::Normal => continue,
-                Couple::Plus => Sense::Plus,
-                Couple::Minus => Sense::Minus,
+                RowKind::Normal => continue,
+                RowKind::Plus => Sense::Plus,
+                RowKind::Minus => Sense::Minus,
             };
             self.standing.last_slip[meaning.pair] = Some(sense);
         }
@@ -151,7 +151,7 @@ impl<'a> Walk<'a> {
 
     /// What every pair does at these rates.
     fn way_of(&self, rates: &Rates) -> Vec<(State, Option<State>)> {
-        let moves = |pair: usize, couple: Couple| rates.moving.contains(&RowMeaning { pair, couple });
+        let moves = |pair: usize, couple: RowKind| rates.moving.contains(&RowId { pair, couple });
         // A pair that may slip but whose rate is rounding rests at its limit.
         let noise = self.place.laws.length_sizes(&joint_scales(self.place.laws.system), &rates.z) * NOISE;
         let slides = |joint: Option<usize>| joint.is_some_and(|joint| rates.z[joint].abs() > noise[joint]);
@@ -160,10 +160,10 @@ impl<'a> Walk<'a> {
             .map(|(i, pair)| {
                 let open = match self.standing.normal[i] {
                     Normal::Open => true,
-                    Normal::Grazing => moves(i, Couple::Normal),
+                    Normal::Grazing => moves(i, RowKind::Normal),
                     Normal::Closed | Normal::Bilateral => false,
                 };
-                let slips = match (moves(i, Couple::Plus), moves(i, Couple::Minus)) {
+                let slips = match (moves(i, RowKind::Plus), moves(i, RowKind::Minus)) {
                     _ if !slides(pair.tangential) => State::Stick,
                     (true, _) => State::SlipPlus,
                     (_, true) => State::SlipMinus,

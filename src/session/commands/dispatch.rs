@@ -17,15 +17,23 @@ use crate::view::number::short;
 use crate::view::status;
 use crate::view::style::Role;
 
+use crate::session::journal::Record;
 use crate::session::language::command::Command;
 use crate::session::language::expect;
-use crate::session::journal::Record;
 use crate::session::language::setting::{self, Setting};
-use crate::session::{Change, CommandError, Format, Next, Output, Session, Setup, language::help, commands::import, load, commands::save, commands::script};
+use crate::session::{
+    Change, CommandError, Format, Next, Output, Session, Setup, commands::import, commands::save, commands::script,
+    language::help, load,
+};
 
 impl Session {
     /// One command. The arms that only show something are in `reports`.
-    pub(in crate::session) fn apply(&mut self, command: Command, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+    pub(in crate::session) fn apply(
+        &mut self,
+        command: Command,
+        text: &str,
+        io: &mut Output<'_>,
+    ) -> Result<Next, CommandError> {
         if command.needs_pivots() {
             self.ensure_pivots(io)?;
         }
@@ -180,7 +188,11 @@ impl Session {
     }
 
     /// The one line after a change.
-    pub(in crate::session) fn say_what_changed(&self, notes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(in crate::session) fn say_what_changed(
+        &self,
+        notes: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let previous = self.previous_answer();
         let units = &self.now.scenario.units;
         io.report(

@@ -4,9 +4,9 @@ use std::fs::OpenOptions;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::session::{CommandError, worker};
 use crate::export::lcp;
 use crate::model::siconos;
+use crate::session::{CommandError, worker};
 use crate::text::file::read_text;
 use crate::watch::Watch;
 

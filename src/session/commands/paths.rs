@@ -67,7 +67,7 @@ impl From<SweepFileError> for CommandError {
 }
 
 /// What every path starts from.
-pub(in crate::session) struct Ground {
+pub(in crate::session) struct PathStart {
     setup: Setup,
     pub(in crate::session) prepared: Arc<Prepared>,
     solved: Arc<Solved>,
@@ -75,7 +75,7 @@ pub(in crate::session) struct Ground {
 
 impl Session {
     /// The present setup, solved.
-    pub(in crate::session) fn ground(&self, watch: &dyn Watch) -> Result<Ground, CommandError> {
+    pub(in crate::session) fn ground(&self, watch: &dyn Watch) -> Result<PathStart, CommandError> {
         let mut setup = self.now.clone();
         let solved = match (&self.solved, &setup.prepared) {
             (Some(solved), Some(_)) => Arc::clone(solved),
@@ -85,7 +85,7 @@ impl Session {
             .prepared
             .clone()
             .ok_or_else(|| CommandError::Internal("a solved scenario has no prepared geometry".to_owned()))?;
-        Ok(Ground { setup, prepared, solved })
+        Ok(PathStart { setup, prepared, solved })
     }
 
     fn case_names(prepared: &Prepared) -> Vec<String> {
@@ -197,7 +197,7 @@ impl Session {
         let cases = Self::case_names(&ground.prepared);
         let what = name.to_owned();
         let found = worker::run(io.watch, move |watch| {
-            let Ground { prepared, solved, .. } = &ground;
+            let PathStart { prepared, solved, .. } = &ground;
             limit::limit(prepared, &scenario, &values, Some(solved), &what, watch)
         })??;
         let unit = self.now.scenario.parameters.get(name).and_then(|parameter| parameter.unit.clone());
@@ -225,7 +225,11 @@ impl Session {
     }
 
     /// `sensitivity [PARAMETER]`.
-    pub(in crate::session) fn sensitivity(&mut self, parameter: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(in crate::session) fn sensitivity(
+        &mut self,
+        parameter: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         if let Some(name) = parameter
             && !self.now.values.contains_key(name)
         {
@@ -371,7 +375,12 @@ impl Session {
     }
 
     /// `plot path [QUANTITY] [PAIRS] [over CASE]`, `plot path QUANTITY [over CASE]`.
-    pub(in crate::session) fn plot_path(&self, of: &[String], height: usize, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(in crate::session) fn plot_path(
+        &self,
+        of: &[String],
+        height: usize,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let (chart, along) = self.path_chart(of, io.watch)?;
         let path = self.need_path()?;
         let report = || along.map_or_else(|| json!(path), |along| along_json(path, &along));

@@ -148,7 +148,10 @@ pub(in crate::session) fn help() -> String {
 }
 
 /// The names that may follow the words of a quantity, for completion: the next argument of the last quantity.
-pub(in crate::session) fn next_names(given: &[String], vocabulary: &crate::session::language::complete::Vocabulary) -> Vec<String> {
+pub(in crate::session) fn next_names(
+    given: &[String],
+    vocabulary: &crate::session::language::complete::Vocabulary,
+) -> Vec<String> {
     let at = given.iter().rposition(|word| quantity::entry(word).is_some());
     let words = || {
         let words = WORDS.iter().map(|entry| entry.word.to_owned());

@@ -160,7 +160,11 @@ impl Session {
         Ok(())
     }
 
-    pub(in crate::session) fn enumerate(&mut self, answer: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(in crate::session) fn enumerate(
+        &mut self,
+        answer: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let values = self.now.values.clone();
         // Stopped, it shows what was found so far.
         let (prepared, _) = self.both()?;

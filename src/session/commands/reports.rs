@@ -206,7 +206,11 @@ impl Session {
     }
 
     /// `displacements [NODES] [sort KEY] [top N]`.
-    pub(in crate::session) fn report_displacements(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(in crate::session) fn report_displacements(
+        &self,
+        words: &[String],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let rows = Rows::read(words, "displacements", DISPLACEMENT_KEYS)?;
         let answer = self.need_quantities()?;
         let all = self.quantity_displacements().ok_or_else(|| self.none("displacements", answer))?;
@@ -310,7 +314,11 @@ impl Session {
     }
 
     /// `pivots [FROM..TO]`.
-    pub(in crate::session) fn report_pivots(&self, range: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(in crate::session) fn report_pivots(
+        &self,
+        range: Option<&str>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let last = answer.pivots.last().map_or(0, |pivot| pivot.step);
         let range = match range {

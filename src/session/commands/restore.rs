@@ -145,7 +145,11 @@ fn load_command(chosen: &Chosen) -> String {
 
 impl Session {
     /// Writes a change into the journal; gives a note where that cannot be done: the change itself is done.
-    pub(in crate::session) fn note_in_journal(&mut self, before: &Setup, record: impl FnOnce(Chosen) -> Record) -> Option<String> {
+    pub(in crate::session) fn note_in_journal(
+        &mut self,
+        before: &Setup,
+        record: impl FnOnce(Chosen) -> Record,
+    ) -> Option<String> {
         let journal = self.journal.as_mut()?;
         let written = journal.append(|| before.chosen(), &[record(self.now.chosen())]);
         written.err().map(|error| not_kept(&error))

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::session::language::command::{self, Command};
-use crate::session::{CommandError, Format, Next, Output, Session, load, language::tokens};
+use crate::session::{CommandError, Format, Next, Output, Session, language::tokens, load};
 use crate::view::style::Role;
 
 /// Scripts within scripts, at most: a script that sources itself ends here.
@@ -100,7 +100,11 @@ pub fn run(
 
 /// `source FILE`: its first failure is the failure of `source`; what ran before it stays done. `quit` in a script
 /// leaves the program.
-pub(in crate::session) fn source(session: &mut Session, path: &Path, io: &mut Output<'_>) -> Result<Next, CommandError> {
+pub(in crate::session) fn source(
+    session: &mut Session,
+    path: &Path,
+    io: &mut Output<'_>,
+) -> Result<Next, CommandError> {
     if session.depth >= DEEPEST {
         return Err(CommandError::Refused(format!("{DEEPEST} scripts within scripts: does one source itself?")));
     }

@@ -318,7 +318,11 @@ mod tests {
 
     fn read(text: &str) -> Result<Expectation, ExpectationSyntax> {
         let scenario = crate::model::embedded::load("beam").unwrap();
-        super::read(&super::super::words::split(text).unwrap(), &Names::of(&scenario), &scenario.parameter_values())
+        super::read(
+            &crate::session::language::tokens::split(text).unwrap(),
+            &Names::of(&scenario),
+            &scenario.parameter_values(),
+        )
     }
 
     #[test]

@@ -53,7 +53,11 @@ impl<'w> Rows<'w> {
     ///
     /// # Errors
     /// An unknown key, no number.
-    pub(in crate::session) fn read(words: &'w [String], command: &str, keys: &[&str]) -> Result<Rows<'w>, CommandError> {
+    pub(in crate::session) fn read(
+        words: &'w [String],
+        command: &str,
+        keys: &[&str],
+    ) -> Result<Rows<'w>, CommandError> {
         let first = words.iter().position(|word| word == "sort" || word == "top").unwrap_or(words.len());
         let mut rows = Rows { names: &words[..first], sort: None, top: None };
         let mut rest = &words[first..];

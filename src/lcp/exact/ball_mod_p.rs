@@ -1,7 +1,7 @@
 //! Exact signs at the price of floating point: a number held twice, as a ball of many bits and modulo a prime.
 //!
 //! Rational entries of a large tableau grow to tens of thousands of bits; their signs rarely need more than a
-//! few hundred. A [`Filtered`] number is an interval (midpoint of at most `precision` bits, radius) that is sure to
+//! few hundred. A [`BallModP`] number is an interval (midpoint of at most `precision` bits, radius) that is sure to
 //! hold the true rational value, and the residue of that value modulo 2⁶¹ − 1. Sign:
 //!
 //! * the ball does not hold zero: the sign is certain;
@@ -87,7 +87,7 @@ impl Bound {
 
 /// See the [module documentation](self).
 #[derive(Clone, Debug)]
-pub struct Filtered {
+pub struct BallModP {
     mantissa: BigInt,
     exponent: i64,
     radius: Bound,
@@ -141,7 +141,7 @@ fn magnitude(mantissa: &BigInt, exponent: i64, side: f64) -> Bound {
     Bound::new(top * (1.0 + side * 8.0 * f64::EPSILON), exponent + shift)
 }
 
-impl Filtered {
+impl BallModP {
     /// The ball of `precision` bits around a rational number.
     pub fn new(value: &BigRational, precision: u32) -> Self {
         let denominator = value.denom();
@@ -220,17 +220,17 @@ impl Filtered {
     }
 }
 
-impl PartialEq for Filtered {
+impl PartialEq for BallModP {
     /// Equal as far as can be told; used to compare steps only.
     fn eq(&self, other: &Self) -> bool {
         self.compare(other) == Some(Ordering::Equal)
     }
 }
 
-impl Scalar for Filtered {
+impl Scalar for BallModP {
     /// Exact; takes part with the precision of the numbers it meets.
     fn from_f64(value: f64) -> Self {
-        Filtered::new(&<BigRational as Scalar>::from_f64(value), 64)
+        BallModP::new(&<BigRational as Scalar>::from_f64(value), 64)
     }
 
     fn to_f64(&self) -> f64 {
@@ -341,5 +341,5 @@ impl Scalar for Filtered {
 }
 
 #[cfg(test)]
-#[path = "filtered_tests.rs"]
+#[path = "ball_mod_p_tests.rs"]
 mod tests;

@@ -7,18 +7,18 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 use super::attempt::{polish, watched};
+use crate::contact::full_lcp::{WholeInput, full_lcp_of};
 use crate::contact::lcp::ContactLcp;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::contact::full_lcp::{WholeInput, whole_lcp_of};
 use crate::explain::kernel::clean;
 use crate::lcp::exact::lemke::Exact;
+use crate::lcp::exact::tableau::Tableau;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, RayDirection, Run};
+use crate::lcp::pivot::PivotLog;
 use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
-use crate::lcp::exact::tableau::Tableau;
-use crate::lcp::pivot::PivotLog;
 use crate::lcp::variable::Variable;
 use crate::model::rules::Covering;
 use crate::watch::Watch;
@@ -30,7 +30,7 @@ pub const EXACT_ROWS: usize = 3 * EXACT_PAIRS;
 
 /// Every row of a mirrored LCP written out.
 pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
-    let n = lcp.whole_size;
+    let n = lcp.full_size;
     let columns = lcp.primary_rows();
     let spread = |row: &dyn Fn(usize) -> f64| -> Vec<f64> {
         let entry = |&(j, mirrored): &(usize, bool)| if mirrored { -row(j) } else { row(j) };
@@ -99,7 +99,7 @@ pub fn run_exact_contact(
     let Some(stiffness) = exact_stiffness(system, watch) else {
         return Run { outcome: Outcome::Interrupted, pivots: PivotLog::default(), point: Point::default() };
     };
-    let mut problem = whole_lcp_of(&input, &stiffness);
+    let mut problem = full_lcp_of(&input, &stiffness);
     problem.scale.load = contact.lcp.scale.load.map(|load| load * contact.force_unit);
     rounded(run_exact(problem, rule, watch), contact.force_unit, contact.length_unit)
 }

@@ -9,7 +9,7 @@ fn rational(n: i64, d: i64) -> BigRational {
     BigRational::new(BigInt::from(n), BigInt::from(d))
 }
 
-fn holds(number: &Filtered, value: &BigRational) {
+fn holds(number: &BallModP, value: &BigRational) {
     // |value − midpoint| ≤ radius, in rationals.
     let power = |e: i64| {
         let two = BigInt::one() << e.unsigned_abs();
@@ -34,7 +34,7 @@ fn balls_hold_the_true_values() {
             let mut balls = vec![];
             for _ in 0..4 {
                 let x = rational(random.random_range(-1000..1000), random.random_range(1..500));
-                balls.push(Filtered::new(&x, precision));
+                balls.push(BallModP::new(&x, precision));
                 exact.push(x);
             }
             for _ in 0..12 {
@@ -59,22 +59,22 @@ fn balls_hold_the_true_values() {
 
 #[test]
 fn zero_is_found_by_residue() {
-    let third = Filtered::new(&rational(1, 3), 100);
-    let sum = third.add(&third).add(&third).sub(&Filtered::one());
+    let third = BallModP::new(&rational(1, 3), 100);
+    let sum = third.add(&third).add(&third).sub(&BallModP::one());
     assert_eq!(sum.sign(), Some(Ordering::Equal));
     let almost = third
         .add(&third)
         .add(&third)
-        .sub(&Filtered::one())
-        .add(&Filtered::new(&rational(1, 7), 100))
-        .sub(&Filtered::new(&rational(1, 7), 100));
+        .sub(&BallModP::one())
+        .add(&BallModP::new(&rational(1, 7), 100))
+        .sub(&BallModP::new(&rational(1, 7), 100));
     assert!(Scalar::is_zero(&almost));
 }
 
 #[test]
 fn too_little_precision_is_admitted() {
     let tiny = BigRational::new(BigInt::one(), BigInt::one() << 300u32);
-    let third = Filtered::new(&rational(1, 3), 100);
-    let nearly = third.add(&Filtered::new(&tiny, 100)).sub(&third);
+    let third = BallModP::new(&rational(1, 3), 100);
+    let nearly = third.add(&BallModP::new(&tiny, 100)).sub(&third);
     assert_eq!(nearly.sign(), None);
 }
