@@ -417,8 +417,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
             Ok(0)
         }
         Some(Command::Schema) => {
-            let text = serde_json::to_string_pretty(&schema::schema()).map_err(io::Error::other)?;
-            writeln!(out, "{text}")?;
+            out.write_all(schema::SCHEMA.as_bytes())?;
             Ok(0)
         }
         Some(Command::Completions { shell }) => {
