@@ -2,6 +2,7 @@
 //! elements, edges of every kind, and files that are damaged.
 
 mod damaged;
+mod faulty;
 mod program;
 mod write;
 

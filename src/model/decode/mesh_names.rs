@@ -108,9 +108,10 @@ impl MeshPart {
         None
     }
 
-    /// Whether a group has this name in other letters: then the direction is hardly what is meant.
+    /// Whether a group has this name in other letters, or one without members: then the direction is hardly meant.
     fn is_nearly_a_group(&self, name: &str) -> bool {
         self.mesh.groups.iter().any(|group| group.name.eq_ignore_ascii_case(name))
+            || self.mesh.empty_group(name).is_some()
     }
 
     fn names(&self, names: &[&str]) -> String {
@@ -119,6 +120,13 @@ impl MeshPart {
     }
 
     fn unknown_group(&self, cursor: Cursor<'_>, name: &str) {
+        if let Some(place) = self.mesh.empty_group(name) {
+            cursor.problem(
+                format!("the group {} ({}) is empty: nothing of the mesh is in it", quoted(name), self.mesh.at(place)),
+                "put lines of the boundary into it, or name another group",
+            );
+            return;
+        }
         let mut known: Vec<&str> = self
             .mesh
             .groups

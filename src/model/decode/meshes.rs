@@ -150,7 +150,11 @@ fn groups<'d>(builder: &Builder<'d>, outline: &mut MeshOutline<'d>, materials: C
         let is_line = entry.value().has_key("section") || entry.value().has_key("kind");
         if entry.name() == REST {
             match area(builder, entry) {
-                Some(area) => rest = Some(area),
+                Some(area) => {
+                    let all: Vec<u32> = outline.mesh.areas().collect();
+                    is_right &= takes_modes(&outline.mesh, entry, &area, &all);
+                    rest = Some(area);
+                }
                 None => is_right = false,
             }
             continue;
@@ -204,6 +208,10 @@ fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m 
             ),
             "a group of elements gets `material`, `thickness` and `plane`, a group of lines `material` and `section`",
         ),
+        None if mesh.empty_group(name).is_some() => entry.key_problem(
+            format!("the group {} of {file} is empty: nothing of the mesh is in it", quoted(name)),
+            "remove it here, or put elements into it",
+        ),
         None => {
             let known =
                 mesh.groups.iter().filter(|group| matches!(group.members, Members::Lines(_) | Members::Areas(_)));
@@ -234,8 +242,12 @@ fn takes_modes(mesh: &Mesh, entry: Entry<'_>, of: &Area, areas: &[u32]) -> bool 
     if !takes {
         entry.key_problem(
             format!(
-                "the group {} has no elements of four nodes, which alone can be \"incompatible\"",
-                quoted(entry.name())
+                "{} has no elements of four nodes, which alone can be \"incompatible\"",
+                if entry.name() == REST {
+                    "the mesh".to_owned()
+                } else {
+                    format!("the group {}", quoted(entry.name()))
+                }
             ),
             "remove `element`",
         );

@@ -1,200 +1,16 @@
-//! What a reader collects, and the [`Mesh`] that is made of it: numbers become indices, what is written twice becomes
-//! one, areas are judged and turned.
+//! The [`Mesh`] that is made of what a reader collected: numbers become indices, what is written twice becomes one, areas
+//! are judged and turned.
 
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 
-use super::shape::{Shape, ShapeFault};
-use super::{Group, LineType, Members, Mesh, MeshElement, MeshNode, MeshProblem, Place};
+use super::raw::{RawMembers, RawMesh};
+use super::shape::ShapeFault;
+use super::{Group, Members, Mesh, MeshElement, MeshProblem, Place};
 use crate::model::words::counted;
 
 /// Nodes count as in one plane if they are this near to it, relative to the size of the mesh: what Gmsh itself allows
 /// its geometry (`Geometry.Tolerance`).
 const IN_PLANE: f64 = 1e-8;
-
-/// Members of a group as the file names them.
-pub enum RawMembers {
-    /// Numbers of the nodes of points.
-    Points(Vec<u64>),
-    /// Numbers of the nodes of a set.
-    NodeSet(Vec<u64>),
-    /// Indices of elements as they were added.
-    Elements(Vec<u32>),
-    /// Sides of such elements.
-    Sides(Vec<(u32, Option<u8>)>),
-}
-
-/// A group as it is read.
-pub struct RawGroup {
-    pub dimension: u8,
-    pub number: i64,
-    pub name: Option<String>,
-    pub members: RawMembers,
-    pub place: Place,
-}
-
-struct RawElement {
-    tag: u64,
-    shape: Shape,
-    line_type: LineType,
-    place: Place,
-    /// Its node numbers are [`RawMesh::tags`] from here on.
-    first: usize,
-}
-
-/// What a reader has collected.
-pub struct RawMesh {
-    pub files: Vec<String>,
-    format: String,
-    pub nodes: Vec<MeshNode>,
-    node_of: HashMap<u64, u32>,
-    elements: Vec<RawElement>,
-    tags: Vec<u64>,
-    pub groups: Vec<RawGroup>,
-    group_of: HashMap<(u8, i64), usize>,
-    pub skipped: Vec<String>,
-    pub notes: Vec<String>,
-    pub ignores_case: bool,
-    /// Whether the format writes an element again for every group it is in.
-    pub repeats_elements: bool,
-}
-
-impl RawMesh {
-    pub fn new(name: &str, format: String) -> Self {
-        RawMesh {
-            files: vec![name.to_owned()],
-            format,
-            nodes: Vec::new(),
-            node_of: HashMap::new(),
-            elements: Vec::new(),
-            tags: Vec::new(),
-            groups: Vec::new(),
-            group_of: HashMap::new(),
-            skipped: Vec::new(),
-            notes: Vec::new(),
-            ignores_case: false,
-            repeats_elements: false,
-        }
-    }
-
-    /// A problem at a place.
-    pub fn problem(&self, place: Place, message: impl Into<String>, help: impl Into<String>) -> MeshProblem {
-        let file = self.files[place.file as usize].clone();
-        MeshProblem { file, line: place.line as usize, message: message.into(), help: help.into() }
-    }
-
-    fn line_of(&self, place: Place) -> String {
-        match place.line {
-            0 => self.files[place.file as usize].clone(),
-            line => format!("{}:{line}", self.files[place.file as usize]),
-        }
-    }
-
-    /// Adds a node: its coordinates are finite, its number is new.
-    pub fn add_node(&mut self, tag: u64, position: [f64; 3], place: Place) -> Result<(), MeshProblem> {
-        // Larger ones have squares that are no numbers.
-        const LARGEST: f64 = 1e150;
-        for (axis, x) in ["x", "y", "z"].into_iter().zip(position) {
-            if x.is_nan() || x.abs() > LARGEST {
-                return Err(self.problem(
-                    place,
-                    format!("node {tag}: {axis} is {x}, which cannot be computed with"),
-                    "coordinates are finite numbers up to 1e150: correct the file, or mesh again",
-                ));
-            }
-        }
-        match self.node_of.entry(tag) {
-            Entry::Occupied(first) => {
-                let first = self.nodes[*first.get() as usize].place;
-                Err(self.problem(
-                    place,
-                    format!("duplicate node {tag}{}", self.first_at(first)),
-                    "every node has a number of its own: renumber one of the two",
-                ))
-            }
-            Entry::Vacant(new) => {
-                new.insert(self.nodes.len() as u32);
-                self.nodes.push(MeshNode { tag, position, place });
-                Ok(())
-            }
-        }
-    }
-
-    fn first_at(&self, place: Place) -> String {
-        if place.line == 0 { String::new() } else { format!(", first at {}", self.line_of(place)) }
-    }
-
-    /// The node with this number.
-    pub fn node(&self, tag: u64) -> Option<u32> {
-        self.node_of.get(&tag).copied()
-    }
-
-    /// Adds an element with the numbers of its nodes and returns its index.
-    pub fn add_element(&mut self, tag: u64, shape: Shape, nodes: &[u64], place: Place) -> u32 {
-        let (index, first) = (self.elements.len(), self.tags.len());
-        self.elements.push(RawElement { tag, shape, line_type: LineType::Beam, place, first });
-        self.tags.extend_from_slice(nodes);
-        index as u32
-    }
-
-    /// Says of the element added last that it is a truss.
-    pub fn last_is_truss(&mut self) {
-        if let Some(last) = self.elements.last_mut() {
-            last.line_type = LineType::Truss;
-        }
-    }
-
-    /// Number, shape and node numbers of an element.
-    pub fn element(&self, index: u32) -> (u64, Shape, &[u64]) {
-        let element = &self.elements[index as usize];
-        (element.tag, element.shape, &self.tags[element.first..element.first + element.shape.nodes()])
-    }
-
-    /// Number of elements so far.
-    pub fn element_count(&self) -> u32 {
-        self.elements.len() as u32
-    }
-
-    /// Adds the node of a point to groups of points.
-    pub fn add_point(&mut self, node: u64, groups: &[i64], place: Place) {
-        for &number in groups {
-            if let RawMembers::Points(nodes) = self.group(0, number, place) {
-                nodes.push(node);
-            }
-        }
-    }
-
-    /// Adds the last element to groups of its dimension.
-    pub fn put_in_groups(&mut self, shape: Shape, groups: &[i64], place: Place) {
-        let last = self.element_count() - 1;
-        for &number in groups {
-            if let RawMembers::Elements(elements) = self.group(shape.dimension(), number, place) {
-                elements.push(last);
-            }
-        }
-    }
-
-    fn group(&mut self, dimension: u8, number: i64, place: Place) -> &mut RawMembers {
-        let groups = &mut self.groups;
-        let index = *self.group_of.entry((dimension, number)).or_insert_with(|| {
-            let members =
-                if dimension == 0 { RawMembers::Points(Vec::new()) } else { RawMembers::Elements(Vec::new()) };
-            groups.push(RawGroup { dimension, number, name: None, members, place });
-            groups.len() - 1
-        });
-        &mut groups[index].members
-    }
-
-    /// Gives groups the names they have in the file, by dimension and number.
-    pub fn name_groups(&mut self, mut names: HashMap<(u8, i64), (String, Place)>) {
-        for group in &mut self.groups {
-            if let Some((name, place)) = names.remove(&(group.dimension, group.number)) {
-                group.name = Some(name).filter(|name| !name.trim().is_empty());
-                group.place = place;
-            }
-        }
-    }
-}
 
 /// Problems of many items: the first of each kind and how many others there are.
 #[derive(Default)]
@@ -244,7 +60,8 @@ pub fn mesh(raw: RawMesh) -> Result<Mesh, Vec<MeshProblem>> {
             first.tag
         ));
     }
-    let groups = groups(&raw, &elements, &final_index, &turned).map_err(|problem| vec![problem])?;
+    let (groups, empty) = groups(&raw, &elements, &final_index, &turned).map_err(|problem| vec![problem])?;
+    let empty_groups = raw.empty_groups.into_iter().chain(empty).collect();
     let mut element_of = HashMap::new();
     for (element, index) in raw.elements.iter().zip(&final_index) {
         element_of.insert(element.tag, *index);
@@ -255,6 +72,7 @@ pub fn mesh(raw: RawMesh) -> Result<Mesh, Vec<MeshProblem>> {
         nodes: raw.nodes,
         elements,
         groups,
+        empty_groups,
         ignores_case: raw.ignores_case,
         notes,
         skipped: raw.skipped,
@@ -350,6 +168,16 @@ fn in_one_plane(raw: &RawMesh, elements: &[MeshElement]) -> Result<(), Vec<MeshP
         }
     }
     let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    // Areas of smaller elements are no numbers; coincident nodes have messages of their own.
+    const SMALLEST: f64 = 1e-150;
+    if size > 0.0 && size < SMALLEST {
+        let message = format!("the mesh is {size:e} wide and high, which is too small to compute with");
+        return Err(vec![raw.problem(
+            Place::default(),
+            message,
+            "lengths are numbers from 1e-150: choose other units",
+        )]);
+    }
     let plane = raw.nodes[first].position[2];
     let mut faults = Faults::default();
     for element in areas() {
@@ -431,14 +259,17 @@ fn said(raw: &RawMesh, element: &MeshElement, fault: ShapeFault) -> (&'static st
     }
 }
 
-/// Groups that have members, lines and areas apart.
+/// Name and place of a group in which nothing is.
+type Empty = (String, Place);
+
+/// Groups that have members, lines and areas apart; and those that have none.
 fn groups(
     raw: &RawMesh,
     elements: &[MeshElement],
     final_index: &[u32],
     turned: &[bool],
-) -> Result<Vec<Group>, MeshProblem> {
-    let mut groups = Vec::new();
+) -> Result<(Vec<Group>, Vec<Empty>), MeshProblem> {
+    let (mut groups, mut empty) = (Vec::new(), Vec::new());
     for group in &raw.groups {
         let name = group.name.clone().unwrap_or_else(|| group.number.to_string());
         let nodes = |tags: &[u64]| -> Result<Vec<u32>, MeshProblem> {
@@ -472,6 +303,9 @@ fn groups(
                 vec![Members::Sides(once(sides.iter().map(side).collect()))]
             }
         };
+        if all.iter().all(|members| members.count() == 0) {
+            empty.push((name.clone(), group.place));
+        }
         groups.extend(all.into_iter().filter(|members| members.count() > 0).map(|members| Group {
             name: name.clone(),
             is_named: group.name.is_some(),
@@ -479,7 +313,7 @@ fn groups(
             place: group.place,
         }));
     }
-    Ok(groups)
+    Ok((groups, empty))
 }
 
 /// Each member once, in the order of the first time.

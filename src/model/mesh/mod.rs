@@ -1,5 +1,5 @@
 //! Meshes that other programs wrote: files of Gmsh (`gmsh`) and of Abaqus and CalculiX (`abaqus`) → one [`Mesh`]
-//! whatever the format, every number of it checked (`assemble`, `shape`). `chain` and `boundary` find edges in it,
+//! whatever the format (`raw`), every number of it checked (`assemble`, `shape`). `chain` and `boundary` find edges in it,
 //! `overview` lists what there is.
 //!
 //! Nothing a file claims is trusted: counts only say when to stop.
@@ -11,6 +11,7 @@ pub mod chain;
 mod file;
 mod gmsh;
 pub mod overview;
+mod raw;
 mod shape;
 mod source;
 #[cfg(test)]
@@ -167,6 +168,8 @@ pub struct Mesh {
     pub elements: Vec<MeshElement>,
     /// Groups that have members, in the order of the file.
     pub groups: Vec<Group>,
+    /// Names of groups that have none, and where they stand.
+    pub empty_groups: Vec<(String, Place)>,
     /// Whether names of groups are the same in large and small letters.
     pub ignores_case: bool,
     /// What was put right, in words.
@@ -200,6 +203,11 @@ impl Mesh {
     /// The groups of this name.
     pub fn groups_named<'m>(&'m self, name: &'m str) -> impl Iterator<Item = &'m Group> {
         self.groups.iter().filter(move |group| self.same_name(&group.name, name))
+    }
+
+    /// Where a group of this name stands in which nothing is.
+    pub fn empty_group(&self, name: &str) -> Option<Place> {
+        self.empty_groups.iter().find(|(empty, _)| self.same_name(empty, name)).map(|(_, place)| *place)
     }
 
     /// Whether two names mean the same group.

@@ -2,6 +2,9 @@
 
 use super::{MeshProblem, Place};
 
+/// What a line is read as that is not UTF-8; no line of a mesh is this by itself.
+const NO_TEXT: &str = "\u{fffd}";
+
 /// How the numbers stand in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
@@ -51,6 +54,17 @@ impl<'a> Source<'a> {
         Place { file: 0, line: if self.form == Form::Text { self.line } else { 0 } }
     }
 
+    /// A problem with a whole line, of which something else was expected.
+    pub fn line_problem(&self, expected: &str, found: &str, help: &str) -> MeshProblem {
+        if found == NO_TEXT {
+            return self.problem(
+                format!("expected {expected}, found a line that is not UTF-8"),
+                "save the file as text in UTF-8, without letters of other encodings in its names",
+            );
+        }
+        self.problem(format!("expected {expected}, found {}", shown(found.as_bytes())), help)
+    }
+
     /// A problem where the reading stands.
     pub fn problem(&self, message: impl Into<String>, help: impl Into<String>) -> MeshProblem {
         let line = self.place().line as usize;
@@ -60,6 +74,14 @@ impl<'a> Source<'a> {
     /// Bytes that are left.
     pub fn left(&self) -> usize {
         self.bytes.len() - self.at
+    }
+
+    /// What a message names: `x of node 5`, or `the number of blocks` where it belongs to the section itself.
+    fn whose(&self, what: &str) -> String {
+        match self.item {
+            Item::Section(_) => format!("{what} in {}", self.item),
+            Item::One(..) => format!("{what} of {}", self.item),
+        }
     }
 
     fn ended(&self, what: &str) -> MeshProblem {
@@ -78,7 +100,7 @@ impl<'a> Source<'a> {
             }
             let end = rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len());
             self.skip(end);
-            let line = std::str::from_utf8(&rest[..end]).map(str::trim).unwrap_or("\u{fffd}");
+            let line = std::str::from_utf8(&rest[..end]).map(str::trim).unwrap_or(NO_TEXT);
             if !line.is_empty() {
                 return Some(line);
             }
@@ -148,7 +170,7 @@ impl<'a> Source<'a> {
             Some(word) => std::str::from_utf8(word).map_err(|_| self.unreadable(what, expected, word)),
             None if self.left() == 0 => Err(self.ended(what)),
             None => Err(self.problem(
-                format!("the line ends before {what} of {}", self.item),
+                format!("the line ends before {}", self.whose(what)),
                 format!("expected {expected}: a record stands on one line"),
             )),
         }
@@ -162,7 +184,7 @@ impl<'a> Source<'a> {
             );
         }
         self.problem(
-            format!("{what} of {}: expected {expected}, found {}", self.item, shown(found)),
+            format!("{}: expected {expected}, found {}", self.whose(what), shown(found)),
             "correct the file, or save the mesh again",
         )
     }
@@ -220,7 +242,7 @@ impl<'a> Source<'a> {
             return Ok(count as usize);
         }
         Err(self.problem(
-            format!("{what} of {} is said to be {count}, but the file has only {} bytes more", self.item, self.left()),
+            format!("{} is said to be {count}, but the file has only {} bytes more", self.whose(what), self.left()),
             "it is cut off, or the count is wrong: save or copy the mesh again",
         ))
     }
@@ -236,8 +258,9 @@ impl<'a> Source<'a> {
     pub fn expect_line(&mut self, expected: &str) -> Result<(), MeshProblem> {
         match self.text_line() {
             Some(line) if line == expected => Ok(()),
-            Some(line) => Err(self.problem(
-                format!("expected {expected} after {}, found {}", self.item, shown(line.as_bytes())),
+            Some(line) => Err(self.line_problem(
+                &format!("{expected} after {}", self.item),
+                line,
                 "the section has more entries than its count says, or is damaged: save the mesh again",
             )),
             None => Err(self.ended(expected)),

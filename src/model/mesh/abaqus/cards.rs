@@ -38,6 +38,11 @@ impl Keyword {
         self.parameters.iter().any(|(known, _)| known == key)
     }
 
+    /// Names of the parameters.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.parameters.iter().map(|(name, _)| name.as_str())
+    }
+
     /// The value of a parameter.
     pub fn value(&self, key: &str) -> Option<&str> {
         let (_, value) = self.parameters.iter().find(|(known, _)| known == key)?;
@@ -92,8 +97,9 @@ pub struct Cards<'a> {
 
 impl<'a> Cards<'a> {
     pub fn new(bytes: &'a [u8], name: &str, folder: Option<&'a Path>) -> Self {
+        let path = folder.and_then(|folder| Some(folder.join(Path::new(name).file_name()?)));
         Cards {
-            open: vec![Open { bytes: Cow::Borrowed(bytes), at: 0, line: 0, file: 0, path: None }],
+            open: vec![Open { bytes: Cow::Borrowed(bytes), at: 0, line: 0, file: 0, path }],
             files: vec![name.to_owned()],
             folder,
             total: bytes.len() as u64,
@@ -158,22 +164,36 @@ impl<'a> Cards<'a> {
     }
 
     /// The next line; keywords that go on after a comma are put together.
-    pub fn next(&mut self) -> Option<Card> {
-        let (mut line, place) = self.line()?;
+    ///
+    /// # Errors
+    /// A keyword that goes on in a line that holds no parameter.
+    pub fn next(&mut self) -> Result<Option<Card>, MeshProblem> {
+        let Some((mut line, place)) = self.line() else { return Ok(None) };
         if line.starts_with('*') {
             while line.ends_with(',') {
-                // The names of a keyword's parameters stand before its data: a line of numbers cannot follow a comma.
-                let Some((more, _)) = self.line() else { break };
+                let Some((more, at)) = self.line() else { break };
+                // Read as parameters such a line would be lost.
+                if !more.starts_with(|c: char| c.is_alphabetic()) {
+                    return Err(self.problem(
+                        place,
+                        format!(
+                            "the keyword line ends with a comma, so it goes on in line {}, which holds no parameter: {}",
+                            at.line,
+                            shown(more.as_bytes())
+                        ),
+                        "remove the comma at its end, or write its parameter",
+                    ));
+                }
                 line += &more;
             }
-            return Some(Card::Keyword(Keyword::parse(&line, place)));
+            return Ok(Some(Card::Keyword(Keyword::parse(&line, place))));
         }
         let goes_on = line.ends_with(',');
         let mut fields: Vec<String> = split(&line).into_iter().map(|field| unquoted(field).to_owned()).collect();
         if goes_on {
             fields.pop();
         }
-        Some(Card::Data { fields, goes_on, place })
+        Ok(Some(Card::Data { fields, goes_on, place }))
     }
 }
 

@@ -5,17 +5,22 @@
 
 mod cards;
 mod sets;
+mod surfaces;
 mod types;
 
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::assemble::{RawGroup, RawMembers, RawMesh};
+use super::raw::{RawGroup, RawMembers, RawMesh};
 use super::{MeshProblem, Place, Shape};
 use crate::model::words::quoted;
 use cards::{Card, Cards, Keyword, number, whole};
-use sets::{Sets, bare};
+use sets::Sets;
+use surfaces::Surface;
 use types::ElementType;
+
+/// Keywords that make a mesh; one that differs in a letter is a slip.
+const KEYWORDS: [&str; 8] = ["NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "INCLUDE", "PART", "INSTANCE"];
 
 /// What the data lines that come next belong to.
 enum Mode {
@@ -26,14 +31,6 @@ enum Mode {
     ElementSet { set: usize, generate: bool },
     Surface { surface: usize },
     Instance,
-}
-
-struct Surface {
-    name: String,
-    place: Place,
-    of_nodes: bool,
-    /// A set or a number, the face, and where it stands.
-    items: Vec<(String, Option<String>, Place)>,
 }
 
 struct Reader<'a> {
@@ -65,7 +62,7 @@ pub fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<RawMesh, 
         instances: 0,
     };
     let mut has_keyword = false;
-    while let Some(card) = reader.cards.next() {
+    while let Some(card) = reader.cards.next()? {
         match card {
             Card::Keyword(keyword) => {
                 has_keyword = true;
@@ -82,6 +79,10 @@ pub fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<RawMesh, 
             }
             Card::Data { fields, goes_on, place } => reader.data(&fields, goes_on, place)?,
         }
+    }
+    if !has_keyword {
+        let message = "the file is empty";
+        return Err(reader.cards.problem(reader.cards.place, message, "expected a mesh with *NODE and *ELEMENT"));
     }
     reader.end_of_data()?;
     reader.mesh.files.clone_from(&reader.cards.files);
@@ -107,8 +108,40 @@ impl Reader<'_> {
         )
     }
 
+    /// Notes what is not read, once.
+    fn leave_alone(&mut self, what: String) {
+        if !self.mesh.skipped.contains(&what) && self.mesh.skipped.len() < 100 {
+            self.mesh.skipped.push(what);
+        }
+    }
+
+    /// Refuses parameters that are misspelled, and notes those that are not known.
+    fn parameters(&mut self, keyword: &Keyword) -> Result<(), MeshProblem> {
+        let known: &[&str] = match keyword.name.as_str() {
+            "NODE" => &["NSET", "INPUT", "SYSTEM"],
+            "ELEMENT" => &["TYPE", "ELSET", "INPUT", "FILE", "OFFSET"],
+            "NSET" => &["NSET", "GENERATE", "ELSET", "INSTANCE", "INTERNAL", "UNSORTED", "INPUT"],
+            "ELSET" => &["ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED", "INPUT"],
+            "SURFACE" => &["NAME", "TYPE", "COMBINE", "INTERNAL", "DEFINITION"],
+            _ => return Ok(()),
+        };
+        for name in keyword.names().filter(|name| !known.contains(name)) {
+            let shown = quoted(name);
+            if let Some(meant) = known.iter().find(|known| strsim::osa_distance(known, name) == 1) {
+                return Err(self.cards.problem(
+                    keyword.place,
+                    format!("*{} has no parameter {shown}: did you mean \"{meant}\"?", keyword.name),
+                    "correct the parameter",
+                ));
+            }
+            self.leave_alone(format!("{} of *{}", shown.trim_matches('"'), keyword.name));
+        }
+        Ok(())
+    }
+
     fn keyword(&mut self, keyword: &Keyword) -> Result<(), MeshProblem> {
         let place = keyword.place;
+        self.parameters(keyword)?;
         let refused = |message: &str, help: &str| Err(self.cards.problem(place, message, help));
         let named = |key: &str| {
             keyword.value(key).ok_or_else(|| {
@@ -142,7 +175,16 @@ impl Reader<'_> {
                 let set = self.element_sets.open(named("ELSET")?, place);
                 Mode::ElementSet { set, generate: keyword.has("GENERATE") }
             }
-            "SURFACE" => self.surface(keyword)?,
+            "SURFACE" => match Surface::begin(keyword, &self.cards)? {
+                Ok(surface) => {
+                    self.surfaces.push(surface);
+                    Mode::Surface { surface: self.surfaces.len() - 1 }
+                }
+                Err(other) => {
+                    self.leave_alone(other);
+                    Mode::Skip
+                }
+            },
             "INCLUDE" => {
                 let file = named("INPUT")?.to_owned();
                 // Data lines before and after it belong together only within what it includes.
@@ -176,11 +218,15 @@ impl Reader<'_> {
                 );
             }
             other => {
+                if let Some(meant) = KEYWORDS.iter().find(|known| strsim::osa_distance(known, other) == 1) {
+                    return refused(
+                        &format!("*{} is unknown: did you mean \"*{meant}\"?", quoted(other).trim_matches('"')),
+                        "correct the keyword",
+                    );
+                }
                 let structural = ["HEADING", "END PART", "ASSEMBLY", "END ASSEMBLY", "END INSTANCE", "PREPRINT"];
-                let shown = format!("*{}", quoted(other).trim_matches('"'));
-                if !structural.contains(&other) && !self.mesh.skipped.contains(&shown) && self.mesh.skipped.len() < 100
-                {
-                    self.mesh.skipped.push(shown);
+                if !structural.contains(&other) {
+                    self.leave_alone(format!("*{}", quoted(other).trim_matches('"')));
                 }
                 Mode::Skip
             }
@@ -194,23 +240,6 @@ impl Reader<'_> {
         }
     }
 
-    fn surface(&mut self, keyword: &Keyword) -> Result<Mode, MeshProblem> {
-        let place = keyword.place;
-        let Some(name) = keyword.value("NAME") else {
-            return Err(self.cards.problem(place, "*SURFACE without NAME=", "add NAME=…"));
-        };
-        let of_nodes = match keyword.value("TYPE").map(str::to_ascii_uppercase).as_deref() {
-            None | Some("ELEMENT") => false,
-            Some("NODE") => true,
-            Some(_) => return Ok(Mode::Skip),
-        };
-        if keyword.has("COMBINE") {
-            return Ok(Mode::Skip);
-        }
-        self.surfaces.push(Surface { name: name.to_owned(), place, of_nodes, items: Vec::new() });
-        Ok(Mode::Surface { surface: self.surfaces.len() - 1 })
-    }
-
     fn data(&mut self, fields: &[String], goes_on: bool, place: Place) -> Result<(), MeshProblem> {
         match self.mode {
             Mode::Skip => Ok(()),
@@ -219,11 +248,7 @@ impl Reader<'_> {
             Mode::NodeSet { set, generate } => self.node_sets.read(set, generate, fields, place, &self.cards),
             Mode::ElementSet { set, generate } => self.element_sets.read(set, generate, fields, place, &self.cards),
             Mode::Surface { surface } => {
-                let mut fields = fields.iter().filter(|field| !field.is_empty());
-                if let Some(of) = fields.next() {
-                    let face = fields.next().map(|face| face.to_ascii_uppercase());
-                    self.surfaces[surface].items.push((of.clone(), face, place));
-                }
+                self.surfaces[surface].read(fields, place);
                 Ok(())
             }
             Mode::Instance if fields.iter().all(|field| number(field) == Some(0.0)) => Ok(()),
@@ -312,9 +337,12 @@ impl Reader<'_> {
 
     /// Sets and surfaces as groups.
     fn groups(&mut self) -> Result<(), MeshProblem> {
-        let mut element_of = HashMap::new();
+        let mut element_of: HashMap<u64, u32> = HashMap::new();
         for index in 0..self.mesh.element_count() {
-            element_of.insert(self.mesh.element(index).0, index);
+            // Before sets miss what the second one should have been.
+            if let Some(first) = element_of.insert(self.mesh.element(index).0, index) {
+                return Err(self.mesh.duplicate_element(index, first));
+            }
         }
         let mut tags: Vec<u64> = element_of.keys().copied().collect();
         tags.sort_unstable();
@@ -339,81 +367,20 @@ impl Reader<'_> {
         for ((name, place), tags) in self.element_sets.names().zip(&element_sets) {
             push(name, place, RawMembers::Elements(tags.iter().map(|tag| element_of[tag]).collect()));
         }
-        for surface in &self.surfaces {
-            push(&surface.name, surface.place, self.surface_members(surface, &element_of, &element_sets, &node_sets)?);
+        let found = surfaces::Found {
+            mesh: &self.mesh,
+            cards: &self.cards,
+            element_of: &element_of,
+            element_sets: (&self.element_sets, &element_sets),
+            node_sets: (&self.node_sets, &node_sets),
+        };
+        for (surface, members) in self.surfaces.iter().zip(found.members(&self.surfaces)?) {
+            push(&surface.name, surface.place, members);
         }
         for ((name, place), tags) in self.node_sets.names().zip(node_sets) {
             push(name, place, RawMembers::NodeSet(tags));
         }
         self.mesh.groups = groups;
         Ok(())
-    }
-
-    fn surface_members(
-        &self,
-        surface: &Surface,
-        element_of: &HashMap<u64, u32>,
-        element_sets: &[Vec<u64>],
-        node_sets: &[Vec<u64>],
-    ) -> Result<RawMembers, MeshProblem> {
-        let unknown = |what: &str, of: &str, place: Place| {
-            self.cards.problem(
-                place,
-                format!("the surface \"{}\" names the {what} {}, which is not there", surface.name, quoted(of)),
-                "define it, or correct the name",
-            )
-        };
-        if surface.of_nodes {
-            let mut tags = Vec::new();
-            for (of, _, place) in &surface.items {
-                match (self.node_sets.find(of), whole(bare(of))) {
-                    (None, Some(tag)) if self.mesh.node(tag).is_some() => tags.push(tag),
-                    (Some(set), _) => tags.extend(&node_sets[set]),
-                    _ => return Err(unknown("node or node set", of, *place)),
-                }
-            }
-            return Ok(RawMembers::NodeSet(tags));
-        }
-        let mut sides = Vec::new();
-        for (of, face, place) in &surface.items {
-            let tags = match (self.element_sets.find(of), whole(bare(of))) {
-                (None, Some(tag)) if element_of.contains_key(&tag) => vec![tag],
-                (Some(set), _) => element_sets[set].clone(),
-                _ => return Err(unknown("element or element set", of, *place)),
-            };
-            for tag in tags {
-                let index = element_of[&tag];
-                let (_, shape, _) = self.mesh.element(index);
-                let side = match face {
-                    None if shape.is_area() => None,
-                    Some(face) if shape.is_area() => {
-                        let side =
-                            face.strip_prefix('S').and_then(whole).filter(|k| (1..=shape.corners() as u64).contains(k));
-                        let Some(side) = side else {
-                            return Err(self.cards.problem(
-                                *place,
-                                format!(
-                                    "the surface \"{}\" names the face {} of element {tag}, which is {}",
-                                    surface.name,
-                                    quoted(face),
-                                    shape.words()
-                                ),
-                                format!("its faces are S1 to S{}: from each corner to the next", shape.corners()),
-                            ));
-                        };
-                        Some(side as u8 - 1)
-                    }
-                    _ => {
-                        return Err(self.cards.problem(
-                            *place,
-                            format!("the surface \"{}\" names element {tag}, which is {}", surface.name, shape.words()),
-                            "a surface is made of sides of triangles and quadrilaterals",
-                        ));
-                    }
-                };
-                sides.push((index, side));
-            }
-        }
-        Ok(RawMembers::Sides(sides))
     }
 }

@@ -7,7 +7,7 @@ mod version4;
 
 use std::collections::HashMap;
 
-use super::assemble::RawMesh;
+use super::raw::RawMesh;
 use super::source::{Form, Item, Source, shown};
 use super::{MeshProblem, Place, Shape};
 
@@ -30,8 +30,9 @@ pub fn read(bytes: &[u8], name: &str) -> Result<RawMesh, MeshProblem> {
     let (mut has_nodes, mut has_elements) = (false, false);
     while let Some(line) = source.text_line() {
         let Some(section) = line.strip_prefix('$') else {
-            return Err(source.problem(
-                format!("expected a section like $Nodes, found {}", shown(line.as_bytes())),
+            return Err(source.line_problem(
+                "a section like $Nodes",
+                line,
                 "the section before it has more entries than its count says, or the file is damaged",
             ));
         };
@@ -57,6 +58,13 @@ pub fn read(bytes: &[u8], name: &str) -> Result<RawMesh, MeshProblem> {
                 ));
             }
             (other, _) => {
+                let known = ["Nodes", "Elements", "PhysicalNames", "Entities"];
+                if let Some(meant) = known.iter().find(|known| known.eq_ignore_ascii_case(other)) {
+                    return Err(source.problem(
+                        format!("${} is no section: did you mean \"${meant}\"?", printable(other)),
+                        "names of sections are spelled with capitals",
+                    ));
+                }
                 source.item = Item::Section("a section that is not read");
                 let end = format!("$End{other}");
                 if other.starts_with("End") || !source.skip_behind(&end) {
@@ -117,8 +125,9 @@ fn header(source: &mut Source<'_>) -> Result<Version, MeshProblem> {
             Some("$Comments") if source.skip_behind("$EndComments") => {}
             Some("$NOD") => return Err(unknown_version(source, "1")),
             Some(line) => {
-                return Err(source.problem(
-                    format!("expected $MeshFormat, found {}", shown(line.as_bytes())),
+                return Err(source.line_problem(
+                    "$MeshFormat",
+                    line,
                     "this is no mesh of Gmsh, or its beginning is missing",
                 ));
             }
@@ -131,8 +140,9 @@ fn header(source: &mut Source<'_>) -> Result<Version, MeshProblem> {
     let line = source.text_line().unwrap_or_default();
     let words: Vec<&str> = line.split_whitespace().collect();
     let [version, kind, size] = words[..] else {
-        return Err(source.problem(
-            format!("expected version, kind and size of numbers, like `4.1 0 8`, found {}", shown(line.as_bytes())),
+        return Err(source.line_problem(
+            "version, kind and size of numbers, like `4.1 0 8`",
+            line,
             "the file is damaged: save the mesh again",
         ));
     };
@@ -185,19 +195,17 @@ fn unknown_version(source: &Source<'_>, found: &str) -> MeshProblem {
 fn physical_names(source: &mut Source<'_>, groups: &mut Groups) -> Result<(), MeshProblem> {
     source.item = Item::Section("the names of groups");
     let wrong = |source: &Source<'_>, line: &str| {
-        source.problem(
-            format!("expected dimension, number and \"name\" of a group, found {}", shown(line.as_bytes())),
+        source.line_problem(
+            "dimension, number and \"name\" of a group",
+            line,
             "correct the line, or save the mesh again",
         )
     };
     let line = source.text_line().unwrap_or_default();
     let Ok(count) = line.parse::<u64>() else {
-        return Err(source.problem(
-            format!("expected how many names of groups follow, found {}", shown(line.as_bytes())),
-            "save the mesh again",
-        ));
+        return Err(source.line_problem("how many names of groups follow", line, "save the mesh again"));
     };
-    let count = source.fits(count, "the number", 6)?;
+    let count = source.fits(count, "the number of entries", 6)?;
     for _ in 0..count {
         let line = source.text_line().unwrap_or("the end of the file");
         let (numbers, name) = line.split_once('"').ok_or_else(|| wrong(source, line))?;

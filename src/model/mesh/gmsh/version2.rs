@@ -1,6 +1,6 @@
 //! `$Nodes` and `$Elements` of version 2.2.
 
-use super::super::assemble::RawMesh;
+use super::super::raw::RawMesh;
 use super::super::source::{Form, Item, Source};
 use super::super::{MeshProblem, Place};
 use super::{Kind, kind_of};
@@ -15,18 +15,15 @@ fn tag(source: &mut Source<'_>, what: &str) -> Result<u64, MeshProblem> {
 
 /// A count, which stands on a line of its own in every file.
 fn count(source: &mut Source<'_>, what: &'static str, bytes_each: usize) -> Result<usize, MeshProblem> {
-    source.item = Item::Section(what);
+    source.item = Item::Section("the file");
     let line = source.text_line().unwrap_or("the end of the file");
-    let count = line.parse::<u64>().map_err(|_| {
-        source.problem(
-            format!("expected how many {what} follow, found {}", super::shown(line.as_bytes())),
-            "save the mesh again",
-        )
-    })?;
+    let count = line
+        .parse::<u64>()
+        .map_err(|_| source.line_problem(&format!("how many {what} follow"), line, "save the mesh again"))?;
     if source.form != Form::Text {
         source.end_text_line();
     }
-    source.fits(count, "the number", bytes_each)
+    source.fits(count, &format!("the number of {what}"), bytes_each)
 }
 
 pub fn nodes(source: &mut Source<'_>, mesh: &mut RawMesh) -> Result<(), MeshProblem> {
@@ -84,6 +81,12 @@ pub fn elements(source: &mut Source<'_>, mesh: &mut RawMesh) -> Result<(), MeshP
 /// Tags and nodes of an element: the first tag is its physical group, 0 for none.
 fn element(source: &mut Source<'_>, mesh: &mut RawMesh, tag_: u64, kind: &Kind, tags: i64) -> Result<(), MeshProblem> {
     let mut group = 0;
+    if tags < 0 {
+        return Err(source.problem(
+            format!("{} is said to have {tags} tags, expected a number from 0", source.item),
+            "the file is damaged: save the mesh again",
+        ));
+    }
     for k in 0..tags {
         let found = source.integer("a tag")?;
         if k == 0 {

@@ -1,7 +1,7 @@
 //! `$Entities`, `$Nodes` and `$Elements` of version 4.1.
 
 use super::super::MeshProblem;
-use super::super::assemble::RawMesh;
+use super::super::raw::RawMesh;
 use super::super::source::{Form, Item, Source};
 use super::{Groups, Kind, dimension, kind_of};
 
