@@ -18,7 +18,7 @@ use stickslip::model::embedded;
 use stickslip::model::load::load_text;
 use stickslip::model::rules::TieBreak;
 use stickslip::session::Session;
-use stickslip::solve::attempt::run_scheme;
+use stickslip::solve::engines::run_scheme;
 use stickslip::solve::prepare;
 use stickslip::tui::action::Leave;
 use stickslip::tui::app::State;

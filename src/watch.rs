@@ -10,9 +10,14 @@ pub trait Watch: Sync {
         let _ = (what, fraction);
     }
 
-    /// Whether the work shall end as interrupted.
+    /// Whether the work is to end as interrupted.
     fn stop(&self) -> bool {
         false
+    }
+
+    /// The same for a loop that asks whether to go on.
+    fn go_on(&self) -> ControlFlow<()> {
+        if self.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
@@ -33,9 +38,14 @@ pub struct Budget<'a> {
 }
 
 impl<'a> Budget<'a> {
-    /// So much time from now.
+    /// This much time from now.
     pub fn new(watch: &'a dyn Watch, time: Duration) -> Budget<'a> {
         Budget { watch, end: Instant::now() + time }
+    }
+
+    /// Whether the time ran out, and nobody else stopped the work.
+    pub fn ran_out(&self) -> bool {
+        !self.watch.stop() && self.left().is_zero()
     }
 
     /// What is left.

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, OutcomeKind, State, Verdict};
 use stickslip::contact::schemes::exact_check::{ExactCheck, Finding};
 use stickslip::model::load::load_text;
-use stickslip::solve::all_answers::Exactly;
+use stickslip::solve::exact::Exactly;
 use stickslip::solve::prepare;
 use stickslip::watch::Quiet;
 

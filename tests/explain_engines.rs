@@ -185,7 +185,7 @@ fn no_claim_too_strong(count: usize, seed: u64) {
                 assert!(answer.is_answer(), "problem {k}: {:?}", answer.failure);
                 assert!(answer.check.passed);
                 if answer.attempts.len() > 1 {
-                    format!("answer at a later attempt ({})", answer.attempts[answer.attempts.len() - 1].engine)
+                    format!("answer at a later attempt ({})", answer.attempts[answer.attempts.len() - 1].rules.engine)
                 } else {
                     "answer".to_owned()
                 }
@@ -285,7 +285,7 @@ fn contrasts(count: usize, seed: u64, most: usize) {
             let word = format!("{first:?}, solved by attempt {}", answer.attempts.len());
             if first == OutcomeKind::Ray {
                 assert_eq!(answer.attempts.len(), 2, "problem {k}");
-                assert_eq!(answer.engine, "exact", "problem {k}");
+                assert_eq!(answer.rules.engine.to_string(), "exact", "problem {k}");
             }
             *told.entry(word).or_default() += 1;
         }

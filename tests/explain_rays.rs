@@ -115,7 +115,7 @@ fn bar_beyond_its_limit_is_certified_by_every_covering_and_engine() {
                 _ => 0.5,
             };
             close(ray.p, 30.0 / (6.0 * d_t), 1e-9);
-            assert_eq!(solved.answer.engine, engine);
+            assert_eq!(solved.answer.rules.engine.to_string(), engine);
             assert_eq!(solved.answer.attempts.len(), 1);
         }
     }

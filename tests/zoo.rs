@@ -7,6 +7,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use stickslip::answer::attempt::{AttemptCovering, PlainCovering};
 use stickslip::answer::record::{OutcomeKind, Verdict};
 use stickslip::explain::plain_ray::PlainRay;
 use stickslip::lcp::basis_solution::Basis;
@@ -293,8 +294,11 @@ fn another_covering_is_tried_after_a_ray() {
         d[..2].copy_from_slice(&[5.0, 16.0]);
         let answer = solved(&matrix, &q, Some(&d)).answer;
         assert_eq!(answer.outcome, OutcomeKind::Normal);
-        assert_eq!((answer.attempts[0].covering.as_str(), answer.attempts[0].outcome), ("given", OutcomeKind::Ray));
-        assert_eq!((answer.covering.as_str(), answer.pivot_count), ("ones", 3));
+        assert_eq!(
+            (answer.attempts[0].rules.covering, answer.attempts[0].outcome),
+            (AttemptCovering::Plain(PlainCovering::Given), OutcomeKind::Ray)
+        );
+        assert_eq!((answer.rules.covering, answer.pivot_count), (AttemptCovering::Plain(PlainCovering::Ones), 3));
         let z = answer.solution.expect("z").z;
         assert!((z[0] - 27.0).abs() <= 1e-12 && (z[1] - 22.75).abs() <= 1e-12, "{z:?}");
     }
@@ -308,10 +312,9 @@ fn retries_never_repeat_a_run() {
     let matrix: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| if i == j { -1.0 } else { 0.0 }).collect()).collect();
     let solved = solved(&matrix, &vec![-1.0; n], None);
     assert_eq!(solved.answer.outcome, OutcomeKind::Ray);
-    let mut seen: Vec<_> =
-        solved.answer.attempts.iter().map(|a| (a.covering.clone(), a.tie_break.clone(), a.engine.clone())).collect();
+    let mut seen: Vec<String> = solved.answer.attempts.iter().map(|attempt| attempt.rules.to_string()).collect();
     // The one shown stands last.
-    assert_eq!(seen.last().map(|last| last.0.as_str()), Some(solved.answer.covering.as_str()));
+    assert_eq!(seen.last(), Some(&solved.answer.rules.to_string()));
     let all = seen.len();
     seen.sort();
     seen.dedup();

@@ -1,5 +1,6 @@
 //! One solved state in the words of the structure, and its independent check.
 
+pub mod attempt;
 pub mod check;
 pub mod check_plain;
 pub mod diagram;

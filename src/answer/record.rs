@@ -3,8 +3,8 @@
 
 use serde::Serialize;
 
+pub use super::attempt::{Attempt, AttemptRules};
 use crate::fem::Piece;
-
 use crate::model::uses::Redone;
 
 /// How the run ended, as the user reads it.
@@ -119,25 +119,6 @@ pub struct Ray {
     /// Whether what is certified is that the parts do not fit together.
     #[serde(skip)]
     pub misfit: bool,
-}
-
-/// One try of the solver.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Attempt {
-    /// Covering of this try (`cohesive`, `ones`, `weight`, `given`).
-    pub covering: String,
-    /// Tie-break of this try.
-    pub tie_break: String,
-    /// Engine of this try.
-    pub engine: String,
-    /// How it ended.
-    pub outcome: OutcomeKind,
-    /// Pivots that it made, where that is known; told in words only.
-    #[serde(skip)]
-    pub pivots: Option<usize>,
-    /// Which limit it reached, where that is no ray and no answer; where a path ended.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub why: Option<String>,
 }
 
 /// Joint of a pair that a pivot turned.
@@ -367,12 +348,8 @@ pub struct Answer {
     pub ray: Option<Ray>,
     /// p at the end.
     pub p: f64,
-    /// Covering of the last attempt: `cohesive`, `ones`, `weight`, `given`.
-    pub covering: String,
-    /// Tie-break of the last attempt.
-    pub tie_break: String,
-    /// Engine of the last attempt.
-    pub engine: String,
+    /// Rules of the last attempt.
+    pub rules: AttemptRules,
     /// All tries, in order.
     pub attempts: Vec<Attempt>,
     /// The pivots of the last attempt: the first ones only where the run was very long.

@@ -67,9 +67,9 @@ pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues
     let ray = answer.ray.as_ref().filter(|_| answer.outcome == OutcomeKind::Ray);
     put("ray", value(&ray));
     put("p", value(&answer.p));
-    put("covering", answer.covering.as_str().into());
-    put("tie_break", answer.tie_break.as_str().into());
-    put("engine", answer.engine.as_str().into());
+    put("covering", value(&answer.rules.covering));
+    put("tie_break", value(&answer.rules.tie_break));
+    put("engine", value(&answer.rules.engine));
     put("attempts", value(&answer.attempts));
     put("pivots", pivots(answer));
     if answer.unrecorded() > 0 {

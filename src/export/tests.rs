@@ -142,7 +142,6 @@ fn a_bare_lcp_has_a_solution_and_no_structure() {
         solution: Some(PlainSolution { z: vec![0.0, 1.0, 3.0], w: vec![2.0, -0.0, 0.0] }),
         check: Check { equilibrium: None, ..Check::default() },
         size: Size { unknowns: None, free: None, pairs: 0, lcp: 3 },
-        covering: "ones".into(),
         ..beam(0.3, 100.0)
     };
     let result = json::result(&answer, "cps", &ParameterValues::new(), false);

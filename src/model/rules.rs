@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Serialize, Serializer};
+
 /// Covering vector d of a contact LCP (method §4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Covering {
@@ -65,11 +67,6 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// Covering, tie-break and engine as they are written.
-    pub fn words(&self) -> [String; 3] {
-        [self.covering.to_string(), self.tie_break.to_string(), self.engine.to_string()]
-    }
-
     /// Whether covering and tie-break are the defaults: only then a failed run is retried (method §4).
     pub fn are_default(&self) -> bool {
         self.covering == Covering::default() && self.tie_break == TieBreak::default()
@@ -121,6 +118,12 @@ impl fmt::Display for Engine {
             Engine::Tableau => "tableau",
             Engine::Exact => "exact",
         })
+    }
+}
+
+impl Serialize for TieBreak {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

@@ -1,7 +1,6 @@
 //! The answer followed over the factor of a load case: every breakpoint exact, the end a target, a turning point or
 //! the limit load (method §6).
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::DVector;
@@ -310,7 +309,7 @@ pub fn trace(
     let path = engine.follow(Reach { target, through: reach.through, pivots: PIVOTS }, &mut |t| {
         let fraction = if target.is_finite() { t / target } else { 0.0 };
         watch.progress(&format!("{name} = {}", short(start + sign * t)), fraction);
-        if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        watch.go_on()
     });
     let at = start + sign * path.knots.last().map_or(0.0, |knot| knot.t);
     let end = match &path.end {

@@ -16,9 +16,9 @@ use crate::model::parameter::ParameterValues;
 use crate::model::quantity::{BarPlace, Over, Quantity, ResultantPart, fits};
 use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
+use crate::solve::finish::dislocation;
 use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::Geometry;
-use crate::solve::solved::dislocation;
 use crate::solve::{Prepared, Solved};
 use crate::watch::Watch;
 

@@ -12,7 +12,7 @@ use crate::contact::system::ContactSystem;
 use crate::lcp::basis_solution::vertex;
 use crate::model::scenario::Scenario;
 use crate::model::uses::Region;
-use crate::solve::solved::Trace;
+use crate::solve::state::RunData;
 use crate::solve::{PrepareError, Prepared, Solved};
 
 /// A variable of an answer counts as exactly on its limit below this multiple of the largest.
@@ -65,7 +65,7 @@ pub fn sensitivity(
     values: &crate::model::parameter::ParameterValues,
 ) -> Result<Sensitivity, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("sensitivity"))?;
-    let (Trace::Contact { contact, numbers, .. }, Some(basis)) = (&solved.trace, final_basis(solved)) else {
+    let (RunData::Contact { contact, numbers, .. }, Some(basis)) = (&solved.run, final_basis(solved)) else {
         return Err(PathError::Missing("there is no answer whose derivatives could be taken".to_owned()));
     };
     let singular =

@@ -8,8 +8,8 @@ use crate::contact::system::ContactSystem;
 use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::outcome::{Outcome, Point, RayDirection};
 use crate::model::rules::{Covering, TieBreak};
-use crate::solve::attempt::run_scheme;
-use crate::solve::{Solved, solved::Trace};
+use crate::solve::engines::run_scheme;
+use crate::solve::{Solved, state::RunData};
 use crate::watch::Watch;
 
 /// No path makes more pivots than this.
@@ -120,7 +120,7 @@ pub(crate) fn cold(system: &ContactSystem, numbers: &ContactNumbers, watch: &dyn
 /// It is read from the pivots of the run, or, where the answer was reached on another way (warm, enumerated), from
 /// what is released at its vertex.
 pub fn final_basis(solved: &Solved) -> Option<Basis> {
-    let Trace::Contact { contact, pivots, last, .. } = &solved.trace else {
+    let RunData::Contact { contact, pivots, last, .. } = &solved.run else {
         return None;
     };
     if !solved.answer.is_answer() || solved.answer.marginal {

@@ -2,10 +2,12 @@
 
 use serde::Serialize;
 
+use super::error::SolveError;
 use super::numbers::{contact_numbers, factors};
-use super::plain::{PlainProblem, PlainRules, attempt_plain};
+use super::plain::{PlainProblem, attempt_plain};
 use super::prepared::{Geometry, Prepared};
-use super::solved::{SolveError, Solved};
+use super::state::Solved;
+use crate::answer::attempt::AttemptRules;
 use crate::answer::record::{Answer, OutcomeKind, RayClass};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
@@ -21,12 +23,8 @@ const SAME: f64 = 1e-7;
 /// One combination and its end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Compared {
-    /// Covering.
-    pub covering: String,
-    /// Tie-break.
-    pub tie_break: String,
-    /// Engine.
-    pub engine: String,
+    #[serde(flatten)]
+    pub rules: AttemptRules,
     /// How it ended; `None` where the covering does not fit the numbers.
     pub outcome: Option<OutcomeKind>,
     /// Class of its ray.
@@ -102,12 +100,8 @@ impl Prepared {
     ) -> Result<Solved, SolveError> {
         match &*self.geometry {
             Geometry::Plain { lcp, q, names, covering_given } => {
-                let mut lcp = lcp.clone();
-                for (entry, number) in lcp.q.iter_mut().zip(q) {
-                    *entry = number.value(values);
-                }
-                let problem = PlainProblem { lcp: lcp.into(), names, covering_given: *covering_given };
-                attempt_plain(&problem, PlainRules::own(rules), watch)
+                let problem = PlainProblem::new(lcp, q, values, names, *covering_given);
+                attempt_plain(&problem, problem.rules(rules), watch)
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
                 let numbers = contact_numbers(system, factors, values);
@@ -118,24 +112,15 @@ impl Prepared {
 }
 
 fn row(rules: Rules, solved: Result<Solved, SolveError>, found: &mut Vec<Answer>) -> Result<Compared, SolveError> {
-    let mut row = Compared {
-        covering: rules.covering.to_string(),
-        tie_break: rules.tie_break.to_string(),
-        engine: rules.engine.to_string(),
-        outcome: None,
-        class: None,
-        cycled: false,
-        pivots: 0,
-        p: 0.0,
-        answer: None,
-    };
+    let mut row =
+        Compared { rules: rules.into(), outcome: None, class: None, cycled: false, pivots: 0, p: 0.0, answer: None };
     let solved = match solved {
         Ok(solved) => solved,
         Err(SolveError::Covering(_)) => return Ok(row),
         Err(other) => return Err(other),
     };
     let answer = solved.answer;
-    row.covering.clone_from(&answer.covering);
+    row.rules = answer.rules;
     row.outcome = Some(answer.outcome);
     row.class = answer.ray.as_ref().map(|ray| ray.class);
     row.cycled = solved.cycled;

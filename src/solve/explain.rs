@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use super::numbers::contact_numbers;
 use super::prepared::{Geometry, Prepared};
-use super::solved::{Solved, Trace};
+use super::state::{RunData, Solved};
+use crate::answer::attempt::AttemptEngine;
 use crate::answer::record::RayClass;
 use crate::contact::numbers::ContactNumbers;
 use crate::explain::loose::{LoosePart, loose_pairs, loose_parts};
@@ -16,11 +17,10 @@ use crate::explain::ties::{TieReport, ties};
 use crate::explain::unpressed::unpressed;
 use crate::explain::vertex::Naming;
 use crate::lcp::basis_solution::vertex;
-use crate::lcp::pivot::PivotLog;
 use crate::model::parameter::ParameterValues;
 use crate::model::plausible;
 use crate::model::problem::Problem;
-use crate::model::rules::{Engine, Rules, TieBreak};
+use crate::model::rules::{Engine, Rules};
 use crate::model::scenario::Scenario;
 use crate::watch::{Budget, Watch};
 
@@ -29,29 +29,22 @@ pub const REMEDY_TIME: Duration = Duration::from_secs(10);
 
 impl Solved {
     fn naming<'a>(&'a self, prepared: &'a Prepared) -> Option<Naming<'a>> {
-        match (&self.trace, &*prepared.geometry) {
-            (Trace::Contact { contact, .. }, _) => Some(Naming::Contact(contact, prepared.system()?)),
-            (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) => Some(Naming::Plain(lcp, names)),
-            (Trace::Plain { .. }, _) => None,
-        }
-    }
-
-    fn trace_pivots(&self) -> &PivotLog {
-        match &self.trace {
-            Trace::Contact { pivots, .. } | Trace::Plain { pivots, .. } => pivots,
+        match (&self.run, &*prepared.geometry) {
+            (RunData::Contact { contact, .. }, _) => Some(Naming::Contact(contact, prepared.system()?)),
+            (RunData::Plain { lcp, .. }, Geometry::Plain { names, .. }) => Some(Naming::Plain(lcp, names)),
+            (RunData::Plain { .. }, _) => None,
         }
     }
 
     /// Ties and degenerate vertices of the run.
     pub fn ties(&self, prepared: &Prepared) -> Option<TieReport> {
         let naming = self.naming(prepared)?;
-        let pivots = self.trace_pivots();
-        let last = match &self.trace {
-            Trace::Contact { last, .. } => last.clone(),
-            Trace::Plain { lcp, .. } => vertex(lcp, &pivots.basis())?,
+        let pivots = self.pivots();
+        let last = match &self.run {
+            RunData::Contact { last, .. } => last.clone(),
+            RunData::Plain { lcp, .. } => vertex(lcp, &pivots.basis())?,
         };
-        let rule: TieBreak = self.answer.tie_break.parse().ok()?;
-        Some(ties(&naming, pivots, &last, rule))
+        Some(ties(&naming, pivots, &last, self.answer.rules.tie_break))
     }
 
     /// The dictionary after pivot `step`; `None` as step: before the entry of p.
@@ -60,7 +53,7 @@ impl Solved {
     /// Too large, singular.
     pub fn dictionary_at(&self, prepared: &Prepared, step: Option<usize>) -> Result<Dictionary, NoDictionary> {
         let naming = self.naming(prepared).ok_or(NoDictionary::Singular)?;
-        dictionary(&naming, self.trace_pivots(), step)
+        dictionary(&naming, self.pivots(), step)
     }
 
     /// How far the final scheme holds, in every load factor and friction parameter; empty without an answer that came
@@ -72,8 +65,8 @@ impl Solved {
         values: &ParameterValues,
         pair: usize,
     ) -> Vec<Margin> {
-        let (Trace::Contact { contact, numbers, factors, pivots, last }, Some(system)) =
-            (&self.trace, prepared.system())
+        let (RunData::Contact { contact, numbers, factors, pivots, last }, Some(system)) =
+            (&self.run, prepared.system())
         else {
             return Vec::new();
         };
@@ -81,7 +74,7 @@ impl Solved {
         if !self.answer.is_answer() || basis.p || self.answer.marginal {
             return Vec::new();
         }
-        if self.answer.engine == super::all_answers::ENUMERATION {
+        if self.answer.rules.engine == AttemptEngine::Enumeration {
             return Vec::new();
         }
         let Some(fresh) = vertex(&contact.lcp, &basis) else {
@@ -125,7 +118,7 @@ impl Prepared {
     /// What would stop a collapse; `None` where there is none. Takes at most [`REMEDY_TIME`] and says whether all
     /// was looked for.
     pub fn remedies(&self, solved: &Solved, watch: &dyn Watch) -> Option<Remedies> {
-        let (Trace::Contact { numbers, factors, .. }, Some(system)) = (&solved.trace, self.system()) else {
+        let (RunData::Contact { numbers, factors, .. }, Some(system)) = (&solved.run, self.system()) else {
             return None;
         };
         let report = solved.ray.as_ref().filter(|report| report.class == RayClass::Mechanism)?;

@@ -1,6 +1,6 @@
 //! Solving from the last answer: warm where that works, cold otherwise.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 use crate::answer::record::{Answer, PairState, Start};
@@ -10,9 +10,10 @@ use crate::lcp::outcome::Point;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Engine, Rules};
 use crate::model::scenario::Scenario;
+use crate::solve::error::SolveError;
 use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::Prepared;
-use crate::solve::solved::{SolveError, Solved};
+use crate::solve::state::Solved;
 use crate::solve::warm::WarmStart;
 use crate::watch::Watch;
 
@@ -20,9 +21,6 @@ use crate::watch::Watch;
 pub const WARM_PAIRS: usize = 150;
 /// Two answers whose forces and slips differ by less than this, relative to the largest, are the same.
 const SAME: f64 = 1e-7;
-
-/// What an answer keeps for the next change; shared by the answers of one chain.
-pub(super) type WarmSlot = Arc<Mutex<Option<WarmStart>>>;
 
 impl Prepared {
     /// Solves for other parameter values, from the last answer where the model has [`WARM_PAIRS`] pairs or more, the
@@ -56,8 +54,8 @@ impl Prepared {
     /// start alone: any number of pairs.
     pub fn follow(&self, last: &Solved, values: &ParameterValues, rules: Rules, watch: &dyn Watch) -> Option<Solved> {
         let system = self.system()?;
-        let seat = last.kept.as_ref()?;
-        let mut guard = seat.lock().unwrap_or_else(PoisonError::into_inner);
+        let slot = last.warm.as_ref()?;
+        let mut guard = slot.lock().unwrap_or_else(PoisonError::into_inner);
         // Taken out, so that nothing half-way stays behind where the path fails.
         let mut kept = guard.take()?;
         let start = Instant::now();
@@ -84,7 +82,7 @@ impl Prepared {
         answer.timings.condense = self.condense_seconds;
         answer.timings.lemke = numbers_seconds + seconds;
         answer.timings.total = self.seconds + start.elapsed().as_secs_f64();
-        solved.kept = Some(Arc::clone(seat));
+        solved.warm = Some(Arc::clone(slot));
         Some(solved)
     }
 
@@ -105,8 +103,7 @@ impl Prepared {
         let point =
             Point { z: found.point.z.iter().map(|z| z * length).collect(), w: vec![0.0; contact.rows.len()], p: 0.0 };
         let seconds = start.elapsed().as_secs_f64();
-        let words = rules.words();
-        let mut solved = self.answer_at(system, numbers, factors, contact, point, words);
+        let mut solved = self.answer_at(system, numbers, factors, contact, point, rules.into());
         solved.answer.start = Start::Warm { changes: found.pivots };
         Some((solved, seconds))
     }

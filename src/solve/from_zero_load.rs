@@ -1,11 +1,10 @@
 //! The retry that does not start from the load: from zero load, where nothing is violated, the answer is followed
 //! along the growing load (method §4, "Rays").
 
-use std::ops::ControlFlow;
-
 use nalgebra::DVector;
 
-use crate::answer::record::{Attempt, OutcomeKind};
+use crate::answer::attempt::{Attempt, AttemptEngine, AttemptRules};
+use crate::answer::record::OutcomeKind;
 use crate::contact::lcp::contact_lcp_like;
 use crate::contact::load_path::{order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
@@ -14,12 +13,11 @@ use crate::lcp::basis_solution::Basis;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
 use crate::model::rules::Rules;
+use crate::solve::error::SolveError;
 use crate::solve::prepared::Prepared;
-use crate::solve::solved::{SolveError, Solved};
+use crate::solve::state::Solved;
 use crate::watch::Watch;
 
-/// What stands for the engine in the list of attempts.
-pub const LOAD_PATH: &str = "load-path";
 /// A path with more pivots is given up.
 const PIVOTS: usize = 20_000;
 
@@ -61,10 +59,9 @@ impl Prepared {
         let mut reached = 0.0;
         let (end, pivots) = engine.walk(reach, &mut |t| {
             reached = t;
-            if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            watch.go_on()
         });
-        let rules = Rules::default();
-        let words = [rules.covering.to_string(), rules.tie_break.to_string(), LOAD_PATH.to_owned()];
+        let rules = AttemptRules::from(Rules::default()).by(AttemptEngine::LoadPath);
         let (outcome, why) = match end {
             End::Target => (OutcomeKind::Normal, String::new()),
             End::Interrupted => return Err(SolveError::Interrupted),
@@ -76,18 +73,17 @@ impl Prepared {
             End::Breakdown(why) => (OutcomeKind::Breakdown, why),
         };
         if outcome != OutcomeKind::Normal {
-            let [covering, tie_break, engine] = words;
-            let attempt = Attempt { covering, tie_break, engine, outcome, pivots: Some(pivots), why: Some(why) };
+            let attempt = Attempt { rules, outcome, pivots: Some(pivots), why: Some(why) };
             return Ok(AlongLoad::Ended(attempt));
         }
-        let contact = contact_lcp_like(Some(&path), system, numbers, rules.covering)?;
+        let contact = contact_lcp_like(Some(&path), system, numbers, Rules::default().covering)?;
         let length = path.length_unit / contact.length_unit;
         let point = Point {
             z: engine.point().z.iter().map(|z| (z * length).max(0.0)).collect(),
             w: vec![0.0; contact.rows.len()],
             p: 0.0,
         };
-        let mut solved = self.answer_at(system, numbers, factors, contact, point, words);
+        let mut solved = self.answer_at(system, numbers, factors, contact, point, rules);
         solved.answer.attempts.iter_mut().for_each(|attempt| attempt.pivots = Some(pivots));
         Ok(AlongLoad::Answer(Box::new(solved)))
     }

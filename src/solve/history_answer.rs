@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
+use super::finish::{empty_answer, judge};
 use super::prepared::{Geometry, Prepared};
-use super::solved::{empty_answer, judge};
 use crate::answer::check::check_contact;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{Answer, PairState, Size};
@@ -34,7 +34,7 @@ impl Prepared {
         if let Geometry::Structure { main, .. } = &*self.geometry {
             (size.unknowns, size.free) = (Some(main.size().all), Some(main.size().free));
         }
-        let mut answer = empty_answer(&run, 1.0, Rules::default().words(), size);
+        let mut answer = empty_answer(&run, 1.0, Rules::default().into(), size);
         answer.pairs = pairs;
         let equilibrium = self.recover(&mut answer, numbers, factors, state);
         // λ afresh: the history keeps exact values where the laws give them.

@@ -1,12 +1,13 @@
-//! The ladder of retries: what a first run that ended badly and the tries after it have in common, of contact problems
-//! and bare LCPs.
+//! The ladder of retries: what follows a first run that ended badly, of contact problems and bare LCPs alike.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use super::solved::{SolveError, Solved, Trace};
-use crate::answer::record::{Attempt, OutcomeKind, RayClass};
+use super::error::SolveError;
+use super::state::Solved;
+use crate::answer::attempt::{Attempt, AttemptCovering, AttemptEngine, AttemptRules};
+use crate::answer::record::{OutcomeKind, RayClass};
 use crate::model::rules::Engine;
-use crate::watch::Watch;
+use crate::watch::{Budget, Watch};
 
 /// An exact attempt that nobody asked for is given up after this time …
 pub(super) const EXACT_BUDGET: Duration = Duration::from_secs(30);
@@ -18,51 +19,105 @@ pub(super) struct Ladder {
     first: Solved,
     tried: Vec<Attempt>,
     /// Coverings of f64 runs that met no tie: another tie-break would repeat them pivot by pivot.
-    untied: Vec<String>,
+    untied: Vec<AttemptCovering>,
 }
 
 impl Ladder {
     pub(super) fn new(first: Solved) -> Ladder {
         let mut ladder = Ladder { first, tried: Vec::new(), untied: Vec::new() };
         if !has_ties(&ladder.first) {
-            ladder.untied.push(ladder.first.answer.covering.clone());
+            ladder.untied.push(ladder.first.answer.rules.covering);
         }
         ladder
     }
 
-    /// The first run.
-    pub(super) fn first(&self) -> &Solved {
-        &self.first
+    /// Tries the rungs in order, those in exact arithmetic within `budget` each. Ends with the first answer; or, where the
+    /// first run broke down or failed its check, with the first try of which `proved` says that there is none.
+    ///
+    /// # Errors
+    /// Those of the attempts; a covering that does not fit the numbers (weight without friction) is no try.
+    pub(super) fn climb<R: Copy + Into<AttemptRules>>(
+        &mut self,
+        rungs: &[R],
+        budget: Duration,
+        watch: &dyn Watch,
+        attempt: &dyn Fn(R, &dyn Watch) -> Result<Solved, SolveError>,
+        proved: &dyn Fn(&mut Solved) -> bool,
+    ) -> Result<Option<Solved>, SolveError> {
+        for &rung in rungs {
+            let rules = rung.into();
+            if self.would_repeat(rules) {
+                continue;
+            }
+            let again = if rules.engine == AttemptEngine::Lemke(Engine::Exact) {
+                within(budget, watch, |watch| attempt(rung, watch))
+            } else {
+                attempt(rung, watch).map(Some)
+            };
+            let again = match again {
+                Ok(Some(again)) => again,
+                Ok(None) => {
+                    self.gave_up(rules, budget);
+                    continue;
+                }
+                Err(SolveError::Covering(_)) => continue,
+                Err(other) => return Err(other),
+            };
+            let mut again = match self.add(again) {
+                Ok(answer) => return Ok(Some(answer)),
+                Err(again) => again,
+            };
+            let has_ray = self.first.ray.is_some() || self.first.plain_ray.is_some();
+            if !has_ray && proved(&mut again) {
+                return Ok(Some(self.with_history(*again)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The first of several states that passes its check, with what is to be said of it besides.
+    ///
+    /// # Errors
+    /// Those of the states.
+    pub(super) fn first_answer(
+        &mut self,
+        states: impl Iterator<Item = Result<Solved, SolveError>>,
+        note: Option<String>,
+    ) -> Result<Option<Solved>, SolveError> {
+        for state in states {
+            if let Ok(mut answer) = self.add(state?) {
+                answer.answer.notes.extend(note);
+                return Ok(Some(answer));
+            }
+        }
+        Ok(None)
     }
 
     /// Whether a run in f64 under this covering and another tie-break would be one that was made.
-    pub(super) fn would_repeat(&self, covering: &str, engine: Engine) -> bool {
-        engine == Engine::Scheme && self.untied.iter().any(|known| known == covering)
+    fn would_repeat(&self, rules: AttemptRules) -> bool {
+        rules.engine == AttemptEngine::Lemke(Engine::Scheme)
+            && rules.tie_break != self.first.answer.rules.tie_break
+            && self.untied.contains(&rules.covering)
     }
 
     /// Adds a try: the answer with its history, or the try as it was where it is none.
     pub(super) fn add(&mut self, mut again: Solved) -> Result<Solved, Box<Solved>> {
-        if again.answer.engine == Engine::Scheme.to_string() && !has_ties(&again) {
-            self.untied.push(again.answer.covering.clone());
+        let rules = again.answer.rules;
+        if rules.engine == AttemptEngine::Lemke(Engine::Scheme) && !has_ties(&again) {
+            self.untied.push(rules.covering);
         }
         self.tried.append(&mut again.answer.attempts);
         if !again.answer.is_answer() {
             return Err(Box::new(again));
         }
-        again.answer.notes.push(self.told());
+        again.answer.notes.push(self.note());
         Ok(self.with_history(again))
     }
 
     /// Notes an exact try that ran out of its time.
-    pub(super) fn gave_up(&mut self, covering: &str, tie_break: &str, engine: &str, budget: Duration) {
-        self.tried.push(Attempt {
-            covering: covering.to_owned(),
-            tie_break: tie_break.to_owned(),
-            engine: engine.to_owned(),
-            outcome: OutcomeKind::PivotLimit,
-            pivots: None,
-            why: Some(format!("given up after {} s of exact arithmetic", budget.as_secs())),
-        });
+    pub(super) fn gave_up(&mut self, rules: AttemptRules, budget: Duration) {
+        let why = Some(format!("given up after {} s of exact arithmetic", budget.as_secs()));
+        self.tried.push(Attempt { rules, outcome: OutcomeKind::PivotLimit, pivots: None, why });
     }
 
     /// Notes a try that came to no state at all.
@@ -71,7 +126,7 @@ impl Ladder {
     }
 
     /// The last try as the result, with all before it.
-    pub(super) fn with_history(&mut self, mut last: Solved) -> Solved {
+    fn with_history(&mut self, mut last: Solved) -> Solved {
         let mut attempts = std::mem::take(&mut self.first.answer.attempts);
         attempts.append(&mut self.tried);
         last.answer.attempts = attempts;
@@ -79,7 +134,7 @@ impl Ladder {
     }
 
     /// The note that tells of the retries behind an answer.
-    fn told(&self) -> String {
+    fn note(&self) -> String {
         let how = match (&self.first.ray, self.first.answer.outcome) {
             (Some(report), _) => match report.class {
                 RayClass::Artefact => "ended in an artefact ray",
@@ -93,7 +148,7 @@ impl Ladder {
             (None, OutcomeKind::PivotLimit) => "reached the limit of pivots",
             (None, _) => "broke down",
         };
-        let found = self.tried.last().map_or(String::new(), rules_of);
+        let found = self.tried.last().map_or(String::new(), |last| last.rules.to_string());
         let number = 1 + self.tried.len();
         format!("the run under the default rules {how}; the answer was found at attempt {number} ({found})")
     }
@@ -102,7 +157,7 @@ impl Ladder {
     /// attempts.
     pub(super) fn without_answer(mut self) -> Solved {
         if !self.tried.is_empty() {
-            let tried: Vec<String> = self.tried.iter().map(rules_words).collect();
+            let tried: Vec<String> = self.tried.iter().map(in_words).collect();
             let said = format!(" Tried besides, without an answer: {}.", tried.join("; "));
             self.first.say(&said);
         }
@@ -113,23 +168,27 @@ impl Ladder {
     }
 }
 
-/// `covering ones, tie-break lexicographic, engine exact`.
-fn rules_of(attempt: &Attempt) -> String {
-    format!("covering {}, tie-break {}, engine {}", attempt.covering, attempt.tie_break, attempt.engine)
-}
-
 /// `covering ones, tie-break lexicographic, engine exact (given up after 10 s of exact arithmetic)`.
-fn rules_words(attempt: &Attempt) -> String {
+fn in_words(attempt: &Attempt) -> String {
     let why = attempt.why.as_ref().map(|why| why.trim_end_matches('.').to_owned());
     let cost = attempt.pivots.filter(|pivots| *pivots > 0).map(|pivots| format!("{pivots} pivots"));
-    let told: Vec<String> = why.into_iter().chain(cost).collect();
-    let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join("; ")) };
-    rules_of(attempt) + &told
+    let remarks: Vec<String> = why.into_iter().chain(cost).collect();
+    let remarks = if remarks.is_empty() { String::new() } else { format!(" ({})", remarks.join("; ")) };
+    attempt.rules.to_string() + &remarks
 }
 
 fn has_ties(solved: &Solved) -> bool {
-    let (Trace::Contact { pivots, .. } | Trace::Plain { pivots, .. }) = &solved.trace;
+    let pivots = solved.pivots();
     !pivots.is_complete() || pivots.recorded().iter().any(|pivot| pivot.ties.len() > 1)
+}
+
+/// "there are 3 answers; this is one of them", where there are others.
+pub(super) fn others(count: usize, infinite: bool, complete: bool) -> Option<String> {
+    if infinite {
+        return Some("there are infinitely many answers; this is one of them (`enumerate`)".to_owned());
+    }
+    let known = if complete { "" } else { "at least " };
+    (count > 1).then(|| format!("there are {known}{count} answers; this is one of them"))
 }
 
 impl Solved {
@@ -138,37 +197,10 @@ impl Solved {
         match (&mut self.answer.failure, &mut self.answer.ray) {
             (Some(failure), _) => failure.push_str(sentence),
             // The explanation of a contact ray is written later.
-            (None, _) if self.ray.is_some() => self.told.push_str(sentence),
+            (None, _) if self.ray.is_some() => self.retry_note.push_str(sentence),
             (None, Some(ray)) => ray.explanation.push_str(sentence),
             (None, None) => {}
         }
-    }
-}
-
-/// A watch that also stops when a time has passed.
-pub(super) struct Deadline<'a> {
-    watch: &'a dyn Watch,
-    until: Instant,
-}
-
-impl<'a> Deadline<'a> {
-    pub(super) fn after(budget: Duration, watch: &'a dyn Watch) -> Deadline<'a> {
-        Deadline { watch, until: Instant::now() + budget }
-    }
-
-    /// Whether the time ran out, and nobody else stopped the work.
-    pub(super) fn passed(&self) -> bool {
-        !self.watch.stop() && Instant::now() >= self.until
-    }
-}
-
-impl Watch for Deadline<'_> {
-    fn progress(&self, what: &str, fraction: f64) {
-        self.watch.progress(what, fraction);
-    }
-
-    fn stop(&self) -> bool {
-        self.watch.stop() || Instant::now() >= self.until
     }
 }
 
@@ -176,29 +208,16 @@ impl Watch for Deadline<'_> {
 ///
 /// # Errors
 /// Those of the attempt; stopped from outside.
-pub(super) fn within<T>(
+fn within<T>(
     budget: Duration,
     watch: &dyn Watch,
     attempt: impl FnOnce(&dyn Watch) -> Result<T, SolveError>,
 ) -> Result<Option<T>, SolveError> {
-    let deadline = Deadline::after(budget, watch);
-    match attempt(&deadline) {
-        Err(SolveError::Interrupted) if deadline.passed() => Ok(None),
+    let budget = Budget::new(watch, budget);
+    match attempt(&budget) {
+        Err(SolveError::Interrupted) if budget.ran_out() => Ok(None),
         other => other.map(Some),
     }
-}
-
-/// Runs `attempt`, within `budget` where `engine` is exact arithmetic.
-///
-/// # Errors
-/// As [`within`].
-pub(super) fn within_budget(
-    engine: Engine,
-    budget: Duration,
-    watch: &dyn Watch,
-    attempt: impl FnOnce(&dyn Watch) -> Result<Solved, SolveError>,
-) -> Result<Option<Solved>, SolveError> {
-    if engine == Engine::Exact { within(budget, watch, attempt) } else { attempt(watch).map(Some) }
 }
 
 #[cfg(test)]
@@ -223,7 +242,7 @@ mod tests {
                 true
             }
         }
-        // Ctrl-C is no end of the time.
+        // Ctrl-C is not the end of the time.
         assert_eq!(within(Duration::from_secs(600), &Stopped, endless), Err(SolveError::Interrupted));
     }
 }

@@ -15,10 +15,14 @@
 //! ```
 
 pub mod all_answers;
-pub mod attempt;
+mod cold;
 pub mod compare;
+mod critical;
 pub mod engines;
+pub mod error;
+pub mod exact;
 pub mod explain;
+pub mod finish;
 pub mod follow;
 mod from_zero_load;
 mod history_answer;
@@ -30,9 +34,10 @@ pub mod plain_answers;
 pub mod prepared;
 pub mod retry;
 mod settle;
-pub mod solved;
+pub mod state;
 pub mod warm;
 mod written_out;
 
+pub use error::SolveError;
 pub use prepared::{PrepareError, Prepared, prepare, prepare_at};
-pub use solved::{SolveError, Solved};
+pub use state::Solved;

@@ -1,29 +1,31 @@
 //! A bare LCP: one run under given rules, and the retries after one that ended badly.
 
-use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::all_answers::{ENUMERATION, others, plain_answer};
-use super::attempt::run_scheme;
-use super::engines::{EXACT_ROWS, run_exact_plain, run_tableau};
-use super::ladder::{Deadline, EXACT_BUDGET, LAST_RESORT, Ladder, within_budget};
+use super::engines::{EXACT_ROWS, run_exact_plain, run_scheme, run_tableau};
+use super::error::SolveError;
+use super::finish::{empty_answer, fail_check};
+use super::ladder::{EXACT_BUDGET, LAST_RESORT, Ladder, others};
 use super::plain_answers::{PlainAnswers, RayProof, all_plain_answers, prove_plain_ray};
 use super::settle::{ray_holds, settled};
-use super::solved::{SolveError, Solved, Trace, empty_answer, fail_check};
+use super::state::{RunData, Solved};
+use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
 use crate::answer::check::TOLERANCE;
 use crate::answer::check_plain::{ROUNDING, check_plain};
 use crate::answer::record::{OutcomeKind, PlainSolution, Size, Verdict};
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::sentence;
 use crate::lcp::mirrored::MirroredLcp;
-use crate::lcp::outcome::Outcome;
+use crate::lcp::outcome::{Outcome, Point, Run};
+use crate::lcp::pivot::PivotLog;
 use crate::lcp::ratio_test::TieRule;
+use crate::model::parameter::{Number, ParameterValues};
 use crate::model::rules::{Engine, Rules, TieBreak};
-use crate::watch::Watch;
+use crate::watch::{Budget, Watch};
 
 /// What is said of the answers where nothing was proved.
 const UNKNOWN: &str = "For a general M this proves nothing about whether one exists.";
@@ -38,45 +40,60 @@ const RANDOM_COVERINGS: u64 = 3;
 #[derive(Clone)]
 pub(super) struct PlainProblem<'a> {
     /// M, q, d of the file (ones without one).
-    pub(super) lcp: Arc<MirroredLcp>,
+    lcp: Arc<MirroredLcp>,
     /// Names of its rows.
-    pub(super) names: &'a [String],
-    /// Whether d is the file's.
-    pub(super) covering_given: bool,
+    names: &'a [String],
+    /// Its own covering vector: that of the file, else ones.
+    covering: PlainCovering,
 }
 
-/// A covering vector for a bare LCP.
+/// How a bare LCP is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PlainCovering {
-    /// That of the file, else ones.
-    Own,
-    /// d_i = 1.
-    Ones,
-    /// d_i = the largest |M_ik| of its row.
-    Rows,
-    /// d_i drawn between 1/8 and 8 times the largest |M_ik| of its row.
-    Random(u64),
+pub(super) struct PlainRules {
+    covering: PlainCovering,
+    tie_break: TieBreak,
+    engine: Engine,
 }
 
-impl PlainCovering {
-    /// The word for it in the list of attempts.
-    fn word(self, problem: &PlainProblem) -> String {
-        match self {
-            PlainCovering::Own if problem.covering_given => "given".to_owned(),
-            PlainCovering::Own => PlainCovering::Ones.to_string(),
-            other => other.to_string(),
+impl From<PlainRules> for AttemptRules {
+    fn from(rules: PlainRules) -> AttemptRules {
+        AttemptRules {
+            covering: AttemptCovering::Plain(rules.covering),
+            tie_break: rules.tie_break,
+            engine: AttemptEngine::Lemke(rules.engine),
         }
+    }
+}
+
+impl<'a> PlainProblem<'a> {
+    /// `lcp` has the rest; its q is left open.
+    pub(super) fn new(
+        lcp: &MirroredLcp,
+        q: &[Number],
+        values: &ParameterValues,
+        names: &'a [String],
+        covering_given: bool,
+    ) -> PlainProblem<'a> {
+        let q = q.iter().map(|number| number.value(values)).collect::<Vec<_>>().into();
+        let covering = if covering_given { PlainCovering::Given } else { PlainCovering::Ones };
+        PlainProblem { lcp: Arc::new(MirroredLcp { q, ..lcp.clone() }), names, covering }
+    }
+
+    /// The user's rules under the problem's own covering.
+    pub(super) fn rules(&self, rules: Rules) -> PlainRules {
+        PlainRules { covering: self.covering, tie_break: rules.tie_break, engine: rules.engine }
     }
 
     /// The LCP with this covering vector.
-    fn applied(self, lcp: &Arc<MirroredLcp>) -> Arc<MirroredLcp> {
+    fn covered(&self, covering: PlainCovering) -> Arc<MirroredLcp> {
+        let lcp = &self.lcp;
         let n = lcp.size();
         let row_size = |i: usize| {
             let largest = lcp.base.row(i).amax();
             if largest > 0.0 { largest } else { 1.0 }
         };
-        let covering: Vec<f64> = match self {
-            PlainCovering::Own => return Arc::clone(lcp),
+        let covering: Vec<f64> = match covering {
+            PlainCovering::Given => return Arc::clone(lcp),
             PlainCovering::Ones => vec![1.0; n],
             PlainCovering::Rows => (0..n).map(row_size).collect(),
             PlainCovering::Random(seed) => {
@@ -88,39 +105,13 @@ impl PlainCovering {
     }
 }
 
-impl fmt::Display for PlainCovering {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            PlainCovering::Own => f.write_str("given"),
-            PlainCovering::Ones => f.write_str("ones"),
-            PlainCovering::Rows => f.write_str("rows"),
-            PlainCovering::Random(seed) => write!(f, "random:{seed}"),
-        }
-    }
-}
-
-/// How a bare LCP is run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct PlainRules {
-    pub(super) covering: PlainCovering,
-    pub(super) tie_break: TieBreak,
-    pub(super) engine: Engine,
-}
-
-impl PlainRules {
-    /// The user's rules under the problem's own covering.
-    pub(super) fn own(rules: Rules) -> PlainRules {
-        PlainRules { covering: PlainCovering::Own, tie_break: rules.tie_break, engine: rules.engine }
-    }
-}
-
 /// One run under exactly these rules.
 pub(super) fn attempt_plain(
     problem: &PlainProblem,
     rules: PlainRules,
     watch: &dyn Watch,
 ) -> Result<Solved, SolveError> {
-    let lcp = rules.covering.applied(&problem.lcp);
+    let lcp = problem.covered(rules.covering);
     let rule = match rules.tie_break {
         TieBreak::Lexicographic | TieBreak::Natural => TieRule::Lexicographic((0..lcp.size()).collect()),
         TieBreak::FirstRow => TieRule::FirstRow,
@@ -141,12 +132,11 @@ pub(super) fn attempt_plain(
     let marginal = run.outcome == Outcome::Normal { marginal: true };
     let basis = run.pivots.basis();
     if matches!(run.outcome, Outcome::Normal { .. }) && !basis.p && rules.engine != Engine::Exact {
-        run.point = settled(&lcp, &basis, &run.point, &Deadline::after(EXACT_BUDGET, watch));
+        run.point = settled(&lcp, &basis, &run.point, &Budget::new(watch, EXACT_BUDGET));
     }
     let seconds = start.elapsed().as_secs_f64();
-    let words = [rules.covering.word(problem), rules.tie_break.to_string(), rules.engine.to_string()];
     let size = Size { unknowns: None, free: None, pairs: 0, lcp: lcp.size() };
-    let mut answer = empty_answer(&run, 1.0, words, size);
+    let mut answer = empty_answer(&run, 1.0, rules.into(), size);
     answer.timings.lemke = seconds;
     answer.pivots = sentence::plain_records(run.pivots.recorded(), problem.names);
     let mut plain_ray = None;
@@ -167,12 +157,12 @@ pub(super) fn attempt_plain(
     let cycled = matches!(run.outcome, Outcome::Cycle(_));
     Ok(Solved {
         answer,
-        trace: Trace::Plain { lcp, pivots: run.pivots },
+        run: RunData::Plain { lcp, pivots: run.pivots },
         ray: None,
         plain_ray,
         cycled,
-        told: String::new(),
-        kept: None,
+        retry_note: String::new(),
+        warm: None,
     })
 }
 
@@ -182,22 +172,26 @@ pub(super) fn solve_plain_judged(
     rules: Rules,
     watch: &dyn Watch,
 ) -> Result<Solved, SolveError> {
-    let own = PlainRules::own(rules);
-    let mut first = attempt_plain(problem, own, watch)?;
+    let mut first = attempt_plain(problem, problem.rules(rules), watch)?;
     if first.answer.is_answer() {
         return Ok(first);
     }
-    if !rules.are_default() {
-        let other = attempt_plain(problem, PlainRules::own(Rules::default()), watch)?;
-        if other.answer.is_answer() {
-            let (tie_break, count) = (TieBreak::default(), other.pivot_count());
-            first.say(&format!(" The default tie-break ({tie_break}) finds an answer in {count} pivots."));
-        }
-        return Ok(first);
+    if rules.are_default() {
+        return retry(problem, first, problem.rules(rules), watch);
     }
-    if let (Some(ray), Trace::Plain { lcp, pivots }) = (&mut first.plain_ray, &first.trace) {
-        let deadline = Deadline::after(EXACT_BUDGET, watch);
-        ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, &deadline);
+    let other = attempt_plain(problem, problem.rules(Rules::default()), watch)?;
+    if other.answer.is_answer() {
+        let (tie_break, count) = (TieBreak::default(), other.pivot_count());
+        first.say(&format!(" The default tie-break ({tie_break}) finds an answer in {count} pivots."));
+    }
+    Ok(first)
+}
+
+/// Proofs that there is no answer, then other rules, then all bases; the first answer wins. Without one the first run is
+/// what is shown, with what was proved.
+fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn Watch) -> Result<Solved, SolveError> {
+    if let (Some(ray), RunData::Plain { lcp, pivots }) = (&mut first.plain_ray, &first.run) {
+        ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, &Budget::new(watch, EXACT_BUDGET));
         first.answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
     }
     // Beyond a few rows a combination of them proves sooner than all bases that there is no answer.
@@ -210,9 +204,9 @@ pub(super) fn solve_plain_judged(
         first.answer.ray = Some(proof.record(ray, problem.names));
         return Ok(first);
     }
-    let deadline = Deadline::after(EXACT_BUDGET, watch);
-    let found = all_plain_answers(&problem.lcp, &deadline);
-    let too_long = deadline.passed() && found.as_ref().is_some_and(|found| !found.complete);
+    let budget = Budget::new(watch, EXACT_BUDGET);
+    let found = all_plain_answers(&problem.lcp, &budget);
+    let too_long = budget.ran_out() && found.as_ref().is_some_and(|found| !found.complete);
     if found.as_ref().is_some_and(PlainAnswers::none)
         && let Some(ray) = &first.plain_ray
     {
@@ -234,49 +228,55 @@ pub(super) fn solve_plain_judged(
         let seconds = EXACT_BUDGET.as_secs();
         first.say(&format!(" A proof that there is no answer was looked for and given up after {seconds} s."));
     }
-    let budget = if by_rounding { LAST_RESORT } else { EXACT_BUDGET };
     let mut ladder = Ladder::new(first);
     if too_long {
-        ladder.gave_up(&own.covering.word(problem), &own.tie_break.to_string(), ENUMERATION, EXACT_BUDGET);
+        ladder.gave_up(AttemptRules::from(own).by(AttemptEngine::Enumeration), EXACT_BUDGET);
     }
-    for rules in rungs {
-        if rules.tie_break != own.tie_break && ladder.would_repeat(&rules.covering.word(problem), rules.engine) {
-            continue;
-        }
-        match within_budget(rules.engine, budget, watch, |watch| attempt_plain(problem, rules, watch))? {
-            Some(again) => {
-                let mut again = match ladder.add(again) {
-                    Ok(answer) => return Ok(answer),
-                    Err(again) => again,
-                };
-                // The first run broke down or failed its check: a ray that is proved is better than that.
-                if ladder.first().plain_ray.is_none() && prove_ray(&mut again, problem, found.as_ref(), watch) {
-                    return Ok(ladder.with_history(*again));
-                }
-            }
-            None => {
-                let covering = rules.covering.word(problem);
-                ladder.gave_up(&covering, &rules.tie_break.to_string(), &rules.engine.to_string(), budget);
-            }
-        }
+    let budget = if by_rounding { LAST_RESORT } else { EXACT_BUDGET };
+    let attempt = |rules: PlainRules, watch: &dyn Watch| attempt_plain(problem, rules, watch);
+    let proved = |again: &mut Solved| prove_ray(again, problem, found.as_ref(), watch);
+    if let Some(solved) = ladder.climb(&rungs, budget, watch, &attempt, &proved)? {
+        return Ok(solved);
     }
-    if let Some(found) = found {
-        for z in &found.answers {
-            if let Ok(mut answer) = ladder.add(plain_answer(&problem.lcp, z, &ladder.first().answer)) {
-                let infinite = !found.continua.is_empty();
-                answer.answer.notes.extend(others(found.answers.len(), infinite, found.complete));
-                return Ok(answer);
-            }
+    if let Some(found) = &found {
+        let state = |z: &Vec<f64>| Ok(plain_answer(&problem.lcp, z, own.into()));
+        let note = others(found.answers.len(), !found.continua.is_empty(), found.complete);
+        if let Some(answer) = ladder.first_answer(found.answers.iter().map(state), note)? {
+            return Ok(answer);
         }
     }
     Ok(ladder.without_answer())
 }
 
+/// An enumerated answer of a bare LCP as a solved state, freshly checked; the other rules are those of the run before it.
+pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRules) -> Solved {
+    let w = lcp.times(z) + &lcp.q;
+    let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
+    let check = check_plain(lcp, &point.z, ROUNDING);
+    let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
+    let size = Size { lcp: lcp.size(), ..Size::default() };
+    let mut answer = empty_answer(&run, 1.0, rules.by(AttemptEngine::Enumeration), size);
+    answer.check = check;
+    answer.solution = Some(PlainSolution { z: run.point.z, w: run.point.w });
+    if !answer.check.passed {
+        answer.outcome = OutcomeKind::CheckFailed;
+    }
+    Solved {
+        answer,
+        run: RunData::Plain { lcp: Arc::clone(lcp), pivots: PivotLog::default() },
+        ray: None,
+        plain_ray: None,
+        cycled: false,
+        warm: None,
+        retry_note: String::new(),
+    }
+}
+
 /// Looks for a proof within its time, and says whether that was too short.
 fn prove_in_time(lcp: &MirroredLcp, watch: &dyn Watch) -> (Option<RayProof>, bool) {
-    let deadline = Deadline::after(EXACT_BUDGET, watch);
-    let proof = prove_plain_ray(lcp, &deadline);
-    let given_up = proof.is_none() && deadline.passed();
+    let budget = Budget::new(watch, EXACT_BUDGET);
+    let proof = prove_plain_ray(lcp, &budget);
+    let given_up = proof.is_none() && budget.ran_out();
     (proof, given_up)
 }
 
@@ -322,7 +322,7 @@ fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRu
     coverings.extend((1..=RANDOM_COVERINGS).map(PlainCovering::Random));
     let mut rungs: Vec<PlainRules> = coverings.into_iter().map(|covering| PlainRules { covering, ..own }).collect();
     // The rows may happen to be as large as d.
-    rungs.retain(|rules| !is_multiple(&rules.covering.applied(&problem.lcp), &problem.lcp));
+    rungs.retain(|rules| !is_multiple(&problem.covered(rules.covering), &problem.lcp));
     rungs.push(PlainRules { tie_break: TieBreak::Random(1), ..own });
     if problem.lcp.size() <= EXACT_ROWS {
         let exact = PlainRules { engine: Engine::Exact, ..own };

@@ -1,7 +1,5 @@
 //! Bare LCPs: all answers, the exact check of a basis, and what can be proved of a ray.
 
-use std::ops::ControlFlow;
-
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
@@ -89,7 +87,7 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize], watch: &dyn Watch
     let right: Vec<BigInt> = basis.iter().map(|&i| -&rows[i][n]).collect();
     let mut progress = |share| {
         watch.progress("exact check", share);
-        if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        watch.go_on()
     };
     let z = match solve(&matrix, &right, &mut progress) {
         RationalSolution::Unique(z) => z,

@@ -7,12 +7,14 @@
 
 use std::time::Duration;
 
-use super::all_answers::{ENUMERATION, others};
 use super::engines::EXACT_PAIRS;
-use super::ladder::{Deadline, EXACT_BUDGET, Ladder, within_budget};
+use super::error::SolveError;
+use super::from_zero_load::AlongLoad;
+use super::ladder::{EXACT_BUDGET, Ladder, others};
 use super::numbers::{contact_numbers, factors};
 use super::prepared::{Geometry, Prepared};
-use super::solved::{SolveError, Solved};
+use super::state::Solved;
+use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules};
 use crate::answer::record::{RayClass, Verdict};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::enumerate::Enumeration;
@@ -20,8 +22,7 @@ use crate::contact::system::ContactSystem;
 use crate::explain::ray::{Subject, all_answers, certify_ray, explain};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
-use crate::solve::from_zero_load::AlongLoad;
-use crate::watch::Watch;
+use crate::watch::{Budget, Watch};
 
 /// An exact attempt after a ray that is a mechanism is given up after this time: such a ray is seldom rounding, and the
 /// rationals of an R with a large kernel have thousands of digits.
@@ -98,12 +99,13 @@ impl Prepared {
             if watch.stop() {
                 return Err(SolveError::Interrupted);
             }
-            let said = report.record(system, job.covering_of(&solved.answer.covering));
-            let told = std::mem::take(&mut solved.told);
-            solved.answer.ray = Some(said);
-            if let Some(ray) = &mut solved.answer.ray {
-                ray.explanation += &told;
-            }
+            let covering = match solved.answer.rules.covering {
+                AttemptCovering::Contact(covering) => covering,
+                AttemptCovering::Plain(_) => rules.covering,
+            };
+            let mut ray = report.record(system, covering);
+            ray.explanation += &std::mem::take(&mut solved.retry_note);
+            solved.answer.ray = Some(ray);
         }
         Ok(solved)
     }
@@ -127,61 +129,34 @@ impl Job<'_> {
         self.prepared.attempt_contact(self.system, self.numbers, self.factors, rules, watch)
     }
 
-    fn covering_of(&self, word: &str) -> Covering {
-        word.parse().unwrap_or(self.rules.covering)
-    }
-
     /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run
     /// under the default rules is what is shown, with what was proved.
     fn retry(&self, mut first: Solved, subject: &Subject) -> Result<Solved, SolveError> {
         let m = self.system.pairs.len();
         let class = first.ray.as_ref().map(|report| report.class);
         // A proof that there is none saves all further attempts.
-        let deadline = Deadline::after(EXACT_BUDGET, self.watch);
-        let found = all_answers(subject, &deadline);
-        let too_long = found.is_none() && deadline.passed();
+        let budget = Budget::new(self.watch, EXACT_BUDGET);
+        let found = all_answers(subject, &budget);
+        let too_long = found.is_none() && budget.ran_out();
         let none = found.as_ref().is_some_and(Enumeration::no_answer);
         if none && mark_proved(&mut first) {
             return Ok(first);
         }
-        let try_rules = class != Some(RayClass::Mechanism) || m <= FEW_PAIRS;
         let mut ladder = Ladder::new(first);
         if too_long {
-            let [covering, tie_break, _] = Rules::default().words();
-            ladder.gave_up(&covering, &tie_break, ENUMERATION, EXACT_BUDGET);
+            ladder.gave_up(AttemptRules::from(Rules::default()).by(AttemptEngine::Enumeration), EXACT_BUDGET);
         }
-        let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact && self.system.force_form.is_none();
-        let budget = if class == Some(RayClass::Mechanism) { MECHANISM_BUDGET } else { EXACT_BUDGET };
-        for rules in if try_rules { retries(exact) } else { Vec::new() } {
-            if rules.tie_break != self.rules.tie_break && ladder.would_repeat(&rules.covering.to_string(), rules.engine)
-            {
-                continue;
-            }
-            let again =
-                match within_budget(rules.engine, budget, self.watch, |watch| self.attempt_watched(rules, watch)) {
-                    Ok(Some(again)) => again,
-                    Ok(None) => {
-                        let [covering, tie_break, engine] = rules.words();
-                        ladder.gave_up(&covering, &tie_break, &engine, budget);
-                        continue;
-                    }
-                    // A covering that does not fit the numbers (weight without friction) is no try.
-                    Err(SolveError::Covering(_)) => continue,
-                    Err(other) => return Err(other),
-                };
-            let mut again = match ladder.add(again) {
-                Ok(answer) => return Ok(answer),
-                Err(again) => again,
-            };
-            // The first run broke down or failed its check: a ray that can be proved is better than that.
-            if ladder.first().ray.is_none() {
+        if class != Some(RayClass::Mechanism) || m <= FEW_PAIRS {
+            let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact && self.system.force_form.is_none();
+            let budget = if class == Some(RayClass::Mechanism) { MECHANISM_BUDGET } else { EXACT_BUDGET };
+            let attempt = |rules: Rules, watch: &dyn Watch| self.attempt_watched(rules, watch);
+            let proved = |again: &mut Solved| {
                 let certified = again.ray.as_mut().is_some_and(|report| certify_ray(report, subject));
-                if certified || (none && mark_proved(&mut again)) {
-                    return Ok(ladder.with_history(*again));
-                }
+                certified || (none && mark_proved(again))
+            };
+            if let Some(solved) = ladder.climb(&retries(exact), budget, self.watch, &attempt, &proved)? {
+                return Ok(solved);
             }
-        }
-        if try_rules {
             match self.prepared.along_load(self.system, self.numbers, self.factors, self.watch)? {
                 AlongLoad::Answer(again) => {
                     if let Ok(answer) = ladder.add(*again) {
@@ -193,12 +168,10 @@ impl Job<'_> {
             }
         }
         if let Some(found) = found {
-            for candidate in &found.answers {
-                let again = self.prepared.enumerated_answer(self.system, self.numbers, self.factors, candidate)?;
-                if let Ok(mut answer) = ladder.add(again) {
-                    answer.answer.notes.extend(others(found.answers.len(), !found.continua.is_empty(), true));
-                    return Ok(answer);
-                }
+            let state = |candidate| self.prepared.enumerated_answer(self.system, self.numbers, self.factors, candidate);
+            let note = others(found.answers.len(), !found.continua.is_empty(), true);
+            if let Some(answer) = ladder.first_answer(found.answers.iter().map(state), note)? {
+                return Ok(answer);
             }
         }
         Ok(ladder.without_answer())
@@ -212,9 +185,9 @@ impl Job<'_> {
         let said = if other.answer.is_answer() {
             format!(" The default rules ({words}) find an answer in {} pivots.", other.pivot_count())
         } else {
-            let deadline = Deadline::after(EXACT_BUDGET, self.watch);
-            match all_answers(subject, &deadline) {
-                None if deadline.passed() => format!(
+            let budget = Budget::new(self.watch, EXACT_BUDGET);
+            match all_answers(subject, &budget) {
+                None if budget.ran_out() => format!(
                     " The default rules ({words}) find no answer either; going through all working schemes was given up \
                      after {} s.",
                     EXACT_BUDGET.as_secs()

@@ -1,8 +1,6 @@
 //! The answer of a bare LCP made as true to its data as f64 allows: refined in doubled precision, and where that does not
 //! do, solved exactly.
 
-use std::ops::ControlFlow;
-
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
@@ -134,7 +132,7 @@ impl<'a> WholeBasis<'a> {
         let active = || self.basis.active.iter().map(|&i| &self.rows[i]);
         let matrix: Vec<Vec<BigInt>> = active().map(|row| row.basic.clone()).collect();
         let right: Vec<BigInt> = active().map(right).collect();
-        let mut progress = |_| if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let mut progress = |_| watch.go_on();
         match solve(&matrix, &right, &mut progress) {
             RationalSolution::Unique(solution) => Some(solution),
             _ => None,

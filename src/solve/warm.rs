@@ -4,8 +4,7 @@
 //! is in the matrix: the dictionary stays that of the friction it was built for, and the difference of the bounds,
 //! Δf x_n, stands in as an extra cohesion until the scheme holds, then the scheme is solved for the new friction.
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use crate::contact::lcp::{ContactLcp, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
@@ -35,6 +34,9 @@ pub struct WarmStart {
     extra: Vec<f64>,
 }
 
+/// What an answer keeps for the next change; shared by the answers of one chain.
+pub(super) type WarmSlot = Arc<Mutex<Option<WarmStart>>>;
+
 /// An answer found from the last one.
 #[derive(Clone, Debug)]
 pub struct WarmPoint {
@@ -53,7 +55,7 @@ impl WarmStart {
         WarmStart { engine, contact, numbers, extra }
     }
 
-    /// Refines what is kept from the data, where its answer was not good enough; then [`Kept::follow`] again.
+    /// Refines what is kept from the data, where its answer was not good enough; then [`WarmStart::follow`] again.
     pub fn refine(&mut self) {
         self.engine.refine();
     }
@@ -107,9 +109,7 @@ impl WarmStart {
             return None;
         }
         let reach = Reach { target: 1.0, through: false, pivots: PIVOTS };
-        let (end, pivots) = self.engine.walk(reach, &mut |_| {
-            if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
+        let (end, pivots) = self.engine.walk(reach, &mut |_| watch.go_on());
         if end != End::Target {
             return None;
         }

@@ -1,11 +1,14 @@
 //! Rules compared: covering × tie-break × engine.
 
+use std::fmt::Display;
 use std::io::{self, Write};
 
 use super::number::{denoised, engineering};
 use super::status::{class_word, outcome_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
+use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules};
+use crate::model::rules::TieBreak;
 use crate::solve::compare::{Compared, Comparison};
 
 /// Letter of an answer: A, B … Z, then its number.
@@ -29,9 +32,9 @@ fn outcome(row: &Compared) -> (String, Role) {
 
 /// Rows of the comparison with the same end, and the rules that lead to it.
 struct Group<'a> {
-    coverings: Vec<&'a str>,
-    tie_breaks: Vec<&'a str>,
-    engines: Vec<&'a str>,
+    coverings: Vec<AttemptCovering>,
+    tie_breaks: Vec<TieBreak>,
+    engines: Vec<AttemptEngine>,
     /// One of the rows.
     row: &'a Compared,
 }
@@ -49,7 +52,7 @@ fn p_of(row: &Compared) -> String {
 fn groups(rows: &[Compared]) -> Vec<Group<'_>> {
     let mut groups: Vec<Group> = Vec::new();
     for row in rows {
-        let Compared { covering, tie_break, engine, .. } = row;
+        let AttemptRules { covering, tie_break, engine } = row.rules;
         groups.push(Group { coverings: vec![covering], tie_breaks: vec![tie_break], engines: vec![engine], row });
     }
     for rule in 0..3 {
@@ -74,9 +77,12 @@ fn groups(rows: &[Compared]) -> Vec<Group<'_>> {
 }
 
 /// The names of a group, or `all` where there are no others.
-fn names(chosen: &[&str], rows: &[Compared], of: impl Fn(&Compared) -> &str) -> String {
-    let every = rows.iter().all(|row| chosen.contains(&of(row)));
-    if every && chosen.len() > 1 { "all".to_owned() } else { chosen.join(", ") }
+fn names<T: PartialEq + Display>(chosen: &[T], rows: &[Compared], of: impl Fn(&AttemptRules) -> T) -> String {
+    let every = rows.iter().all(|row| chosen.contains(&of(&row.rules)));
+    if every && chosen.len() > 1 {
+        return "all".to_owned();
+    }
+    chosen.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// Writes the table, equal ends in one row, and a line that sums it up.
@@ -95,9 +101,9 @@ pub fn write(out: &mut dyn Write, comparison: &Comparison, style: &Style) -> io:
         let (text, role) = outcome(row);
         let ran = row.outcome.is_some();
         table.rows.push(Row::new(vec![
-            Cell::from(names(&group.coverings, &comparison.rows, |row| &row.covering)),
-            Cell::from(names(&group.tie_breaks, &comparison.rows, |row| &row.tie_break)),
-            Cell::from(names(&group.engines, &comparison.rows, |row| &row.engine)),
+            Cell::from(names(&group.coverings, &comparison.rows, |rules| rules.covering)),
+            Cell::from(names(&group.tie_breaks, &comparison.rows, |rules| rules.tie_break)),
+            Cell::from(names(&group.engines, &comparison.rows, |rules| rules.engine)),
             Cell::new(text, role),
             Cell::from(if ran { row.pivots.to_string() } else { String::new() }),
             Cell::from(if ran { p_of(row) } else { String::new() }),

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::number::short;
 use super::style::{Role, Style};
 use crate::contact::schemes::exact_check::{ExactSign, Finding};
-use crate::solve::all_answers::Exactly;
+use crate::solve::exact::Exactly;
 
 fn signs(signs: &[ExactSign]) -> String {
     let words: Vec<String> =

@@ -239,11 +239,7 @@ fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units) -> (String
 
 /// p is a force in contact problems and has no unit in a bare LCP.
 fn p_unit(answer: &Answer, units: &Units) -> Option<String> {
-    if answer.covering == "given" || answer.solution.is_some() || answer.pairs.is_empty() {
-        None
-    } else {
-        force_unit(units)
-    }
+    if answer.solution.is_some() || answer.pairs.is_empty() { None } else { force_unit(units) }
 }
 
 /// The longer `status`: what is solved, outcome, size, rules, check figures, attempts, notes, parameters, description.
@@ -287,7 +283,10 @@ pub fn write(
     rows.push(("size", sizes.join(" · ")));
     rows.push((
         "rules",
-        format!("covering {} · tie-break {} · engine {}", answer.covering, answer.tie_break, answer.engine),
+        format!(
+            "covering {} · tie-break {} · engine {}",
+            answer.rules.covering, answer.rules.tie_break, answer.rules.engine
+        ),
     ));
     if let Start::Warm { changes } = answer.start {
         let times = if changes == 1 { "change" } else { "changes" };
@@ -312,9 +311,9 @@ pub fn write(
                 if i == 0 { "attempts" } else { "" },
                 format!(
                     "{} · {} · {}: {}{}{}",
-                    attempt.covering,
-                    attempt.tie_break,
-                    attempt.engine,
+                    attempt.rules.covering,
+                    attempt.rules.tie_break,
+                    attempt.rules.engine,
                     outcome_word(attempt.outcome),
                     attempt.pivots.map_or(String::new(), |pivots| format!(" · {}", pivots_word(pivots))),
                     attempt.why.as_ref().map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')))

@@ -5,8 +5,6 @@
 //! verified: w = M z + q + d p, every sign, and at a ray the direction. The rational tableau
 //! (`Tableau<BigRational>`) makes the same pivots, slowly.
 
-use std::ops::ControlFlow;
-
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
@@ -119,7 +117,7 @@ impl<'a> Exact<'a> {
                 }
             })
             .collect();
-        let mut progress = |_| if self.watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let mut progress = |_| self.watch.go_on();
         let RationalSolution::Unique(Quotients { numerators, denominator }) = solve(&matrix, &rhs, &mut progress)
         else {
             return None;

@@ -1,5 +1,7 @@
 //! The same run as the rational tableau.
 
+use std::ops::ControlFlow;
+
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -6,8 +6,8 @@ use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::fem::{Displacements, Loaded};
 use crate::solve::Prepared;
+use crate::solve::finish::dislocation;
 use crate::solve::prepared::Geometry;
-use crate::solve::solved::dislocation;
 
 /// D = −Σ ½ (x_τa + x_τb) Δz_τ of a stage.
 pub(super) fn dissipated(system: &ContactSystem, moments: &[Moment]) -> f64 {

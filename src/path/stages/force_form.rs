@@ -6,7 +6,6 @@
 //! scheme just ahead is found by Lemke's algorithm a small step further on; from the start of the stretch the answer is
 //! then followed exactly, up to the next event.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::DVector;
@@ -156,9 +155,7 @@ impl ForcedWalk<'_> {
             }
             let Some(mut engine) = Parametric::new(Arc::clone(&path.lcp), basis, order(&path)) else { continue };
             let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
-            let followed = engine.follow(reach, &mut |_| {
-                if self.place.watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            });
+            let followed = engine.follow(reach, &mut |_| self.place.watch.go_on());
             way.pivots += followed.pivots;
             if let Some(knot) = followed.knots.iter().find(|knot| knot.t > HERE) {
                 let to = if knot.t >= 1.0 - t - HERE { 1.0 } else { t + knot.t };

@@ -21,7 +21,7 @@ use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::problem::{NOISE, Scale};
 use crate::model::rules::TieBreak;
-use crate::solve::attempt::run_scheme;
+use crate::solve::engines::run_scheme;
 use crate::watch::Watch;
 
 /// Rate problems with at most so many rows are searched basis by basis where Lemke's algorithm ends in a ray.

@@ -19,7 +19,7 @@ use crate::lcp::outcome::Run;
 use crate::lcp::problem::NOISE;
 use crate::path::start::PathError;
 use crate::solve::Prepared;
-use crate::solve::attempt::kind;
+use crate::solve::engines::kind;
 use crate::watch::Watch;
 
 /// No stage has more events than this.

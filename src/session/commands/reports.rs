@@ -38,9 +38,9 @@ impl Session {
                     "p": answer.p,
                     "pivots": answer.pivot_count,
                     "parameters": values,
-                    "covering": answer.covering,
-                    "tie_break": answer.tie_break,
-                    "engine": answer.engine,
+                    "covering": answer.rules.covering,
+                    "tie_break": answer.rules.tie_break,
+                    "engine": answer.rules.engine,
                 });
                 if let (Some(failure), Value::Object(map)) = (&answer.failure, &mut report) {
                     map.insert("failure".into(), json!(failure));

@@ -1,7 +1,6 @@
 //! What only a picture asks for: the motion of a ray as displacements of the nodes, and all answers of a small
 //! problem side by side.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::DVector;
@@ -10,7 +9,7 @@ use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{NodeDisplacement, PairState};
 use crate::contact::schemes::enumerate::enumerate;
 use crate::solve::prepared::Geometry;
-use crate::solve::solved::Trace;
+use crate::solve::state::RunData;
 use crate::watch::Watch;
 
 use crate::session::{CommandError, Session, worker};
@@ -77,7 +76,7 @@ impl Session {
         };
         let (solved, prepared) = (Arc::clone(solved), Arc::clone(prepared));
         worker::run(watch, move |watch| {
-            let (Trace::Contact { contact, numbers, factors, .. }, Some(system)) = (&solved.trace, prepared.system())
+            let (RunData::Contact { contact, numbers, factors, .. }, Some(system)) = (&solved.run, prepared.system())
             else {
                 return Err(CommandError::Refused(
                     "answers are enumerated for contact problems, this is a bare LCP".into(),
@@ -92,7 +91,7 @@ impl Session {
             }
             let found = enumerate(system, numbers, &mut |progress| {
                 watch.progress("all answers", progress.share);
-                if watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                watch.go_on()
             });
             let answers = found
                 .answers

@@ -5,7 +5,7 @@ use serde_json::json;
 use crate::answer::record::State;
 use crate::explain::plain_why::Vertex;
 use crate::solve::prepared::Geometry;
-use crate::solve::solved::Trace;
+use crate::solve::state::RunData;
 use crate::view;
 use crate::view::number::{short, with_unit};
 
@@ -117,7 +117,7 @@ impl Session {
         let (Some(solved), Some(prepared), Some(solution)) = (&self.solved, &self.now.prepared, self.solution()) else {
             return Err(CommandError::Refused("not solved yet: `solve`".into()));
         };
-        let (Trace::Plain { lcp, .. }, Geometry::Plain { names, .. }) = (&solved.trace, &*prepared.geometry) else {
+        let (RunData::Plain { lcp, .. }, Geometry::Plain { names, .. }) = (&solved.run, &*prepared.geometry) else {
             return Err(CommandError::Refused(format!("no pair `{variable}`")));
         };
         let done = self.position.map_or(solved.answer.pivots.len(), |step| step + 1);

@@ -112,7 +112,7 @@ impl Session {
         }
         let rules = format!(
             "Covering {}, tie-break {}, engine {}; {} unknowns of the LCP.",
-            answer.covering, answer.tie_break, answer.engine, answer.size.lcp
+            answer.rules.covering, answer.rules.tie_break, answer.rules.engine, answer.size.lcp
         );
         blocks.push(Block::Text(rules));
         blocks.extend(answer.notes.iter().cloned().map(Block::Text));

@@ -1,0 +1,128 @@
+//! One try of the solver: under which rules it ran, and how it ended.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+use super::record::OutcomeKind;
+use crate::model::rules::{Covering, Engine, Rules, TieBreak};
+
+/// Covering vector d of a bare LCP.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlainCovering {
+    /// That of the file.
+    Given,
+    /// d_i = 1.
+    Ones,
+    /// d_i = the largest |M_ik| of its row.
+    Rows,
+    /// d_i drawn with this seed between 1/8 and 8 times the largest |M_ik| of its row.
+    Random(u64),
+}
+
+/// Covering vector of a try, of a contact problem or a bare LCP.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttemptCovering {
+    Contact(Covering),
+    Plain(PlainCovering),
+}
+
+/// What found, or looked for, an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttemptEngine {
+    /// Lemke's algorithm.
+    Lemke(Engine),
+    /// All working schemes, or bases, one after another.
+    Enumeration,
+    /// The path from zero load along the growing load.
+    LoadPath,
+}
+
+/// Rules of a try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct AttemptRules {
+    pub covering: AttemptCovering,
+    pub tie_break: TieBreak,
+    pub engine: AttemptEngine,
+}
+
+impl AttemptRules {
+    /// The same with another engine.
+    pub fn by(self, engine: AttemptEngine) -> AttemptRules {
+        AttemptRules { engine, ..self }
+    }
+}
+
+/// One try of the solver.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Attempt {
+    #[serde(flatten)]
+    pub rules: AttemptRules,
+    /// How it ended.
+    pub outcome: OutcomeKind,
+    /// Pivots that it made, where that is known; told in words only.
+    #[serde(skip)]
+    pub pivots: Option<usize>,
+    /// Which limit it reached, where that is no ray and no answer; where a path ended.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
+impl From<Rules> for AttemptRules {
+    fn from(rules: Rules) -> AttemptRules {
+        AttemptRules {
+            covering: AttemptCovering::Contact(rules.covering),
+            tie_break: rules.tie_break,
+            engine: AttemptEngine::Lemke(rules.engine),
+        }
+    }
+}
+
+/// `covering ones, tie-break lexicographic, engine exact`.
+impl fmt::Display for AttemptRules {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "covering {}, tie-break {}, engine {}", self.covering, self.tie_break, self.engine)
+    }
+}
+
+impl fmt::Display for PlainCovering {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PlainCovering::Given => f.write_str("given"),
+            PlainCovering::Ones => f.write_str("ones"),
+            PlainCovering::Rows => f.write_str("rows"),
+            PlainCovering::Random(seed) => write!(f, "random:{seed}"),
+        }
+    }
+}
+
+impl fmt::Display for AttemptCovering {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            AttemptCovering::Contact(covering) => covering.fmt(f),
+            AttemptCovering::Plain(covering) => covering.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for AttemptEngine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            AttemptEngine::Lemke(engine) => engine.fmt(f),
+            AttemptEngine::Enumeration => f.write_str("enumeration"),
+            AttemptEngine::LoadPath => f.write_str("load-path"),
+        }
+    }
+}
+
+impl Serialize for AttemptCovering {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl Serialize for AttemptEngine {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}

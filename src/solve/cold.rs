@@ -1,0 +1,241 @@
+//! Solving from z = 0.
+
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use super::engines::{EXACT_PAIRS, keep_scheme, run_exact_contact, run_tableau};
+use super::error::SolveError;
+use super::finish::empty_answer;
+use super::plain::{PlainProblem, solve_plain_judged};
+use super::prepared::{Geometry, Prepared};
+use super::state::{RunData, Solved};
+use super::warm::WarmStart;
+use crate::answer::pairs::{joint_state, pair_states};
+use crate::answer::record::{AttemptRules, OutcomeKind};
+use crate::contact::kernel_correction::sharpen;
+use crate::contact::lcp::{ContactLcp, contact_lcp};
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::refine::refined;
+use crate::contact::system::ContactSystem;
+use crate::explain::{ray, sentence};
+use crate::lcp::outcome::{Outcome, Point, Run};
+use crate::lcp::parametric::Parametric;
+use crate::lcp::pivot::PivotLog;
+use crate::model::parameter::ParameterValues;
+use crate::model::rules::{Covering, Engine, Rules};
+use crate::model::scenario::Scenario;
+use crate::watch::Watch;
+
+impl Prepared {
+    /// Solves for the given parameter values under the given rules.
+    ///
+    /// # Errors
+    /// See [`SolveError`]. A run that ends in a ray or breaks down is no error: the answer says so.
+    pub fn solve(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        self.solve_as(scenario, values, rules, false, watch)
+    }
+
+    /// As [`Prepared::solve`], without looking for what would stop a collapse: for sweeps, which only count.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve`].
+    pub fn solve_briefly(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        self.solve_as(scenario, values, rules, true, watch)
+    }
+
+    fn solve_as(
+        &self,
+        scenario: &Scenario,
+        values: &ParameterValues,
+        rules: Rules,
+        brief: bool,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        if let Some(refusal) = scenario.law_refusal(values) {
+            return Err(SolveError::Value(refusal));
+        }
+        let start = Instant::now();
+        let mut solved = match &*self.geometry {
+            Geometry::Plain { lcp, q, names, covering_given } => {
+                if rules.covering != Covering::default() {
+                    return Err(SolveError::CoveringOfPlain(rules.covering));
+                }
+                let problem = PlainProblem::new(lcp, q, values, names, *covering_given);
+                solve_plain_judged(&problem, rules, watch)?
+            }
+            Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
+                self.solve_contact_judged(system, values, rules, brief, watch)?
+            }
+        };
+        if let Geometry::Contact { remarks, .. } = &*self.geometry {
+            solved.answer.notes.extend(remarks.iter().cloned());
+        }
+        solved.answer.notes.extend(scenario.notes.iter().cloned());
+        if !scenario.stages.is_empty() {
+            solved.answer.notes.push(
+                "every load case acts at once with its factor: the load history of the scenario was not followed \
+                 (`stages` follows it)"
+                    .to_owned(),
+            );
+        }
+        let timings = &mut solved.answer.timings;
+        timings.factor = self.factor_seconds;
+        timings.condense = self.condense_seconds;
+        timings.total = self.seconds + start.elapsed().as_secs_f64();
+        Ok(solved)
+    }
+
+    /// One run under exactly these rules. A ray is classified; nothing is proved of it yet.
+    ///
+    /// What is left of p beside the load is nothing only where the state passes its check without it: where it does not,
+    /// the run ends in the ray that it is.
+    pub(super) fn attempt_contact(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        let contact = contact_lcp(system, numbers, rules.covering)?;
+        let solved = self.run_contact(system, numbers, factors, contact.clone(), rules, watch)?;
+        if !solved.answer.marginal || solved.answer.check.passed {
+            return Ok(solved);
+        }
+        let mut strict = contact;
+        Arc::make_mut(&mut strict.lcp).scale.load = Some(0.0);
+        self.run_contact(system, numbers, factors, strict, rules, watch)
+    }
+
+    fn run_contact(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        contact: ContactLcp,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
+        let start = Instant::now();
+        let (mut run, engine) = run_engine(system, numbers, &contact, rules, watch)?;
+        let basis = run.pivots.basis();
+        match &run.outcome {
+            Outcome::Ray(_) if rules.engine != Engine::Exact => {
+                run.point = sharpen(system, numbers, &contact, &basis, run.point);
+            }
+            Outcome::Normal { .. } => {
+                run.point = refined(system, numbers, &contact, run.point);
+                // An answer stands without the covering: that is how it is checked.
+                run.point.p = 0.0;
+            }
+            _ => {}
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        let mut solved = self.state_of(system, numbers, factors, contact, run, rules.into());
+        solved.answer.timings.lemke = seconds;
+        solved.answer.ray = solved.ray.as_ref().map(|report| report.record(system, rules.covering));
+        if let RunData::Contact { contact, pivots, .. } = &solved.run {
+            solved.answer.pivots = sentence::pivot_records(pivots.recorded(), contact, system);
+            if let Some(engine) = engine.filter(|_| solved.answer.is_answer()) {
+                let warm = WarmStart::new(engine, contact.clone(), numbers.clone());
+                solved.warm = Some(Arc::new(Mutex::new(Some(warm))));
+            }
+        }
+        if solved.answer.outcome == OutcomeKind::CheckFailed {
+            self.prove_after_all(&mut solved, watch);
+        }
+        Ok(solved)
+    }
+
+    /// The state at a point found other than by pivots from z = 0, freshly checked.
+    pub(super) fn answer_at(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        contact: ContactLcp,
+        point: Point,
+        rules: AttemptRules,
+    ) -> Solved {
+        let point = refined(system, numbers, &contact, point);
+        let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
+        self.state_of(system, numbers, factors, contact, run, rules)
+    }
+
+    /// What a run ended in: the pairs, of an answer all the rest with its check, of a ray its class.
+    fn state_of(
+        &self,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        contact: ContactLcp,
+        run: Run,
+        rules: AttemptRules,
+    ) -> Solved {
+        let state = joint_state(system, numbers, &contact, &run.point);
+        let mut answer = empty_answer(&run, contact.force_unit, rules, self.size(system, &contact));
+        answer.pairs = pair_states(system, numbers, &contact, &state);
+        self.add_released_slips(&mut answer.pairs, numbers, factors, &state.z);
+        let mut ray = None;
+        if let Outcome::Ray(direction) = &run.outcome {
+            let cases = self.named_factors(factors);
+            ray = Some(Box::new(ray::look(&self.subject(system, numbers, &cases), &contact, direction, answer.p)));
+        }
+        if answer.is_answer() {
+            self.complete(&mut answer, system, numbers, factors, &state);
+        }
+        Solved {
+            cycled: matches!(run.outcome, Outcome::Cycle(_)),
+            run: RunData::Contact {
+                contact,
+                numbers: numbers.clone(),
+                factors: factors.to_vec(),
+                pivots: run.pivots,
+                last: run.point,
+            },
+            answer,
+            ray,
+            plain_ray: None,
+            warm: None,
+            retry_note: String::new(),
+        }
+    }
+}
+
+/// Runs the engine that the rules name; of the working-scheme engine the dictionary it ends with comes back too.
+fn run_engine(
+    system: &ContactSystem,
+    numbers: &ContactNumbers,
+    contact: &ContactLcp,
+    rules: Rules,
+    watch: &dyn Watch,
+) -> Result<(Run, Option<Parametric>), SolveError> {
+    let tie_rule = contact.tie_rule(rules.tie_break);
+    let (run, dictionary) = match rules.engine {
+        Engine::Scheme => keep_scheme(&contact.lcp, tie_rule, watch),
+        Engine::Tableau => (run_tableau(&contact.lcp, tie_rule, watch), None),
+        Engine::Exact => {
+            if let Some(refusal) = system.refusal("engine exact") {
+                return Err(SolveError::Value(refusal));
+            }
+            let found = system.pairs.len();
+            if found > EXACT_PAIRS {
+                return Err(SolveError::TooLargeForExact { what: "contact pairs", found, most: EXACT_PAIRS });
+            }
+            (run_exact_contact(system, numbers, contact, rules.covering, tie_rule, watch), None)
+        }
+    };
+    if run.outcome == Outcome::Interrupted { Err(SolveError::Interrupted) } else { Ok((run, dictionary)) }
+}

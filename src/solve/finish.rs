@@ -1,0 +1,279 @@
+//! From a state of the joints to what is reported of it: displacements, members, reactions, and the fresh check.
+
+use nalgebra::DVector;
+
+use super::engines::{PIVOT_LIMIT, kind};
+use super::prepared::{Geometry, Prepared};
+use crate::answer::check::check_contact;
+use crate::answer::pairs::JointState;
+use crate::answer::record::{
+    Answer, Attempt, AttemptRules, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, Reaction,
+    Size, Start, Timings,
+};
+use crate::contact::lcp::ContactLcp;
+use crate::contact::numbers::ContactNumbers;
+use crate::contact::self_stress::may_hold_otherwise;
+use crate::contact::system::ContactSystem;
+use crate::explain::words::{list, short};
+use crate::fem::Displacements;
+use crate::lcp::outcome::{Outcome, Run};
+use crate::lcp::pivot::Cycle;
+use crate::model::pair::Law;
+use crate::model::structure::Structure;
+use crate::model::uses::Redone;
+
+/// Most pairs that a note names.
+const NAMED: usize = 6;
+
+/// A slip below this multiple of the displacements that it is the difference of is zero.
+const SLIP_ZERO: f64 = 16.0 * f64::EPSILON;
+
+impl Prepared {
+    /// Displacements, members, reactions and the fresh check of an answer.
+    pub(super) fn complete(
+        &self,
+        answer: &mut Answer,
+        system: &ContactSystem,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        state: &JointState,
+    ) {
+        let otherwise = may_hold_otherwise(system, numbers, &state.z);
+        let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
+        let kinds = [
+            (
+                shared,
+                "the motion does not depend on how they share what they carry, which is undetermined; shown are the \
+                      forces of least norm that obey the laws",
+            ),
+            (
+                otherwise,
+                "the forces shown are those of least norm for the motion shown; with friction in these pairs \
+                         another self-stress may hold another motion",
+            ),
+        ];
+        for (pairs, words) in kinds.iter().filter(|(pairs, _)| !pairs.is_empty()) {
+            let mut ids: Vec<String> = pairs.iter().take(NAMED).map(|&pair| system.pairs[pair].id.clone()).collect();
+            if pairs.len() > NAMED {
+                ids.push(format!("{} more", pairs.len() - NAMED));
+            }
+            answer.notes.push(format!("joints of {} repeat one another: {words}", list(&ids)));
+        }
+        let equilibrium = self.recover(answer, numbers, factors, state);
+        judge(answer, check_contact(system, numbers, state, equilibrium));
+    }
+
+    /// Displacements, members and reactions of a state; the residual of its equilibrium, where there is a K.
+    pub(super) fn recover(
+        &self,
+        answer: &mut Answer,
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        state: &JointState,
+    ) -> Option<f64> {
+        let mut equilibrium = None;
+        if let Geometry::Structure { main, structure, .. } = &*self.geometry {
+            let u = main.displacements(factors, &dislocation(numbers, &state.z));
+            let compatibility = main.compatibility_residual(&u, &dislocation(numbers, &state.z));
+            equilibrium = Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, factors));
+            answer.members = self.members(&u, factors);
+            answer.reactions = self.reactions(&u, &state.force, factors);
+            answer.displacements = Some(named(structure, &u));
+        }
+        equilibrium
+    }
+
+    /// Internal forces of the bars under the displacements u; `None` without a structure.
+    pub(crate) fn members(&self, u: &Displacements, factors: &[f64]) -> Option<Vec<MemberForces>> {
+        let Geometry::Structure { main, structure, .. } = &*self.geometry else {
+            return None;
+        };
+        let members = main.member_forces(structure, u, factors).into_iter().map(|member| MemberForces {
+            bar: structure.bars[member.bar].id.clone(),
+            element: member.element,
+            start: end_forces(member.start),
+            end: end_forces(member.end),
+            pieces: member.pieces,
+        });
+        Some(members.collect())
+    }
+
+    /// Forces of the supports under the displacements u and the joint forces; `None` without a structure.
+    pub(crate) fn reactions(&self, u: &Displacements, force: &DVector<f64>, factors: &[f64]) -> Option<Vec<Reaction>> {
+        let Geometry::Structure { main, structure, .. } = &*self.geometry else {
+            return None;
+        };
+        let reactions = main.reactions(structure, u, force, factors).into_iter().map(|reaction| Reaction {
+            node: structure.nodes[reaction.node].id.clone(),
+            fx: reaction.force[0],
+            fy: reaction.force[1],
+            m: reaction.moment,
+        });
+        Some(reactions.collect())
+    }
+
+    /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
+    /// given contact system.
+    pub(crate) fn add_released_slips(
+        &self,
+        pairs: &mut [PairState],
+        numbers: &ContactNumbers,
+        factors: &[f64],
+        z: &DVector<f64>,
+    ) {
+        match &*self.geometry {
+            Geometry::Structure { main, structure, .. } => {
+                if !structure.pairs.iter().any(|pair| matches!(pair.law, Law::Frictionless { .. })) {
+                    return;
+                }
+                let u = main.displacements(factors, &dislocation(numbers, z));
+                for (pair, shown) in structure.pairs.iter().zip(pairs) {
+                    if matches!(pair.law, Law::Frictionless { .. }) {
+                        let t = pair.tangent();
+                        // Both components of a displacement are as well known as the larger one.
+                        let along = |&(node, weight): &(usize, f64)| {
+                            let [x, y] = [u.0[node][0], u.0[node][1]];
+                            [weight * (t[0] * x + t[1] * y), weight.abs() * (x.abs() + y.abs())]
+                        };
+                        let [slip, terms] = pair
+                            .tangential_weights()
+                            .iter()
+                            .map(along)
+                            .fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]]);
+                        shown.z_t = if slip.abs() <= SLIP_ZERO * terms { 0.0 } else { slip };
+                    }
+                }
+            }
+            Geometry::Contact { system, .. } => {
+                let Some(file) = &system.file else {
+                    return;
+                };
+                if system.force_form.is_some() {
+                    let mut forces = DVector::zeros(system.joint_count());
+                    for (i, (pair, shown)) in system.pairs.iter().zip(&*pairs).enumerate() {
+                        forces[i] = shown.x_n;
+                        pair.tangential.into_iter().for_each(|joint| forces[joint] = shown.x_t);
+                    }
+                    let slips = file.slips_under(&forces, &file.load(factors));
+                    for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
+                        pairs[pair].z_t = *slip;
+                    }
+                    return;
+                }
+                let moved = dislocation(numbers, z);
+                let slips = file.forces(&moved, &moved.abs(), &file.load(factors)).slips;
+                for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
+                    pairs[pair].z_t = *slip;
+                }
+            }
+            Geometry::Plain { .. } => {}
+        }
+    }
+
+    pub(super) fn size(&self, system: &ContactSystem, contact: &ContactLcp) -> Size {
+        let unknowns = match &*self.geometry {
+            Geometry::Structure { main, .. } => Some(main.size()),
+            _ => None,
+        };
+        Size {
+            unknowns: unknowns.map(|size| size.all),
+            free: unknowns.map(|size| size.free),
+            pairs: system.pairs.len(),
+            lcp: contact.rows.len(),
+        }
+    }
+}
+
+/// The whole mutual displacement of the joints: z with the gaps taken off.
+pub(crate) fn dislocation(numbers: &ContactNumbers, z: &DVector<f64>) -> DVector<f64> {
+    let mut z = z.clone();
+    for (i, gap) in numbers.gap.iter().enumerate() {
+        z[i] -= gap;
+    }
+    z
+}
+
+fn end_forces(ends: crate::fem::EndForces) -> EndForces {
+    EndForces { n: ends.normal, q: ends.shear, m: ends.moment }
+}
+
+pub(super) fn named(structure: &Structure, u: &Displacements) -> Vec<NodeDisplacement> {
+    structure
+        .nodes
+        .iter()
+        .zip(&u.0)
+        .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
+        .collect()
+}
+
+/// Takes the check over, and says what holds open pairs.
+pub(super) fn judge(answer: &mut Answer, check: Check) {
+    answer.check = check;
+    if !answer.check.passed {
+        fail_check(answer);
+    }
+    for pair in &answer.pairs {
+        if pair.held.is_some() {
+            answer.notes.push(format!(
+                "pair {} is open and still held by its cohesion: cohesion acts across the gap in this law",
+                pair.id
+            ));
+        }
+    }
+}
+
+pub(super) fn fail_check(answer: &mut Answer) {
+    answer.outcome = OutcomeKind::CheckFailed;
+    answer.failure = Some(format!(
+        "the state found does not pass its check from R, RF and f (min w {:.1e}, min z {:.1e}, complementarity {:.1e}{})",
+        answer.check.min_w,
+        answer.check.min_z,
+        answer.check.complementarity,
+        answer.check.equilibrium.map_or(String::new(), |e| format!(", equilibrium {e:.1e}"))
+    ));
+    if let Some(last) = answer.attempts.last_mut() {
+        last.outcome = OutcomeKind::CheckFailed;
+    }
+}
+
+/// The parts of an answer that follow from the run alone; user's force = dimensionless × `force_unit`.
+pub(super) fn empty_answer(run: &Run, force_unit: f64, rules: AttemptRules, size: Size) -> Answer {
+    let outcome = kind(&run.outcome);
+    let failure = match &run.outcome {
+        Outcome::PivotLimit => Some(format!("the limit of {} pivots was reached.", PIVOT_LIMIT)),
+        Outcome::Cycle(Cycle { first, again }) => Some(format!(
+            "the tie-break {} cycles: the basis after pivot {first} came back after pivot {again}, at p = {}.",
+            rules.tie_break,
+            short(run.point.p * force_unit)
+        )),
+        Outcome::Breakdown(why) => Some(why.clone()),
+        _ => None,
+    };
+    Answer {
+        outcome,
+        marginal: run.outcome == Outcome::Normal { marginal: true },
+        ray: None,
+        p: run.point.p * force_unit,
+        attempts: vec![Attempt {
+            rules,
+            outcome,
+            pivots: Some(run.pivots.count()),
+            why: failure.clone().filter(|_| outcome == OutcomeKind::PivotLimit),
+        }],
+        rules,
+        pivots: Vec::new(),
+        pivot_count: run.pivots.count(),
+        pairs: Vec::new(),
+        check: Check::default(),
+        displacements: None,
+        members: None,
+        reactions: None,
+        solution: None,
+        size,
+        timings: Timings::default(),
+        start: Start::Cold,
+        redone: Redone::default(),
+        notes: Vec::new(),
+        failure,
+    }
+}
