@@ -7,7 +7,8 @@
 use std::io::{self, Write};
 
 use crate::answer::record::{PairState, State};
-use crate::model::structure::{Element, ElementKind};
+use crate::model::shape::Shape;
+use crate::model::structure::Element;
 use crate::path::quantity::Field;
 use crate::text::printable::xml;
 
@@ -24,12 +25,13 @@ pub fn state_number(state: State) -> i32 {
 
 /// VTK's number of the shape of an element.
 fn cell_type(element: &Element) -> u8 {
-    match (&element.kind, element.nodes.len()) {
-        (ElementKind::Frame { .. } | ElementKind::Truss { .. }, _) => 3,
-        (ElementKind::Membrane { .. }, 3) => 5,
-        (ElementKind::Membrane { .. }, 4) => 9,
-        (ElementKind::Membrane { .. }, 6) => 22,
-        (ElementKind::Membrane { .. }, _) => 23,
+    match element.shape() {
+        Shape::Line2 => 3,
+        Shape::Line3 => 21,
+        Shape::Triangle3 => 5,
+        Shape::Triangle6 => 22,
+        Shape::Quad4 => 9,
+        Shape::Quad8 => 23,
     }
 }
 

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::dof::Dofs;
 use super::doubled::Real;
-use super::element::{ROWS, check_spring, slots, spring, stiffness};
+use super::element::{Number, check_spring, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
@@ -20,18 +20,15 @@ const ELEMENTS_PER_LOOK: usize = 4096;
 ///
 /// # Errors
 /// An element without stiffness because of its shape; interrupted.
-pub fn assemble<T: Real>(
+pub fn assemble<T: Number>(
     structure: &Structure,
     dofs: &Dofs,
     stop: &dyn Fn() -> bool,
 ) -> Result<SymmetricSparse<T>, MainSystemError> {
     let element_dofs = |index: usize, visit: &mut dyn FnMut(&[Option<usize>])| {
         let slots = slots(&structure.elements[index]);
-        let mut at = [None; ROWS];
-        for (at, slot) in std::iter::zip(&mut at, slots.iter()) {
-            *at = slot.and_then(|(node, component)| dofs.of(node, component));
-        }
-        visit(&at[..slots.len()]);
+        let at: Vec<Option<usize>> = slots.iter().map(|&(node, component)| dofs.of(node, component)).collect();
+        visit(&at);
     };
     let rigid = structure.rigid_elements();
     let elements = || (0..structure.elements.len()).filter(|&index| !rigid[index]);

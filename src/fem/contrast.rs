@@ -12,8 +12,10 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
     let rigid = structure.rigid_elements();
     for (index, element) in structure.elements.iter().enumerate().filter(|(index, _)| !rigid[*index]) {
         if let Ok(k) = stiffness::<f64>(structure, index) {
-            let bar = structure.bars.iter().find(|bar| bar.elements.contains(&index));
-            let name = bar.map_or_else(|| structure.element_in_words(index), |bar| format!("bar {}", bar.id));
+            let name = match structure.bar_of(index) {
+                Some(bar) => format!("bar {}", structure.bars[bar].id),
+                None => structure.element_in_words(index),
+            };
             parts.push((k[(0, 0)].max(k[(1, 1)]), element.nodes[0], name));
         }
     }
@@ -26,8 +28,7 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
         diagonal.map(|&(i, _, k)| (k, element.dofs[i]))
     });
     for (k, (node, component)) in given.filter(|(_, (_, component))| *component != Component::R) {
-        let word = if component == Component::X { "x" } else { "y" };
-        parts.push((k, node, format!("row {word} of {} of the superelement", id(node))));
+        parts.push((k, node, format!("row {} of {} of the superelement", component.word(), id(node))));
     }
     parts.retain(|(k, ..)| *k > 0.0);
     parts.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -2,10 +2,7 @@
 
 use super::doubled::Real;
 use crate::model::pair::Joint;
-use crate::model::structure::{Component, ElementKind, Structure};
-
-/// Components in the order x, y, r.
-const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::R];
+use crate::model::structure::{Component, Structure};
 
 /// Numbers of the nodal components ("base dofs"): x, y at every node, r where a frame bar is rigidly attached
 /// and at the nodes of rigid bodies; of a superelement what its rows are.
@@ -24,10 +21,10 @@ impl Dofs {
         let mut frame = vec![false; structure.nodes.len()];
         let mut has_rotation = vec![false; structure.nodes.len()];
         for element in &structure.elements {
-            if let ElementKind::Frame { hinges, .. } = &element.kind {
+            if element.bends() {
                 for (end, &node) in element.nodes.iter().enumerate() {
                     frame[node] = true;
-                    has_rotation[node] |= !hinges[end];
+                    has_rotation[node] |= element.components(end).contains(&Component::R);
                 }
             }
         }
@@ -76,14 +73,14 @@ impl Dofs {
     /// Displacements [u_x, u_y, θ] per node from base dofs; 0 where there is none.
     pub fn scatter<T: Real>(&self, u: &[T]) -> Vec<[T; 3]> {
         let value = |node: usize, component| self.of(node, component).map_or(T::zero(), |dof| u[dof]);
-        (0..self.has.len()).map(|node| COMPONENTS.map(|component| value(node, component))).collect()
+        (0..self.has.len()).map(|node| Component::ALL.map(|component| value(node, component))).collect()
     }
 
     /// Base dofs from displacements per node.
     pub fn gather<T: Real>(&self, u: &[[T; 3]]) -> Vec<T> {
         let mut base = vec![T::zero(); self.count];
         for (node, values) in u.iter().enumerate() {
-            for (component, value) in COMPONENTS.into_iter().zip(values) {
+            for (component, value) in Component::ALL.into_iter().zip(values) {
                 if let Some(dof) = self.of(node, component) {
                     base[dof] = *value;
                 }

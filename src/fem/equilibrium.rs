@@ -163,7 +163,7 @@ impl MainSystem {
         let lever = (b[0] - a[0]).hypot(b[1] - a[1]);
         for &node in &element.nodes {
             let of = |wanted: Component| {
-                let found = slots.iter().position(|slot| *slot == Some((node, wanted)));
+                let found = slots.iter().position(|slot| *slot == (node, wanted));
                 found.map_or(0.0, |at| forces[at])
             };
             let force = of(Component::X).hypot(of(Component::Y));

@@ -214,15 +214,6 @@ impl fmt::Display for FreeDirection {
     }
 }
 
-/// `x`, `y`, `r` as in the file.
-pub(super) fn component_word(component: Component) -> &'static str {
-    match component {
-        Component::X => "x",
-        Component::Y => "y",
-        Component::R => "r",
-    }
-}
-
 fn direction_word(direction: JointDirection) -> &'static str {
     match direction {
         JointDirection::Normal => "normal",
@@ -234,10 +225,10 @@ impl fmt::Display for Holder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Holder::Support { node, component } => {
-                write!(f, "the support at {node} in {}", component_word(*component))
+                write!(f, "the support at {node} in {}", component.word())
             }
             Holder::Tie { nodes, component } => {
-                write!(f, "the tie of {} and {} in {}", nodes[0], nodes[1], component_word(*component))
+                write!(f, "the tie of {} and {} in {}", nodes[0], nodes[1], component.word())
             }
             Holder::Body { id } => write!(f, "the rigid body {id}"),
             Holder::Joint { pair, direction } => {

@@ -1,13 +1,12 @@
-//! From the loads of a structure to nodal forces, and to what acts between the nodes of its bars.
+//! From the loads of a structure to nodal forces, and to what acts on each of its elements.
 
 use std::collections::BTreeMap;
 
 use super::dof::Dofs;
-use super::element::bar_load::BarLoad;
-use super::element::{BarElement, slots, with_membrane};
+use super::element::{Acting, finite_element, slots};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
-use crate::model::structure::{Component, Load, LoadCase, Structure};
+use crate::model::structure::{Component, ElementLoad, Load, LoadCase, Structure};
 
 /// F per load case and unit factor on the base dofs.
 ///
@@ -17,30 +16,31 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
     let mut vectors = Vec::with_capacity(structure.load_cases.len());
     for (load_case, case) in structure.load_cases.iter().enumerate() {
         let mut f = vec![0.0; dofs.count()];
-        for load in &case.loads {
-            if let Load::Nodal { node, force, moment } = *load {
-                let rotation = dofs.of(node, Component::R);
-                if moment != 0.0 && rotation.is_none() {
-                    return Err(MainSystemError::MomentWithoutRotation {
-                        load_case,
-                        case: case.name.clone(),
-                        node,
-                        node_id: structure.nodes[node].id.clone(),
-                    });
-                }
-                let at = [dofs.of(node, Component::X), dofs.of(node, Component::Y), rotation];
-                for (dof, value) in at.into_iter().zip([force[0], force[1], moment]) {
-                    if let Some(dof) = dof {
-                        f[dof] += value;
-                    }
-                }
-                continue;
+        let mut add = |node: usize, component: Component, value: f64| {
+            if let Some(dof) = dofs.of(node, component) {
+                f[dof] += value;
             }
-            let Some((element, forces)) = element_forces(structure, load) else { continue };
-            for (slot, force) in slots(&structure.elements[element]).iter().zip(&forces) {
-                if let Some(dof) = slot.and_then(|(node, component)| dofs.of(node, component)) {
-                    f[dof] += force;
+        };
+        for load in &case.loads {
+            match *load {
+                Load::Nodal { node, force: [x, y], moment } => {
+                    if moment != 0.0 && dofs.of(node, Component::R).is_none() {
+                        return Err(MainSystemError::MomentWithoutRotation {
+                            load_case,
+                            case: case.name.clone(),
+                            node,
+                            node_id: structure.nodes[node].id.clone(),
+                        });
+                    }
+                    std::iter::zip(Component::ALL, [x, y, moment]).for_each(|(c, value)| add(node, c, value));
                 }
+                Load::Element { element: index, ref load } => {
+                    // One without shape is refused by its stiffness.
+                    let Ok(element) = finite_element(structure, index) else { continue };
+                    let forces = element.nodal_forces(&[(1.0, load)]);
+                    std::iter::zip(slots(&structure.elements[index]), forces).for_each(|((n, c), f)| add(n, c, f));
+                }
+                Load::Settlement { .. } => {}
             }
         }
         vectors.push(f);
@@ -89,75 +89,25 @@ pub fn settlements(
     structure.load_cases.iter().map(of_case).collect()
 }
 
-/// The element of a load between nodes and its nodal forces, rows as in [`slots`]; `None` for a nodal load or a bar
-/// without length (refused by its stiffness).
-fn element_forces(structure: &Structure, load: &Load) -> Option<(usize, Vec<f64>)> {
-    let index = element_of(load)?;
-    if let Some(bar) = BarElement::of(structure, index) {
-        let mut acts = BarLoad::default();
-        add(structure, &bar, load, 1.0, &mut acts);
-        return Some((index, bar.nodal_forces(&acts)));
-    }
-    let forces = with_membrane(structure, index, |membrane| match *load {
-        Load::Body { value, .. } => Some(membrane.body_force(value)),
-        Load::FreeStrain { strain, .. } => Some(membrane.expansion_force(strain)),
-        _ => None,
-    });
-    Some((index, forces.flatten()?))
-}
+/// What acts on each element under Σ factor·case.
+pub struct ActingLoads<'a>(BTreeMap<usize, Vec<(f64, &'a ElementLoad)>>);
 
-fn element_of(load: &Load) -> Option<usize> {
-    match *load {
-        Load::Nodal { .. } | Load::Settlement { .. } => None,
-        Load::Line { element, .. }
-        | Load::BarPoint { element, .. }
-        | Load::Body { element, .. }
-        | Load::FreeStrain { element, .. } => Some(element),
-    }
-}
-
-/// Adds factor × `load` to what acts on the bar on which it lies.
-fn add(structure: &Structure, bar: &BarElement, load: &Load, factor: f64, acts: &mut BarLoad) {
-    let axis = bar.axis();
-    match *load {
-        Load::Nodal { .. } | Load::Settlement { .. } => {}
-        Load::Line { range, value, .. } => acts.add_line(axis, range, value, factor),
-        Load::BarPoint { distance, force, moment, .. } => acts.add_point(axis, distance, force, moment, factor),
-        Load::Body { element, value } => {
-            let area = structure.elements[element].kind.area();
-            acts.add_line(axis, [0.0, axis.length], [value.map(|b| area * b); 2], factor);
-        }
-        Load::FreeStrain { strain, curvature, .. } => {
-            acts.strain += factor * strain;
-            acts.curvature += factor * curvature;
-        }
-    }
-}
-
-/// What acts between the nodes of each bar element under Σ factor·case; elements without anything are left out.
-pub fn bar_loads(structure: &Structure, factors: &[f64]) -> BTreeMap<usize, BarLoad> {
-    let mut loads: BTreeMap<usize, BarLoad> = BTreeMap::new();
-    for (case, &factor) in structure.load_cases.iter().zip(factors).filter(|(_, factor)| **factor != 0.0) {
-        for load in &case.loads {
-            let Some(index) = element_of(load) else { continue };
-            if let Some(bar) = BarElement::of(structure, index) {
-                add(structure, &bar, load, factor, loads.entry(index).or_default());
+impl<'a> ActingLoads<'a> {
+    /// All of them; cases with the factor 0 are left out.
+    pub fn of(structure: &'a Structure, factors: &[f64]) -> ActingLoads<'a> {
+        let mut all: BTreeMap<usize, Vec<(f64, &ElementLoad)>> = BTreeMap::new();
+        for (case, &factor) in structure.load_cases.iter().zip(factors).filter(|(_, factor)| **factor != 0.0) {
+            for load in &case.loads {
+                if let Load::Element { element, load } = load {
+                    all.entry(*element).or_default().push((factor, load));
+                }
             }
         }
+        ActingLoads(all)
     }
-    loads.retain(|_, load| !load.is_empty());
-    loads
-}
 
-/// α ΔT and the like of each element under Σ factor·case; membranes read their stresses against it.
-pub fn free_strains(structure: &Structure, factors: &[f64]) -> BTreeMap<usize, f64> {
-    let mut strains = BTreeMap::new();
-    for (case, factor) in structure.load_cases.iter().zip(factors) {
-        for load in &case.loads {
-            if let Load::FreeStrain { element, strain, .. } = load {
-                *strains.entry(*element).or_insert(0.0) += factor * strain;
-            }
-        }
+    /// Those on one element.
+    pub fn on(&self, element: usize) -> &Acting<'a> {
+        self.0.get(&element).map_or(&[], Vec::as_slice)
     }
-    strains
 }

@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dense::svd;
 use super::dof::{Dofs, root};
-use crate::model::structure::{Component, ElementKind, Structure};
+use crate::model::structure::{Component, Structure};
 use crate::model::superelement::Part;
 
 /// Singular values below this share of the largest belong to the null space, times the rounding of the coordinates
@@ -87,13 +87,7 @@ impl Parts {
         // Elements that share an edge.
         let mut edges = Vec::new();
         for (index, element) in structure.elements.iter().enumerate() {
-            let corners = element.corners();
-            let sides = if corners == 2 { 1 } else { corners };
-            for side in 0..sides {
-                let a = element.nodes[side];
-                let b = element.nodes[(side + 1) % corners];
-                edges.push((a.min(b) as u32, a.max(b) as u32, index as u32));
-            }
+            edges.extend(element.sides().map(|[a, b]| (a.min(b) as u32, a.max(b) as u32, index as u32)));
         }
         edges.sort_unstable();
         for pair in edges.windows(2) {
@@ -115,13 +109,11 @@ impl Parts {
         let mut turning: Vec<Option<u32>> =
             body_of.iter().map(|body| body.map(|body| (elements + body) as u32)).collect();
         for (index, element) in structure.elements.iter().enumerate() {
-            if let ElementKind::Frame { hinges, .. } = &element.kind {
-                for (end, &node) in element.nodes.iter().enumerate() {
-                    if !hinges[end] {
-                        match turning[node] {
-                            Some(other) => join(index as u32, other),
-                            None => turning[node] = Some(index as u32),
-                        }
+            for (end, &node) in element.nodes.iter().enumerate() {
+                if element.components(end).contains(&Component::R) {
+                    match turning[node] {
+                        Some(other) => join(index as u32, other),
+                        None => turning[node] = Some(index as u32),
                     }
                 }
             }

@@ -3,12 +3,11 @@
 use nalgebra::DVector;
 
 use super::doubled::{Doubled, Real};
-use super::element::bar_load::{BarLoad, Piece};
-use super::element::shape::Shape;
-use super::element::{Axis, BarElement, slots, spring, with_membrane};
-use super::loads::{bar_loads, free_strains};
+use super::element::bar_load::Piece;
+use super::element::{finite_element, slots, spring};
+use super::loads::ActingLoads;
 use super::main_system::{Displacements, MainSystem};
-use crate::model::structure::{Component, ElementKind, Structure};
+use crate::model::structure::{Component, Structure};
 
 /// Internal forces at one end of an element in bar axes: local x from start to end, local y = x turned +90°.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,21 +67,21 @@ pub struct Reaction {
 impl MainSystem {
     /// N, Q, M of every bar element under Σ factor·F and the displacements `u`: at both ends and in between.
     pub fn member_forces(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberForces> {
-        let (loads, none) = (bar_loads(structure, factors), BarLoad::default());
+        let loads = ActingLoads::of(structure, factors);
         let mut members = Vec::new();
         for (bar, data) in structure.bars.iter().enumerate() {
             let mut from = 0.0;
             for (position, index) in data.elements.clone().enumerate() {
-                let load = loads.get(&index).unwrap_or(&none);
-                let ends = bar_end_forces(structure, index, u, load);
-                let length = Axis::of(structure, &structure.elements[index]).map_or(0.0, |axis| axis.length);
-                let mut pieces = load.pieces(ends[0], length);
-                for piece in &mut pieces {
+                // A bar without length was refused by its stiffness.
+                let Ok(element) = finite_element(structure, index) else { continue };
+                let u = own_displacements(structure, index, u);
+                let Some(mut forces) = element.bar_forces(&u, loads.on(index)) else { continue };
+                for piece in &mut forces.pieces {
                     piece.range = piece.range.map(|s| from + s);
                 }
-                from += length;
-                let [start, end] = ends.map(|[normal, shear, moment]| EndForces { normal, shear, moment });
-                members.push(MemberForces { bar, element: position, start, end, pieces });
+                from += forces.length;
+                let [start, end] = forces.ends.map(|[normal, shear, moment]| EndForces { normal, shear, moment });
+                members.push(MemberForces { bar, element: position, start, end, pieces: forces.pieces });
             }
         }
         members
@@ -90,12 +89,11 @@ impl MainSystem {
 
     /// Stresses at the centres of all membrane elements under the displacements `u` and Σ factor·case.
     pub fn element_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MembraneStress> {
-        let free = free_strains(structure, factors);
-        let stresses = (0..structure.elements.len()).filter_map(|element| {
-            let strain = free.get(&element).copied().unwrap_or(0.0);
-            let u = own_displacements(structure, element, u);
-            let stress = with_membrane(structure, element, |m| m.stress(m.shape.centre(), &u, strain))?;
-            Some(MembraneStress { element, stress })
+        let loads = ActingLoads::of(structure, factors);
+        let stresses = (0..structure.elements.len()).filter_map(|index| {
+            let element = finite_element(structure, index).ok()?;
+            let stress = element.stress(&own_displacements(structure, index, u), loads.on(index))?;
+            Some(MembraneStress { element: index, stress })
         });
         stresses.collect()
     }
@@ -103,16 +101,12 @@ impl MainSystem {
     /// Stresses at all nodes of membrane elements, in the order of the nodes: means over the elements that meet there,
     /// each extrapolated from the points where its stresses are best.
     pub fn node_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<NodeStress> {
-        let free = free_strains(structure, factors);
+        let loads = ActingLoads::of(structure, factors);
         let mut sums = vec![([0.0; 4], 0_u32); structure.nodes.len()];
         for (index, element) in structure.elements.iter().enumerate() {
-            let (ElementKind::Membrane { .. }, Some(shape)) = (&element.kind, Shape::of(element.nodes.len())) else {
-                continue;
-            };
-            let strain = free.get(&index).copied().unwrap_or(0.0);
-            let u = own_displacements(structure, index, u);
-            for (&node, &at) in element.nodes.iter().zip(shape.nodes()) {
-                let stress = with_membrane(structure, index, |m| m.stress(at, &u, strain)).unwrap_or_default();
+            let Ok(finite) = finite_element(structure, index) else { continue };
+            let stresses = finite.node_stresses(&own_displacements(structure, index, u), loads.on(index));
+            for (&node, stress) in element.nodes.iter().zip(stresses.into_iter().flatten()) {
                 let (sum, count) = &mut sums[node];
                 for (sum, stress) in sum.iter_mut().zip(stress) {
                     *sum += stress;
@@ -197,12 +191,6 @@ impl MainSystem {
     }
 }
 
-/// (N, Q, M) at the start and end of a bar element; zeros for anything else.
-fn bar_end_forces(structure: &Structure, index: usize, u: &Displacements, load: &BarLoad) -> [[f64; 3]; 2] {
-    let Some(bar) = BarElement::of(structure, index) else { return [[0.0; 3]; 2] };
-    bar.end_forces(&own_displacements(structure, index, u), load)
-}
-
 /// Displacements of the rows of an element without the motion of its first node (translation, and rotation where it
 /// turns): that costs no force, and what is left has lost nothing beside it.
 pub(super) fn own_displacements(structure: &Structure, index: usize, u: &Displacements) -> Vec<f64> {
@@ -210,13 +198,12 @@ pub(super) fn own_displacements(structure: &Structure, index: usize, u: &Displac
     let first = element.nodes[0];
     let slots = slots(element);
     let [x0, y0, turn] = u.doubled_at(first);
-    let turns = slots.contains(&Some((first, Component::R)));
+    let turns = slots.contains(&(first, Component::R));
     let turn = if turns { turn } else { Doubled::default() };
     let arm = |node: usize, c: usize| {
         Doubled::difference(structure.nodes[node].position[c], structure.nodes[first].position[c])
     };
-    let own = slots.iter().map(|slot| {
-        let Some((node, component)) = *slot else { return 0.0 };
+    let own = slots.iter().map(|&(node, component)| {
         let value = u.doubled_at(node)[component as usize];
         let moved = match component {
             Component::X => x0 - turn * arm(node, 1),

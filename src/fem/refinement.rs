@@ -235,9 +235,8 @@ impl Refinement<'_> {
         let allowed = ROUNDING_STRAIN * ROUNDING_STRAIN;
         let mut strained = false;
         each_stiffness(structure, |slots, k| {
-            let own: Vec<Doubled> =
-                slots.iter().map(|s| s.map_or(Doubled::zero(), |(n, c)| nodal[n][c as usize])).collect();
-            let scale: Vec<f64> = slots.iter().map(|slot| slot.map_or(0.0, |(_, c)| size[c as usize])).collect();
+            let own: Vec<Doubled> = slots.iter().map(|&(node, component)| nodal[node][component as usize]).collect();
+            let scale: Vec<f64> = slots.iter().map(|&(_, component)| size[component as usize]).collect();
             let (mut energy, mut terms) = (Doubled::zero(), 0.0);
             for i in 0..own.len() {
                 for j in 0..own.len() {
@@ -286,7 +285,7 @@ fn each_stiffness(structure: &Structure, mut visit: impl FnMut(&[Slot], &dyn Fn(
         }
     }
     for spring in &structure.springs {
-        let slots: Vec<Slot> = spring.terms.iter().map(|term| Some((term.node, term.component))).collect();
+        let slots: Vec<Slot> = spring.terms.iter().map(|term| (term.node, term.component)).collect();
         visit(&slots, &|i, j| spring::stiffness(spring, i, j));
     }
 }

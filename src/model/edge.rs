@@ -1,6 +1,6 @@
 //! Edges: chains of element sides, their nodes, normals, and the consistent loads on them.
 
-use super::structure::{Element, ElementKind, Node, Plate};
+use super::structure::{Element, Node, Plate};
 
 /// One of the four edges of a plate, in the plate's own axes (before its rotation).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -276,12 +276,12 @@ pub enum ChainError {
 }
 
 impl Sides {
-    /// Of all membrane elements.
+    /// Of all elements that are areas.
     pub fn of(elements: &[Element]) -> Sides {
         let mut sides = Sides::default();
         for (index, element) in elements.iter().enumerate() {
-            if matches!(element.kind, ElementKind::Membrane { .. }) {
-                sides.add(index, element.corners(), &element.nodes);
+            if element.shape().is_area() {
+                sides.add(index, element.shape().corners(), &element.nodes);
             }
         }
         sides

@@ -3,13 +3,16 @@
 //! `load` (text) → `locate` (tree with places) → `decode` (typed, all problems in one pass; `grid`, `edge` make
 //! plates, `mortar` joins edges) → `scenario` (what everything later works on).
 
+pub mod component;
 mod decode;
 pub mod edge;
+pub mod element;
 pub mod embedded;
 pub mod expression;
 pub mod grid;
 pub mod jet;
 pub mod load;
+pub mod load_case;
 pub mod locate;
 pub(crate) mod memory;
 pub mod mesh;
@@ -22,8 +25,10 @@ pub mod quantity;
 pub mod rules;
 pub mod scenario;
 pub mod schema;
+pub mod shape;
 pub mod siconos;
 pub mod structure;
 pub mod superelement;
+pub mod support;
 pub mod uses;
 mod words;

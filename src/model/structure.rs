@@ -4,10 +4,13 @@
 //! the generated ones (plate nodes `lower[i,j]`, mesh nodes `dam/17`, bar divisions `AB/1`), so that results keep the
 //! author's order.
 
+pub use super::component::Component;
 use super::edge::EdgeSide;
+pub use super::element::{Element, ElementKind, Material, Plane};
+pub use super::load_case::{ElementLoad, Load, LoadCase};
 use super::pair::Pair;
-use super::parameter::Number;
 use super::superelement::Superelement;
+pub use super::support::{RigidBody, Spring, SpringTerm, Support, Tie};
 
 /// A node: its name and its place in the plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,107 +19,6 @@ pub struct Node {
     pub id: String,
     /// Coordinates (x, y), in the author's unit of length.
     pub position: [f64; 2],
-}
-
-/// One of the three displacement components of a node, in the global axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Component {
-    /// Displacement along x.
-    X,
-    /// Displacement along y.
-    Y,
-    /// Rotation, counter-clockwise. Exists only at nodes of frame bars and of rigid bodies.
-    R,
-}
-
-/// Linear elastic material.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Material {
-    /// Young's modulus, > 0.
-    pub youngs_modulus: f64,
-    /// Poisson's ratio in (−1, 0.5].
-    pub poisson_ratio: f64,
-    /// Mass per volume.
-    pub density: f64,
-    /// Coefficient of thermal expansion.
-    pub expansion: f64,
-}
-
-/// Stress state of a plate or quad.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Plane {
-    /// ε_zz = 0.
-    Strain,
-    /// σ_zz = 0.
-    Stress,
-}
-
-/// What an element is made of and how it carries force.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ElementKind {
-    /// Two-node frame element, `nodes` = [start, end].
-    Frame {
-        /// Cross-section area.
-        area: f64,
-        /// Second moment of area.
-        inertia: f64,
-        /// Shear area; `None` for a bar that does not yield to shear.
-        shear_area: Option<f64>,
-        /// Moment hinge at start, at end.
-        hinges: [bool; 2],
-    },
-    /// Two-node bar that carries axial force only, `nodes` = [start, end].
-    Truss {
-        /// Cross-section area.
-        area: f64,
-    },
-    /// Membrane of 3, 4, 6 or 8 nodes, counter-clockwise: corners, then the middles of the sides 1-2, 2-3, ….
-    Membrane {
-        /// Thickness out of the plane.
-        thickness: f64,
-        /// Stress state.
-        plane: Plane,
-        /// Whether a membrane of four nodes has modes of its own beside those of its nodes, so that it bends freely.
-        incompatible: bool,
-    },
-}
-
-impl ElementKind {
-    /// What a length (bars) or an area (membranes) of it is multiplied with to give its volume.
-    pub fn area(&self) -> f64 {
-        match self {
-            ElementKind::Frame { area, .. } | ElementKind::Truss { area } => *area,
-            ElementKind::Membrane { thickness, .. } => *thickness,
-        }
-    }
-}
-
-/// One finite element.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Element {
-    /// 2 nodes (frame, truss), or 3, 4, 6, 8 (membrane).
-    pub nodes: Vec<usize>,
-    /// Index into [`Structure::materials`].
-    pub material: usize,
-    /// Kind and its data.
-    pub kind: ElementKind,
-}
-
-impl Element {
-    /// How many of its nodes are corners (the ends of a bar): they come first.
-    pub fn corners(&self) -> usize {
-        match self.nodes.len() {
-            6 => 3,
-            8 => 4,
-            count => count,
-        }
-    }
-
-    /// Its nodes as they lie round it, middle nodes between their corners; the two of a bar.
-    pub fn ring(&self) -> impl Iterator<Item = usize> {
-        let corners = self.corners();
-        (0..corners).flat_map(move |k| [Some(self.nodes[k]), self.nodes.get(corners + k).copied()]).flatten()
-    }
 }
 
 /// A bar of the file: a chain of equal elements.
@@ -163,171 +65,6 @@ pub struct Body {
     pub elements: Vec<usize>,
 }
 
-/// A displacement component held by a support.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Support {
-    /// The node.
-    pub node: usize,
-    /// The component that is held.
-    pub component: Component,
-}
-
-/// Nodes that share displacement components.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tie {
-    /// Two or more nodes.
-    pub nodes: Vec<usize>,
-    /// The shared components.
-    pub components: Vec<Component>,
-}
-
-/// Nodes that move as one body: u_i = u_0 + θ × (x_i − x_0), small displacements.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RigidBody {
-    /// Name in the file.
-    pub id: String,
-    /// Its nodes, two or more; the first is the one whose displacement and rotation are the body's unknowns.
-    pub nodes: Vec<usize>,
-}
-
-/// Linear spring: it resists the stretch Σ factor·u of its terms.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spring {
-    /// Components that stretch it: those of one node, to the ground, or of two nodes with opposite factors.
-    pub terms: Vec<SpringTerm>,
-    /// Force per stretch, or moment per rotation, ≥ 0.
-    pub stiffness: f64,
-}
-
-/// What one component of a node does to a spring.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpringTerm {
-    /// The node.
-    pub node: usize,
-    /// The component.
-    pub component: Component,
-    /// Stretch per displacement.
-    pub factor: f64,
-}
-
-impl Spring {
-    /// From a node to the ground, or to another node, along a unit vector.
-    pub fn along(node: usize, other: Option<usize>, direction: [f64; 2], stiffness: f64) -> Spring {
-        let ends = [Some((node, 1.0)), other.map(|other| (other, -1.0))];
-        let components = [Component::X, Component::Y].into_iter().zip(direction);
-        let terms = ends.into_iter().flatten().flat_map(|(node, sign)| {
-            let term = move |(component, a): (Component, f64)| SpringTerm { node, component, factor: sign * a };
-            components.clone().map(term)
-        });
-        Spring { terms: terms.collect(), stiffness }
-    }
-
-    /// Against the rotation of a node, or between those of two nodes.
-    pub fn rotational(node: usize, other: Option<usize>, stiffness: f64) -> Spring {
-        let ends = [Some((node, 1.0)), other.map(|other| (other, -1.0))];
-        let term = |(node, factor)| SpringTerm { node, component: Component::R, factor };
-        Spring { terms: ends.into_iter().flatten().map(term).collect(), stiffness }
-    }
-
-    /// Its nodes, each once.
-    pub fn nodes(&self) -> Vec<usize> {
-        let mut nodes: Vec<usize> = self.terms.iter().map(|term| term.node).collect();
-        nodes.dedup();
-        nodes
-    }
-
-    /// Whether its other end is the ground.
-    pub fn is_to_ground(&self) -> bool {
-        self.nodes().len() == 1
-    }
-}
-
-/// One resolved part of a load case, per unit factor.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Load {
-    /// Force (and moment, counter-clockwise) at a node. Edge loads (`point` on an edge, `traction`) arrive here
-    /// already made consistent, one per edge node.
-    Nodal {
-        /// The node.
-        node: usize,
-        /// (F_x, F_y).
-        force: [f64; 2],
-        /// Moment; not zero only at nodes with a rotation.
-        moment: f64,
-    },
-    /// Force per unit length of one frame or truss element, linear along it, global axes.
-    Line {
-        /// Index into [`Structure::elements`].
-        element: usize,
-        /// Distances from the start of the element between which it acts.
-        range: [f64; 2],
-        /// (q_x, q_y) at both of them.
-        value: [[f64; 2]; 2],
-    },
-    /// Force and moment between the nodes of one frame or truss element.
-    BarPoint {
-        /// Index into [`Structure::elements`].
-        element: usize,
-        /// Distance from the start of the element.
-        distance: f64,
-        /// (F_x, F_y), global axes.
-        force: [f64; 2],
-        /// Moment, counter-clockwise.
-        moment: f64,
-    },
-    /// Uniform force per volume on any element, global axes.
-    Body {
-        /// Index into [`Structure::elements`].
-        element: usize,
-        /// (b_x, b_y).
-        value: [f64; 2],
-    },
-    /// Displacement imposed on a component that a support holds.
-    Settlement {
-        /// The node.
-        node: usize,
-        /// The component.
-        component: Component,
-        /// Displacement, or rotation.
-        value: f64,
-    },
-    /// What an element would do if nothing held it: temperature, lack of fit, prestress.
-    FreeStrain {
-        /// Index into [`Structure::elements`].
-        element: usize,
-        /// Along a bar; in all directions of a membrane.
-        strain: f64,
-        /// Of a frame bar, > 0 when the −y side is the longer one.
-        curvature: f64,
-    },
-}
-
-impl Load {
-    /// Whether it is no load at all.
-    pub fn is_nothing(&self) -> bool {
-        match self {
-            Load::Nodal { force, moment, .. } | Load::BarPoint { force, moment, .. } => {
-                *force == [0.0; 2] && *moment == 0.0
-            }
-            Load::Line { value, .. } => *value == [[0.0; 2]; 2],
-            Load::Body { value, .. } => *value == [0.0; 2],
-            Load::Settlement { value, .. } => *value == 0.0,
-            Load::FreeStrain { strain, curvature, .. } => *strain == 0.0 && *curvature == 0.0,
-        }
-    }
-}
-
-/// A named load case: `factor` × the sum of its loads.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadCase {
-    /// Name in the file.
-    pub name: String,
-    /// Factor, may be a parameter.
-    pub factor: Number,
-    /// The loads per unit factor.
-    pub loads: Vec<Load>,
-}
-
 /// The edge behind the pairs `joint[0]`, `joint[1]` …
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeContact {
@@ -346,7 +83,7 @@ pub struct Structure {
     pub materials: Vec<Material>,
     /// All elements: of bars, of plates, of meshes, then single ones, in file order.
     pub elements: Vec<Element>,
-    /// The bars.
+    /// The bars, in the order of their elements.
     pub bars: Vec<Bar>,
     /// The plates.
     pub plates: Vec<Plate>,
@@ -393,6 +130,12 @@ impl Structure {
             first.is_some() && element.nodes.iter().all(|&node| body_of[node] == first)
         };
         self.elements.iter().map(is_rigid).collect()
+    }
+
+    /// The bar to which an element belongs.
+    pub fn bar_of(&self, element: usize) -> Option<usize> {
+        let bar = self.bars.partition_point(|bar| bar.elements.end <= element);
+        self.bars.get(bar).is_some_and(|bar| bar.elements.contains(&element)).then_some(bar)
     }
 
     /// The element `ID#TAG` of a mesh.

@@ -248,7 +248,12 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
     structure.load_cases = vec![LoadCase {
         name: "line".into(),
         factor: Number::Value(1.0),
-        loads: (0..2).map(|element| Load::Line { element, range: [0.0, 2.0], value: [[0.0, -q]; 2] }).collect(),
+        loads: (0..2)
+            .map(|element| Load::Element {
+                element,
+                load: ElementLoad::Line { range: [0.0, 2.0], value: [[0.0, -q]; 2] },
+            })
+            .collect(),
     }];
     let at = |x: f64| EndForces { n: 0.0, q: q * (l - x), m: -q * (l - x) * (l - x) / 2.0 };
     let members = [(0, 0.0, 2.0), (1, 2.0, 4.0)]

@@ -5,7 +5,7 @@
 use stickslip::answer::record::Answer;
 use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::{Scenario, Source};
-use stickslip::model::structure::{Component, Load, LoadCase, Structure};
+use stickslip::model::structure::{Component, ElementLoad, Load, LoadCase, Structure};
 
 /// Parts of the structure as a label per node: nodes joined by elements, ties or rigid bodies.
 fn parts(structure: &Structure) -> Vec<usize> {
@@ -40,7 +40,7 @@ fn floor(structure: &Structure, answer: &Answer) -> f64 {
         let at = |k: usize| structure.nodes[element.nodes[k]].position;
         let length = (at(1)[0] - at(0)[0]).hypot(at(1)[1] - at(0)[1]);
         let across = if element.nodes.len() == 2 { 1.0 } else { length };
-        a.max(structure.materials[element.material].youngs_modulus * element.kind.area() * across / length)
+        a.max(structure.materials[element.material].youngs_modulus * element.area() * across / length)
     });
     1e-6 * stiffest * moved
 }
@@ -89,7 +89,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
                 Load::Nodal { node, force, moment } => {
                     add(*node, at(*node), force.map(|f| factor * f), factor * moment)
                 }
-                Load::Line { element, range: [from, to], value: [first, last] } => {
+                Load::Element { element, load: ElementLoad::Line { range: [from, to], value: [first, last] } } => {
                     let [a, b] = [0, 1].map(|end| structure.elements[*element].nodes[end]);
                     let ([xa, ya], [xb, yb]) = (at(a), at(b));
                     let length = (xb - xa).hypot(yb - ya);
@@ -102,21 +102,21 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
                         add(a, place, q.map(|q| factor * q * weight * (to - from) / 6.0), 0.0);
                     }
                 }
-                Load::BarPoint { element, distance, force, moment } => {
+                Load::Element { element, load: ElementLoad::Point { distance, force, moment } } => {
                     let [a, b] = [0, 1].map(|end| at(structure.elements[*element].nodes[end]));
                     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
                     let place = [0, 1].map(|i| a[i] + distance / length * (b[i] - a[i]));
                     let node = structure.elements[*element].nodes[0];
                     add(node, place, force.map(|f| factor * f), factor * moment);
                 }
-                Load::Body { element, value } => {
+                Load::Element { element, load: ElementLoad::Body(value) } => {
                     let element = &structure.elements[*element];
                     let (measure, middle) = measure_and_middle(element.nodes.iter().map(|&node| at(node)).collect());
-                    let volume = measure * element.kind.area();
+                    let volume = measure * element.area();
                     add(element.nodes[0], middle, value.map(|b| factor * b * volume), 0.0);
                 }
                 // They pull one part of a structure against another, and against what holds it.
-                Load::FreeStrain { .. } | Load::Settlement { .. } => {}
+                Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
             }
         }
     }
@@ -182,7 +182,7 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
         largest[1] = largest[1].max(force[2].abs());
     };
     for element in &structure.elements {
-        if matches!(element.kind, stickslip::model::structure::ElementKind::Membrane { .. }) {
+        if element.shape().is_area() {
             element.nodes.iter().for_each(|&node| bars_only[node] = false);
         }
     }

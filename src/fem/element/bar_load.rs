@@ -5,7 +5,9 @@
 //!     at a point:   N jumps by −F_x,  Q by F_y,  M by −m (m counter-clockwise)
 //! ```
 
-use super::Axis;
+use super::Acting;
+use super::axis::Axis;
+use crate::model::structure::ElementLoad;
 
 /// A force per length that varies linearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +45,16 @@ pub struct BarLoad {
 /// Internal forces (N, Q, M) at one place: N > 0 tension, Q = dM/dx, M > 0 tension on the −y side.
 pub type Internal = [f64; 3];
 
+/// Internal forces of a bar element.
+pub struct BarForces {
+    /// Its length.
+    pub length: f64,
+    /// At its start and at its end.
+    pub ends: [Internal; 2],
+    /// In between; distances from its start.
+    pub pieces: Vec<Piece>,
+}
+
 impl Span {
     /// (q_x, q_y) at a distance from the start of the element.
     pub fn at(&self, s: f64) -> [f64; 2] {
@@ -53,8 +65,27 @@ impl Span {
 }
 
 impl BarLoad {
+    /// All that acts on a bar element of this cross-section.
+    pub fn of(acting: &Acting, axis: &Axis, area: f64) -> BarLoad {
+        let mut all = BarLoad::default();
+        for &(factor, load) in acting {
+            match *load {
+                ElementLoad::Line { range, value } => all.add_line(axis, range, value, factor),
+                ElementLoad::Point { distance, force, moment } => all.add_point(axis, distance, force, moment, factor),
+                ElementLoad::Body(value) => {
+                    all.add_line(axis, [0.0, axis.length], [value.map(|b| area * b); 2], factor);
+                }
+                ElementLoad::FreeStrain { strain, curvature } => {
+                    all.strain += factor * strain;
+                    all.curvature += factor * curvature;
+                }
+            }
+        }
+        all
+    }
+
     /// Adds a linear force per length given in global axes.
-    pub fn add_line(&mut self, axis: &Axis, range: [f64; 2], force: [[f64; 2]; 2], factor: f64) {
+    fn add_line(&mut self, axis: &Axis, range: [f64; 2], force: [[f64; 2]; 2], factor: f64) {
         let force = force.map(|q| axis.to_local(q).map(|q| factor * q));
         if range[1] > range[0] && force != [[0.0; 2]; 2] {
             self.spans.push(Span { range, force });
@@ -62,16 +93,11 @@ impl BarLoad {
     }
 
     /// Adds a force in global axes and a moment at one place.
-    pub fn add_point(&mut self, axis: &Axis, at: f64, force: [f64; 2], moment: f64, factor: f64) {
+    fn add_point(&mut self, axis: &Axis, at: f64, force: [f64; 2], moment: f64, factor: f64) {
         let force = axis.to_local(force).map(|f| factor * f);
         if force != [0.0; 2] || moment * factor != 0.0 {
             self.points.push(PointForce { at, force, moment: factor * moment });
         }
-    }
-
-    /// Whether nothing acts.
-    pub fn is_empty(&self) -> bool {
-        self.spans.is_empty() && self.points.is_empty() && self.strain == 0.0 && self.curvature == 0.0
     }
 
     /// ∫ weight(s)·q(s) ds + Σ weight(s)·F: what the distributed and single forces do on the displacements `weight`
@@ -96,9 +122,14 @@ impl BarLoad {
         sum
     }
 
+    /// The internal forces of an element of this length that has `ends` at its ends.
+    pub fn forces_along(&self, ends: [Internal; 2], length: f64) -> BarForces {
+        BarForces { length, ends, pieces: self.pieces(ends[0], length) }
+    }
+
     /// The internal forces along an element of this length that begins with `start`: pieces between the places where
     /// a load begins, ends or acts, with nothing but a linear q inside.
-    pub fn pieces(&self, start: Internal, length: f64) -> Vec<Piece> {
+    fn pieces(&self, start: Internal, length: f64) -> Vec<Piece> {
         let mut cuts: Vec<f64> = vec![0.0, length];
         cuts.extend(self.spans.iter().flat_map(|span| span.range));
         cuts.extend(self.points.iter().map(|point| point.at));

@@ -16,11 +16,13 @@
 //! nodal forces by the exact displacements of the unloaded element, so that nodes move as in beam theory
 //! (Przemieniecki, *Theory of Matrix Structural Analysis*, 1968, ch. 5 and 6).
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 
-use super::Axis;
-use super::bar_load::{BarLoad, Internal};
-use crate::fem::doubled::Real;
+use super::axis::Axis;
+use super::bar_load::{BarForces, BarLoad, Internal};
+use super::{Acting, FiniteElement, NO_LENGTH, Stiffness};
+use crate::fem::doubled::{Doubled, Real};
+use crate::model::structure::Material;
 
 /// A sum below this multiple of the magnitudes of its terms is zero.
 const ZERO: f64 = 16.0 * f64::EPSILON;
@@ -28,39 +30,72 @@ const ZERO: f64 = 16.0 * f64::EPSILON;
 type Matrix6<T = f64> = SMatrix<T, 6, 6>;
 type Vector6 = SVector<f64, 6>;
 
-/// A frame element.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame<T = f64> {
-    /// Length and direction.
-    pub axis: Axis<T>,
+/// A frame element. Inside it has six rows, u_x, u_y, θ of the start, then of the end; outside, a released rotation has
+/// none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Places of start and end.
+    ends: [[f64; 2]; 2],
+    axis: Axis,
     /// EA.
-    pub axial: f64,
+    axial: f64,
     /// EI.
-    pub bending: f64,
+    bending: f64,
     /// G A_s; `None` for a bar that does not yield to shear.
-    pub shear: Option<f64>,
+    shear: Option<f64>,
+    area: f64,
     /// Moment hinge at start, at end.
-    pub hinges: [bool; 2],
+    hinges: [bool; 2],
 }
 
-impl<T: Real> Frame<T> {
-    /// Stiffness in global axes, rows u_x, u_y, θ of the start, then of the end.
-    pub fn stiffness(&self) -> Matrix6<T> {
-        let k = self.local_stiffness();
-        let t = rotation(&self.axis);
-        let k = t.transpose() * k * t;
+impl Frame {
+    /// Of a section with this area, inertia and perhaps shear area; `None` if its ends coincide.
+    pub fn new(
+        ends: [[f64; 2]; 2],
+        material: &Material,
+        [area, inertia]: [f64; 2],
+        shear_area: Option<f64>,
+        hinges: [bool; 2],
+    ) -> Option<Frame> {
+        let e = material.youngs_modulus;
+        Some(Frame {
+            ends,
+            axis: Axis::between(ends)?,
+            axial: e * area,
+            bending: e * inertia,
+            shear: shear_area.map(|area| e / (2.0 * (1.0 + material.poisson_ratio)) * area),
+            area,
+            hinges,
+        })
+    }
+
+    /// The rows that are left outside.
+    fn rows(&self) -> impl Iterator<Item = usize> {
+        let hinges = self.hinges;
+        (0..6).filter(move |row| row % 3 != 2 || !hinges[row / 3])
+    }
+
+    fn stiffness_in<T: Real>(&self) -> Option<Stiffness<T>> {
+        let k = self.global_stiffness(&Axis::<T>::between(self.ends)?);
+        let rows: Vec<usize> = self.rows().collect();
+        Some(DMatrix::from_fn(rows.len(), rows.len(), |i, j| k[(rows[i], rows[j])]))
+    }
+
+    /// Stiffness in global axes, with rows of zeros where rotations are released.
+    fn global_stiffness<T: Real>(&self, axis: &Axis<T>) -> Matrix6<T> {
+        let t = rotation(axis);
+        let k = t.transpose() * self.local_stiffness(axis.length) * t;
         (k + k.transpose()) * T::from(0.5)
     }
 
     /// Φ = 12EI/(G A_s L²).
-    fn shear_number(&self) -> T {
-        let length = self.axis.length;
+    fn shear_number<T: Real>(&self, length: T) -> T {
         self.shear.map_or(T::zero(), |shear| T::from(12.0 * self.bending / shear) / (length * length))
     }
 
     /// Stiffness in bar axes without hinges.
-    fn rigid_ended(&self) -> Matrix6<T> {
-        let (length, phi) = (self.axis.length, self.shear_number());
+    fn rigid_ended<T: Real>(&self, length: T) -> Matrix6<T> {
+        let phi = self.shear_number(length);
         let (o, number) = (T::zero(), T::from);
         let ea = number(self.axial) / length;
         let c1 = number(self.bending) / (T::one() + phi) / length;
@@ -82,16 +117,15 @@ impl<T: Real> Frame<T> {
     }
 
     /// Stiffness in bar axes.
-    fn local_stiffness(&self) -> Matrix6<T> {
-        let length = self.axis.length;
+    fn local_stiffness<T: Real>(&self, length: T) -> Matrix6<T> {
         let ea = T::from(self.axial) / length;
         // The closed forms of the condensed matrices, so that zeros are exact zeros.
-        let c3 = T::from(3.0 * self.bending) / (T::one() + T::from(0.25) * self.shear_number()) / length;
+        let c3 = T::from(3.0 * self.bending) / (T::one() + T::from(0.25) * self.shear_number(length)) / length;
         let b3 = c3 / length;
         let a3 = b3 / length;
         let o = T::zero();
         let bending: Option<[(usize, T); 4]> = match self.hinges {
-            [false, false] => return self.rigid_ended(),
+            [false, false] => return self.rigid_ended(length),
             // M = c3·(θ − chord rotation) at the end that is not released.
             [true, false] => Some([(1, a3), (2, o), (4, -a3), (5, b3)]),
             [false, true] => Some([(1, a3), (2, b3), (4, -a3), (5, o)]),
@@ -114,13 +148,12 @@ impl<T: Real> Frame<T> {
         }
         k
     }
-}
 
-impl Frame {
     /// Displacements (along x, along y, rotation of the section) at a distance from the start when row `row` of the
     /// element without hinges is displaced by 1 and nothing acts between its nodes.
     fn shape(&self, row: usize, s: f64) -> [f64; 3] {
-        let (length, phi) = (self.axis.length, self.shear_number());
+        let length = self.axis.length;
+        let phi = self.shear_number(length);
         let x = s / length;
         let (x2, x3, over) = (x * x, x * x * x, 1.0 / (1.0 + phi));
         match row {
@@ -137,17 +170,13 @@ impl Frame {
         }
     }
 
-    /// Nodal forces in global axes that stand for the load between the nodes.
-    pub fn nodal_forces(&self, load: &BarLoad) -> Vector6 {
-        rotation(&self.axis).transpose() * self.local_forces(load)
-    }
-
+    /// Forces at the ends in bar axes that stand for the load between them.
     fn local_forces(&self, load: &BarLoad) -> Vector6 {
         let mut f = Vector6::from_fn(|row, _| load.work(&|s| self.shape(row, s)));
         let (normal, moment) = (self.axial * load.strain, self.bending * load.curvature);
         f += Vector6::from([-normal, 0.0, -moment, normal, 0.0, moment]);
         if self.hinges != [false; 2] {
-            let mut k = self.rigid_ended();
+            let mut k = self.rigid_ended(self.axis.length);
             for (r, _) in [(2, 0), (5, 1)].into_iter().filter(|(_, end)| self.hinges[*end]) {
                 let column: Vector6 = k.column(r).into();
                 f -= column * (f[r] / k[(r, r)]);
@@ -163,9 +192,9 @@ impl Frame {
     ///
     /// N > 0 tension, Q = dM/dx, M > 0 tension on the −y side: with f the forces on the element's ends,
     /// start (−f_x1, f_y1, −m_1), end (f_x2, −f_y2, m_2). What is no more than rounding of the terms of a force is 0.
-    pub fn end_forces(&self, u: &[f64; 6], load: &BarLoad) -> [Internal; 2] {
+    fn end_forces(&self, u: &[f64; 6], load: &BarLoad) -> [Internal; 2] {
         let local = rotation(&self.axis) * Vector6::from(*u);
-        let (stiffness, loads) = (self.local_stiffness(), self.local_forces(load));
+        let (stiffness, loads) = (self.local_stiffness(self.axis.length), self.local_forces(load));
         let mut f = stiffness * local - loads;
         // Both components of a displacement are as well known as the larger one.
         let sizes = Vector6::from_fn(|i, _| match i % 3 {
@@ -175,6 +204,31 @@ impl Frame {
         let terms = stiffness.abs() * sizes + loads.abs();
         f.zip_apply(&terms, |f, terms| *f = if f.abs() <= ZERO * terms { 0.0 } else { *f });
         [[-f[0], f[1], -f[2]], [f[3], -f[4], f[5]]]
+    }
+}
+
+impl FiniteElement for Frame {
+    fn stiffness(&self) -> Result<Stiffness, &'static str> {
+        self.stiffness_in().ok_or(NO_LENGTH)
+    }
+
+    fn doubled_stiffness(&self) -> Result<Stiffness<Doubled>, &'static str> {
+        self.stiffness_in().ok_or(NO_LENGTH)
+    }
+
+    fn nodal_forces(&self, acting: &Acting) -> Vec<f64> {
+        let load = BarLoad::of(acting, &self.axis, self.area);
+        let f = rotation(&self.axis).transpose() * self.local_forces(&load);
+        self.rows().map(|row| f[row]).collect()
+    }
+
+    fn bar_forces(&self, u: &[f64], acting: &Acting) -> Option<BarForces> {
+        let load = BarLoad::of(acting, &self.axis, self.area);
+        let mut all = [0.0; 6];
+        for (row, u) in self.rows().zip(u) {
+            all[row] = *u;
+        }
+        Some(load.forces_along(self.end_forces(&all, &load), self.axis.length))
     }
 }
 
@@ -196,22 +250,31 @@ mod tests {
     use super::super::bar_load::{PointForce, Span};
     use super::*;
 
-    const AXIS: Axis = Axis { length: 2.5, cos: 0.6, sin: 0.8 };
+    /// cos 0.6, sin 0.8.
+    const END: [f64; 2] = [1.5, 2.0];
+    const LENGTH: f64 = 2.5;
     const HINGES: [[bool; 2]; 4] = [[false; 2], [true, false], [false, true], [true, true]];
 
     fn frame(hinges: [bool; 2], shear: Option<f64>) -> Frame {
-        Frame { axis: AXIS, axial: 21.0, bending: 14.0, shear, hinges }
+        Frame { hinges, ..flexible(END, [21.0, 14.0], shear) }
+    }
+
+    /// With EA and EI, and G A_s.
+    fn flexible(end: [f64; 2], section: [f64; 2], shear: Option<f64>) -> Frame {
+        let material = Material { youngs_modulus: 1.0, poisson_ratio: 0.0, density: 0.0, expansion: 0.0 };
+        let frame = Frame::new([[0.0; 2], end], &material, section, None, [false; 2]).unwrap();
+        Frame { shear, ..frame }
     }
 
     fn uniform(q: [f64; 2]) -> BarLoad {
-        BarLoad { spans: vec![Span { range: [0.0, AXIS.length], force: [q, q] }], ..BarLoad::default() }
+        BarLoad { spans: vec![Span { range: [0.0, LENGTH], force: [q, q] }], ..BarLoad::default() }
     }
 
     /// The closed forms against k − k_r k_rᵀ / k_rr worked out from the full matrix.
     #[test]
     fn hinges_are_condensed_rotations() {
         for shear in [None, Some(5.0)] {
-            let full = frame([false; 2], shear).local_stiffness();
+            let full = frame([false; 2], shear).local_stiffness(LENGTH);
             for hinges in HINGES {
                 let mut k = full;
                 for (r, released) in [(2, hinges[0]), (5, hinges[1])] {
@@ -220,7 +283,7 @@ mod tests {
                         k -= column * column.transpose() / column[r];
                     }
                 }
-                let closed = frame(hinges, shear).local_stiffness();
+                let closed = frame(hinges, shear).local_stiffness(LENGTH);
                 assert!((closed - k).amax() < 1e-13 * full.amax(), "{hinges:?}");
             }
         }
@@ -229,7 +292,7 @@ mod tests {
     /// qL/2 and ± qL²/12; with a hinge 3/8, 5/8 of qL and qL²/8 at the other end.
     #[test]
     fn uniform_load() {
-        let (qx, qy, l) = (0.3, -1.7, AXIS.length);
+        let (qx, qy, l) = (0.3, -1.7, LENGTH);
         for (hinges, [v1, m1, v2, m2]) in HINGES.into_iter().zip([
             [0.5, 1.0 / 12.0, 0.5, -1.0 / 12.0],
             [0.375, 0.0, 0.625, -0.125],
@@ -247,7 +310,7 @@ mod tests {
     /// from 0 to w: wL²/30, −wL²/20; of a couple m: m b(2a − b)/L², m a(2b − a)/L².
     #[test]
     fn fixed_end_moments() {
-        let l = AXIS.length;
+        let l = LENGTH;
         let (a, p, w, m) = (0.8, 3.0, 2.0, 4.0);
         let b = l - a;
         let point = |force, moment| BarLoad { points: vec![PointForce { at: a, force, moment }], ..BarLoad::default() };
@@ -268,7 +331,7 @@ mod tests {
     /// and with shear: Σ f_y = P, Σ m + f_y2 L = P a.
     #[test]
     fn loads_keep_their_resultant() {
-        let l = AXIS.length;
+        let l = LENGTH;
         for shear in [None, Some(5.0)] {
             for hinges in HINGES {
                 let load = BarLoad {
@@ -291,10 +354,9 @@ mod tests {
     /// Free axial strain and curvature: u = ε₀ x, v = κ₀ x²/2 leaves no internal force.
     #[test]
     fn free_deformation_makes_no_force() {
-        let axis = Axis { length: 2.0, cos: 1.0, sin: 0.0 };
         let load = BarLoad { strain: 0.01, curvature: 0.03, ..BarLoad::default() };
         for shear in [None, Some(5.0)] {
-            let frame = Frame { axis, axial: 3.0, bending: 7.0, shear, hinges: [false; 2] };
+            let frame = flexible([2.0, 0.0], [3.0, 7.0], shear);
             let ends = frame.end_forces(&[0.0, 0.0, 0.0, 0.02, 0.06, 0.06], &load);
             assert!(ends.iter().flatten().all(|value| value.abs() < 1e-14), "{ends:?}");
         }
@@ -303,9 +365,7 @@ mod tests {
     /// Cantilever with a shear area under a tip force: v = PL³/3EI + PL/GA_s.
     #[test]
     fn shear_adds_its_share() {
-        let axis = Axis { length: 2.0, cos: 1.0, sin: 0.0 };
-        let frame = Frame { axis, axial: 3.0, bending: 7.0, shear: Some(5.0), hinges: [false; 2] };
-        let k = frame.stiffness();
+        let k = flexible([2.0, 0.0], [3.0, 7.0], Some(5.0)).stiffness().unwrap();
         let v = 8.0 / 21.0 + 2.0 / 5.0;
         let theta = 4.0 / 14.0;
         let force = [k[(4, 4)] * v + k[(4, 5)] * theta, k[(5, 4)] * v + k[(5, 5)] * theta];
@@ -315,7 +375,8 @@ mod tests {
     #[test]
     fn rigid_motions_cost_nothing() {
         for hinges in HINGES {
-            let k = frame(hinges, Some(5.0)).stiffness();
+            let frame = frame(hinges, Some(5.0));
+            let k = frame.global_stiffness(&frame.axis);
             // Rotation by 1 about the start: the end moves by (−L sin, L cos).
             let turn = Vector6::from([0.0, 0.0, 1.0, -2.5 * 0.8, 2.5 * 0.6, 1.0]);
             let shift = Vector6::from([0.3, -0.4, 0.0, 0.3, -0.4, 0.0]);

@@ -9,20 +9,19 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::Stiffness;
 use super::incompatible;
+use super::jacobian::{determinant, in_plane};
 use super::shape::{MOST, Shape};
-use crate::fem::doubled::Real;
-use crate::model::structure::{Material, Plane};
+use super::{Acting, FiniteElement, Stiffness, Stress};
+use crate::fem::doubled::{Doubled, Real};
+use crate::model::structure::{ElementLoad, Material, Plane};
 
 type Matrix3 = SMatrix<f64, 3, 3>;
 
-/// A membrane element with all that its integrals need.
+/// A membrane element with all that its integrals need; its rows are u_x, u_y of each node in turn.
 pub struct Membrane<'a> {
-    /// Shape functions.
-    pub shape: Shape,
-    /// Coordinates of its nodes, as many as the shape has.
-    pub nodes: &'a [[f64; 2]],
+    /// Coordinates of its nodes: 3, 4, 6 or 8.
+    pub nodes: Vec<[f64; 2]>,
     /// What it is made of.
     pub material: &'a Material,
     /// Stress state.
@@ -33,11 +32,8 @@ pub struct Membrane<'a> {
     pub incompatible: bool,
 }
 
-/// σ_xx, σ_yy, σ_xy and σ_zz, tension positive.
-pub type Stress = [f64; 4];
-
 /// D: (σ_xx, σ_yy, σ_xy) = D (ε_xx, ε_yy, γ_xy).
-pub fn elasticity(material: &Material, plane: Plane) -> Matrix3 {
+fn elasticity(material: &Material, plane: Plane) -> Matrix3 {
     let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
     let (direct, cross) = match plane {
         Plane::Stress => (e / (1.0 - nu * nu), e * nu / (1.0 - nu * nu)),
@@ -51,28 +47,28 @@ pub fn elasticity(material: &Material, plane: Plane) -> Matrix3 {
 }
 
 impl Membrane<'_> {
-    /// Stiffness, rows u_x, u_y of each node in turn; `None` if det J ≤ 0 at a node or an integration point (not
-    /// convex, clockwise, or a middle node too far from its middle).
-    pub fn stiffness<T: Real>(&self) -> Option<Stiffness<T>> {
-        let mut k = self.stiffness_of_all()?;
-        for row in 2 * self.nodes.len()..2 * self.functions() {
-            k.row_mut(row).fill(T::zero());
-            k.column_mut(row).fill(T::zero());
-        }
-        Some(k)
+    fn shape(&self) -> Shape {
+        Shape::of(self.nodes.len())
+    }
+
+    /// Stiffness; `None` if det J ≤ 0 at a node or an integration point (not convex, clockwise, or a middle node too
+    /// far from its middle).
+    fn stiffness_in<T: Real>(&self) -> Option<Stiffness<T>> {
+        let rows = 2 * self.nodes.len();
+        Some(self.stiffness_of_all()?.resize(rows, rows, T::zero()))
     }
 
     /// The same with the rows of the incompatible modes behind those of the nodes, each as it was when it was
     /// eliminated (the last one first).
     fn stiffness_of_all<T: Real>(&self) -> Option<Stiffness<T>> {
-        if self.shape.nodes().iter().any(|&at| self.gradients::<f64>(at).1 <= 0.0) {
+        if self.shape().nodes().iter().any(|&at| self.gradients::<f64>(at).1 <= 0.0) {
             return None;
         }
         let d = elasticity(self.material, self.plane);
         let [d11, d12, d22, d33] = [d[(0, 0)], d[(0, 1)], d[(1, 1)], d[(2, 2)]].map(T::from);
         let count = self.functions();
-        let mut k = Stiffness::zeros();
-        for (at, w) in self.shape.points() {
+        let mut k = Stiffness::zeros(2 * count, 2 * count);
+        for (at, w) in self.shape().points() {
             let (dn, det) = self.gradients::<T>(at);
             if det.to_f64() <= 0.0 {
                 return None;
@@ -100,12 +96,12 @@ impl Membrane<'_> {
         self.nodes.len() + if self.incompatible { incompatible::MODES } else { 0 }
     }
 
-    /// Nodal forces ∫ N b t dA of the uniform force `b` per volume, rows as in [`stiffness`](Self::stiffness).
-    pub fn body_force(&self, b: [f64; 2]) -> Vec<f64> {
+    /// Nodal forces ∫ N b t dA of the uniform force `b` per volume, rows as in the stiffness.
+    fn body_force(&self, b: [f64; 2]) -> Vec<f64> {
         let mut f = vec![0.0; 2 * self.nodes.len()];
-        for (at, w) in self.shape.points() {
+        for (at, w) in self.shape().points() {
             let weight = self.thickness * self.gradients::<f64>(at).1 * w;
-            for (i, n) in self.shape.values(at)[..self.nodes.len()].iter().enumerate() {
+            for (i, n) in self.shape().values(at)[..self.nodes.len()].iter().enumerate() {
                 f[2 * i] += weight * n * b[0];
                 f[2 * i + 1] += weight * n * b[1];
             }
@@ -113,11 +109,11 @@ impl Membrane<'_> {
         f
     }
 
-    /// Nodal forces ∫ Bᵀ D ε₀ t dA of the free expansion `strain` = α ΔT, rows as in [`stiffness`](Self::stiffness).
-    pub fn expansion_force(&self, strain: f64) -> Vec<f64> {
+    /// Nodal forces ∫ Bᵀ D ε₀ t dA of the free expansion `strain` = α ΔT, rows as in the stiffness.
+    fn expansion_force(&self, strain: f64) -> Vec<f64> {
         let stress = elasticity(self.material, self.plane) * self.initial_strain(strain);
         let mut f = vec![0.0; 2 * self.nodes.len()];
-        for (at, w) in self.shape.points() {
+        for (at, w) in self.shape().points() {
             let (dn, det) = self.gradients::<f64>(at);
             let weight = self.thickness * det * w;
             for (i, [x, y]) in dn[..self.nodes.len()].iter().enumerate() {
@@ -131,21 +127,25 @@ impl Membrane<'_> {
     /// Area × thickness.
     #[cfg(test)]
     fn volume(&self) -> f64 {
-        self.shape.points().into_iter().map(|(at, w)| self.thickness * self.gradients::<f64>(at).1 * w).sum()
+        self.shape().points().into_iter().map(|(at, w)| self.thickness * self.gradients::<f64>(at).1 * w).sum()
     }
 
-    /// Stress at (ξ, η) for the displacements `u` (rows as in [`stiffness`](Self::stiffness)) and the free expansion
-    /// `strain` = α ΔT: extrapolated from the points where the element's stresses are best.
-    pub fn stress(&self, at: [f64; 2], u: &[f64], strain: f64) -> Stress {
+    /// The displacements `u` of its nodes, then the amounts of the incompatible modes.
+    fn with_modes(&self, u: &[f64]) -> Vec<f64> {
         let mut u = u.to_vec();
         if self.incompatible
             && let Some(k) = self.stiffness_of_all::<f64>()
         {
             incompatible::complete(&k, &mut u, 2 * self.functions());
         }
-        let u = &u[..];
+        u
+    }
+
+    /// Stress at (ξ, η) for the displacements `u`, [modes](Self::with_modes) included, and the free expansion
+    /// `strain` = α ΔT: extrapolated from the points where the element's stresses are best.
+    fn stress_at(&self, at: [f64; 2], u: &[f64], strain: f64) -> Stress {
         let mut sum = [0.0; 4];
-        for (point, weight) in self.shape.stress_points().into_iter().zip(self.shape.extrapolation(at)) {
+        for (point, weight) in self.shape().stress_points().into_iter().zip(self.shape().extrapolation(at)) {
             for (sum, value) in sum.iter_mut().zip(self.stress_at_point(point, u, strain)) {
                 *sum += weight * value;
             }
@@ -185,9 +185,9 @@ impl Membrane<'_> {
     fn gradients<T: Real>(&self, at: [f64; 2]) -> ([[T; 2]; MOST], T) {
         let j = self.jacobian::<T>(at);
         let det = determinant(&j);
-        let mut gradients = self.shape.gradients(at).map(|natural| in_plane(&j, det, natural));
+        let mut gradients = self.shape().gradients(at).map(|natural| in_plane(&j, det, natural));
         if self.incompatible {
-            let centre = self.jacobian::<T>(self.shape.centre());
+            let centre = self.jacobian::<T>(self.shape().centre());
             let modes = incompatible::gradients(at, &centre, determinant(&centre) / det);
             gradients[self.nodes.len()..self.functions()].copy_from_slice(&modes);
         }
@@ -198,7 +198,7 @@ impl Membrane<'_> {
     fn jacobian<T: Real>(&self, at: [f64; 2]) -> [[T; 2]; 2] {
         // Coordinates from the first node: the place in the plane costs no digits.
         let mut j = [[T::zero(); 2]; 2];
-        for (n, node) in self.shape.gradients::<T>(at).iter().zip(self.nodes) {
+        for (n, node) in self.shape().gradients::<T>(at).iter().zip(&self.nodes) {
             for a in 0..2 {
                 for b in 0..2 {
                     j[a][b] += n[a] * T::difference(node[b], self.nodes[0][b]);
@@ -209,15 +209,47 @@ impl Membrane<'_> {
     }
 }
 
-/// det J.
-pub(super) fn determinant<T: Real>(j: &[[T; 2]; 2]) -> T {
-    j[0][0] * j[1][1] - j[0][1] * j[1][0]
+impl FiniteElement for Membrane<'_> {
+    fn stiffness(&self) -> Result<Stiffness, &'static str> {
+        self.stiffness_in().ok_or(INSIDE_OUT)
+    }
+
+    fn doubled_stiffness(&self) -> Result<Stiffness<Doubled>, &'static str> {
+        self.stiffness_in().ok_or(INSIDE_OUT)
+    }
+
+    fn nodal_forces(&self, acting: &Acting) -> Vec<f64> {
+        let mut all = vec![0.0; 2 * self.nodes.len()];
+        for &(factor, load) in acting {
+            let forces = match load {
+                ElementLoad::Body(b) => self.body_force(b.map(|b| factor * b)),
+                ElementLoad::FreeStrain { strain, .. } => self.expansion_force(factor * strain),
+                ElementLoad::Line { .. } | ElementLoad::Point { .. } => continue,
+            };
+            all.iter_mut().zip(forces).for_each(|(all, force)| *all += force);
+        }
+        all
+    }
+
+    fn stress(&self, u: &[f64], acting: &Acting) -> Option<Stress> {
+        Some(self.stress_at(self.shape().centre(), &self.with_modes(u), free_strain(acting)))
+    }
+
+    fn node_stresses(&self, u: &[f64], acting: &Acting) -> Option<Vec<Stress>> {
+        let (u, strain) = (self.with_modes(u), free_strain(acting));
+        Some(self.shape().nodes().iter().map(|&at| self.stress_at(at, &u, strain)).collect())
+    }
 }
 
-/// J⁻¹ applied to (∂/∂ξ, ∂/∂η): (∂/∂x, ∂/∂y).
-pub(super) fn in_plane<T: Real>(j: &[[T; 2]; 2], det: T, [xi, eta]: [T; 2]) -> [T; 2] {
-    let inverse = T::one() / det;
-    [(j[1][1] * xi - j[0][1] * eta) * inverse, (j[0][0] * eta - j[1][0] * xi) * inverse]
+const INSIDE_OUT: &str = "it is not convex, or its nodes do not go round counter-clockwise";
+
+/// α ΔT.
+fn free_strain(acting: &Acting) -> f64 {
+    let strains = acting.iter().map(|(factor, load)| match load {
+        ElementLoad::FreeStrain { strain, .. } => factor * strain,
+        ElementLoad::Body(_) | ElementLoad::Line { .. } | ElementLoad::Point { .. } => 0.0,
+    });
+    strains.sum()
 }
 
 #[cfg(test)]
@@ -230,8 +262,7 @@ mod tests {
 
     fn with<T>(nodes: &[[f64; 2]], plane: Plane, run: impl Fn(&Membrane) -> T) -> T {
         let material = material(3.0, 0.3);
-        let shape = Shape::of(nodes.len()).unwrap();
-        run(&Membrane { shape, nodes, material: &material, plane, thickness: 0.7, incompatible: false })
+        run(&Membrane { nodes: nodes.to_vec(), material: &material, plane, thickness: 0.7, incompatible: false })
     }
 
     /// One distorted element of every shape; the quadratic ones with a side that bulges.
@@ -256,14 +287,13 @@ mod tests {
         let material = material(1.0, 0.0);
         let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let element = Membrane {
-            shape: Shape::Quad4,
-            nodes: &nodes,
+            nodes: nodes.to_vec(),
             material: &material,
             plane: Plane::Strain,
             thickness: 1.0,
             incompatible: false,
         };
-        let k = element.stiffness::<f64>().unwrap();
+        let k = element.stiffness().unwrap();
         // ∫N1x N2x = −1/3, ∫N1y N2y = 1/6; ∫N1x N1y = 1/4.
         assert!((k[(0, 0)] - 0.5).abs() < 1e-15);
         assert!((k[(0, 2)] - (-1.0 / 3.0 + 0.5 / 6.0)).abs() < 1e-15);
@@ -283,13 +313,13 @@ mod tests {
                         .collect();
                     let strain = SVector::<f64, 3>::new(0.02, 0.03, 0.02);
                     let exact = elasticity(element.material, plane) * strain;
-                    for &at in element.shape.nodes().iter().chain([&element.shape.centre()]) {
-                        let stress = element.stress(at, &u, 0.0);
+                    for &at in element.shape().nodes().iter().chain([&element.shape().centre()]) {
+                        let stress = element.stress_at(at, &u, 0.0);
                         for i in 0..3 {
                             assert!((stress[i] - exact[i]).abs() < 1e-13, "{} nodes", nodes.len());
                         }
                     }
-                    let k = element.stiffness::<f64>().unwrap();
+                    let k = element.stiffness().unwrap();
                     let count = u.len();
                     let energy: f64 =
                         (0..count).map(|i| (0..count).map(|j| u[i] * k[(i, j)] * u[j]).sum::<f64>()).sum();
@@ -309,12 +339,12 @@ mod tests {
                 with(&nodes, plane, |element| {
                     let factor = if plane == Plane::Strain { 1.3 * heat } else { heat };
                     let u: Vec<f64> = nodes.iter().flatten().map(|x| factor * x).collect();
-                    let stress = element.stress(element.shape.centre(), &u, heat);
+                    let stress = element.stress_at(element.shape().centre(), &u, heat);
                     let across = if plane == Plane::Strain { -3.0 * heat } else { 0.0 };
                     for (found, right) in stress.into_iter().zip([0.0, 0.0, 0.0, across]) {
                         assert!((found - right).abs() < 1e-14, "{} nodes: {stress:?}", nodes.len());
                     }
-                    let (k, f) = (element.stiffness::<f64>().unwrap(), element.expansion_force(heat));
+                    let (k, f) = (element.stiffness().unwrap(), element.expansion_force(heat));
                     for i in 0..u.len() {
                         let force: f64 = (0..u.len()).map(|j| k[(i, j)] * u[j]).sum();
                         assert!((force - f[i]).abs() < 1e-14, "{} nodes", nodes.len());
@@ -356,7 +386,7 @@ mod tests {
         // The middle of the first side beyond a quarter of it: det J < 0 at its end.
         let far = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.8, 0.0], [0.5, 0.5], [0.0, 0.5]];
         for nodes in [&clockwise[..], &dart, &flat, &far] {
-            assert!(with(nodes, Plane::Stress, |element| element.stiffness::<f64>().is_none()));
+            assert!(with(nodes, Plane::Stress, |element| element.stiffness().is_err()));
         }
     }
 }

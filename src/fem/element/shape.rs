@@ -44,14 +44,13 @@ const TRIANGLE_NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5,
 pub type Point = ([f64; 2], f64);
 
 impl Shape {
-    /// The shape with this number of nodes.
-    pub fn of(nodes: usize) -> Option<Shape> {
+    /// The shape with this number of nodes: 3, 4, 6 or 8.
+    pub fn of(nodes: usize) -> Shape {
         match nodes {
-            3 => Some(Shape::Triangle3),
-            4 => Some(Shape::Quad4),
-            6 => Some(Shape::Triangle6),
-            8 => Some(Shape::Quad8),
-            _ => None,
+            3 => Shape::Triangle3,
+            6 => Shape::Triangle6,
+            8 => Shape::Quad8,
+            _ => Shape::Quad4,
         }
     }
 

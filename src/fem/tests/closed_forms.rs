@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::builder::{Model, coulomb, frictionless, point, two_plates};
 use crate::fem::{Displacements, EndForces, MainSystem};
-use crate::model::structure::{Load, Plane};
+use crate::model::structure::{ElementLoad, Load, Plane};
 
 #[track_caller]
 fn near(found: f64, expected: f64) {
@@ -69,7 +69,10 @@ fn propped_cantilever() {
     model.support(a, "xyr");
     model.support(b, "y");
     let q = 3.0;
-    model.case(vec![Load::Line { element: bar, range: [0.0, 5.0], value: [[0.0, -q]; 2] }]);
+    model.case(vec![Load::Element {
+        element: bar,
+        load: ElementLoad::Line { range: [0.0, 5.0], value: [[0.0, -q]; 2] },
+    }]);
     let (system, u, lambda, factors) = main_answer(&model);
     let reactions = system.reactions(&model.0, &u, &lambda, &factors);
     near(reactions[0].force[1], 5.0 * q * 5.0 / 8.0);
@@ -104,7 +107,10 @@ fn gerber_beam() {
     let q = 4.0;
     model.case(
         [(first, 2.0), (second, 3.0)]
-            .map(|(element, length)| Load::Line { element, range: [0.0, length], value: [[0.0, -q]; 2] })
+            .map(|(element, length)| Load::Element {
+                element,
+                load: ElementLoad::Line { range: [0.0, length], value: [[0.0, -q]; 2] },
+            })
             .to_vec(),
     );
     let (system, u, lambda, factors) = main_answer(&model);

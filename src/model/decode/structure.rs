@@ -11,7 +11,7 @@ use super::words::{ID_RULE, did_you_mean, is_id, nearest, quoted};
 use super::{contacts, edges, elements, foundations, loads, rigid, superelement, supports};
 use crate::model::edge::{Edge, PlateSide};
 use crate::model::scenario::Places;
-use crate::model::structure::{Component, ElementKind, Node, Structure};
+use crate::model::structure::{Component, Node, Structure};
 use crate::model::superelement::Superelement;
 
 /// Cross-section of bars.
@@ -433,7 +433,7 @@ impl<'d> Builder<'d> {
             self.has_rotation[node] |= component == Component::R;
         }
         for element in &self.structure.elements {
-            if let ElementKind::Frame { .. } = element.kind {
+            if element.bends() {
                 for &node in &element.nodes {
                     self.has_rotation[node] = true;
                 }

@@ -8,7 +8,6 @@ use super::matrix_file;
 use super::matrix_market::{Entries, Size};
 use super::reader::{Cursor, Entry, Fields, Place};
 use super::structure::{Builder, add_nodes};
-use super::supports::COMPONENTS;
 use crate::model::structure::{Component, Load, LoadCase};
 use crate::model::superelement::Superelement;
 
@@ -69,7 +68,7 @@ fn dofs<'d>(builder: &Builder<'d>, at: Cursor<'d>) -> Option<Vec<(usize, Compone
             continue;
         };
         let words: Vec<Cursor<'d>> = words.collect();
-        let (Some(node), Some(component)) = (builder.node(words[0]), words[1].choice(&COMPONENTS)) else {
+        let (Some(node), Some(component)) = (builder.node(words[0]), words[1].choice(&Component::WORDS)) else {
             is_right = false;
             continue;
         };

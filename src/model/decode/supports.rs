@@ -36,15 +36,12 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     }
 }
 
-/// The words for displacement components.
-pub const COMPONENTS: [(&str, Component); 3] = [("x", Component::X), ("y", Component::Y), ("r", Component::R)];
-
 /// The components in `fixed`; a rotation must exist at every one of the nodes.
 fn components<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, nodes: &[usize], verb: &str) -> Option<Vec<Component>> {
     let mut components = Vec::new();
     let mut is_right = true;
     for entry in cursor.list()? {
-        let Some(component) = entry.choice(&COMPONENTS) else {
+        let Some(component) = entry.choice(&Component::WORDS) else {
             is_right = false;
             continue;
         };
@@ -172,7 +169,7 @@ fn settlement<'d>(fields: &Fields<'d>, components: Option<&[Component]>) -> Opti
     }
     let mut amounts = [0.0; 3];
     let mut is_right = true;
-    for (k, (entry, (word, component))) in entries.into_iter().zip(COMPONENTS).enumerate() {
+    for (k, (entry, (word, component))) in entries.into_iter().zip(Component::WORDS).enumerate() {
         match entry.number() {
             Some(amount) if amount != 0.0 && components.is_some_and(|held| !held.contains(&component)) => {
                 entry.problem(

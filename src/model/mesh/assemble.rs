@@ -4,8 +4,8 @@
 use std::collections::HashMap;
 
 use super::raw::{RawMembers, RawMesh};
-use super::shape::ShapeFault;
 use super::{Group, Members, Mesh, MeshElement, MeshProblem, Place};
+use crate::model::shape::ShapeFault;
 use crate::model::words::counted;
 
 /// Nodes count as in one plane if they are this near to it, relative to the size of the mesh: what Gmsh itself allows

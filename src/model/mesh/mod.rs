@@ -1,5 +1,5 @@
 //! Meshes that other programs wrote: files of Gmsh (`gmsh`) and of Abaqus and CalculiX (`abaqus`) → one [`Mesh`]
-//! whatever the format (`raw`), every number of it checked (`assemble`, `shape`). `chain` and `boundary` find edges in it,
+//! whatever the format (`raw`), every number of it checked (`assemble`). `chain` and `boundary` find edges in it,
 //! `overview` lists what there is.
 //!
 //! Nothing a file claims is trusted: counts only say when to stop.
@@ -12,7 +12,6 @@ mod file;
 mod gmsh;
 pub mod overview;
 mod raw;
-mod shape;
 mod source;
 #[cfg(test)]
 mod tests;
@@ -21,9 +20,8 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use shape::Shape;
-
 use super::problem::{Problem, Problems};
+pub use super::shape::Shape;
 
 /// What is wrong with a mesh, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]

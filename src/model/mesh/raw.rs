@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::shape::Shape;
 use super::{LineType, MeshNode, MeshProblem, Place};
+use crate::model::shape::Shape;
 
 /// Members of a group as the file names them.
 pub enum RawMembers {

@@ -142,13 +142,9 @@ fn texts_of_numbers<'v>(items: &'v Value, found: &mut Vec<&'v str>) {
 
 /// Whether a load is zero.
 fn is_nothing(load: &Load) -> bool {
-    let zero = |forces: &[f64]| forces.iter().all(|force| *force == 0.0);
     match load {
-        Load::Nodal { force, moment, .. } | Load::BarPoint { force, moment, .. } => zero(force) && *moment == 0.0,
-        Load::Line { value, .. } => zero(&value[0]) && zero(&value[1]),
-        Load::Body { value, .. } => zero(value),
         // Its number may be a parameter, and stands with its support.
         Load::Settlement { .. } => false,
-        Load::FreeStrain { strain, curvature, .. } => *strain == 0.0 && *curvature == 0.0,
+        Load::Nodal { .. } | Load::Element { .. } => load.is_nothing(),
     }
 }

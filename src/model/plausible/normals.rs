@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::Warning;
 use crate::model::scenario::Scenario;
-use crate::model::structure::{Load, Structure};
+use crate::model::structure::{ElementLoad, Load, Structure};
 
 /// Directions agree within 60°.
 const ALIKE: f64 = 0.5;
@@ -60,12 +60,16 @@ fn weight(structure: &Structure) -> Option<[f64; 2]> {
     let mut sums = [[0.0; 2]; 2];
     for load in structure.load_cases.iter().flat_map(|case| &case.loads) {
         let (kind, force) = match load {
-            Load::Body { value, .. } => (0, *value),
-            Load::Nodal { force, .. } | Load::BarPoint { force, .. } => (1, *force),
-            Load::Line { range, value, .. } => {
-                (1, [0, 1].map(|axis| 0.5 * (range[1] - range[0]) * (value[0][axis] + value[1][axis])))
-            }
-            Load::Settlement { .. } | Load::FreeStrain { .. } => continue,
+            Load::Nodal { force, .. } => (1, *force),
+            Load::Element { load, .. } => match load {
+                ElementLoad::Body(value) => (0, *value),
+                ElementLoad::Point { force, .. } => (1, *force),
+                ElementLoad::Line { range, value } => {
+                    (1, [0, 1].map(|axis| 0.5 * (range[1] - range[0]) * (value[0][axis] + value[1][axis])))
+                }
+                ElementLoad::FreeStrain { .. } => continue,
+            },
+            Load::Settlement { .. } => continue,
         };
         sums[kind] = [sums[kind][0] + force[0], sums[kind][1] + force[1]];
     }

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::units::Sizes;
 use super::{Warning, keys};
 use crate::model::scenario::Scenario;
-use crate::model::structure::{ElementKind, Load, Structure};
+use crate::model::structure::{ElementKind, ElementLoad, Load, Structure};
 
 /// Word in a material's name, Young's modulus in N/m², weight in N/m³: what such materials commonly have.
 const KNOWN: &[(&str, f64, f64)] = &[
@@ -102,7 +102,7 @@ pub fn weights(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<
     for case in &structure.load_cases {
         let factor = case.factor.value(&values).abs();
         for load in &case.loads {
-            if let Load::Body { element, value } = load {
+            if let Load::Element { element, load: ElementLoad::Body(value) } = load {
                 let of = &mut heaviest[structure.elements[*element].material];
                 *of = of.max(factor * value[0].hypot(value[1]));
             }

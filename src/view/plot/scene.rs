@@ -9,7 +9,7 @@ use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
-use crate::model::structure::{Bar, Element, ElementKind, Load, Structure};
+use crate::model::structure::{Bar, Element, ElementKind, ElementLoad, Load, Structure};
 use crate::view::number::{largest, short};
 
 /// By how much displacements are enlarged.
@@ -102,7 +102,7 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
     let in_plate = |index: usize| own.iter().any(|elements| elements.contains(&index));
     let mut faces = Vec::new();
     for (index, element) in structure.elements.iter().enumerate() {
-        if matches!(element.kind, ElementKind::Membrane { .. }) {
+        if element.shape().is_area() {
             faces.push(element.ring().map(at).collect());
         }
         match &element.kind {
@@ -237,10 +237,12 @@ pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow>
             let at = |element: usize| structure.elements.get(element).map(|element| element.nodes.clone());
             let (nodes, force) = match load {
                 Load::Nodal { node, force, .. } => (Some(vec![*node]), *force),
-                Load::Line { element, value: [a, b], .. } => (at(*element), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]),
-                Load::BarPoint { element, force, .. } => (at(*element), *force),
+                Load::Element { element, load: ElementLoad::Line { value: [a, b], .. } } => {
+                    (at(*element), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
+                }
+                Load::Element { element, load: ElementLoad::Point { force, .. } } => (at(*element), *force),
                 // They act everywhere, or along no direction.
-                Load::Body { .. } | Load::FreeStrain { .. } | Load::Settlement { .. } => continue,
+                Load::Element { .. } | Load::Settlement { .. } => continue,
             };
             let Some(nodes) = nodes else { continue };
             let place = *places.entry(nodes.clone()).or_insert_with(|| {

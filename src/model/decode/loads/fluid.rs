@@ -17,7 +17,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
     let structure = &builder.structure;
     let forces = edge.consistent_forces(&structure.nodes, Some(level), &|spot| {
         let pressure = weight * (level - spot.position[1]).max(0.0);
-        let thickness = structure.elements[spot.element].kind.area();
+        let thickness = structure.elements[spot.element].area();
         spot.outward.map(|n| -pressure * thickness * n)
     });
     Some(nodal(forces))

@@ -3,7 +3,7 @@
 use super::elements;
 use crate::model::decode::reader::Cursor;
 use crate::model::decode::structure::Builder;
-use crate::model::structure::Load;
+use crate::model::structure::{ElementLoad, Load};
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     let fields = cursor.fields(&["acceleration", "on"])?;
@@ -22,7 +22,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
     let structure = &builder.structure;
     let weights = elements.into_iter().filter_map(|element| {
         let density = structure.materials[structure.elements[element].material].density;
-        (density != 0.0).then(|| Load::Body { element, value: acceleration.map(|a| density * a) })
+        (density != 0.0).then(|| Load::Element { element, load: ElementLoad::Body(acceleration.map(|a| density * a)) })
     });
     Some(weights.collect())
 }

@@ -3,7 +3,7 @@
 use super::{bar, between, one_or_two_vectors};
 use crate::model::decode::reader::{Cursor, Fields};
 use crate::model::decode::structure::Builder;
-use crate::model::structure::Load;
+use crate::model::structure::{ElementLoad, Load};
 use crate::model::uses::Region;
 
 /// The axes in which `value` is given.
@@ -48,11 +48,11 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
         if ends[1] <= ends[0] {
             return None;
         }
-        Some(Load::Line {
-            element: stretch.element,
+        let load = ElementLoad::Line {
             range: ends.map(|s| s - stretch.from),
             value: ends.map(|s| axes.to_global(between(value, (s - a) / (b - a)), stretch.direction)),
-        })
+        };
+        Some(Load::Element { element: stretch.element, load })
     });
     Some(loads.collect())
 }

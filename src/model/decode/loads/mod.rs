@@ -14,7 +14,7 @@ use super::structure::{Builder, Settlement};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::edge::Edge;
 use crate::model::parameter::Number;
-use crate::model::structure::{ElementKind, Load, LoadCase};
+use crate::model::structure::{Element, Load, LoadCase};
 use crate::model::uses::Region;
 
 /// Reads one kind of load.
@@ -180,7 +180,7 @@ fn elements<'d>(builder: &Builder<'d>, on: Option<Cursor<'d>>) -> Option<Vec<usi
 fn named_elements<'d>(
     builder: &Builder<'d>,
     on: Cursor<'d>,
-    suits: impl Fn(Cursor<'d>, &ElementKind) -> bool,
+    suits: impl Fn(Cursor<'d>, &Element) -> bool,
 ) -> Option<Vec<usize>> {
     let names = on.list()?;
     if names.len() == 0 {
@@ -194,7 +194,7 @@ fn named_elements<'d>(
             is_right = false;
             continue;
         };
-        is_right &= found.iter().all(|&element| suits(at, &builder.structure.elements[element].kind));
+        is_right &= found.iter().all(|&element| suits(at, &builder.structure.elements[element]));
         elements.extend(found);
     }
     elements.sort_unstable();

@@ -3,7 +3,7 @@
 use super::{bar, nodal};
 use crate::model::decode::reader::{Cursor, Fields};
 use crate::model::decode::structure::{Builder, Spot};
-use crate::model::structure::{ElementKind, Load};
+use crate::model::structure::{ElementLoad, Load};
 use crate::model::uses::Region;
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
@@ -68,11 +68,11 @@ fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
     let (at, distance) = distance?;
     let (element, distance) = builder.place_on_bar(at, bar?, distance)?;
     if let Some((cursor, _)) = moment
-        && matches!(builder.structure.elements[element].kind, ElementKind::Truss { .. })
+        && !builder.structure.elements[element].bends()
     {
         cursor.problem("a truss bar carries no `moment`", "remove it, or make the bar a frame");
         return None;
     }
     let (force, moment) = (force.unwrap_or_default(), moment.map_or(0.0, |(_, moment)| moment));
-    Some(vec![Load::BarPoint { element, distance, force, moment }])
+    Some(vec![Load::Element { element, load: ElementLoad::Point { distance, force, moment } }])
 }

@@ -13,7 +13,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
     let structure = &builder.structure;
     let forces = edge.consistent_forces(&structure.nodes, None, &|spot| {
         let [pressure] = between(value, spot.along);
-        let thickness = structure.elements[spot.element].kind.area();
+        let thickness = structure.elements[spot.element].area();
         spot.outward.map(|n| -pressure * thickness * n)
     });
     Some(nodal(forces))

@@ -3,13 +3,13 @@
 use super::named_elements;
 use crate::model::decode::reader::Cursor;
 use crate::model::decode::structure::Builder;
-use crate::model::structure::{ElementKind, Load};
+use crate::model::structure::{ElementLoad, Load};
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     let fields = cursor.fields(&["on", "value"])?;
     let strain = fields.required("value").and_then(Cursor::number);
-    let elements = named_elements(builder, fields.required("on")?, |at, kind| {
-        let is_bar = !matches!(kind, ElementKind::Membrane { .. });
+    let elements = named_elements(builder, fields.required("on")?, |at, element| {
+        let is_bar = !element.shape().is_area();
         if !is_bar {
             at.problem(
                 format!("{} is no bar: `strain` is the lack of fit of bars", at.quoted()),
@@ -19,5 +19,6 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
         is_bar
     });
     let (elements, strain) = (elements?, strain?);
-    Some(elements.into_iter().map(|element| Load::FreeStrain { element, strain, curvature: 0.0 }).collect())
+    let load = ElementLoad::FreeStrain { strain, curvature: 0.0 };
+    Some(elements.into_iter().map(|element| Load::Element { element, load }).collect())
 }

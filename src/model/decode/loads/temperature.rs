@@ -3,7 +3,7 @@
 use super::elements;
 use crate::model::decode::reader::Cursor;
 use crate::model::decode::structure::Builder;
-use crate::model::structure::{ElementKind, Load};
+use crate::model::structure::{ElementLoad, Load};
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     let fields = cursor.fields(&["change", "on", "gradient"])?;
@@ -31,7 +31,8 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
             Some((at, gradient)) => -expansion * gradient / depth(builder, at, element)?,
             None => 0.0,
         };
-        loads.push(Load::FreeStrain { element, strain: expansion * change, curvature });
+        let load = ElementLoad::FreeStrain { strain: expansion * change, curvature };
+        loads.push(Load::Element { element, load });
     }
     Some(loads)
 }
@@ -39,8 +40,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
 /// Depth of the section of a frame bar, over which its temperature varies.
 fn depth<'d>(builder: &Builder<'d>, at: Cursor<'d>, element: usize) -> Option<f64> {
     let structure = &builder.structure;
-    let bar = structure.bars.iter().position(|bar| bar.elements.contains(&element));
-    let Some((bar, ElementKind::Frame { .. })) = bar.map(|bar| (bar, &structure.elements[element].kind)) else {
+    let Some(bar) = structure.bar_of(element).filter(|_| structure.elements[element].bends()) else {
         at.problem(
             "a `gradient` bends frame bars only, and `on` names something else",
             "give plates and truss bars a `temperature` load of their own with `change` alone",
