@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, dvector};
+use stickslip::contact::law::PairLaw;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
@@ -41,15 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         force_form: None,
         file: None,
     };
-    let numbers = ContactNumbers {
-        friction: vec![friction],
-        cohesion: vec![0.0],
-        gap: vec![0.0],
-        bound: vec![0.0],
-        load: load.vector,
-        load_terms: load.terms,
-        file_load: None,
-    };
+    let numbers = ContactNumbers::exactly(vec![PairLaw::rubbing(friction, 0.0, 0.0)], load.vector);
     let lcp = contact_lcp(&system, &numbers, Covering::Cohesive)?;
     let mut engine = SchemeEngine::new(Arc::clone(&lcp.lcp), lcp.tie_rule(TieBreak::Lexicographic));
     let run = run(&mut engine, 100, &mut |pivot| {

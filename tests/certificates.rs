@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::contact::given::orthonormal;
+use stickslip::contact::law::PairLaw;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::schemes::enumerate::enumerate;
 use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
@@ -14,40 +15,24 @@ use stickslip::explain::balance::is_balanced;
 use stickslip::explain::certificate::certify;
 use stickslip::explain::motions::FreeMotions;
 use stickslip::model::pair::Law;
-use stickslip::model::parameter::Number;
+use stickslip::model::parameter::{Number, ParameterValues};
 
 /// Pairs of all laws; a kernel of one to four motions in small whole numbers, so that pairs are often confined from both
 /// sides or at rest; loads in small whole numbers too, so that they are often exactly at a limit.
 fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> (ContactSystem, ContactNumbers) {
     let number = |value: f64| Number::Value(value);
     let (mut pairs, mut next) = (Vec::new(), m);
-    let mut numbers = ContactNumbers {
-        friction: vec![0.0; m],
-        cohesion: vec![0.0; m],
-        gap: vec![0.0; m],
-        bound: vec![0.0; m],
-        load: DVector::zeros(0),
-        load_terms: DVector::zeros(0),
-        file_load: None,
-    };
     for i in 0..m {
         let law = match rng.random_range(0..6) {
             0 => Law::Frictionless { gap: number(0.0) },
-            1 => {
-                numbers.bound[i] = f64::from(rng.random_range(0..=2));
-                Law::Bound { bound: number(numbers.bound[i]) }
-            }
-            kind => {
-                numbers.friction[i] = [0.0, 0.25, 0.5, 1.0][rng.random_range(0..4)];
-                numbers.cohesion[i] = if kind == 2 { 0.5 } else { 0.0 };
-                Law::Coulomb {
-                    friction: number(numbers.friction[i]),
-                    cohesion: number(numbers.cohesion[i]),
-                    gap: number(0.0),
-                }
-            }
+            1 => Law::Bound { bound: number(f64::from(rng.random_range(0..=2))) },
+            kind => Law::Coulomb {
+                friction: number([0.0, 0.25, 0.5, 1.0][rng.random_range(0..4)]),
+                cohesion: number(if kind == 2 { 0.5 } else { 0.0 }),
+                gap: number(0.0),
+            },
         };
-        let tangential = (!matches!(law, Law::Frictionless { .. })).then(|| {
+        let tangential = law.has_tangential_joint().then(|| {
             next += 1;
             next - 1
         });
@@ -67,7 +52,10 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> (ContactSystem, ContactNumber
     let keep = DMatrix::identity(k, k) - &kernel * kernel.transpose();
     let stiffness = &keep * (&a * a.transpose()) * &keep;
     let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
-    numbers.set_load(DVector::from_fn(k, |i, _| f64::from(rng.random_range(if i < m { -1..=3 } else { -2..=2 }))));
+    let values = ParameterValues::default();
+    let laws = pairs.iter().map(|pair| PairLaw::of(&pair.law, &|number| number.value(&values))).collect();
+    let load = DVector::from_fn(k, |i, _| f64::from(rng.random_range(if i < m { -1..=3 } else { -2..=2 })));
+    let numbers = ContactNumbers::exactly(laws, load);
     let loads = vec![JointLoad::exactly("load".into(), numbers.load.clone())];
     (
         ContactSystem { pairs, stiffness, loads, rounded: true, kernel, corrected: None, force_form: None, file: None },

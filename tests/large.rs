@@ -45,11 +45,11 @@ fn random_system(m: usize, f: f64, whole: bool, seed: u64) -> (ContactSystem, Co
 
 /// Worst violation of the laws, forces relative to the largest load, displacements to the largest of them.
 fn violation(numbers: &ContactNumbers, z: &DVector<f64>, force: &DVector<f64>) -> f64 {
-    let m = numbers.friction.len();
+    let m = numbers.laws.len();
     let (force, z) = (force / numbers.load.amax(), z / z.amax());
     let of_pair = |i: usize| {
         let (x_n, x_t, z_n, z_t) = (force[i], force[m + i], z[i], z[m + i]);
-        let bound = numbers.friction[i] * x_n;
+        let bound = numbers.laws[i].friction() * x_n;
         // Slip + goes with x_τ = −bound.
         [
             -x_n,

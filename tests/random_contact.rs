@@ -47,7 +47,7 @@ fn violation(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>)
     let mut worst = 0f64;
     for i in 0..m {
         let (x_n, x_t, z_n, z_t) = (force[i], force[m + i], z[i], z[m + i]);
-        let bound = numbers.friction[i] * x_n;
+        let bound = numbers.laws[i].friction() * x_n;
         worst = worst.max(-x_n / scale).max(-z_n).max((x_n * z_n).abs() / scale);
         worst = worst.max((x_t.abs() - bound) / scale);
         // slip + goes with x_τ = −bound
@@ -71,7 +71,7 @@ fn default_rules_always_answer_where_r_is_positive_definite() {
         assert!(
             matches!(run.outcome, Outcome::Trivial | Outcome::Normal { marginal: false }),
             "problem {k}: m = {m}, f = {}: {:?}",
-            numbers.friction[0],
+            numbers.laws[0].friction(),
             run.outcome
         );
         pivots += run.pivots.count();

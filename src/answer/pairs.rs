@@ -4,14 +4,12 @@ use nalgebra::DVector;
 
 use super::record::{PairState, State};
 use crate::contact::force_form::unknowns;
-use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::contact::lcp::ContactLcp;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::self_stress::least_norm;
 use crate::contact::sums::{StateForces, Sum, is_still, state_forces};
 use crate::contact::system::ContactSystem;
 use crate::lcp::outcome::Point;
-use crate::model::pair::Law;
 
 /// A vertex over the joints, in the user's units, rounding noise removed.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,11 +69,8 @@ impl JointState {
     /// With what the compliance of a file leaves over, where joints are in force form.
     fn against_file(mut self, system: &ContactSystem, numbers: &ContactNumbers) -> JointState {
         if let (Some(_), Some(file), Some(load)) = (&system.force_form, &system.file, &numbers.file_load) {
-            let (mut moved, mut sizes) = (self.z.clone(), self.z.abs() + &self.z_terms);
-            for (i, gap) in numbers.gap.iter().enumerate() {
-                moved[i] -= gap;
-                sizes[i] += gap.abs();
-            }
+            let moved = numbers.dislocation(&self.z);
+            let sizes = numbers.dislocation_sizes(self.z.abs() + &self.z_terms);
             let forces: Vec<Sum> = (0..self.z.len()).map(|joint| self.sum(joint)).collect();
             self.left = file.left_by(&forces, &moved, &sizes, load);
         }
@@ -165,9 +160,9 @@ fn pair_state(
 ) -> PairState {
     let (i, tangential) = joints;
     let pair = &system.pairs[i];
-    let (is_bound, is_frictionless) =
-        (matches!(pair.law, Law::Bound { .. }), matches!(pair.law, Law::Frictionless { .. }));
-    let z_n = if is_bound { 0.0 } else { Sum::exactly(state.z[i]).plus(1.0, Sum::exactly(distance)).cleaned() };
+    let law = &numbers.laws[i];
+    let z_n =
+        if law.is_bilateral() { 0.0 } else { Sum::exactly(state.z[i]).plus(1.0, Sum::exactly(distance)).cleaned() };
     let z_t = tangential.map_or(0.0, |joint| state.z[joint]);
     let open = z_n > 0.0;
     // A released joint carries exactly nothing; what is left of λ there is rounding.
@@ -175,8 +170,8 @@ fn pair_state(
     let (bound, x_t) = match tangential {
         None => (0.0, 0.0),
         Some(joint) => {
-            let f = friction(system, numbers, i);
-            let fixed = Sum::exactly(fixed_bound(system, numbers, i));
+            let f = law.friction();
+            let fixed = Sum::exactly(law.fixed_bound());
             let cover = Sum { value: d_t - f * d_n, magnitude: d_t.max(f * d_n) }.cleaned();
             let (raw, constant) = (state.sum(joint), fixed.value + cover * state.p);
             let sum = fixed.plus(f, x_n).plus(cover, Sum::exactly(state.p));
@@ -208,10 +203,10 @@ fn pair_state(
     } else {
         State::Stick
     };
-    let (word, held) = match pair.law {
+    let (word, held) = match tangential {
         _ if open => (State::Open, (bound > 0.0).then_some(slip)),
-        Law::Frictionless { .. } => (State::Closed, None),
-        _ => (slip, None),
+        None => (State::Closed, None),
+        Some(_) => (slip, None),
     };
     PairState {
         id: pair.id.clone(),
@@ -223,8 +218,8 @@ fn pair_state(
         z_n,
         z_t,
         bound,
-        reserve_plus: if is_frictionless { 0.0 } else { bound + x_t },
-        reserve_minus: if is_frictionless { 0.0 } else { bound - x_t },
+        reserve_plus: bound + x_t,
+        reserve_minus: bound - x_t,
         position: pair.position,
     }
 }

@@ -25,10 +25,11 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::given::orthonormal;
+use super::law::PairLaw;
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces};
 use super::system::{ContactSystem, JointLoad};
-use crate::contact::full_lcp::{fixed_bound, friction, rows};
+use crate::contact::full_lcp::rows;
 use crate::contact::lcp::{ContactLcp, CoveringError, RowId, RowKind, load_with_gaps, power_of_two};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::{Lcp, Scale};
@@ -156,7 +157,7 @@ pub fn unknowns(
         } else {
             response[pair]
         };
-        let fixed = numbers.map_or(0.0, |numbers| fixed_bound(system, numbers, pair));
+        let fixed = numbers.map_or(0.0, |numbers| numbers.laws[pair].fixed_bound());
         let force = Sum::exactly(plus).plus(-f, Sum::exactly(pressed)).plus(-1.0, Sum::exactly(fixed));
         // What x⁺ and the bound leave of each other by rounding would come out as a displacement with no larger terms.
         unknowns[joint] = force.cleaned();
@@ -355,10 +356,6 @@ fn dimensionless(system: &ContactSystem, joints: &DVector<f64>, force_unit: f64,
     DVector::from_fn(joints.len(), |joint, _| joints[joint] / unit(joint))
 }
 
-fn fixed_bounds(system: &ContactSystem, numbers: &ContactNumbers, unit: f64) -> Vec<f64> {
-    (0..system.pairs.len()).map(|pair| fixed_bound(system, numbers, pair) / unit).collect()
-}
-
 /// Writes the LCP of a system with joints in force form: all rows written out, none mirrored.
 ///
 /// # Errors
@@ -382,7 +379,7 @@ pub fn contact_lcp(
 /// The same whatever the covering covers.
 pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: Covering) -> ContactLcp {
     let rows = rows(system);
-    let frictions: Vec<f64> = (0..system.pairs.len()).map(|pair| friction(system, numbers, pair)).collect();
+    let frictions = numbers.frictions();
     let stiffness_unit = stiffness_unit(system);
     let writer = Writer { system, rows: &rows, friction: &frictions, stiffness_unit };
     let load = joint_forces(system, numbers, &DVector::zeros(system.joint_count()));
@@ -390,7 +387,7 @@ pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: C
     let load = DVector::from_iterator(load.len(), load.iter().map(|sum| sum.cleaned()));
     // Forces as they are, displacements as the forces that a stiffness of one unit makes of them.
     let unscaled = dimensionless(system, &load, 1.0, 1.0 / stiffness_unit);
-    let fixed = fixed_bounds(system, numbers, 1.0);
+    let fixed: Vec<f64> = numbers.laws.iter().map(PairLaw::fixed_bound).collect();
     let constants = Constants { joints: &unscaled, fixed: &fixed };
     let written = writer.written(&writer.forms(&constants, true), &constants);
     let n = rows.len();
@@ -400,16 +397,17 @@ pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: C
     let swapped: Vec<bool> = rows.iter().map(|row| is_swapped(system, *row)).collect();
     let q: Vec<f64> = (0..n).map(|i| written[(i, n)] / force_unit).collect();
     let cover: Vec<f64> =
-        rows.iter().zip(&swapped).map(|(row, swapped)| cover(system, &frictions, *row, *swapped, covering)).collect();
+        rows.iter().zip(&swapped).map(|(row, swapped)| cover(system, numbers, *row, *swapped, covering)).collect();
     let of = |couple: RowKind| (0..system.pairs.len()).map(|pair| writer.row_of(pair, couple)).collect::<Vec<_>>();
     let scale = Scale::plain(&matrix);
     let lcp = MirroredLcp::plain(&Lcp { matrix, q, covering: cover, scale });
+    let [normal_row, plus_row, minus_row] = [RowKind::Normal, RowKind::Plus, RowKind::Minus].map(of);
     ContactLcp {
         lcp: Arc::new(lcp),
-        friction: numbers.friction.clone(),
-        normal_row: of(RowKind::Normal),
-        plus_row: of(RowKind::Plus),
-        minus_row: of(RowKind::Minus),
+        friction: frictions,
+        normal_row,
+        plus_row,
+        minus_row,
         force_unit,
         length_unit: force_unit / stiffness_unit,
         swapped,
@@ -419,18 +417,12 @@ pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: C
 
 /// Entry of the covering vector: as everywhere for forces and reserves; 1 for displacements; and for the second reserve of
 /// a couple in force form what both have together.
-fn cover(system: &ContactSystem, friction: &[f64], row: RowId, swapped: bool, covering: Covering) -> f64 {
-    let pair = &system.pairs[row.pair];
+fn cover(system: &ContactSystem, numbers: &ContactNumbers, row: RowId, swapped: bool, covering: Covering) -> f64 {
     if row.couple == RowKind::Normal || swapped {
         return 1.0;
     }
-    let f = friction[row.pair];
-    let own = match (&pair.law, covering) {
-        (crate::model::pair::Law::Bound { .. }, _) | (_, Covering::Ones) => 1.0,
-        (_, Covering::Cohesive) => 1.0 + f,
-        (_, Covering::Weight) => f,
-    };
-    let forced = pair.tangential.is_some_and(|joint| system.is_forced(joint));
+    let own = numbers.laws[row.pair].covering(covering);
+    let forced = system.pairs[row.pair].tangential.is_some_and(|joint| system.is_forced(joint));
     if forced { 2.0 * own } else { own }
 }
 
@@ -438,11 +430,8 @@ fn cover(system: &ContactSystem, friction: &[f64], row: RowId, swapped: bool, co
 pub fn constants(system: &ContactSystem, contact: &ContactLcp, joints: &DVector<f64>, fixed: &[f64]) -> DVector<f64> {
     let joints = dimensionless(system, joints, contact.force_unit, contact.length_unit);
     let fixed: Vec<f64> = fixed.iter().map(|fixed| fixed / contact.force_unit).collect();
-    let frictions: Vec<f64> = (0..system.pairs.len())
-        .map(|pair| if contact.normal_row[pair].is_some() { contact.friction[pair] } else { 0.0 })
-        .collect();
     let stiffness_unit = contact.force_unit / contact.length_unit;
-    let writer = Writer { system, rows: &contact.rows, friction: &frictions, stiffness_unit };
+    let writer = Writer { system, rows: &contact.rows, friction: &contact.friction, stiffness_unit };
     let constants = Constants { joints: &joints, fixed: &fixed };
     writer.written(&writer.forms(&constants, false), &constants).column(0).into_owned()
 }

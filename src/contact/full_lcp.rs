@@ -8,18 +8,17 @@
 //! [x⁻ ]   [−RTn + f·Rnn  −RTT + f·RnT    RTT − f·RnT ] [z⁻ ]   [−RFτ + f·RFn + c   ]
 //! ```
 //!
-//! with RF − R·(g, 0) in the place of RF. Rows: x_n of all pairs but the bound ones, then x⁺ of all Coulomb and
-//! bound pairs, then their x⁻. A frictionless pair has only x_n; a bound pair only x^± = r_f ± x_τ.
+//! with RF − R·(g, 0) in the place of RF. Rows: x_n of all pairs that open, then x⁺ of all that have a tangential
+//! joint, then their x⁻. A pair without a tangential joint has only x_n, a bilateral one only x^±.
 //! The sums are formed in the number type asked for: exact from the f64 data in rationals.
 
 use crate::lcp::exact::scalar::Scalar;
 use crate::lcp::problem::{Lcp, Scale};
-use crate::model::pair::Law;
 use crate::model::rules::Covering;
 
 use crate::contact::lcp::{RowId, RowKind};
 use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::system::{ContactPair, ContactSystem};
 
 /// What [`full_lcp`] needs.
 #[derive(Clone, Copy, Debug)]
@@ -34,42 +33,21 @@ pub struct WholeInput<'a> {
 
 /// The rows of the LCP in order.
 pub fn rows(system: &ContactSystem) -> Vec<RowId> {
-    let of = |couple: RowKind, has: fn(&Law) -> bool| {
-        system
-            .pairs
-            .iter()
-            .enumerate()
-            .filter(move |(_, pair)| has(&pair.law))
-            .map(move |(pair, _)| RowId { pair, couple })
+    let of = |couple: RowKind, has: fn(&ContactPair) -> bool| {
+        let pairs = system.pairs.iter().enumerate().filter(move |(_, pair)| has(pair));
+        pairs.map(move |(pair, _)| RowId { pair, couple })
     };
-    let normal: fn(&Law) -> bool = |law| !matches!(law, Law::Bound { .. });
-    let tangential: fn(&Law) -> bool = |law| !matches!(law, Law::Frictionless { .. });
-    of(RowKind::Normal, normal).chain(of(RowKind::Plus, tangential)).chain(of(RowKind::Minus, tangential)).collect()
+    let opens: fn(&ContactPair) -> bool = |pair| !pair.law.is_bilateral();
+    let slips: fn(&ContactPair) -> bool = |pair| pair.tangential.is_some();
+    of(RowKind::Normal, opens).chain(of(RowKind::Plus, slips)).chain(of(RowKind::Minus, slips)).collect()
 }
 
-/// Row of R of the tangential joint of a pair that has one by its law.
+/// Row of R of the tangential joint of a pair that has one.
 ///
 /// # Panics
-/// If a Coulomb or bound pair has no tangential joint: a [`ContactSystem`] is never built so.
+/// If the pair has none: only pairs with a bound have rows of reserves.
 pub(crate) fn tangential_joint(system: &ContactSystem, pair: usize) -> usize {
-    system.pairs[pair].tangential.expect("a coulomb or bound pair has a tangential joint")
-}
-
-/// f of a pair as its law uses it: 0 for frictionless and bound pairs.
-pub(crate) fn friction(system: &ContactSystem, numbers: &ContactNumbers, pair: usize) -> f64 {
-    match system.pairs[pair].law {
-        Law::Coulomb { .. } => numbers.friction[pair],
-        Law::Frictionless { .. } | Law::Bound { .. } => 0.0,
-    }
-}
-
-/// The part of the friction bound that does not depend on x_n: c, or r_f of a bound pair.
-pub(crate) fn fixed_bound(system: &ContactSystem, numbers: &ContactNumbers, pair: usize) -> f64 {
-    match system.pairs[pair].law {
-        Law::Coulomb { .. } => numbers.cohesion[pair],
-        Law::Bound { .. } => numbers.bound[pair],
-        Law::Frictionless { .. } => 0.0,
-    }
+    system.pairs[pair].tangential.expect("a pair with a friction bound has a tangential joint")
 }
 
 /// The quantities of a row as a combination of joints: Σ factor·λ_joint + fixed.
@@ -82,11 +60,11 @@ fn combination<T: Scalar>(input: &WholeInput, row: RowId) -> (Vec<(usize, T)>, T
         RowKind::Minus => T::one().neg(),
     };
     let mut terms = vec![(tangential_joint(system, pair), side)];
-    let f = T::from_f64(friction(system, numbers, pair));
+    let f = T::from_f64(numbers.laws[pair].friction());
     if !f.is_zero() {
         terms.push((pair, f));
     }
-    (terms, T::from_f64(fixed_bound(system, numbers, pair)))
+    (terms, T::from_f64(numbers.laws[pair].fixed_bound()))
 }
 
 /// R in another number type, exactly where that type can.
@@ -107,14 +85,8 @@ fn constants_with<T: Scalar>(
     numbers: &ContactNumbers,
     stiffness: &dyn Fn(usize, usize) -> T,
 ) -> Vec<T> {
-    let gaps: Vec<(usize, T)> = system
-        .pairs
-        .iter()
-        .zip(&numbers.gap)
-        .enumerate()
-        .filter(|(_, (pair, gap))| **gap != 0.0 && !matches!(pair.law, Law::Bound { .. }))
-        .map(|(k, (_, gap))| (k, T::from_f64(*gap)))
-        .collect();
+    let gaps: Vec<(usize, T)> =
+        numbers.gaps().enumerate().filter(|(_, gap)| *gap != 0.0).map(|(k, gap)| (k, T::from_f64(gap))).collect();
     (0..system.joint_count())
         .map(|i| {
             let load = T::from_f64(numbers.load[i]);
@@ -134,7 +106,7 @@ pub fn full_lcp<T: Scalar>(input: &WholeInput) -> Lcp<T> {
 
 /// Forms the LCP with an R of its own, one row per joint, in place of that of the system.
 pub fn full_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T> {
-    let WholeInput { system, numbers, covering } = *input;
+    let WholeInput { system, numbers, .. } = *input;
     let rows = rows(system);
     let combinations: Vec<(Vec<(usize, T)>, T)> = rows.iter().map(|row| combination(input, *row)).collect();
     let joint = |row: &RowId| match row.couple {
@@ -161,7 +133,7 @@ pub fn full_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T
         .iter()
         .map(|(terms, fixed)| terms.iter().fold(fixed.clone(), |sum, (i, factor)| sum.add(&factor.mul(&constants[*i]))))
         .collect();
-    let cover = rows.iter().map(|row| covering_entry::<T>(input, *row, covering)).collect();
+    let cover = rows.iter().map(|row| covering_entry::<T>(input, *row)).collect();
     let root = |i: usize| system.stiffness[(i, i)].max(0.0).sqrt();
     let load = combinations.iter().flat_map(|(terms, _)| terms);
     let load = load.map(|(i, factor)| (factor.to_f64() * constants[*i].to_f64()).abs()).fold(0.0, f64::max);
@@ -171,9 +143,7 @@ pub fn full_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T
             .iter()
             .map(|row| match row.couple {
                 RowKind::Normal => root(row.pair),
-                RowKind::Plus | RowKind::Minus => {
-                    friction(system, numbers, row.pair) * root(row.pair) + root(joint(row))
-                }
+                RowKind::Plus | RowKind::Minus => numbers.laws[row.pair].friction() * root(row.pair) + root(joint(row)),
             })
             .collect(),
         column: rows
@@ -188,16 +158,13 @@ pub fn full_lcp_of<T: Scalar>(input: &WholeInput, stiffness: &[Vec<T>]) -> Lcp<T
 }
 
 /// d_n or d_τ of a row (method §4).
-fn covering_entry<T: Scalar>(input: &WholeInput, row: RowId, covering: Covering) -> T {
-    let law = &input.system.pairs[row.pair].law;
-    if row.couple == RowKind::Normal || !matches!(law, Law::Coulomb { .. }) {
-        return T::one();
-    }
-    let f = T::from_f64(input.numbers.friction[row.pair]);
-    match covering {
-        Covering::Cohesive => T::one().add(&f),
+fn covering_entry<T: Scalar>(input: &WholeInput, row: RowId) -> T {
+    let law = &input.numbers.laws[row.pair];
+    match input.covering {
+        _ if row.couple == RowKind::Normal || law.is_bilateral() => T::one(),
+        Covering::Cohesive => T::one().add(&T::from_f64(law.friction())),
         Covering::Ones => T::one(),
-        Covering::Weight => f,
+        Covering::Weight => T::from_f64(law.friction()),
     }
 }
 

@@ -6,12 +6,13 @@ use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 
 use super::*;
-use crate::contact::system::ContactPair;
+use crate::contact::law::PairLaw;
 use crate::lcp::driver::run;
 use crate::lcp::exact::lemke::Exact;
 use crate::lcp::exact::tableau::Tableau;
 use crate::lcp::outcome::Outcome;
 use crate::lcp::ratio_test::TieRule;
+use crate::model::pair::Law;
 use crate::model::parameter::Number;
 use crate::watch::Quiet;
 
@@ -41,15 +42,7 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
 /// The same f everywhere, no cohesion, no gap.
 pub(crate) fn plain(f: f64, load: &[f64]) -> ContactNumbers {
     let m = load.len() / 2;
-    ContactNumbers {
-        friction: vec![f; m],
-        cohesion: vec![0.0; m],
-        gap: vec![0.0; m],
-        bound: vec![0.0; m],
-        load: DVector::from_row_slice(load),
-        load_terms: DVector::from_row_slice(load).abs(),
-        file_load: None,
-    }
+    ContactNumbers::exactly(vec![PairLaw::rubbing(f, 0.0, 0.0); m], DVector::from_row_slice(load))
 }
 
 /// Normals last: the default rule.
@@ -135,15 +128,8 @@ fn laws_mix() {
         pair("b", Law::Bound { bound: zero.clone() }, Some(3)),
         pair("c", Law::Coulomb { friction: zero.clone(), cohesion: zero.clone(), gap: zero }, Some(4)),
     ];
-    let numbers = ContactNumbers {
-        friction: vec![0.0, 0.0, 0.5],
-        cohesion: vec![0.0, 0.0, 0.25],
-        gap: vec![1.0, 0.0, 0.0],
-        bound: vec![0.0, 3.0, 0.0],
-        load: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
-        load_terms: DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]),
-        file_load: None,
-    };
+    let laws = vec![PairLaw::smooth(1.0), PairLaw::bilateral(3.0), PairLaw::rubbing(0.5, 0.25, 0.0)];
+    let numbers = ContactNumbers::exactly(laws, DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]));
     let lcp = full_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
     let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();
     use RowKind::*;
@@ -273,9 +259,9 @@ fn engines_agree(problems: usize, most_pairs: usize) {
         let system = coulomb(&a * a.transpose() + DMatrix::identity(k, k));
         let load: Vec<f64> = (0..k).map(|_| number(4)).collect();
         let mut numbers = plain([0.25, 0.5, 1.0, 2.0, 5.0][random.random_range(0..5)], &load);
-        for i in 0..m {
-            numbers.cohesion[i] = f64::from(random.random_range(0..2));
-            numbers.gap[i] = 0.25 * f64::from(random.random_range(0..2));
+        for law in &mut numbers.laws {
+            *law = law.with_fixed_bound(f64::from(random.random_range(0..2)));
+            *law = law.with_gap(0.25 * f64::from(random.random_range(0..2)));
         }
         for covering in Covering::ALL {
             let input = WholeInput { system: &system, numbers: &numbers, covering };

@@ -9,7 +9,6 @@ use super::force_form::ForceForm;
 use super::pivoted::{NullSpace, PivotedCholesky, is_null};
 use super::system::{ContactPair, ContactSystem, JointLoad};
 use crate::lcp::problem::NOISE;
-use crate::model::pair::Law;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
 
 /// An eigenvalue below −this makes a matrix unusable, after scaling to unit diagonal.
@@ -85,7 +84,7 @@ struct Rows {
 impl Rows {
     fn of(given: &GivenContactSystem) -> Rows {
         let m = given.pairs.len();
-        let pairs: Vec<usize> = (0..m).filter(|&i| matches!(given.laws[i], Law::Frictionless { .. })).collect();
+        let pairs: Vec<usize> = (0..m).filter(|&i| !given.laws[i].has_tangential_joint()).collect();
         Rows {
             kept: (0..m).chain((0..m).filter(|i| !pairs.contains(i)).map(|i| m + i)).collect(),
             released: pairs.iter().map(|i| m + i).collect(),
@@ -286,7 +285,7 @@ fn singular_compliance(
     let of_load = |load: &GivenLoad| DVector::from_iterator(k, rows.kept.iter().map(|&row| load.vector[row]));
     let mut mixed = Mixed { matrix: own.clone(), loads: given.loads.iter().map(of_load).collect() };
     let mut forced = vec![true; k];
-    for (pair, _) in given.laws.iter().enumerate().filter(|(_, law)| matches!(law, Law::Bound { .. })) {
+    for (pair, _) in given.laws.iter().enumerate().filter(|(_, law)| law.is_bilateral()) {
         if mixed.matrix[(pair, pair)] <= NOISE * own[(pair, pair)].abs() {
             return Err(GivenError::Held { pair: given.pairs[pair].clone() });
         }
@@ -349,7 +348,7 @@ fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
     let mut next = given.pairs.len();
     (given.pairs.iter().enumerate())
         .map(|(i, id)| {
-            let tangential = (!matches!(given.laws[i], Law::Frictionless { .. })).then(|| {
+            let tangential = given.laws[i].has_tangential_joint().then(|| {
                 next += 1;
                 next - 1
             });

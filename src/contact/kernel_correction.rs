@@ -28,8 +28,7 @@ fn balanced_rows(system: &ContactSystem, numbers: &ContactNumbers, contact: &Con
             let i = row.pair;
             let (d_n, d_t) = contact.covering_of(i);
             let tangential = system.pairs[i].tangential.map_or(0.0, |joint| force[joint]);
-            let extra = contact.normal_row[i].map_or(numbers.bound[i], |_| numbers.cohesion[i]);
-            let bound = numbers.friction[i] * force[i] + extra;
+            let bound = numbers.laws[i].friction() * force[i] + numbers.laws[i].fixed_bound();
             match row.couple {
                 RowKind::Normal => force[i] / contact.force_unit + d_n * point.p,
                 RowKind::Plus => (bound + tangential) / contact.force_unit + d_t * point.p,

@@ -1,7 +1,6 @@
 //! Contact system + numbers → LCP, eqs. (1), (2), (8) of method §3, laws mixed, dimensionless inside.
 //!
-//! Rows of the whole LCP: all x_n (coulomb, frictionless), then all x⁺, then all x⁻ (coulomb, bound), each in the
-//! order of the pairs. Only x_n and x⁺ are stored; x⁻ is the mirror of x⁺ (see `lcp::mirrored`), so the 3m rows of M
+//! Rows of the whole LCP: all x_n, then all x⁺, then all x⁻, each in the order of the pairs. Only x_n and x⁺ are stored; x⁻ is the mirror of x⁺ (see `lcp::mirrored`), so the 3m rows of M
 //! are never formed.
 //!
 //! Forces are divided by `force_unit`, displacements by `length_unit`, both exact powers of two (up to the ratio
@@ -21,7 +20,6 @@ use crate::lcp::outcome::Point;
 use crate::lcp::problem::{NOISE, Scale};
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::variable::Variable;
-use crate::model::pair::Law;
 use crate::model::rules::{Covering, TieBreak};
 
 /// What a row of the whole LCP stands for.
@@ -150,7 +148,7 @@ pub fn contact_lcp_like(
     // What cancels to rounding is no load.
     let load: Vec<f64> = constants.iter().map(|sum| sum.cleaned()).collect();
     let pairs = &system.pairs;
-    let normals: Vec<usize> = (0..pairs.len()).filter(|&i| !matches!(pairs[i].law, Law::Bound { .. })).collect();
+    let normals: Vec<usize> = (0..pairs.len()).filter(|&i| !pairs[i].law.is_bilateral()).collect();
     let tangentials: Vec<(usize, usize)> =
         pairs.iter().enumerate().filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint))).collect();
 
@@ -158,11 +156,7 @@ pub fn contact_lcp_like(
         || power_of_two(system.stiffness.diagonal().amax()),
         |earlier| earlier.force_unit / earlier.length_unit,
     );
-    let friction_of = |pair: usize| numbers.friction[pair];
-    let extra = |pair: usize| match pairs[pair].law {
-        Law::Bound { .. } => numbers.bound[pair],
-        _ => numbers.cohesion[pair],
-    };
+    let laws = &numbers.laws;
     // Largest |q| of all rows, and of their loads alone.
     let mut largest = 0f64;
     let mut largest_load = 0f64;
@@ -171,9 +165,9 @@ pub fn contact_lcp_like(
         largest_load = largest_load.max(load[i].abs());
     }
     for &(i, joint) in &tangentials {
-        let bound = friction_of(i) * load[i] + extra(i);
+        let bound = laws[i].friction() * load[i] + laws[i].fixed_bound();
         largest = largest.max((bound + load[joint]).abs()).max((bound - load[joint]).abs());
-        largest_load = largest_load.max((friction_of(i) * load[i]).abs()).max(load[joint].abs());
+        largest_load = largest_load.max((laws[i].friction() * load[i]).abs()).max(load[joint].abs());
     }
     let force_unit = power_of_two(largest);
     let length_unit = force_unit / stiffness_unit;
@@ -220,35 +214,25 @@ pub fn contact_lcp_like(
     }
     for (k, &(i, joint)) in tangentials.iter().enumerate() {
         let row = normals.len() + k;
-        let f = friction_of(i);
-        let bound_law = matches!(pairs[i].law, Law::Bound { .. });
-        let constant = extra(i) / force_unit;
+        let law = &laws[i];
+        let f = law.friction();
+        let constant = law.fixed_bound() / force_unit;
         let terms = [load[joint] / force_unit, f * (load[i] / force_unit), constant];
         let sum: f64 = terms.iter().sum();
         let noise = NOISE * terms.iter().map(|term| term.abs()).sum::<f64>();
         q[row] = if sum.abs() <= noise { 0.0 } else { sum };
-        d[row] = match (bound_law, covering) {
-            (true, _) | (_, Covering::Ones) => 1.0,
-            (_, Covering::Cohesive) => 1.0 + f,
-            (_, Covering::Weight) => f,
-        };
-        let minus = f * load[i] + extra(i) - load[joint].abs();
+        d[row] = law.covering(covering);
+        let minus = f * load[i] + law.fixed_bound() - load[joint].abs();
         if d[row] == 0.0 && minus < 0.0 {
             return Err(CoveringError::WeightWithoutFriction { pair: pairs[i].id.clone() });
         }
-        // 2(d_τ − f d_n) of each covering, without the rounding of the difference.
-        let mirror_covering = match (bound_law, covering) {
-            (true, _) | (_, Covering::Cohesive) => 2.0,
-            (_, Covering::Ones) => 2.0 * (1.0 - f),
-            (_, Covering::Weight) => 0.0,
-        };
         row_scale[row] = column_scale[joint] + f * column_scale[i];
         mirrors[row] = Some(Mirror {
             whole: count + k,
-            normal: if bound_law { None } else { normal_row[i] },
+            normal: normal_row[i],
             friction: f,
             constant: 2.0 * constant,
-            covering: mirror_covering,
+            covering: law.covering_of_both(covering),
         });
         plus_row[i] = Some(row);
         minus_row[i] = Some(count + k);
@@ -268,7 +252,7 @@ pub fn contact_lcp_like(
     };
     Ok(ContactLcp {
         lcp: Arc::new(lcp),
-        friction: numbers.friction.clone(),
+        friction: numbers.frictions(),
         swapped: vec![false; rows.len()],
         rows,
         force_unit,

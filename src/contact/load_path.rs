@@ -5,14 +5,13 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::force_form::constants;
+use super::law::PairLaw;
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
-use crate::contact::full_lcp::fixed_bound;
 use crate::contact::lcp::{ContactLcp, contact_lcp, load_with_gaps};
 use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::ratio_test::TieRule;
-use crate::model::pair::Law;
 use crate::model::rules::{Covering, TieBreak};
 
 /// Whether all variables of `basis` are ≥ 0 (up to rounding) in this LCP.
@@ -38,7 +37,7 @@ pub fn path_lcp(system: &ContactSystem, numbers: &ContactNumbers, increment: &DV
         Err(_) => unreachable!("covering ones fits all numbers"),
     };
     if system.force_form.is_some() {
-        let fixed: Vec<f64> = (0..system.pairs.len()).map(|pair| fixed_bound(system, numbers, pair)).collect();
+        let fixed: Vec<f64> = numbers.laws.iter().map(PairLaw::fixed_bound).collect();
         let mut lcp = MirroredLcp::clone(&contact.lcp);
         lcp.q = constants(system, &contact, &load_with_gaps(system, numbers), &fixed);
         lcp.covering = constants(system, &contact, increment, &vec![0.0; fixed.len()]);
@@ -54,12 +53,8 @@ pub fn path_lcp(system: &ContactSystem, numbers: &ContactNumbers, increment: &DV
             lcp.covering[row] = increment[i] / unit;
         }
         if let (Some(row), Some(joint)) = (contact.plus_row[i], pair.tangential) {
-            let f = numbers.friction[i];
-            let extra = match pair.law {
-                Law::Bound { .. } => numbers.bound[i],
-                _ => numbers.cohesion[i],
-            };
-            lcp.q[row] = load[joint] / unit + f * (load[i] / unit) + extra / unit;
+            let f = numbers.laws[i].friction();
+            lcp.q[row] = load[joint] / unit + f * (load[i] / unit) + numbers.laws[i].fixed_bound() / unit;
             lcp.covering[row] = increment[joint] / unit + f * (increment[i] / unit);
             if let Some(mirror) = &mut lcp.mirrors[row] {
                 mirror.covering = 0.0;

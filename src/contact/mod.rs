@@ -21,6 +21,7 @@ pub mod force_form;
 pub mod full_lcp;
 pub mod given;
 pub mod kernel_correction;
+pub mod law;
 pub mod lcp;
 pub mod load_path;
 pub mod numbers;

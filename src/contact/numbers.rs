@@ -1,20 +1,15 @@
-//! The numbers of the contact laws and the load under one set of parameter values.
+//! The laws of contact and the load under one set of parameter values.
 
 use nalgebra::DVector;
 
 use super::file_data::FileLoad;
+use super::law::PairLaw;
 
 /// What changes when a parameter moves; R does not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactNumbers {
-    /// f per pair; 0 where the law has none.
-    pub friction: Vec<f64>,
-    /// c per pair; 0 where the law has none.
-    pub cohesion: Vec<f64>,
-    /// Initial gap g per pair; 0 where the law has none.
-    pub gap: Vec<f64>,
-    /// Friction bound r_f per pair; 0 where the law has none.
-    pub bound: Vec<f64>,
+    /// The law of every pair.
+    pub laws: Vec<PairLaw>,
     /// Σ factor·RF over the joints.
     pub load: DVector<f64>,
     /// Σ |factor|·magnitude of RF: what `load` was summed from, the measure of its rounding.
@@ -24,6 +19,11 @@ pub struct ContactNumbers {
 }
 
 impl ContactNumbers {
+    /// Laws under a load whose entries are exact.
+    pub fn exactly(laws: Vec<PairLaw>, load: DVector<f64>) -> ContactNumbers {
+        ContactNumbers { laws, load_terms: load.abs(), load, file_load: None }
+    }
+
     /// Adds a load.
     pub fn add_load(&mut self, factor: f64, vector: &DVector<f64>, terms: &DVector<f64>) {
         self.file_load = None;
@@ -36,5 +36,35 @@ impl ContactNumbers {
         self.file_load = None;
         self.load_terms = load.abs();
         self.load = load;
+    }
+
+    /// Gap of every pair, that is of the joints from the first on.
+    pub fn gaps(&self) -> impl Iterator<Item = f64> {
+        self.laws.iter().map(PairLaw::gap)
+    }
+
+    /// The same with other gaps, where pairs have one.
+    #[must_use]
+    pub fn with_gaps(&self, gaps: &[f64]) -> ContactNumbers {
+        let laws = self.laws.iter().zip(gaps).map(|(law, gap)| law.with_gap(*gap)).collect();
+        ContactNumbers { laws, ..self.clone() }
+    }
+
+    /// f of every pair.
+    pub fn frictions(&self) -> Vec<f64> {
+        self.laws.iter().map(PairLaw::friction).collect()
+    }
+
+    /// z − (g, 0): the whole mutual displacement of the joints.
+    pub fn dislocation(&self, z: &DVector<f64>) -> DVector<f64> {
+        let mut moved = z.clone();
+        moved.iter_mut().zip(self.gaps()).for_each(|(z, gap)| *z -= gap);
+        moved
+    }
+
+    /// The magnitudes of its terms: those of z and of the gaps.
+    pub fn dislocation_sizes(&self, mut sizes: DVector<f64>) -> DVector<f64> {
+        sizes.iter_mut().zip(self.gaps()).for_each(|(size, gap)| *size += gap.abs());
+        sizes
     }
 }

@@ -10,7 +10,6 @@ use nalgebra::DVector;
 use super::numbers::ContactNumbers;
 use super::sums::{Sum, joint_forces, pair_sums};
 use super::system::ContactSystem;
-use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::contact::lcp::{ContactLcp, RowId, RowKind};
 use crate::lcp::basis_solution::{Basis, corrected};
 use crate::lcp::doubled::dot;
@@ -34,11 +33,11 @@ pub fn refined(system: &ContactSystem, numbers: &ContactNumbers, contact: &Conta
             break;
         }
         let sums = rows(system, numbers, contact, &best, true);
-        let w = equations(system, numbers, contact, &best, &sums);
+        let w = equations(numbers, contact, &best, &sums);
         let Some(mut next) = corrected(&contact.lcp, &released(&best), &best, &w) else {
             break;
         };
-        settle_signs(system, numbers, contact, &mut next);
+        settle_signs(numbers, contact, &mut next);
         let now = worst(&rows(system, numbers, contact, &next, true), &released(&next));
         if now.is_nan() || now >= left {
             break;
@@ -55,7 +54,7 @@ fn released(point: &Point) -> Basis {
 }
 
 /// An open pair that nothing holds slides either way: z⁺ < 0 is z⁻. Elsewhere what is below zero is rounding.
-fn settle_signs(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: &mut Point) {
+fn settle_signs(numbers: &ContactNumbers, contact: &ContactLcp, point: &mut Point) {
     for (row, meaning) in contact.rows.iter().enumerate() {
         if point.z[row] >= 0.0 {
             continue;
@@ -68,25 +67,19 @@ fn settle_signs(system: &ContactSystem, numbers: &ContactNumbers, contact: &Cont
             RowKind::Minus => contact.plus_row[i],
         };
         let moved = std::mem::take(&mut point.z[row]);
-        if let Some(other) = other.filter(|_| is_open && fixed_bound(system, numbers, i) == 0.0) {
+        if let Some(other) = other.filter(|_| is_open && numbers.laws[i].fixed_bound() == 0.0) {
             point.z[other] -= moved;
         }
     }
 }
 
 /// w of every row as the LCP has it, dimensionless: the reserves of an open pair contain f x_n, which the matrix sees.
-fn equations(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    point: &Point,
-    sums: &[Sum],
-) -> Vec<f64> {
+fn equations(numbers: &ContactNumbers, contact: &ContactLcp, point: &Point, sums: &[Sum]) -> Vec<f64> {
     let row_of = |(row, sum): (&RowId, &Sum)| {
         let normal = contact.normal_row[row.pair].filter(|&normal| point.z[normal] > 0.0);
         let coupled = match (row.couple, normal) {
             (RowKind::Normal, _) | (_, None) => 0.0,
-            (_, Some(normal)) => friction(system, numbers, row.pair) * sums[normal].value,
+            (_, Some(normal)) => numbers.laws[row.pair].friction() * sums[normal].value,
         };
         (sum.value + coupled) / contact.force_unit
     };
@@ -110,9 +103,7 @@ fn rows(
     let mut forces = joint_forces(system, numbers, &z);
     let mut unpressed: Vec<bool> = z.iter().take(system.pair_count()).map(|z| *z > 0.0).collect();
     if doubled && system.file.is_none() {
-        let mut moved = z;
-        moved.iter_mut().zip(&numbers.gap).for_each(|(z, gap)| *z -= gap);
-        add_doubled(system, &numbers.load, &moved, &mut forces);
+        add_doubled(system, &numbers.load, &numbers.dislocation(&z), &mut forces);
     }
     // A pressure that is rounding bounds no friction: the slip is then as exact as its own row.
     unpressed.iter_mut().zip(&forces).for_each(|(unpressed, force)| *unpressed |= force.is_zero());

@@ -20,7 +20,6 @@ use nalgebra::{DMatrix, DVector};
 use super::numbers::ContactNumbers;
 use super::sums::Sum;
 use super::system::ContactSystem;
-use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::driver::run;
 use crate::lcp::lemke::SchemeEngine;
@@ -28,7 +27,6 @@ use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Outcome;
 use crate::lcp::problem::{Lcp, NOISE, Scale};
 use crate::lcp::ratio_test::TieRule;
-use crate::model::pair::Law;
 
 /// Pivots after which the forces are left as they were found.
 const PIVOTS: usize = 10_000;
@@ -64,7 +62,7 @@ pub fn may_hold_otherwise(system: &ContactSystem, numbers: &ContactNumbers, z: &
     system.pairs.iter().filter_map(|pair| pair.tangential).for_each(|joint| sticking[joint] = 0.0);
     let mut pairs: Vec<usize> = (clusters(system, &form.self_stress).into_iter())
         .map(|pairs| Cluster { system, numbers, z: &sticking, pairs })
-        .filter(|cluster| cluster.pairs.iter().any(|&pair| friction(system, numbers, pair) > 0.0))
+        .filter(|cluster| cluster.pairs.iter().any(|&pair| numbers.laws[pair].friction() > 0.0))
         .flat_map(|cluster| cluster.undetermined(&form.self_stress))
         .collect();
     pairs.sort_unstable();
@@ -126,16 +124,16 @@ impl Cluster<'_> {
         let (mut zero, mut positive) = (Vec::new(), Vec::new());
         for &i in &self.pairs {
             let pair = &self.system.pairs[i];
-            let open = !matches!(pair.law, Law::Bound { .. }) && self.z[i] > 0.0;
+            let open = !pair.law.is_bilateral() && self.z[i] > 0.0;
             let normal = || Combination { terms: vec![(i, 1.0)], constant: 0.0 };
             if open {
                 zero.push(normal());
-            } else if !matches!(pair.law, Law::Bound { .. }) {
+            } else if !pair.law.is_bilateral() {
                 positive.push(normal());
             }
             let Some(joint) = pair.tangential else { continue };
-            let f = if open { 0.0 } else { friction(self.system, self.numbers, i) };
-            let constant = fixed_bound(self.system, self.numbers, i);
+            let f = if open { 0.0 } else { self.numbers.laws[i].friction() };
+            let constant = self.numbers.laws[i].fixed_bound();
             let reserve = |side: f64| {
                 let mut terms = vec![(joint, side)];
                 terms.extend((f > 0.0).then_some((i, f)));

@@ -6,11 +6,10 @@
 
 use nalgebra::DVector;
 
+use super::law::PairLaw;
 use super::numbers::ContactNumbers;
 use super::system::ContactSystem;
-use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::lcp::problem::NOISE;
-use crate::model::pair::Law;
 
 /// A value and the sum of the magnitudes of its terms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,12 +77,7 @@ pub fn state_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVecto
         return forces;
     }
     if let (Some(file), Some(load)) = (&system.file, &numbers.file_load) {
-        let (mut moved, mut sizes) = (z.clone(), z.abs());
-        for (i, gap) in numbers.gap.iter().enumerate() {
-            moved[i] -= gap;
-            sizes[i] += gap.abs();
-        }
-        let given = file.forces(&moved, &sizes, load);
+        let given = file.forces(&numbers.dislocation(z), &numbers.dislocation_sizes(z.abs()), load);
         for (force, given) in forces.joints.iter_mut().zip(given.joints) {
             // Forces solved for from a compliance have no terms of their own.
             let magnitude = if file.compliance { force.magnitude.max(given.magnitude) } else { given.magnitude };
@@ -101,7 +95,7 @@ fn condensed_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVecto
         .collect();
     let mut scaled = 0.0;
     for k in 0..system.joint_count() {
-        let mut gap = numbers.gap.get(k).copied().unwrap_or(0.0);
+        let mut gap = numbers.laws.get(k).map_or(0.0, PairLaw::gap);
         if system.is_forced(k) {
             // The displacement is what comes out.
             forces[k] = forces[k].plus(1.0, Sum::exactly(gap));
@@ -152,10 +146,10 @@ pub fn pair_sums(
     forces: &[Sum],
     (pair, is_open): (usize, bool),
 ) -> PairSums {
-    let normal = (!matches!(system.pairs[pair].law, Law::Bound { .. })).then(|| forces[pair]);
+    let normal = (!system.pairs[pair].law.is_bilateral()).then(|| forces[pair]);
     let reserves = system.pairs[pair].tangential.map(|joint| {
-        let fixed = Sum::exactly(fixed_bound(system, numbers, pair));
-        let bound = if is_open { fixed } else { fixed.plus(friction(system, numbers, pair), forces[pair]) };
+        let fixed = Sum::exactly(numbers.laws[pair].fixed_bound());
+        let bound = if is_open { fixed } else { fixed.plus(numbers.laws[pair].friction(), forces[pair]) };
         [bound.plus(1.0, forces[joint]), bound.plus(-1.0, forces[joint])]
     });
     PairSums { normal, reserves }

@@ -4,8 +4,8 @@
 
 use nalgebra::DVector;
 
-use super::certificate::{Bounds, bounds};
 use super::motions::FreeMotions;
+use crate::contact::law::FACETS;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
@@ -47,7 +47,7 @@ fn forces(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotion
             balance[entry.motion].push((variable, entry.value));
         }
     };
-    for (pair, bounds) in bounds(system, numbers).into_iter().enumerate() {
+    for (pair, law) in numbers.laws.iter().enumerate() {
         let tangential = system.pairs[pair].tangential;
         let touched = |joint: usize| !motions.row(joint).is_empty();
         if !touched(pair) && !tangential.is_some_and(touched) {
@@ -55,18 +55,14 @@ fn forces(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotion
         }
         let normal = program.variable(0.0);
         put(normal, pair);
-        if !matches!(bounds, Bounds::Band(_)) {
+        if !law.is_bilateral() {
             program.at_most(vec![(normal, -1.0)], 0.0);
         }
-        let (f, c) = match bounds {
-            Bounds::Cone(f, c) => (f, c / size),
-            Bounds::Normal => continue,
-            Bounds::Band(r) => (0.0, r / size),
-        };
+        let (f, c) = (law.friction(), law.fixed_bound() / size);
         let Some(joint) = tangential.filter(|_| f > 0.0 || c > 0.0) else { continue };
         let slip = program.variable(0.0);
         put(slip, joint);
-        for sign in [1.0, -1.0] {
+        for sign in FACETS {
             program.at_most(vec![(slip, sign), (normal, -f)], c);
         }
     }

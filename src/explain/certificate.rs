@@ -2,7 +2,7 @@
 //! a motion proves it.
 //!
 //! ```text
-//!   find λ:  x_n ≥ 0,  |x_τ| ≤ f x_n + c,   Zᵀ λ = Zᵀ RF           (bound pairs: |x_τ| ≤ r_f, x_n free)
+//!   find λ:  x_n ≥ 0,  |x_τ| ≤ f x_n + c,   Zᵀ λ = Zᵀ RF           (bilateral pairs: x_n free)
 //!   none  ⇔  a motion ζ with  ζ_n ≥ f |ζ_τ|  in every pair and  work of the loads > Σ c |ζ_τ|
 //! ```
 //! The second line is the Farkas alternative: on ζ every admissible λ takes at most Σ c |ζ_τ|, and the loads do more.
@@ -23,10 +23,10 @@ use num_traits::Zero;
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved, exact, nearest};
 use super::motions::{Entry, FreeMotions, Rounded};
+use crate::contact::law::{FACETS, PairLaw};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
-use crate::model::pair::Law;
 
 /// Time for all that is tried.
 pub const BUDGET: Duration = Duration::from_secs(5);
@@ -46,7 +46,7 @@ pub struct Certificate {
     pub direction: DVector<f64>,
     /// Power −RF·ζ of the loads on it, > `dissipation`.
     pub power: f64,
-    /// Σ c |ζ_τ| + Σ r_f |ζ_τ|: the most that cohesion and known bounds can take.
+    /// Σ c |ζ_τ|: the most that cohesion and known bounds can take.
     pub dissipation: f64,
     /// Whether some sign had no room and was proved in exact arithmetic.
     pub exact: bool,
@@ -61,30 +61,6 @@ pub struct Search {
     pub out_of_time: bool,
 }
 
-/// What a pair allows of the forces in it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Bounds {
-    /// x_n ≥ 0, |x_τ| ≤ f x_n + c.
-    Cone(f64, f64),
-    /// x_n ≥ 0, x_τ = 0.
-    Normal,
-    /// x_n free, |x_τ| ≤ r.
-    Band(f64),
-}
-
-pub(super) fn bounds(system: &ContactSystem, numbers: &ContactNumbers) -> Vec<Bounds> {
-    system
-        .pairs
-        .iter()
-        .enumerate()
-        .map(|(i, pair)| match pair.law {
-            Law::Coulomb { .. } => Bounds::Cone(numbers.friction[i], numbers.cohesion[i]),
-            Law::Frictionless { .. } => Bounds::Normal,
-            Law::Bound { .. } => Bounds::Band(numbers.bound[i]),
-        })
-        .collect()
-}
-
 /// Looks for a certificate.
 pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotions) -> Search {
     let work = motions.work(&system.forces_of(&numbers.load), &system.forces_of(&numbers.load_terms));
@@ -92,9 +68,8 @@ pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeM
     if scale == 0.0 {
         return Search::default();
     }
-    let bounds = bounds(system, numbers);
-    let mut problem =
-        Problem { system, motions, bounds, work, scale, end: Instant::now() + BUDGET, out_of_time: false };
+    let laws = &numbers.laws;
+    let mut problem = Problem { system, motions, laws, work, scale, end: Instant::now() + BUDGET, out_of_time: false };
     let certificate = problem.with_room().or_else(|| problem.confined());
     if certificate.is_some() {
         return Search { certificate, out_of_time: false };
@@ -113,7 +88,7 @@ struct Slack {
 struct Problem<'a> {
     system: &'a ContactSystem,
     motions: &'a FreeMotions,
-    bounds: Vec<Bounds>,
+    laws: &'a [PairLaw],
     /// Work of the loads per unit of each motion.
     work: Vec<Rounded>,
     /// Largest work of a motion.
@@ -144,13 +119,10 @@ impl Problem<'_> {
     /// Every inequality that some motion touches.
     fn slacks(&self) -> Vec<Slack> {
         let mut slacks = Vec::new();
-        for (pair, bounds) in self.bounds.iter().enumerate() {
+        for (pair, law) in self.laws.iter().enumerate().filter(|(_, law)| !law.is_bilateral()) {
             let normal = self.motions.row(pair);
-            let (f, sides): (f64, &[f64]) = match *bounds {
-                Bounds::Cone(f, _) if f > 0.0 => (f, &[1.0, -1.0]),
-                Bounds::Cone(..) | Bounds::Normal => (0.0, &[0.0]),
-                Bounds::Band(_) => continue,
-            };
+            let f = law.friction();
+            let sides: &[f64] = if f > 0.0 { &FACETS } else { &[0.0] };
             for &side in sides {
                 let terms = combined(normal, -side * f, self.tangential(pair));
                 if !terms.is_empty() {
@@ -161,12 +133,12 @@ impl Problem<'_> {
         slacks
     }
 
-    /// The joints that no motion of a proof may move: normals of bound pairs.
+    /// The joints that no motion of a proof may move: bilateral normals.
     fn held(&self) -> impl Iterator<Item = usize> {
-        (0..self.bounds.len()).filter(|&i| matches!(self.bounds[i], Bounds::Band(_)))
+        (0..self.laws.len()).filter(|&i| self.laws[i].is_bilateral())
     }
 
-    /// The amounts of the motions within ±1, bound pairs held, and the terms of
+    /// The amounts of the motions within ±1, bilateral pairs held, and the terms of
     /// (work of the loads − what cohesion and bounds take) / scale.
     fn base(&self) -> (LinearProgram, Vec<(usize, f64)>) {
         let mut program = LinearProgram::default();
@@ -183,8 +155,8 @@ impl Problem<'_> {
         }
         let mut surplus: Vec<(usize, f64)> =
             self.work.iter().enumerate().map(|(k, work)| (k, work.value / self.scale)).collect();
-        for (pair, bounds) in self.bounds.iter().enumerate() {
-            let (Bounds::Cone(_, c) | Bounds::Band(c)) = *bounds else { continue };
+        for (pair, law) in self.laws.iter().enumerate() {
+            let c = law.fixed_bound();
             let slip = combined(self.tangential(pair), 0.0, &[]);
             if c > 0.0 && !slip.is_empty() {
                 let most = program.variable(0.0);
@@ -301,10 +273,7 @@ impl Problem<'_> {
 
     /// Terms of ζ_n − side · f ζ_τ as the data have them.
     fn exact_terms(&self, pair: usize, side: f64) -> Vec<(usize, BigRational)> {
-        let f = match self.bounds[pair] {
-            Bounds::Cone(f, _) => exact(side * f),
-            _ => BigRational::zero(),
-        };
+        let f = exact(side * self.laws[pair].friction());
         let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, exact(entry.value)));
         let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -exact(entry.value) * &f));
         normal.chain(tangential).collect()
@@ -318,21 +287,17 @@ impl Problem<'_> {
         };
         let mut taken = Rounded::default();
         let mut needed_exact = false;
-        for (pair, bounds) in self.bounds.iter().enumerate() {
+        for (pair, law) in self.laws.iter().enumerate() {
             let normal = self.motions.displacement(pair, amounts);
             let slip = self.system.pairs[pair]
                 .tangential
                 .map_or(Rounded::default(), |joint| self.motions.displacement(joint, amounts));
-            let (f, c) = match *bounds {
-                Bounds::Cone(f, c) => (f, c),
-                Bounds::Normal => (0.0, 0.0),
-                Bounds::Band(r) => (0.0, r),
-            };
+            let (f, c) = (law.friction(), law.fixed_bound());
             taken.value += c * slip.value.abs();
             taken.magnitude += c * slip.magnitude;
             let sure = normal.value - f * slip.value.abs() > normal.error() + 2.0 * f * slip.error();
             let still = normal.magnitude == 0.0 && (f == 0.0 || slip.magnitude == 0.0);
-            if still || (sure && !matches!(bounds, Bounds::Band(_))) {
+            if still || (sure && !law.is_bilateral()) {
                 continue;
             }
             if Instant::now() > self.end {
@@ -342,12 +307,13 @@ impl Problem<'_> {
             needed_exact = true;
             // What is neither 0 nor clear of its rounding proves nothing.
             let error = normal.error() + 2.0 * f * slip.error();
-            let holds = match bounds {
-                Bounds::Band(_) => value(self.exact_terms(pair, 0.0)).is_zero(),
-                _ => [1.0, -1.0].iter().all(|side| {
+            let holds = if law.is_bilateral() {
+                value(self.exact_terms(pair, 0.0)).is_zero()
+            } else {
+                FACETS.iter().all(|side| {
                     let slack = value(self.exact_terms(pair, *side));
                     slack.is_zero() || nearest(&slack) > error
-                }),
+                })
             };
             if !holds {
                 return None;

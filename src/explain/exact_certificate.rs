@@ -13,7 +13,8 @@ use nalgebra::DVector;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
-use super::certificate::{Bounds, Certificate, Search, bounds};
+use super::certificate::{Certificate, Search};
+use crate::contact::law::{FACETS, PairLaw};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::exact_system::ExactSystem;
 use crate::contact::system::ContactSystem;
@@ -36,10 +37,10 @@ pub(super) fn certify_exactly(system: &ContactSystem, numbers: &ContactNumbers, 
     let Some(motions) = null_space(&whole.rows, &mut |_| until(end)) else {
         return Search { certificate: None, out_of_time: true };
     };
-    let bounds = bounds(system, numbers);
-    let rows = program(&exact, &bounds, &motions);
+    let laws = &numbers.laws;
+    let rows = program(&exact, laws, &motions);
     let free: Vec<usize> = (0..motions.len()).collect();
-    let columns = motions.len() + bounds.iter().filter(|bounds| taken(bounds) > 0.0).count();
+    let columns = motions.len() + laws.iter().filter(|law| law.fixed_bound() > 0.0).count();
     let mut polyhedron = Polyhedron::new(columns, rows, &free);
     match polyhedron.restore(&mut || until(end).is_continue()) {
         State::Feasible => {}
@@ -51,7 +52,7 @@ pub(super) fn certify_exactly(system: &ContactSystem, numbers: &ContactNumbers, 
         .collect();
     let power: BigRational = -direction.iter().zip(&exact.constants).map(|(z, load)| z * load).sum::<BigRational>();
     let slip = |pair: usize| system.pairs[pair].tangential.map_or(0.0, |joint| nearest(&direction[joint]));
-    let dissipation: f64 = bounds.iter().enumerate().map(|(i, bounds)| taken(bounds) * slip(i).abs()).sum();
+    let dissipation: f64 = laws.iter().enumerate().map(|(i, law)| law.fixed_bound() * slip(i).abs()).sum();
     let direction = DVector::from_iterator(direction.len(), direction.iter().map(nearest));
     let largest = direction.amax();
     let certificate = Certificate {
@@ -63,18 +64,10 @@ pub(super) fn certify_exactly(system: &ContactSystem, numbers: &ContactNumbers, 
     Search { certificate: Some(certificate), out_of_time: false }
 }
 
-/// Force besides friction that the slip of a pair has to overcome.
-fn taken(bounds: &Bounds) -> f64 {
-    match *bounds {
-        Bounds::Cone(_, c) | Bounds::Band(c) => c,
-        Bounds::Normal => 0.0,
-    }
-}
-
 /// The inequalities over y, one v for every pair with cohesion or a known bound, and the constant.
-fn program(exact: &ExactSystem<'_>, bounds: &[Bounds], motions: &[Vec<BigRational>]) -> WholeRows {
+fn program(exact: &ExactSystem<'_>, laws: &[PairLaw], motions: &[Vec<BigRational>]) -> WholeRows {
     let count = motions.len();
-    let own: Vec<usize> = (0..bounds.len()).filter(|&pair| taken(&bounds[pair]) > 0.0).collect();
+    let own: Vec<usize> = (0..laws.len()).filter(|&pair| laws[pair].fixed_bound() > 0.0).collect();
     let width = count + own.len() + 1;
     let mut rows = WholeRows::default();
     let mut surplus = vec![BigRational::zero(); width];
@@ -96,22 +89,20 @@ fn program(exact: &ExactSystem<'_>, bounds: &[Bounds], motions: &[Vec<BigRationa
         rows.push_rational(&row);
     };
     let (one, zero) = (BigRational::one, BigRational::zero);
-    for (pair, bounds) in bounds.iter().enumerate() {
-        match *bounds {
-            Bounds::Cone(f, _) if f > 0.0 => {
-                add(pair, [one(), rational(f)], None);
-                add(pair, [one(), -rational(f)], None);
-            }
-            Bounds::Cone(..) | Bounds::Normal => add(pair, [one(), zero()], None),
-            Bounds::Band(_) => {
-                add(pair, [one(), zero()], None);
-                add(pair, [-one(), zero()], None);
-            }
+    for (pair, law) in laws.iter().enumerate() {
+        let f = law.friction();
+        if law.is_bilateral() {
+            add(pair, [one(), zero()], None);
+            add(pair, [-one(), zero()], None);
+        } else if f > 0.0 {
+            FACETS.iter().for_each(|side| add(pair, [one(), rational(side * f)], None));
+        } else {
+            add(pair, [one(), zero()], None);
         }
         if let Some(v) = own.iter().position(|&own| own == pair) {
             add(pair, [zero(), one()], Some(v));
             add(pair, [zero(), -one()], Some(v));
-            surplus[count + v] = -rational(taken(bounds));
+            surplus[count + v] = -rational(law.fixed_bound());
         }
     }
     rows.push_rational(&surplus);

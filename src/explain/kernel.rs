@@ -3,12 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::contact::system::ContactSystem;
-use crate::model::pair::Law;
 
 /// Motions of the releasable joints that cost no energy: the kernel of R without what bound pairs hold.
 pub fn releasable_kernel(system: &ContactSystem) -> DMatrix<f64> {
-    let held: Vec<usize> =
-        (0..system.pairs.len()).filter(|&i| matches!(system.pairs[i].law, Law::Bound { .. })).collect();
+    let held: Vec<usize> = (0..system.pairs.len()).filter(|&i| system.pairs[i].law.is_bilateral()).collect();
     let kernel = &system.kernel;
     if held.is_empty() || kernel.ncols() == 0 {
         return kernel.clone();

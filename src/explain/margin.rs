@@ -78,7 +78,7 @@ fn watched(scheme: &FinalScheme) -> Vec<Variable> {
             let meaning = contact.rows[*row];
             let open = contact.normal_row[meaning.pair]
                 .is_some_and(|row| basis.z.binary_search(&row).is_ok() != contact.swapped[row]);
-            let loose = open && numbers.cohesion[meaning.pair] == 0.0;
+            let loose = open && numbers.laws[meaning.pair].fixed_bound() == 0.0;
             !loose || meaning.couple == RowKind::Normal
         })
         .collect()
@@ -127,16 +127,8 @@ pub fn load_margin(
     present: f64,
     unit: &nalgebra::DVector<f64>,
 ) -> Option<Margin> {
-    let m = scheme.system.pairs.len();
-    let rate = ContactNumbers {
-        friction: scheme.numbers.friction.clone(),
-        cohesion: vec![0.0; m],
-        gap: vec![0.0; m],
-        bound: vec![0.0; m],
-        load: unit.clone(),
-        load_terms: unit.abs(),
-        file_load: None,
-    };
+    let unmoved = scheme.numbers.laws.iter().map(|law| law.with_gap(0.0).with_fixed_bound(0.0)).collect();
+    let rate = ContactNumbers::exactly(unmoved, unit.clone());
     // Only M and q of this LCP are used: any covering that can be written will do.
     let change = contact_lcp(scheme.system, &rate, Covering::Ones).ok()?;
     let rates = change.in_units(&vertex(&change.lcp, scheme.basis)?);

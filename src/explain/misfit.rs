@@ -17,7 +17,6 @@ use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::lcp::problem::NOISE;
-use crate::model::pair::Law;
 
 /// An s_n below this share of the largest must be 0.
 const TIGHT: f64 = 1e-6;
@@ -39,7 +38,7 @@ fn rooms(system: &ContactSystem, numbers: &ContactNumbers, stress: &nalgebra::DM
         None if system.is_forced(joint) => numbers.load[joint],
         None => 0.0,
     };
-    let gap = |joint: usize| numbers.gap.get(joint).copied().unwrap_or(0.0);
+    let gap = |joint: usize| numbers.laws.get(joint).map_or(0.0, |law| law.gap());
     (stress.column_iter())
         .map(|s| {
             s.iter().enumerate().fold((0.0, 0.0), |(sum, size), (joint, s)| {
@@ -60,9 +59,8 @@ pub fn misfit(system: &ContactSystem, numbers: &ContactNumbers) -> Option<Misfit
     let row = |joint: usize| -> Vec<(usize, f64)> {
         stress.row(joint).iter().copied().enumerate().filter(|(_, s)| *s != 0.0).collect()
     };
-    let unilateral: Vec<usize> = (0..system.pairs.len())
-        .filter(|&i| !matches!(system.pairs[i].law, Law::Bound { .. }) && !row(i).is_empty())
-        .collect();
+    let unilateral: Vec<usize> =
+        (0..system.pairs.len()).filter(|&i| !system.pairs[i].law.is_bilateral() && !row(i).is_empty()).collect();
     let tangential: Vec<usize> =
         system.pairs.iter().filter_map(|pair| pair.tangential).filter(|&joint| !row(joint).is_empty()).collect();
     let mut program = LinearProgram::default();

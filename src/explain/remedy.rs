@@ -11,7 +11,6 @@ use super::motions::FreeMotions;
 use super::ray::Subject;
 use super::words::short;
 use crate::contact::numbers::ContactNumbers;
-use crate::model::pair::Law;
 use crate::watch::{Budget, Watch};
 
 /// Friction (or its multiplier) up to which is looked.
@@ -32,7 +31,7 @@ pub enum Remedy {
         /// Against what: "along x", "against turning about …".
         against: String,
     },
-    /// Friction of all Coulomb pairs.
+    /// Friction of all pairs that have one.
     Friction {
         /// Present friction; 1 if `multiplier`.
         present: f64,
@@ -122,17 +121,16 @@ impl Search<'_> {
 
     fn friction(&self) -> Option<Option<Remedy>> {
         let Subject { system, numbers, .. } = *self.subject;
-        let coulomb: Vec<usize> =
-            (0..system.pairs.len()).filter(|&i| matches!(system.pairs[i].law, Law::Coulomb { .. })).collect();
-        let Some(&one) = coulomb.first() else { return Some(None) };
-        let first = numbers.friction[one];
-        let equal = coulomb.iter().all(|&i| numbers.friction[i] == first);
-        let largest = coulomb.iter().map(|&i| numbers.friction[i]).fold(0.0, f64::max);
+        let rubbing = system.pairs.iter().zip(&numbers.laws).filter(|(pair, _)| pair.law.friction().is_some());
+        let frictions: Vec<f64> = rubbing.map(|(_, law)| law.friction()).collect();
+        let Some(&first) = frictions.first() else { return Some(None) };
+        let equal = frictions.iter().all(|f| *f == first);
+        let largest = frictions.iter().copied().fold(0.0, f64::max);
         let multiplier = !equal && largest > 0.0;
         let with = |value: f64| {
             let mut changed = numbers.clone();
-            for &i in &coulomb {
-                changed.friction[i] = if multiplier { value * numbers.friction[i] } else { value };
+            for law in &mut changed.laws {
+                *law = law.with_friction(if multiplier { value * law.friction() } else { value });
             }
             changed
         };

@@ -7,7 +7,6 @@ use crate::contact::lcp::{ContactLcp, Quantity, RowKind};
 use crate::contact::system::ContactSystem;
 use crate::lcp::pivot::Pivot;
 use crate::lcp::variable::Variable;
-use crate::model::pair::Law;
 
 /// Tangential joint of a pair in the working scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +74,7 @@ fn turn(schemes: &mut [Scheme], entering: Variable, contact: &ContactLcp, system
     let released = quantity == Quantity::Displacement;
     let meaning = contact.rows[row];
     let scheme = &mut schemes[meaning.pair];
-    let frictionless = matches!(system.pairs[meaning.pair].law, Law::Frictionless { .. });
+    let frictionless = system.pairs[meaning.pair].tangential.is_none();
     let closed_word = if frictionless { "closed" } else { scheme.tangential.word() };
     let (joint, from, to) = match (meaning.couple, released) {
         (RowKind::Normal, true) => {

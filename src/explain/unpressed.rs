@@ -11,7 +11,7 @@ use nalgebra::DVector;
 
 use super::words::list;
 use crate::contact::system::ContactSystem;
-use crate::model::pair::{Law, Pair};
+use crate::model::pair::Pair;
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::plausible::Warning;
 use crate::model::plausible::normals::{is_down, is_guided, parts};
@@ -210,9 +210,7 @@ fn interference(system: &ContactSystem, values: &ParameterValues) -> [DVector<f6
     let k = system.joint_count();
     let mut gaps = DVector::zeros(k);
     for (pair, of) in system.pairs.iter().enumerate() {
-        if let Law::Coulomb { gap, .. } | Law::Frictionless { gap, .. } = &of.law {
-            gaps[pair] = gap.value(values).min(0.0);
-        }
+        gaps[pair] = of.law.gap().map_or(0.0, |gap| gap.value(values).min(0.0));
     }
     if gaps.iter().all(|gap| *gap == 0.0) {
         return [gaps.clone(), gaps];
@@ -227,7 +225,7 @@ fn effect(
     coupled: &[bool],
     pair: usize,
 ) -> Effect {
-    if matches!(system.pairs[pair].law, Law::Bound { .. }) {
+    if system.pairs[pair].law.is_bilateral() {
         // It holds both ways.
         return Effect::Pressed;
     }

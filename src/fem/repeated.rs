@@ -8,7 +8,7 @@
 //! depends on that of a repeated tangential one (contact, `force_form`). Normals that are held both ways come first.
 
 use super::joint_rows::JointRow;
-use crate::model::pair::{Joint, JointDirection, Law};
+use crate::model::pair::{Joint, JointDirection};
 use crate::model::structure::Structure;
 
 /// A joint that repeats others.
@@ -33,10 +33,10 @@ impl Repeated {
 
 /// The joints in the order in which they are taken for independent: bilateral normals, tangentials, other normals.
 pub(super) fn by_preference(structure: &Structure, joints: &[Joint]) -> Vec<usize> {
-    let place = |joint: &Joint| match (joint.direction, &structure.pairs[joint.pair].law) {
-        (JointDirection::Normal, Law::Bound { .. }) => 0,
-        (JointDirection::Tangential, _) => 1,
-        (JointDirection::Normal, _) => 2,
+    let place = |joint: &Joint| match joint.direction {
+        JointDirection::Normal if structure.pairs[joint.pair].law.is_bilateral() => 0,
+        JointDirection::Tangential => 1,
+        JointDirection::Normal => 2,
     };
     let mut order: Vec<usize> = (0..joints.len()).collect();
     order.sort_by_key(|&index| place(&joints[index]));

@@ -36,6 +36,32 @@ impl Law {
         }
     }
 
+    /// Whether the normal joint holds both ways: it never opens.
+    pub fn is_bilateral(&self) -> bool {
+        matches!(self, Law::Bound { .. })
+    }
+
+    /// Whether the main system has a joint along t.
+    pub fn has_tangential_joint(&self) -> bool {
+        !matches!(self, Law::Frictionless { .. })
+    }
+
+    /// f, where the friction bound hangs on x_n.
+    pub fn friction(&self) -> Option<&Number> {
+        match self {
+            Law::Coulomb { friction, .. } => Some(friction),
+            Law::Frictionless { .. } | Law::Bound { .. } => None,
+        }
+    }
+
+    /// g, where the pair can open.
+    pub fn gap(&self) -> Option<&Number> {
+        match self {
+            Law::Coulomb { gap, .. } | Law::Frictionless { gap } => Some(gap),
+            Law::Bound { .. } => None,
+        }
+    }
+
     /// Its numbers with their keys in files; all but the gap are ≥ 0.
     pub fn numbers(&self) -> Vec<(&'static str, &Number)> {
         match self {
@@ -121,12 +147,11 @@ pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
         direction: JointDirection::Normal,
         terms: row(&pair.weights, pair.normal),
     });
-    let tangentials = pairs.iter().enumerate().filter(|(_, pair)| !matches!(pair.law, Law::Frictionless { .. })).map(
-        |(index, pair)| Joint {
-            pair: index,
-            direction: JointDirection::Tangential,
-            terms: row(pair.tangential_weights(), pair.tangent()),
-        },
-    );
+    let rubbing = pairs.iter().enumerate().filter(|(_, pair)| pair.law.has_tangential_joint());
+    let tangentials = rubbing.map(|(index, pair)| Joint {
+        pair: index,
+        direction: JointDirection::Tangential,
+        terms: row(pair.tangential_weights(), pair.tangent()),
+    });
     normals.chain(tangentials).collect()
 }

@@ -133,10 +133,8 @@ impl FrictionPath {
 pub fn is_friction(prepared: &Prepared, values: &ParameterValues, name: &str) -> bool {
     let along = values.along(name);
     prepared.system().is_some_and(|system| {
-        system.pairs.iter().any(|pair| match &pair.law {
-            Law::Coulomb { friction, .. } => along.dependence(friction) != Dependence::Constant,
-            Law::Frictionless { .. } | Law::Bound { .. } => false,
-        })
+        let mut frictions = system.pairs.iter().filter_map(|pair| pair.law.friction());
+        frictions.any(|friction| along.dependence(friction) != Dependence::Constant)
     })
 }
 
@@ -256,7 +254,7 @@ impl Follower<'_> {
             let is_active = basis.active.binary_search(&row).is_ok();
             // In an open pair without cohesion both reserves stay zero and the slip is free in sign.
             let free = meaning.couple != RowKind::Normal
-                && place.numbers.cohesion[meaning.pair] == 0.0
+                && place.numbers.laws[meaning.pair].fixed_bound() == 0.0
                 && place.contact.normal_row[meaning.pair]
                     .is_some_and(|normal| basis.active.binary_search(&normal).is_ok() != place.contact.swapped[normal]);
             let (margin, slope) = match (free, is_active) {

@@ -16,7 +16,6 @@ use crate::model::parameter::ParameterValues;
 use crate::model::quantity::{BarPlace, Over, Quantity, ResultantPart, fits};
 use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
-use crate::solve::finish::dislocation;
 use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::Geometry;
 use crate::solve::{Prepared, Solved};
@@ -235,7 +234,7 @@ impl<'a> Facts<'a> {
             let (prepared, (_, main)) = (self.prepared?, self.structure().ok()?);
             let system = prepared.system()?;
             let numbers = contact_numbers(system, &self.factors, self.values);
-            Some(main.displacements(&self.factors, &dislocation(&numbers, &self.joints(|pair| [pair.z_n, pair.z_t]))))
+            Some(main.displacements(&self.factors, &numbers.dislocation(&self.joints(|pair| [pair.z_n, pair.z_t]))))
         });
         found.as_ref().ok_or_else(|| self.missing())
     }

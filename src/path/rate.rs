@@ -1,7 +1,7 @@
 //! Rates of the answer within its scheme: what one more unit of a parameter does, from one extra solve.
 
 use crate::contact::force_form::constants;
-use crate::contact::full_lcp::fixed_bound;
+use crate::contact::law::PairLaw;
 use crate::contact::lcp::{ContactLcp, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
@@ -9,7 +9,6 @@ use crate::lcp::basis_solution::{Basis, direction};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::variable::Variable;
-use crate::model::pair::Law;
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::scenario::Scenario;
 use crate::model::uses::Region;
@@ -64,7 +63,7 @@ pub(crate) fn rate_lcp(
     let mut lcp = MirroredLcp::clone(&contact.lcp);
     if system.force_form.is_some() {
         let rates = with_friction_as_cohesion(system, contact, point, rates);
-        let fixed: Vec<f64> = (0..system.pairs.len()).map(|pair| fixed_bound(system, &rates, pair)).collect();
+        let fixed: Vec<f64> = rates.laws.iter().map(PairLaw::fixed_bound).collect();
         lcp.covering = sign * constants(system, contact, &load_with_gaps(system, &rates), &fixed);
         return lcp;
     }
@@ -77,12 +76,9 @@ pub(crate) fn rate_lcp(
         let (Some(row), Some(joint)) = (contact.plus_row[i], pair.tangential) else {
             continue;
         };
-        let extra = match pair.law {
-            Law::Bound { .. } => rates.bound[i],
-            _ => rates.cohesion[i],
-        };
-        let bound = sign * (rates.friction[i] * x_n + extra / contact.force_unit);
-        lcp.covering[row] = load[joint] + numbers.friction[i] * load[i] + bound;
+        let rate = &rates.laws[i];
+        let bound = sign * (rate.friction() * x_n + rate.fixed_bound() / contact.force_unit);
+        lcp.covering[row] = load[joint] + numbers.laws[i].friction() * load[i] + bound;
         if let Some(mirror) = &mut lcp.mirrors[row] {
             mirror.covering = 2.0 * bound;
         }
@@ -101,7 +97,8 @@ pub(crate) fn with_friction_as_cohesion(
     for pair in 0..system.pairs.len() {
         if let Some(row) = contact.normal_row[pair] {
             let pressed = if contact.swapped[row] { point.z[row] } else { point.w[row] };
-            rates.cohesion[pair] += rates.friction[pair] * pressed * contact.force_unit;
+            let rate = &mut rates.laws[pair];
+            *rate = rate.with_fixed_bound(rate.fixed_bound() + rate.friction() * pressed * contact.force_unit);
         }
     }
     rates

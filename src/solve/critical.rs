@@ -5,7 +5,6 @@ use super::numbers::{contact_numbers, factors};
 use super::prepared::Prepared;
 use crate::contact::schemes::critical::{CriticalFriction, critical_friction};
 use crate::model::jet::Dependence;
-use crate::model::pair::Law;
 use crate::model::parameter::ParameterValues;
 use crate::watch::Watch;
 
@@ -33,12 +32,7 @@ impl Prepared {
             return refused(refusal);
         }
         let along = values.along(parameter);
-        let frictions = || {
-            system.pairs.iter().filter_map(|pair| match &pair.law {
-                Law::Coulomb { friction, .. } => Some((pair, friction)),
-                Law::Frictionless { .. } | Law::Bound { .. } => None,
-            })
-        };
+        let frictions = || system.pairs.iter().filter_map(|pair| pair.law.friction().map(|friction| (pair, friction)));
         if frictions().all(|(_, friction)| along.dependence(friction) == Dependence::Constant) {
             let names = values.formulas().free(frictions().flat_map(|(_, friction)| friction.names()));
             let names: Vec<String> = values.keys().filter(|name| names.contains(*name)).cloned().collect();
@@ -59,7 +53,7 @@ impl Prepared {
         let friction = |value: f64| {
             let mut values = values.clone();
             values.insert(parameter.to_owned(), value);
-            contact_numbers(system, &factors, &values).friction
+            contact_numbers(system, &factors, &values).frictions()
         };
         if friction(0.0).iter().any(|f| *f < 0.0) {
             return refused(format!("at {parameter} = 0 a friction is negative: `critical` goes up from 0"));

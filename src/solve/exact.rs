@@ -158,7 +158,7 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
         }
     }
     for (i, scheme) in schemes.iter_mut().enumerate() {
-        if scheme.open && numbers.cohesion[i] == 0.0 {
+        if scheme.open && numbers.laws[i].fixed_bound() == 0.0 {
             *scheme = PairScheme::OPEN;
         }
     }

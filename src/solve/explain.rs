@@ -92,8 +92,7 @@ impl Solved {
             .collect();
         let mut names: Vec<&str> = Vec::new();
         for pair in &system.pairs {
-            if let crate::model::pair::Law::Coulomb { friction, .. } = &pair.law
-                && let Some(name) = friction.parameter()
+            if let Some(name) = pair.law.friction().and_then(|friction| friction.parameter())
                 && !names.contains(&name)
             {
                 names.push(name);

@@ -18,7 +18,6 @@ use crate::explain::words::{list, short};
 use crate::fem::Displacements;
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::pivot::Cycle;
-use crate::model::pair::Law;
 use crate::model::structure::Structure;
 use crate::model::uses::Redone;
 
@@ -73,8 +72,8 @@ impl Prepared {
     ) -> Option<f64> {
         let mut equilibrium = None;
         if let Geometry::Structure { main, structure, .. } = &*self.geometry {
-            let u = main.displacements(factors, &dislocation(numbers, &state.z));
-            let compatibility = main.compatibility_residual(&u, &dislocation(numbers, &state.z));
+            let u = main.displacements(factors, &numbers.dislocation(&state.z));
+            let compatibility = main.compatibility_residual(&u, &numbers.dislocation(&state.z));
             equilibrium = Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, factors));
             answer.members = self.members(&u, factors);
             answer.reactions = self.reactions(&u, &state.force, factors);
@@ -123,12 +122,12 @@ impl Prepared {
     ) {
         match &*self.geometry {
             Geometry::Structure { main, structure, .. } => {
-                if !structure.pairs.iter().any(|pair| matches!(pair.law, Law::Frictionless { .. })) {
+                if !structure.pairs.iter().any(|pair| !pair.law.has_tangential_joint()) {
                     return;
                 }
-                let u = main.displacements(factors, &dislocation(numbers, z));
+                let u = main.displacements(factors, &numbers.dislocation(z));
                 for (pair, shown) in structure.pairs.iter().zip(pairs) {
-                    if matches!(pair.law, Law::Frictionless { .. }) {
+                    if !pair.law.has_tangential_joint() {
                         let t = pair.tangent();
                         // Both components of a displacement are as well known as the larger one.
                         let along = |&(node, weight): &(usize, f64)| {
@@ -160,7 +159,7 @@ impl Prepared {
                     }
                     return;
                 }
-                let moved = dislocation(numbers, z);
+                let moved = numbers.dislocation(z);
                 let slips = file.forces(&moved, &moved.abs(), &file.load(factors)).slips;
                 for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
                     pairs[pair].z_t = *slip;
@@ -182,15 +181,6 @@ impl Prepared {
             lcp: contact.rows.len(),
         }
     }
-}
-
-/// The whole mutual displacement of the joints: z with the gaps taken off.
-pub(crate) fn dislocation(numbers: &ContactNumbers, z: &DVector<f64>) -> DVector<f64> {
-    let mut z = z.clone();
-    for (i, gap) in numbers.gap.iter().enumerate() {
-        z[i] -= gap;
-    }
-    z
 }
 
 fn end_forces(ends: crate::fem::EndForces) -> EndForces {

@@ -45,7 +45,7 @@ impl Prepared {
     ) -> Result<AlongLoad, SolveError> {
         // Joints in force form start from gaps that fit, so none may be forced either.
         let forced = system.force_form.is_some();
-        if numbers.gap.iter().any(|gap| *gap > 0.0 || forced && *gap != 0.0) {
+        if numbers.gaps().any(|gap| gap > 0.0 || forced && gap != 0.0) {
             return Ok(AlongLoad::NotTried);
         }
         let mut rest = numbers.clone();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::finish::{dislocation, named};
+use super::finish::named;
 use super::prepared::{Geometry, Prepared};
 use super::warm::WarmSlot;
 use crate::answer::pairs::{JointState, joint_state, pair_states};
@@ -111,7 +111,7 @@ impl Solved {
             return None;
         };
         let state = self.state_at(prepared, step)?;
-        Some(named(structure, &main.displacements(factors, &dislocation(numbers, &state.z))))
+        Some(named(structure, &main.displacements(factors, &numbers.dislocation(&state.z))))
     }
 
     /// z and w of a bare LCP after pivot `step`.

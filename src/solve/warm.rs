@@ -12,7 +12,6 @@ use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
-use crate::model::pair::Law;
 use crate::watch::Watch;
 
 /// A path with more pivots than this is no shorter than a cold run.
@@ -51,7 +50,7 @@ pub struct WarmPoint {
 impl WarmStart {
     /// Keeps the dictionary of an answer just found.
     pub fn new(engine: Parametric, contact: ContactLcp, numbers: ContactNumbers) -> WarmStart {
-        let extra = vec![0.0; numbers.friction.len()];
+        let extra = vec![0.0; numbers.laws.len()];
         WarmStart { engine, contact, numbers, extra }
     }
 
@@ -76,11 +75,7 @@ impl WarmStart {
                 q[row] = load[i] / unit;
             }
             if let (Some(row), Some(joint)) = (self.contact.plus_row[i], pair.tangential) {
-                let given = match pair.law {
-                    Law::Bound { .. } => numbers.bound[i],
-                    _ => numbers.cohesion[i],
-                };
-                let constant = (given + extra[i]) / unit;
+                let constant = (numbers.laws[i].fixed_bound() + extra[i]) / unit;
                 q[row] = load[joint] / unit + self.contact.friction[i] * (load[i] / unit) + constant;
                 constants[row] = 2.0 * constant;
             }
@@ -137,8 +132,9 @@ impl WarmStart {
             return None;
         }
         let length_unit = self.contact.length_unit;
-        let change: Vec<f64> = to.friction.iter().zip(&self.contact.friction).map(|(to, from)| to - from).collect();
-        if change.iter().zip(&to.friction).any(|(change, f)| change.abs() > FRICTION_REACH * f) {
+        let frictions = to.frictions();
+        let change: Vec<f64> = frictions.iter().zip(&self.contact.friction).map(|(to, from)| to - from).collect();
+        if change.iter().zip(&frictions).any(|(change, f)| change.abs() > FRICTION_REACH * f) {
             return None;
         }
         if change.iter().all(|change| *change == 0.0) {

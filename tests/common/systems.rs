@@ -1,6 +1,7 @@
 //! Contact systems made from R and a load.
 
 use nalgebra::{DMatrix, DVector};
+use stickslip::contact::law::PairLaw;
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
 use stickslip::model::pair::Law;
@@ -13,15 +14,7 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> (C
     let pairs = (0..m)
         .map(|i| ContactPair { id: format!("c{}", i + 1), law: law.clone(), position: None, tangential: Some(m + i) })
         .collect();
-    let numbers = ContactNumbers {
-        friction: vec![friction; m],
-        cohesion: vec![0.0; m],
-        gap: vec![0.0; m],
-        bound: vec![0.0; m],
-        load: load.clone(),
-        load_terms: load.abs(),
-        file_load: None,
-    };
+    let numbers = ContactNumbers::exactly(vec![PairLaw::rubbing(friction, 0.0, 0.0); m], load.clone());
     let system = ContactSystem {
         pairs,
         stiffness,

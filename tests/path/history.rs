@@ -9,7 +9,6 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::answer::record::{PairState, Verdict};
 use stickslip::model::load::load_text;
-use stickslip::model::pair::Law;
 use stickslip::path::stages::{History, HistoryEnd, Moment, StageResult, follow};
 use stickslip::solve::numbers::contact_numbers;
 use stickslip::solve::{Prepared, prepare};
@@ -38,10 +37,10 @@ impl Data {
         let pairs = system.pairs.iter().enumerate().map(|(i, pair)| Pair {
             normal: i,
             tangential: pair.tangential,
-            friction: numbers.friction[i],
-            constant: numbers.cohesion[i] + numbers.bound[i],
-            gap: numbers.gap[i],
-            opens: !matches!(pair.law, Law::Bound { .. }),
+            friction: numbers.laws[i].friction(),
+            constant: numbers.laws[i].fixed_bound(),
+            gap: numbers.laws[i].gap(),
+            opens: !pair.law.is_bilateral(),
         });
         Data {
             r: system.stiffness.clone(),

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use stickslip::contact::law::PairLaw;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::load_path::{order, path_lcp};
 use stickslip::contact::numbers::ContactNumbers;
@@ -33,8 +34,9 @@ fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, 
     let load = DVector::from_fn(n, |_, _| number(rng, ties));
     let friction = if ties { 0.25 } else { rng.random_range(0.0..0.4) };
     let (system, mut numbers) = coulomb(stiffness, load, friction);
-    numbers.cohesion = vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m];
-    numbers.gap = vec![if rng.random_bool(0.3) { 0.1 } else { 0.0 }; m];
+    let cohesion = if rng.random_bool(0.3) { 0.1 } else { 0.0 };
+    let gap = if rng.random_bool(0.3) { 0.1 } else { 0.0 };
+    numbers.laws = vec![PairLaw::rubbing(friction, cohesion, gap); m];
     (system, numbers)
 }
 
@@ -103,8 +105,8 @@ fn warm_starts_follow_friction_to_the_answers_of_cold_runs() {
         let (_, _, mut kept) = cold(&system, &numbers);
         for step in 0..6 {
             let factor = rng.random_range(0.97..1.03);
-            for f in &mut numbers.friction {
-                *f *= factor;
+            for law in &mut numbers.laws {
+                *law = law.with_friction(law.friction() * factor);
             }
             if step % 2 == 1 {
                 for load in numbers.load.iter_mut() {

@@ -12,11 +12,8 @@ use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::model::pair::Law;
-
-use crate::contact::full_lcp::tangential_joint;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
-use crate::contact::system::ContactSystem;
+use crate::contact::system::{ContactPair, ContactSystem};
 
 /// Most pairs for which all choices of states are examined.
 pub const EXACT_PAIRS: usize = 8;
@@ -68,7 +65,7 @@ enum Root {
 }
 
 /// Smallest parameter s ≥ 0 at which uniqueness may end. `friction` gives f of every pair for a parameter value; it must
-/// be affine in it (each f is the parameter, a multiple of it, or a constant). Only the f of Coulomb pairs are read.
+/// be affine in it (each f is the parameter, a multiple of it, or a constant). Only the f of pairs that open are read.
 /// Up to [`EXACT_PAIRS`] pairs all choices are examined, beyond `samples` blocks drawn with `seed`. `observer` hears the
 /// number of blocks examined and may stop the search.
 pub fn critical_friction(
@@ -91,6 +88,17 @@ pub fn critical_friction(
         examined,
         singular: search.singular,
         complete,
+    }
+}
+
+/// The states of a pair. The sign of a slip without friction, or under a known bound, does not matter.
+fn choices(pair: &ContactPair, is_smooth: bool) -> Vec<PairScheme> {
+    let slip = PairScheme::SLIP_PLUS;
+    match pair.tangential {
+        None => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
+        Some(_) if pair.law.is_bilateral() => vec![PairScheme::STICK, slip],
+        Some(_) if is_smooth => vec![PairScheme::STICK, slip, PairScheme::OPEN],
+        Some(_) => vec![PairScheme::STICK, PairScheme::OPEN, slip, PairScheme::SLIP_MINUS],
     }
 }
 
@@ -127,27 +135,18 @@ impl<'a> Search<'a> {
         });
         let (at_0, at_1) = (friction(0.0), friction(1.0));
         let m = system.pair_count();
-        let ratio = |pair: usize| match system.pairs[pair].law {
-            Law::Coulomb { .. } => root[pair] / root[tangential_joint(system, pair)],
-            Law::Frictionless { .. } | Law::Bound { .. } => 0.0,
+        // The friction of a pair that never opens does not hang on x_n.
+        let ratio = |pair: usize| match system.pairs[pair].tangential {
+            Some(joint) if !system.pairs[pair].law.is_bilateral() => root[pair] / root[joint],
+            _ => 0.0,
         };
-        let slips = [PairScheme::SLIP_PLUS, PairScheme::SLIP_MINUS];
+        let is_smooth = |pair: usize| at_0[pair] == 0.0 && at_1[pair] == 0.0;
         Self {
             system,
             scaled,
             base: (0..m).map(|i| at_0[i] * ratio(i)).collect(),
             growth: (0..m).map(|i| (at_1[i] - at_0[i]) * ratio(i)).collect(),
-            choices: (0..m)
-                .map(|pair| match system.pairs[pair].law {
-                    Law::Frictionless { .. } => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
-                    Law::Bound { .. } => vec![PairScheme::STICK, PairScheme::SLIP_PLUS],
-                    Law::Coulomb { .. } if at_0[pair] == 0.0 && at_1[pair] == 0.0 => {
-                        // The sign of a slip without friction does not matter.
-                        vec![PairScheme::STICK, PairScheme::SLIP_PLUS, PairScheme::OPEN]
-                    }
-                    Law::Coulomb { .. } => [PairScheme::STICK, PairScheme::OPEN].into_iter().chain(slips).collect(),
-                })
-                .collect(),
+            choices: (0..m).map(|pair| choices(&system.pairs[pair], is_smooth(pair))).collect(),
             observer,
             best: None,
             examined: 0,

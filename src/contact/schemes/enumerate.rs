@@ -13,19 +13,17 @@ use std::ops::ControlFlow;
 use nalgebra::DVector;
 use num_rational::BigRational;
 
-use crate::lcp::exact::all_solutions::Solutions;
-use crate::lcp::exact::corners::corners;
-use crate::lcp::exact::dyadic::{nearest, rational};
-use crate::lcp::exact::polyhedron::{Polyhedron, State};
-use crate::model::pair::Law;
-
-use crate::contact::full_lcp::{fixed_bound, friction, tangential_joint};
+use crate::contact::law::{PairLaw, TangentialJoint};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::ball::{Ball, Row, size, solved};
 use crate::contact::schemes::bounding_box::ellipsoid;
 use crate::contact::schemes::exact_system::{ExactSystem, PairVariables};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
+use crate::lcp::exact::all_solutions::Solutions;
+use crate::lcp::exact::corners::corners;
+use crate::lcp::exact::dyadic::{nearest, rational};
+use crate::lcp::exact::polyhedron::{Polyhedron, State};
 
 /// Undecided pairs from which on the exact linear program pays: without a box, when balls cut little.
 const WORTH: usize = 3;
@@ -99,15 +97,15 @@ pub struct Progress {
 }
 
 /// The states that a pair can be in.
-fn choices(system: &ContactSystem, numbers: &ContactNumbers, pair: usize) -> Vec<PairScheme> {
+fn choices(law: &PairLaw) -> Vec<PairScheme> {
     let closed = [PairScheme::STICK, PairScheme::SLIP_PLUS, PairScheme::SLIP_MINUS];
-    match system.pairs[pair].law {
-        Law::Frictionless { .. } => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
-        Law::Bound { .. } => closed.to_vec(),
-        Law::Coulomb { .. } if numbers.cohesion[pair] > 0.0 => {
+    match law.tangential {
+        TangentialJoint::Free => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
+        TangentialJoint::Bounded { .. } if law.is_bilateral() => closed.to_vec(),
+        TangentialJoint::Bounded { fixed, .. } if fixed > 0.0 => {
             closed.into_iter().chain(closed.map(|scheme| PairScheme { open: true, ..scheme })).collect()
         }
-        Law::Coulomb { .. } => closed.into_iter().chain([PairScheme::OPEN]).collect(),
+        TangentialJoint::Bounded { .. } => closed.into_iter().chain([PairScheme::OPEN]).collect(),
     }
 }
 
@@ -164,9 +162,7 @@ impl<'a> Search<'a> {
         let mut offsets = vec![0];
         for pair in 0..m {
             joints.push(pair);
-            if !matches!(system.pairs[pair].law, Law::Frictionless { .. }) {
-                joints.push(tangential_joint(system, pair));
-            }
+            joints.extend(system.pairs[pair].tangential);
             offsets.push(joints.len());
         }
         let exact = ExactSystem::new(system, numbers);
@@ -197,7 +193,7 @@ impl<'a> Search<'a> {
             joints,
             bounds,
             worth,
-            choices: (0..m).map(|pair| choices(system, numbers, pair)).collect(),
+            choices: numbers.laws.iter().map(choices).collect(),
             root: Level { first: 0, rows },
             solutions: Solutions::default(),
             schemes: Vec::new(),
@@ -279,7 +275,7 @@ impl<'a> Search<'a> {
         };
         for (pair, chosen) in scheme.iter().enumerate().skip(decided) {
             if state == State::Feasible {
-                let holds = fixed_bound(self.exact.system, self.exact.numbers, pair) > 0.0;
+                let holds = self.exact.numbers.laws[pair].fixed_bound() > 0.0;
                 state = self.variables[pair].impose(&mut polyhedron, *chosen, holds, &mut go_on);
             }
         }
@@ -292,13 +288,13 @@ impl<'a> Search<'a> {
 
     /// The dictionary with this pair decided; `None` when a pivot may be zero.
     fn decide(&self, level: &Level, pair: usize, choice: PairScheme) -> Option<Level> {
-        let (system, numbers) = (self.exact.system, self.exact.numbers);
+        let numbers = self.exact.numbers;
         let k = self.joints.len();
         let width = k + 1 - level.first;
         let n = self.offsets[pair];
         let next = self.offsets[pair + 1];
         let row = |i: usize| &level.rows[i * width..(i + 1) * width];
-        let f = Ball::exactly(friction(system, numbers, pair));
+        let f = Ball::exactly(numbers.laws[pair].friction());
 
         // Equations to be solved for the displacement of a joint.
         let mut equations: Vec<(usize, Row)> = Vec::new();
@@ -311,7 +307,7 @@ impl<'a> Search<'a> {
             let f = if choice.open { Ball::ZERO } else { f };
             let sign = |ball: Ball| if slip > 0.0 { ball } else { ball.negative() };
             let mut equation: Row = row(n + 1).iter().zip(row(n)).map(|(t, n)| t.plus(sign(f.times(*n)))).collect();
-            let bound = Ball::exactly(fixed_bound(system, numbers, pair));
+            let bound = Ball::exactly(numbers.laws[pair].fixed_bound());
             equation[width - 1] = equation[width - 1].plus(sign(bound));
             equations.push((n + 1, equation));
         }
@@ -396,8 +392,8 @@ impl<'a> Search<'a> {
         };
         scheme.iter().enumerate().any(|(pair, state)| {
             let n = self.offsets[pair];
-            let bilateral = matches!(system.pairs[pair].law, Law::Bound { .. });
-            let fixed = fixed_bound(system, numbers, pair);
+            let bilateral = system.pairs[pair].law.is_bilateral();
+            let fixed = numbers.laws[pair].fixed_bound();
             // z_n where open, x_n where closed.
             if !bilateral && fails(&[(n, 1.0)], 0.0) {
                 return true;
@@ -409,7 +405,7 @@ impl<'a> Search<'a> {
                 // An open pair without cohesion slips freely.
                 _ if state.open && fixed == 0.0 => false,
                 Tangential::Stick => [1.0, -1.0].into_iter().any(|side| {
-                    let f = if state.open { 0.0 } else { friction(system, numbers, pair) };
+                    let f = if state.open { 0.0 } else { numbers.laws[pair].friction() };
                     fails(&[(n, f), (n + 1, side)], fixed)
                 }),
                 Tangential::SlipPlus => fails(&[(n + 1, 1.0)], 0.0),
@@ -475,7 +471,7 @@ impl<'a> Search<'a> {
         let mut scheme = scheme.to_vec();
         for (pair, chosen) in scheme.iter_mut().enumerate() {
             if *chosen == PairScheme::OPEN
-                && fixed_bound(self.exact.system, self.exact.numbers, pair) == 0.0
+                && self.exact.numbers.laws[pair].fixed_bound() == 0.0
                 && self.exact.system.pairs[pair].tangential.is_some_and(|joint| state.z[joint] < 0.0)
             {
                 chosen.tangential = Tangential::SlipMinus;

@@ -13,6 +13,7 @@ use crate::lcp::driver::run;
 use crate::lcp::exact::scalar::Scalar;
 use crate::lcp::exact::tableau::Tableau;
 use crate::lcp::outcome::Outcome;
+use crate::model::pair::Law;
 use crate::model::rules::Covering;
 
 fn all(system: &ContactSystem, numbers: &ContactNumbers) -> Enumeration {
@@ -117,8 +118,8 @@ fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64
         let value = value.to_f64();
         match row.couple {
             RowKind::Normal => z[row.pair] += value,
-            RowKind::Plus => z[tangential_joint(system, row.pair)] += value,
-            RowKind::Minus => z[tangential_joint(system, row.pair)] -= value,
+            RowKind::Plus => z[crate::contact::full_lcp::tangential_joint(system, row.pair)] += value,
+            RowKind::Minus => z[crate::contact::full_lcp::tangential_joint(system, row.pair)] -= value,
         }
     }
     Some(z)
@@ -143,10 +144,10 @@ fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -
     let f = [0.25, 0.5, 1.0, 3.0][random.random_range(0..4)];
     let mut numbers = plain(f, &load);
     if random.random_bool(0.3) {
-        numbers.cohesion[0] = 1.0;
+        numbers.laws[0] = numbers.laws[0].with_fixed_bound(1.0);
     }
     if random.random_bool(0.3) {
-        numbers.gap[m - 1] = 0.5;
+        numbers.laws[m - 1] = numbers.laws[m - 1].with_gap(0.5);
     }
     (coulomb(r), numbers)
 }
@@ -196,15 +197,17 @@ fn random_mixture(random: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSyst
             0 => {
                 system.pairs[pair].law = Law::Frictionless { gap: zero.clone() };
                 system.pairs[pair].tangential = None;
-                (numbers.friction[pair], numbers.cohesion[pair]) = (0.0, 0.0);
+                numbers.laws[pair] = PairLaw::smooth(numbers.laws[pair].gap());
                 continue;
             }
             1 => {
                 system.pairs[pair].law = Law::Bound { bound: zero.clone() };
-                numbers.bound[pair] = f64::from(random.random_range(0..3));
-                (numbers.friction[pair], numbers.cohesion[pair], numbers.gap[pair]) = (0.0, 0.0, 0.0);
+                numbers.laws[pair] = PairLaw::bilateral(f64::from(random.random_range(0..3)));
             }
-            _ => numbers.cohesion[pair] = f64::from(random.random_range(0..2)),
+            _ => {
+                let cohesion = f64::from(random.random_range(0..2));
+                numbers.laws[pair] = numbers.laws[pair].with_fixed_bound(cohesion);
+            }
         }
         keep.push(m + pair);
     }
@@ -234,7 +237,7 @@ fn a_bound_of_1e9_hides_nothing() {
     let mut system = coulomb(DMatrix::identity(4, 4));
     system.pairs[1].law = Law::Bound { bound: crate::model::parameter::Number::Value(1e9) };
     let mut numbers = plain(0.3, &[-1.0, 1.0, 0.5, 0.25]);
-    (numbers.bound[1], numbers.friction[1]) = (1e9, 0.0);
+    numbers.laws[1] = PairLaw::bilateral(1e9);
     let got = all(&system, &numbers);
     assert_eq!(got.answers.len(), 1, "{got:?}");
     assert_eq!(got.answers[0].state.z, DVector::from_row_slice(&[1.0, 0.0, -0.5, 0.0]));
@@ -260,7 +263,7 @@ fn bounds_gaps_and_stiffnesses_of_any_size_leave_one_answer_in_a_diagonal_system
         let mut numbers = plain(0.25, &load);
         for pair in (0..m).filter(|pair| pair % 2 == 1) {
             system.pairs[pair].law = Law::Bound { bound: crate::model::parameter::Number::Value(bounds[pair]) };
-            (numbers.bound[pair], numbers.friction[pair]) = (bounds[pair], 0.0);
+            numbers.laws[pair] = PairLaw::bilateral(bounds[pair]);
         }
         let got = all(&system, &numbers);
         assert_eq!(got.answers.len(), 1, "case {case}: {got:?}");
@@ -298,7 +301,7 @@ fn ten_pairs() {
     for (loose, cohesive) in [(0, false), (0, true), (3, false)] {
         let (system, mut numbers) = random_problem(&mut random, 10, false, loose);
         if cohesive {
-            numbers.cohesion.fill(0.5);
+            numbers.laws.iter_mut().for_each(|law| *law = law.with_fixed_bound(0.5));
         }
         let start = std::time::Instant::now();
         let got = all(&system, &numbers);

@@ -12,14 +12,12 @@ use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution, clear_denominators};
-use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
-use crate::model::pair::Law;
-
-use crate::contact::full_lcp::{fixed_bound, friction, tangential_joint};
+use crate::contact::full_lcp::tangential_joint;
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
+use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution, clear_denominators};
+use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
 
 /// A quantity of a pair that must not be negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -156,7 +154,7 @@ impl<'a> Data<'a> {
 fn constants(matrix: &DMatrix<f64>, load: &DVector<f64>, numbers: &ContactNumbers) -> Vec<BigRational> {
     let exact = <BigRational as Scalar>::from_f64;
     let gaps: Vec<(usize, BigRational)> =
-        numbers.gap.iter().enumerate().filter(|(_, gap)| **gap != 0.0).map(|(k, gap)| (k, exact(*gap))).collect();
+        numbers.gaps().enumerate().filter(|(_, gap)| *gap != 0.0).map(|(k, gap)| (k, exact(gap))).collect();
     (0..matrix.nrows())
         .map(|i| gaps.iter().fold(exact(load[i]), |sum, (k, gap)| sum - exact(matrix[(i, *k)]) * gap))
         .collect()
@@ -187,9 +185,9 @@ impl Forms<'_> {
 
     /// x⁺ (side 1) or x⁻ (side −1).
     fn reserve(&self, pair: usize, side: f64) -> Form {
-        let f = friction(self.system, self.numbers, pair);
+        let f = self.numbers.laws[pair].friction();
         let tangential = self.data.row[tangential_joint(self.system, pair)];
-        self.form(&[(tangential, side), (self.data.row[pair], f)], fixed_bound(self.system, self.numbers, pair))
+        self.form(&[(tangential, side), (self.data.row[pair], f)], self.numbers.laws[pair].fixed_bound())
     }
 }
 
@@ -201,11 +199,8 @@ pub fn exact_check(
     scheme: &[PairScheme],
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ExactCheck {
-    let opens = |pair: usize| scheme[pair].open && !matches!(system.pairs[pair].law, Law::Bound { .. });
-    let slip = |pair: usize| match system.pairs[pair].law {
-        Law::Frictionless { .. } => 0.0,
-        Law::Coulomb { .. } | Law::Bound { .. } => scheme[pair].tangential.sign(),
-    };
+    let opens = |pair: usize| scheme[pair].open && !system.pairs[pair].law.is_bilateral();
+    let slip = |pair: usize| system.pairs[pair].tangential.map_or(0.0, |_| scheme[pair].tangential.sign());
     let m = system.pair_count();
     let normals = (0..m).filter(|pair| opens(*pair));
     let tangentials = (0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| tangential_joint(system, pair));
@@ -298,14 +293,14 @@ impl Signs<'_> {
     }
 
     fn pair(&mut self, pair: usize, open: bool, slip: f64, tangential: Tangential) {
-        let law = &self.system.pairs[pair].law;
+        let of = &self.system.pairs[pair];
         if open {
             self.tell(pair, Quantity::Zn, self.displacement(pair));
-        } else if !matches!(law, Law::Bound { .. }) {
+        } else if !of.law.is_bilateral() {
             let x_n = self.value(&self.forms.normal(pair));
             self.tell(pair, Quantity::Xn, x_n);
         }
-        if matches!(law, Law::Frictionless { .. }) {
+        if of.tangential.is_none() {
             return;
         }
         let plus = (tangential != Tangential::SlipPlus).then(|| self.value(&self.forms.reserve(pair, 1.0)));

@@ -8,9 +8,7 @@ use num_traits::{One, Zero};
 use crate::lcp::exact::dyadic::{WholeRows, rational};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
 use crate::lcp::exact::rational_solve::rank_modulo_prime;
-use crate::model::pair::Law;
 
-use crate::contact::full_lcp::{fixed_bound, friction};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
@@ -42,9 +40,8 @@ impl<'a> ExactSystem<'a> {
     pub fn new(system: &'a ContactSystem, numbers: &'a ContactNumbers) -> Self {
         let (stored, mut constants) = stored(system, numbers);
         let stiffness = with_exact_kernel(system, stored);
-        let gaps = numbers.gap.iter().enumerate().filter(|(_, gap)| **gap != 0.0);
-        for (k, gap) in gaps {
-            let gap = rational(*gap);
+        for (k, gap) in numbers.gaps().enumerate().filter(|(_, gap)| *gap != 0.0) {
+            let gap = rational(gap);
             constants.iter_mut().zip(&stiffness).for_each(|(constant, row)| *constant -= &row[k] * &gap);
         }
         Self { system, numbers, stiffness, constants }
@@ -63,7 +60,7 @@ impl<'a> ExactSystem<'a> {
             .enumerate()
             .map(|(i, pair)| PairVariables {
                 z_n: i,
-                x_n: (!matches!(pair.law, Law::Bound { .. })).then(&mut take),
+                x_n: (!pair.law.is_bilateral()).then(&mut take),
                 tangential: pair.tangential.map(|joint| [joint, take(), take()]),
             })
             .collect()
@@ -75,8 +72,7 @@ impl<'a> ExactSystem<'a> {
         let k = self.system.joint_count();
         let mut rows = WholeRows::default();
         for i in 0..self.system.pair_count() {
-            let law = &self.system.pairs[i].law;
-            if !matches!(law, Law::Bound { .. }) {
+            if !self.system.pairs[i].law.is_bilateral() {
                 rows.push_rational(&self.form(i, None));
             }
             if self.system.pairs[i].tangential.is_some() {
@@ -98,7 +94,7 @@ impl<'a> ExactSystem<'a> {
         let mut made = Polyhedron::new(k, rows, &slips);
         let mut state = made.restore(go_on);
         for i in 0..self.system.pair_count() {
-            if matches!(self.system.pairs[i].law, Law::Bound { .. }) && state == State::Feasible {
+            if self.system.pairs[i].law.is_bilateral() && state == State::Feasible {
                 state = made.fix(i, go_on);
             }
         }
@@ -111,7 +107,7 @@ impl<'a> ExactSystem<'a> {
         let Some((plus, joint)) = reserve.zip(self.system.pairs[pair].tangential) else {
             return whole(pair).cloned().collect();
         };
-        let f = rational(friction(self.system, self.numbers, pair));
+        let f = rational(self.numbers.laws[pair].friction());
         let mut row: Vec<BigRational> = whole(joint)
             .zip(whole(pair))
             .map(|(t, n)| {
@@ -120,7 +116,7 @@ impl<'a> ExactSystem<'a> {
             })
             .collect();
         if let Some(constant) = row.last_mut() {
-            *constant += rational(fixed_bound(self.system, self.numbers, pair));
+            *constant += rational(self.numbers.laws[pair].fixed_bound());
         }
         row
     }

@@ -6,7 +6,6 @@ use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::fem::{Displacements, Loaded};
 use crate::solve::Prepared;
-use crate::solve::finish::dislocation;
 use crate::solve::prepared::Geometry;
 
 /// D = −Σ ½ (x_τa + x_τb) Δz_τ of a stage.
@@ -30,7 +29,7 @@ pub(super) fn balance(prepared: &Prepared, numbers: &ContactNumbers, history: &m
     let Geometry::Structure { main, .. } = &*prepared.geometry else {
         return;
     };
-    let displacements = |moment: &Moment| main.displacements(&moment.factors, &dislocation(numbers, &moment.state.z));
+    let displacements = |moment: &Moment| main.displacements(&moment.factors, &numbers.dislocation(&moment.state.z));
     let (mut largest, mut work, mut dissipated) = (0.0_f64, 0.0_f64, 0.0_f64);
     let mut of_stage = |stage: &StageResult| {
         let mut energy = Energy::default();

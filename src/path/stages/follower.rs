@@ -32,7 +32,7 @@ impl<'a> Place<'a> {
     /// Without loads, interfering parts apart.
     pub(super) fn unloaded(prepared: &'a Prepared, laws: Laws<'a>, watch: &'a dyn Watch) -> Place<'a> {
         let factors = vec![0.0; prepared.cases.len()];
-        let gaps = laws.numbers.gap.iter().map(|gap| gap.max(0.0)).collect();
+        let gaps = laws.numbers.gaps().map(|gap| gap.max(0.0)).collect();
         Place { prepared, laws, watch, factors, gaps, way: Vec::new() }
     }
 }
@@ -68,7 +68,7 @@ pub(super) trait Follower<'a> {
     /// Puts parts with interference (gaps below 0) together.
     fn put_together(&mut self) -> Result<(), PathError> {
         let Place { laws, factors, gaps, .. } = self.place();
-        let own = laws.numbers.gap.clone();
+        let own: Vec<f64> = laws.numbers.gaps().collect();
         if own.iter().all(|gap| *gap >= 0.0) {
             return Ok(());
         }

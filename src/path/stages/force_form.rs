@@ -207,7 +207,7 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
     }
 
     fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
-        let mut numbers = ContactNumbers { gap: gaps.to_vec(), ..self.place.laws.numbers.clone() };
+        let mut numbers = self.place.laws.numbers.with_gaps(gaps);
         numbers.set_load(DVector::zeros(self.place.laws.system.joint_count()));
         for (load, factor) in self.place.laws.system.loads.iter().zip(factors) {
             numbers.add_load(*factor, &load.vector, &load.terms);

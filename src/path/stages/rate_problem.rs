@@ -391,7 +391,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
     ContactLcp {
         swapped: vec![false; rows.len()],
         lcp: Arc::new(lcp),
-        friction: laws.numbers.friction.clone(),
+        friction: laws.numbers.frictions(),
         rows,
         force_unit,
         length_unit: force_unit / stiffness_unit,

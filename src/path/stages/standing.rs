@@ -6,7 +6,6 @@ use crate::answer::record::{PairState, State};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
-use crate::model::pair::Law;
 
 /// A direction of slip; x^σ = bound + σ x_τ is the reserve that it uses up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,12 +81,12 @@ pub(super) struct Laws<'a> {
 
 impl Laws<'_> {
     pub(super) fn friction(&self, pair: usize) -> f64 {
-        self.numbers.friction[pair]
+        self.numbers.laws[pair].friction()
     }
 
-    /// What the bound has besides f x_n: c, or the whole bound of the law `bound`.
+    /// What the bound has besides f x_n.
     pub(super) fn constant(&self, pair: usize) -> f64 {
-        self.numbers.cohesion[pair] + self.numbers.bound[pair]
+        self.numbers.laws[pair].fixed_bound()
     }
 
     /// λ = R z + load, afresh.
@@ -142,7 +141,7 @@ impl Standing {
     pub(super) fn unloaded(laws: Laws<'_>) -> Standing {
         let joints = laws.system.joint_count();
         let mut z = DVector::zeros(joints);
-        for (i, gap) in laws.numbers.gap.iter().enumerate() {
+        for (i, gap) in laws.numbers.gaps().enumerate() {
             z[i] = gap.max(0.0);
         }
         let pairs = laws.system.pair_count();
@@ -188,7 +187,7 @@ impl Standing {
         let lengths = laws.length_sizes(&self.scale, &self.z);
         self.length_sizes.zip_apply(&lengths, |most, now| *most = f64::max(*most, now));
         for (i, pair) in system.pairs.iter().enumerate() {
-            self.normal[i] = if matches!(pair.law, Law::Bound { .. }) {
+            self.normal[i] = if pair.law.is_bilateral() {
                 Normal::Bilateral
             } else if self.z[i] > NOISE * self.length_sizes[i] && !reached.contains(&Reached::Closing(i)) {
                 Normal::Open

@@ -216,7 +216,7 @@ impl<'a> Follower<'a> for Walk<'a> {
     }
 
     fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
-        let mut numbers = ContactNumbers { gap: gaps.to_vec(), ..self.place.laws.numbers.clone() };
+        let mut numbers = self.place.laws.numbers.with_gaps(gaps);
         numbers.load.fill(0.0);
         for (load, factor) in self.place.laws.system.loads.iter().zip(factors) {
             numbers.load.axpy(*factor, &load.vector, 1.0);

@@ -1,0 +1,155 @@
+//! The law of a pair, resolved: what its two joints can do, in numbers.
+//!
+//! ```text
+//!   normal joint       unilateral: x_n ≥ 0 ⟂ z_n ≥ 0, which starts at the gap g;   bilateral: z_n = 0
+//!   tangential joint   free: x_τ = 0;   bounded: |x_τ| ≤ f x_n + c
+//! ```
+//! Which word a file has for this is known to the decoder and to the report of the law; a known friction bound r_f is
+//! f = 0 and c = r_f. The direction of friction is one of a list of facets (method §7): a pair in the plane has two.
+
+use crate::model::pair::Law;
+use crate::model::parameter::Number;
+use crate::model::rules::Covering;
+
+/// Unit vectors d_k of the tangential directions in which a pair can slip, as components along t: its reserves are
+/// x^k = f x_n + c + d_k x_τ, its slips ζ_k ≥ 0 make z_τ = Σ ζ_k d_k. Facet 0 is that of x⁺ and z⁺, facet 1 its mirror.
+pub const FACETS: [f64; 2] = [1.0, -1.0];
+
+/// What a pair can do along n.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NormalJoint {
+    /// It opens: z_n ≥ 0 is the distance, which is `gap` where nothing moves. A gap < 0 is an interference.
+    Unilateral {
+        /// g, a length.
+        gap: f64,
+    },
+    /// It holds both ways: z_n = 0, x_n has any sign.
+    Bilateral,
+}
+
+/// What a pair can do along t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TangentialJoint {
+    /// x_τ = 0. The main system has no such joint.
+    Free,
+    /// |x_τ| ≤ f x_n + c.
+    Bounded {
+        /// f ≥ 0.
+        friction: f64,
+        /// c ≥ 0, a force.
+        fixed: f64,
+    },
+}
+
+/// The law of a pair with its numbers; or the rates of these numbers, when a parameter moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairLaw {
+    /// Along n.
+    pub normal: NormalJoint,
+    /// Along t.
+    pub tangential: TangentialJoint,
+}
+
+impl PairLaw {
+    /// The law of a file, its numbers as `value` reads them.
+    pub fn of(law: &Law, value: &dyn Fn(&Number) -> f64) -> PairLaw {
+        match law {
+            Law::Coulomb { friction, cohesion, gap } => PairLaw::rubbing(value(friction), value(cohesion), value(gap)),
+            Law::Frictionless { gap } => PairLaw::smooth(value(gap)),
+            Law::Bound { bound } => PairLaw::bilateral(value(bound)),
+        }
+    }
+
+    /// A unilateral pair that rubs: f, c and g.
+    pub fn rubbing(friction: f64, fixed: f64, gap: f64) -> PairLaw {
+        PairLaw { normal: NormalJoint::Unilateral { gap }, tangential: TangentialJoint::Bounded { friction, fixed } }
+    }
+
+    /// A unilateral pair that slips freely: g.
+    pub fn smooth(gap: f64) -> PairLaw {
+        PairLaw { normal: NormalJoint::Unilateral { gap }, tangential: TangentialJoint::Free }
+    }
+
+    /// A pair that never opens and slips under a known force.
+    pub fn bilateral(fixed: f64) -> PairLaw {
+        PairLaw { normal: NormalJoint::Bilateral, tangential: TangentialJoint::Bounded { friction: 0.0, fixed } }
+    }
+
+    /// Whether the pair never opens.
+    pub fn is_bilateral(&self) -> bool {
+        self.normal == NormalJoint::Bilateral
+    }
+
+    /// g; 0 where the pair never opens.
+    pub fn gap(&self) -> f64 {
+        match self.normal {
+            NormalJoint::Unilateral { gap } => gap,
+            NormalJoint::Bilateral => 0.0,
+        }
+    }
+
+    /// The law with another gap, where it has one.
+    #[must_use]
+    pub fn with_gap(mut self, gap: f64) -> PairLaw {
+        if let NormalJoint::Unilateral { gap: own } = &mut self.normal {
+            *own = gap;
+        }
+        self
+    }
+
+    /// f; 0 without friction.
+    pub fn friction(&self) -> f64 {
+        match self.tangential {
+            TangentialJoint::Bounded { friction, .. } => friction,
+            TangentialJoint::Free => 0.0,
+        }
+    }
+
+    /// The part of the friction bound that does not hang on x_n: c, a force.
+    pub fn fixed_bound(&self) -> f64 {
+        match self.tangential {
+            TangentialJoint::Bounded { fixed, .. } => fixed,
+            TangentialJoint::Free => 0.0,
+        }
+    }
+
+    /// The law with another f, where its bound hangs on x_n.
+    #[must_use]
+    pub fn with_friction(mut self, friction: f64) -> PairLaw {
+        if let (NormalJoint::Unilateral { .. }, TangentialJoint::Bounded { friction: own, .. }) =
+            (self.normal, &mut self.tangential)
+        {
+            *own = friction;
+        }
+        self
+    }
+
+    /// The law with another c, where it has a bound.
+    #[must_use]
+    pub fn with_fixed_bound(mut self, fixed: f64) -> PairLaw {
+        if let TangentialJoint::Bounded { fixed: own, .. } = &mut self.tangential {
+            *own = fixed;
+        }
+        self
+    }
+
+    /// d_τ: the entry of the covering in the rows of the reserves; d_n is 1 (method §4).
+    pub fn covering(&self, covering: Covering) -> f64 {
+        match covering {
+            _ if self.is_bilateral() => 1.0,
+            Covering::Ones => 1.0,
+            Covering::Cohesive => 1.0 + self.friction(),
+            Covering::Weight => self.friction(),
+        }
+    }
+
+    /// 2 (d_τ − f d_n): what both reserves together are covered by, without the rounding of the difference.
+    pub fn covering_of_both(&self, covering: Covering) -> f64 {
+        match covering {
+            _ if self.is_bilateral() => 2.0,
+            Covering::Cohesive => 2.0,
+            Covering::Ones => 2.0 * (1.0 - self.friction()),
+            Covering::Weight => 0.0,
+        }
+    }
+}
