@@ -210,7 +210,7 @@ fn pair_state(
     };
     PairState {
         id: pair.id.clone(),
-        law: pair.law.name(),
+        law: pair.law.kind(),
         state: word,
         held,
         x_n: x_n.cleaned(),

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 pub use super::attempt::{Attempt, AttemptRules};
 use crate::fem::Piece;
+use crate::model::pair::LawKind;
 use crate::model::uses::Redone;
 
 /// How the run ended, as the user reads it.
@@ -202,7 +203,7 @@ pub struct PairState {
     /// Pair id.
     pub id: String,
     /// `coulomb`, `frictionless`, `bound`.
-    pub law: &'static str,
+    pub law: LawKind,
     /// Its state.
     pub state: State,
     /// What holds an open pair (cohesion, or p > 0): `stick`, `slip+`, `slip-`.

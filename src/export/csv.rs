@@ -22,7 +22,7 @@ pub fn pairs(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
             out,
             &[
                 Text(&pair.id),
-                Text(pair.law),
+                Text(pair.law.word()),
                 Text(pair.state.word()),
                 pair.held.map_or(Empty, |held| Text(held.word())),
                 Number(pair.x_n),

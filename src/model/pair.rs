@@ -1,6 +1,45 @@
 //! Contact pairs: the two nodes that may touch, their normal and tangent, their law.
 
+use serde::Serialize;
+
 use super::parameter::Number;
+
+/// A law without its numbers: the word that files and results have for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LawKind {
+    /// Unilateral, with friction.
+    Coulomb,
+    /// Unilateral, without friction.
+    Frictionless,
+    /// Bilateral, with a known friction bound.
+    Bound,
+}
+
+impl LawKind {
+    /// The words.
+    pub const WORDS: [(&'static str, LawKind); 3] =
+        [("coulomb", LawKind::Coulomb), ("frictionless", LawKind::Frictionless), ("bound", LawKind::Bound)];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            LawKind::Coulomb => "coulomb",
+            LawKind::Frictionless => "frictionless",
+            LawKind::Bound => "bound",
+        }
+    }
+
+    /// Whether the normal joint holds both ways: it never opens.
+    pub fn is_bilateral(self) -> bool {
+        self == LawKind::Bound
+    }
+
+    /// Whether the main system has a joint along t.
+    pub fn has_tangential_joint(self) -> bool {
+        self != LawKind::Frictionless
+    }
+}
 
 /// Law of contact of one pair, with its numbers (each may be a parameter).
 #[derive(Clone, Debug, PartialEq)]
@@ -27,23 +66,23 @@ pub enum Law {
 }
 
 impl Law {
-    /// Its word in files and results.
-    pub fn name(&self) -> &'static str {
+    /// The law without its numbers.
+    pub fn kind(&self) -> LawKind {
         match self {
-            Law::Coulomb { .. } => "coulomb",
-            Law::Frictionless { .. } => "frictionless",
-            Law::Bound { .. } => "bound",
+            Law::Coulomb { .. } => LawKind::Coulomb,
+            Law::Frictionless { .. } => LawKind::Frictionless,
+            Law::Bound { .. } => LawKind::Bound,
         }
     }
 
     /// Whether the normal joint holds both ways: it never opens.
     pub fn is_bilateral(&self) -> bool {
-        matches!(self, Law::Bound { .. })
+        self.kind().is_bilateral()
     }
 
     /// Whether the main system has a joint along t.
     pub fn has_tangential_joint(&self) -> bool {
-        !matches!(self, Law::Frictionless { .. })
+        self.kind().has_tangential_joint()
     }
 
     /// f, where the friction bound hangs on x_n.

@@ -165,8 +165,8 @@ pub fn on_limit(pairs: &[PairState]) -> Vec<String> {
         .filter(|pair| {
             let zero = |x: f64| x.abs() <= ON_LIMIT * force;
             let open = pair.z_n > 0.0;
-            let touching = pair.law != "bound" && !open && zero(pair.x_n);
-            let slipping = pair.law != "frictionless"
+            let touching = !pair.law.is_bilateral() && !open && zero(pair.x_n);
+            let slipping = pair.law.has_tangential_joint()
                 && !open
                 && !touching
                 && pair.z_t == 0.0

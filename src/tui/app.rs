@@ -245,7 +245,9 @@ impl State {
         let mut plots = match pairs.is_empty() {
             true => vec![Plot::P],
             // Where nothing rubs there are neither friction forces nor slips to look at.
-            false if pairs.iter().all(|pair| pair.law == "frictionless") => vec![Plot::Pressure, Plot::Gap, Plot::P],
+            false if pairs.iter().all(|pair| !pair.law.has_tangential_joint()) => {
+                vec![Plot::Pressure, Plot::Gap, Plot::P]
+            }
             false => vec![Plot::Slip, Plot::Force, Plot::Pressure, Plot::Gap, Plot::P],
         };
         let members = self.shown.answer().and_then(|answer| answer.members.as_ref());

@@ -31,7 +31,7 @@ pub fn write(out: &mut dyn Write, pairs: &[PairState], units: &Units, style: &St
 /// The table that is written.
 pub fn table(pairs: &[PairState], units: &Units) -> Table {
     let (force, length) = (force_unit(units), length_unit(units));
-    let friction = pairs.iter().any(|pair| pair.law != "frictionless");
+    let friction = pairs.iter().any(|pair| pair.law.has_tangential_joint());
     let mut columns = vec![
         Column::words("pair"),
         Column::words("state"),

@@ -10,6 +10,7 @@ use super::*;
 use crate::answer::diagram::Internal;
 use crate::answer::record::*;
 use crate::fem::Piece;
+use crate::model::pair::LawKind;
 
 /// Numbers of every size, and those that are none.
 fn number() -> impl Strategy<Value = f64> {
@@ -38,7 +39,7 @@ fn state() -> impl Strategy<Value = State> {
 }
 
 fn pair() -> impl Strategy<Value = PairState> {
-    let law = prop::sample::select(vec!["coulomb", "frictionless", "bound"]);
+    let law = prop::sample::select(LawKind::WORDS.map(|(_, law)| law).to_vec());
     let position = prop::option::weighted(0.9, prop::array::uniform2(number()));
     let numbers = prop::array::uniform7(number());
     let held = prop::option::of(state());

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use crate::answer::record::*;
 use crate::fem::Piece;
 use crate::model::mesh::MeshFiles;
-use crate::model::pair::{Law, Pair};
+use crate::model::pair::{Law, LawKind, Pair};
 use crate::model::parameter::{Number, Parameter};
 use crate::model::rules::Rules;
 use crate::model::scenario::{Places, Scenario, Source, Units};
@@ -41,7 +41,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         };
         pairs.push(PairState {
             id: format!("c{}", i + 1),
-            law: "coulomb",
+            law: LawKind::Coulomb,
             state: if slips { State::SlipPlus } else { State::Stick },
             held: None,
             x_n: WEIGHT,

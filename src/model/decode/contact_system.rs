@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::law::{LawKind, NUMBERS, per_pair};
+use super::law::{NUMBERS, per_pair};
 use super::lcp::square;
 use super::loads::{check_case_name, factor};
 use super::matrix_file;
@@ -11,7 +11,7 @@ use super::matrix_market::Size;
 use super::reader::{Cursor, Fields};
 use super::words::{counted, is_id, quoted};
 use crate::model::memory;
-use crate::model::pair::Law;
+use crate::model::pair::{Law, LawKind};
 use crate::model::parameter::Number;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
 use crate::model::uses::Region;

@@ -4,12 +4,12 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::elements::entries;
-use super::law::{self, LawKind, NUMBERS, per_pair};
+use super::law::{self, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::sides::{self, Sides};
 use super::structure::Builder;
 use crate::model::memory;
-use crate::model::pair::Pair;
+use crate::model::pair::{LawKind, Pair};
 use crate::model::parameter::Number;
 use crate::model::structure::EdgeContact;
 

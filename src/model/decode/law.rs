@@ -1,17 +1,9 @@
 //! Laws of contact and the numbers that belong to each.
 
 use super::reader::Cursor;
-use crate::model::pair::Law;
+use crate::model::pair::{Law, LawKind};
 use crate::model::parameter::Number;
 use crate::model::uses::Region;
-
-/// A law without its numbers.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum LawKind {
-    Coulomb,
-    Frictionless,
-    Bound,
-}
 
 /// The keys of numbers, with the laws they belong to.
 pub const NUMBERS: [(&str, &[LawKind]); 4] = [
@@ -22,19 +14,6 @@ pub const NUMBERS: [(&str, &[LawKind]); 4] = [
 ];
 
 impl LawKind {
-    /// The words in files.
-    pub const WORDS: [(&'static str, LawKind); 3] =
-        [("coulomb", LawKind::Coulomb), ("frictionless", LawKind::Frictionless), ("bound", LawKind::Bound)];
-
-    /// The word in files.
-    pub fn word(self) -> &'static str {
-        match self {
-            LawKind::Coulomb => "coulomb",
-            LawKind::Frictionless => "frictionless",
-            LawKind::Bound => "bound",
-        }
-    }
-
     /// Whether a number belongs to this law.
     pub fn takes(self, key: &str) -> bool {
         NUMBERS.iter().any(|(name, laws)| *name == key && laws.contains(&self))

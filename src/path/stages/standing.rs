@@ -254,7 +254,7 @@ impl Standing {
                 let (state, held) = scheme_of(self.is_open(i), pair.tangential.is_some(), slips, bound);
                 PairState {
                     id: pair.id.clone(),
-                    law: pair.law.name(),
+                    law: pair.law.kind(),
                     state,
                     held,
                     x_n,

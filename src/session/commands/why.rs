@@ -25,34 +25,34 @@ impl Session {
         let force = |value: f64| with_unit(&short(value), units.force.as_deref());
         let length = |value: f64| with_unit(&short(value), units.length.as_deref());
         let state = view::pairs::state_words(pair);
-        let cause = match (pair.state, pair.law) {
-            (State::Open, _) => {
+        let cause = match pair.state {
+            State::Open => {
                 format!("nothing presses it together: x_n = {} and it is open by {}", force(pair.x_n), length(pair.z_n))
             }
-            (State::Closed, _) => {
+            State::Closed => {
                 format!("it is pressed together with x_n = {}, and without friction x_t = 0", force(pair.x_n))
             }
-            (State::Stick, _) if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() => {
+            State::Stick if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() => {
                 format!(
                     "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
                     force(pair.x_t.abs()),
                     force(pair.bound)
                 )
             }
-            (State::Stick, _) => format!(
+            State::Stick => format!(
                 "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
                 force(pair.x_t.abs()),
                 force(pair.bound),
                 force(pair.reserve_plus),
                 force(pair.reserve_minus)
             ),
-            (State::SlipPlus, _) => format!(
+            State::SlipPlus => format!(
                 "its reserve x+ is used up: x_t = {} stands at the bound -{}, and it has slipped {} along +t",
                 force(pair.x_t),
                 force(pair.bound),
                 length(pair.z_t)
             ),
-            (State::SlipMinus, _) => format!(
+            State::SlipMinus => format!(
                 "its reserve x- is used up: x_t = {} stands at the bound {}, and it has slipped {} along -t",
                 force(pair.x_t),
                 force(pair.bound),

@@ -125,14 +125,14 @@ pub fn about(state: &State) -> Option<String> {
         text.push_str(&format!(" (was {})", change.from));
     }
     text.push_str(&format!(" · x_n {}", f(pair.x_n)));
-    if pair.law != "frictionless" {
+    if pair.law.has_tangential_joint() {
         text.push_str(&format!(" · x_τ {} within ±{}", short(pair.x_t), f(pair.bound)));
     }
     if pair.z_n != 0.0 {
         text.push_str(&format!(" · z_n {}", d(pair.z_n)));
     }
     text.push_str(&format!(" · z_τ {}", d(pair.z_t)));
-    if pair.law != "frictionless" {
+    if pair.law.has_tangential_joint() {
         text.push_str(&format!(" · reserves x⁺ {} x⁻ {}", short(pair.reserve_plus), short(pair.reserve_minus)));
     }
     Some(text)
