@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::elements::{id_of, material_of};
+use super::builder::{Builder, Section, id_of, material_of};
 use super::reader::{Cursor, Fields};
-use super::structure::{Builder, Section};
 use crate::model::structure::{Bar, Element, ElementKind, Node};
 
 /// A bar before its division.

@@ -3,11 +3,10 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::elements::entries;
+use super::builder::{Builder, entries};
 use super::law::{self, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::sides::{self, Sides};
-use super::structure::Builder;
 use crate::model::memory;
 use crate::model::pair::{LawKind, Pair};
 use crate::model::parameter::Number;

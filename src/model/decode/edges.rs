@@ -1,7 +1,7 @@
 //! Edges with a name of their own: chains of the sides of triangles and quads.
 
+use super::builder::Builder;
 use super::reader::{Cursor, Entry, Fields};
-use super::structure::Builder;
 use crate::model::edge::{ChainError, Edge, Sides};
 
 /// Reads `edges`.

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use super::bars::{BarOutline, bar, divide};
+use super::builder::{Builder, Section, entries};
 use super::mesh_elements;
 use super::meshes::{self, MeshOutline};
 use super::plates::plate;
 use super::reader::{Cursor, Fields};
 use super::single_elements::{quad, triangle};
-use super::structure::{Builder, Section};
+
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::grid::PlateGrid;
 use crate::model::memory;
@@ -67,11 +68,6 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
         }
     }
     Some(())
-}
-
-/// The entries of a list that may be left out.
-pub fn entries<'d>(fields: &Fields<'d>, key: &str) -> Vec<Cursor<'d>> {
-    fields.optional(key).and_then(Cursor::list).map(Iterator::collect).unwrap_or_default()
 }
 
 fn materials<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
@@ -133,27 +129,6 @@ fn section(cursor: Cursor<'_>) -> Option<Section> {
     };
     let (inertia, depth, shear_area) = (optional("inertia"), optional("depth"), optional("shear_area"));
     Some(Section { area: area?, inertia: inertia?, depth: depth?, shear_area: shear_area? })
-}
-
-/// The index of the material that `material` names.
-pub fn material_of<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<usize> {
-    let cursor = fields.required("material")?;
-    let name = cursor.string()?;
-    let index = builder.materials.get(name).copied();
-    if index.is_none() {
-        let mut known: Vec<&str> = builder.materials.keys().copied().collect();
-        known.sort_unstable();
-        cursor.unknown("material", name, &known);
-    }
-    index
-}
-
-/// The `id` of an entry, made known.
-pub fn id_of<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>, kind: &'static str) -> Option<&'d str> {
-    let cursor = fields.required("id")?;
-    let id = cursor.string()?;
-    builder.register(cursor.place(), id, kind);
-    Some(id)
 }
 
 /// Reports a mesh that would not fit in memory, at its largest part, before it is made.

@@ -1,9 +1,9 @@
 //! Elastic foundations along bars and edges: springs at the nodes, or, where they take no tension, contact pairs whose
 //! ground is a spring.
 
-use super::elements::{entries, id_of};
+use super::builder::{Builder, entries, id_of};
 use super::reader::{Cursor, Fields};
-use super::structure::{Builder, Spot};
+use super::spot::Spot;
 use crate::model::pair::{Law, Pair};
 use crate::model::parameter::Number;
 use crate::model::structure::{Node, Spring};

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::builder::Builder;
 use super::mesh_names::MeshPart;
 use super::meshes::{Lines, MeshOutline};
-use super::structure::Builder;
 use crate::model::edge::Sides;
 use crate::model::mesh::Shape;
 use crate::model::mesh::chain::{chains, oriented};

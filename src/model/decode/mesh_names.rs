@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::reader::Cursor;
-use super::structure::Spot;
+use super::spot::Spot;
 use super::words::{did_you_mean, listed, quoted};
 use crate::model::edge::Edge;
 use crate::model::mesh::boundary::{Boundary, DIRECTIONS};

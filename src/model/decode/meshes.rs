@@ -4,10 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::bars::{bar_kind, section_of};
-use super::elements::{id_of, material_of};
+use super::builder::{Builder, id_of, material_of};
 use super::plates::{membrane, modes};
 use super::reader::{Cursor, Entry, Fields};
-use super::structure::Builder;
 use super::words::{counted, did_you_mean, listed, quoted};
 use crate::model::mesh::{self, Group, LineType, Members, Mesh, Shape};
 use crate::model::structure::{ElementKind, Plane};

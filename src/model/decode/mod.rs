@@ -1,6 +1,7 @@
 //! Text of a scenario → checked [`Scenario`], collecting every problem on the way.
 
 mod bars;
+mod builder;
 mod contact_system;
 mod contacts;
 mod edges;
@@ -15,6 +16,7 @@ mod matrix_market;
 mod mesh_elements;
 mod mesh_names;
 mod meshes;
+mod names;
 mod numbers;
 mod parameters;
 mod plates;
@@ -22,12 +24,15 @@ mod reader;
 mod rigid;
 mod sides;
 mod single_elements;
+mod spot;
+mod springs;
 mod stages;
 mod structure;
 mod superelement;
 mod supports;
 #[cfg(test)]
 mod tests;
+mod ties;
 
 use std::cell::RefCell;
 use std::path::PathBuf;

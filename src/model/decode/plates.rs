@@ -1,8 +1,7 @@
 //! Plates: grids of quads.
 
-use super::elements::{id_of, material_of};
+use super::builder::{Builder, id_of, material_of};
 use super::reader::{Cursor, Fields};
-use super::structure::Builder;
 use crate::model::grid::{GridLines, PlateGrid};
 use crate::model::structure::Plane;
 

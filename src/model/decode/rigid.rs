@@ -1,8 +1,7 @@
 //! Rigid bodies.
 
-use super::elements::{entries, id_of};
+use super::builder::{Builder, entries, id_of};
 use super::reader::{Cursor, Fields};
-use super::structure::Builder;
 use crate::model::structure::RigidBody;
 
 /// Reads `rigid`.

@@ -1,7 +1,8 @@
 //! The two sides of a contact: which nodes meet which, along which normals, how far apart.
 
+use super::builder::Builder;
 use super::reader::{Cursor, Fields};
-use super::structure::{Builder, Spot};
+use super::spot::Spot;
 use super::words::nearest;
 use crate::model::edge::Edge;
 use crate::model::mortar::{self, MortarError};

@@ -1,9 +1,8 @@
 //! Triangles and quads given one by one.
 
-use super::elements::id_of;
+use super::builder::{Builder, id_of};
 use super::plates::{membrane, modes};
 use super::reader::{Cursor, Fields};
-use super::structure::Builder;
 use crate::model::structure::{Element, ElementKind};
 
 /// Sines of inner angles up to this count as flat.

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use super::builder::Builder;
 use super::loads::{check_case_name, factor};
 use super::matrix_file;
 use super::matrix_market::{Entries, Size};
 use super::reader::{Cursor, Entry, Fields, Place};
-use super::structure::{Builder, add_nodes};
 use crate::model::structure::{Component, Load, LoadCase};
 use crate::model::superelement::Superelement;
 
@@ -34,7 +34,7 @@ pub fn read<'d>(
     );
     let own = at.fields(&["stiffness", "loads", "nodes", "dofs"])?;
     let nodes = own.required("nodes");
-    let names = add_nodes(builder, nodes, "superelement.nodes");
+    let names = builder.add_nodes(nodes, "superelement.nodes");
     let dofs = own.required("dofs").and_then(|at| dofs(builder, at));
     let stiffness = own.required("stiffness").and_then(|at| at.fields(&["file"])?.required("file"));
     let dofs = dofs?;

@@ -1,8 +1,8 @@
 //! `fluid`: the pressure γ·max(level − y, 0) of a fluid at rest into the body.
 
 use super::{edge, nodal};
+use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::Cursor;
-use crate::model::decode::structure::Builder;
 use crate::model::structure::Load;
 use crate::model::uses::Region;
 

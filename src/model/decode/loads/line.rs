@@ -1,8 +1,8 @@
 //! `line`: force per length of a bar, constant or linear, on all of it or between two distances.
 
 use super::{bar, between, one_or_two_vectors};
+use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::{Cursor, Fields};
-use crate::model::decode::structure::Builder;
 use crate::model::structure::{ElementLoad, Load};
 use crate::model::uses::Region;
 

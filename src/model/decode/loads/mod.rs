@@ -9,8 +9,8 @@ mod strain;
 mod temperature;
 mod traction;
 
+use super::builder::{Builder, Settlement};
 use super::reader::{Cursor, Entry, Fields};
-use super::structure::{Builder, Settlement};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::edge::Edge;
 use crate::model::parameter::Number;

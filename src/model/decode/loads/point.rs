@@ -1,8 +1,9 @@
 //! `point`: a force and a moment at a node, along an edge (the total), or at a place of a bar.
 
 use super::{bar, nodal};
+use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::{Cursor, Fields};
-use crate::model::decode::structure::{Builder, Spot};
+use crate::model::decode::spot::Spot;
 use crate::model::structure::{ElementLoad, Load};
 use crate::model::uses::Region;
 

@@ -1,8 +1,8 @@
 //! `pressure`: force per area into the body, constant or linear along an edge.
 
 use super::{between, edge, nodal, one_or_two};
+use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::Cursor;
-use crate::model::decode::structure::Builder;
 use crate::model::structure::Load;
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {

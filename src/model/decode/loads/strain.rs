@@ -1,8 +1,8 @@
 //! `strain`: lack of fit or prestress of bars, N = EA (ε − ε₀).
 
 use super::named_elements;
+use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::Cursor;
-use crate::model::decode::structure::Builder;
 use crate::model::structure::{ElementLoad, Load};
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {

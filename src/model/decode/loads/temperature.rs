@@ -1,8 +1,8 @@
 //! `temperature`: free expansion α ΔT, and the free curvature of frame bars that are warmer on one side.
 
 use super::elements;
+use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::Cursor;
-use crate::model::decode::structure::Builder;
 use crate::model::structure::{ElementLoad, Load};
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {

@@ -1,8 +1,8 @@
 //! `traction`: force per length of an edge, thickness already in it, constant or linear along it.
 
 use super::{between, edge, nodal, one_or_two_vectors};
+use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::Cursor;
-use crate::model::decode::structure::Builder;
 use crate::model::structure::Load;
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {

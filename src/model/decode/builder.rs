@@ -1,0 +1,231 @@
+//! The structure while it is read, and what every reader of a part of it asks.
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+use super::mesh_names::MeshPart;
+use super::reader::{Cursor, Fields, Place};
+use super::words::{ID_RULE, is_id, quoted};
+use crate::model::edge::Edge;
+use crate::model::scenario::Places;
+use crate::model::structure::{Component, Node, Structure};
+use crate::model::superelement::Superelement;
+
+/// Cross-section of bars.
+pub struct Section {
+    pub area: f64,
+    /// Only frames need one.
+    pub inertia: Option<f64>,
+    /// Frames yield to shear only with one.
+    pub shear_area: Option<f64>,
+    /// Needed where the temperature varies across the bar.
+    pub depth: Option<f64>,
+}
+
+/// Displacement that a load case imposes on a component held by a support.
+#[derive(Clone, Copy)]
+pub struct Settlement<'d> {
+    /// Where the case is named.
+    pub case: Cursor<'d>,
+    /// The node.
+    pub node: usize,
+    /// The component.
+    pub component: Component,
+    /// The amount.
+    pub value: f64,
+}
+
+/// An element of a bar and where it lies along it.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    /// Index of the element.
+    pub element: usize,
+    /// Distance of its start from the start of the bar.
+    pub from: f64,
+    /// Its length.
+    pub length: f64,
+    /// (cos, sin) of its direction.
+    pub direction: [f64; 2],
+}
+
+/// The structure as read so far, and the names by which later parts refer to it.
+#[derive(Default)]
+pub struct Builder<'d> {
+    pub structure: Structure,
+    pub places: Places,
+    pub materials: HashMap<&'d str, usize>,
+    pub sections: HashMap<&'d str, Section>,
+    /// By their ids; those of meshes are made of the names of groups.
+    pub bars: HashMap<Cow<'d, str>, usize>,
+    /// Section of each bar, in the order of the bars.
+    pub bar_sections: Vec<&'d str>,
+    pub plates: HashMap<&'d str, usize>,
+    pub meshes: HashMap<&'d str, MeshPart>,
+    /// What was put right in mesh files.
+    pub notes: Vec<String>,
+    /// The edges that have a name of their own.
+    pub edges: HashMap<&'d str, Edge>,
+    /// Triangles and quads by their ids.
+    pub single_elements: HashMap<&'d str, usize>,
+    /// Nodes of the author and of bar divisions; those of plates and meshes are found by their indices.
+    pub nodes: HashMap<String, usize>,
+    /// Every id and what it names.
+    ids: HashMap<&'d str, &'static str>,
+    /// Names whose definition is wrong: reported there, not again where they are used.
+    pub broken: HashSet<&'d str>,
+    pub ends_of_broken_bars: Vec<Cursor<'d>>,
+    /// Whether `nodes` could not be read at all: unknown nodes are then no news.
+    pub nodes_are_unknown: bool,
+    /// Imposed displacements of supports, until their load cases are known.
+    pub settlements: Vec<Settlement<'d>>,
+    /// The rigid body of each of their nodes.
+    pub body_of: HashMap<usize, usize>,
+    /// Whether each node has a rotation; empty until the elements are complete.
+    pub has_rotation: Vec<bool>,
+    /// Whether every element was read, so that what they do not touch can be judged.
+    pub elements_complete: bool,
+}
+
+impl<'d> Builder<'d> {
+    /// Makes an id known; reports an ill-formed or repeated one.
+    pub fn register(&mut self, place: Place<'d>, id: &'d str, kind: &'static str) {
+        if !is_id(id) {
+            place.problem(format!("{} cannot be an id", quoted(id)), ID_RULE);
+        } else if let Some(first) = self.ids.insert(id, kind) {
+            place.problem(
+                format!("duplicate id {}: a {first} has it already", quoted(id)),
+                "nodes, elements, edges and contacts share one set of ids: rename one of the two",
+            );
+        }
+    }
+
+    /// Appends a node that can be named.
+    pub fn add_node(&mut self, node: Node, place: Arc<str>) -> usize {
+        let index = self.structure.nodes.len();
+        self.nodes.insert(node.id.clone(), index);
+        self.structure.nodes.push(node);
+        self.places.nodes.push(place);
+        index
+    }
+
+    /// The id of a node.
+    pub fn node_id(&self, node: usize) -> &str {
+        &self.structure.nodes[node].id
+    }
+
+    /// Adds the nodes of the file, which stand at the path `within`; the places of their names.
+    pub fn add_nodes(&mut self, nodes: Option<Cursor<'d>>, within: &str) -> Vec<Place<'d>> {
+        let mut names = Vec::new();
+        let entries = nodes.and_then(Cursor::entries);
+        self.nodes_are_unknown = nodes.is_some() && entries.is_none();
+        for entry in entries.unwrap_or_default() {
+            self.register(entry.key_place(), entry.name(), "node");
+            // A node without a usable place stays known, with a place that no geometric check complains about.
+            let position = entry.value().vector().unwrap_or([f64::NAN; 2]);
+            names.push(entry.key_place());
+            self.add_node(Node { id: entry.name().to_string(), position }, format!("{within}.{}", entry.name()).into());
+        }
+        names
+    }
+
+    /// The elements of a bar with their places along it.
+    pub fn stretches(&self, bar: usize) -> Vec<Stretch> {
+        let structure = &self.structure;
+        let mut from = 0.0;
+        let stretch = |element: usize| {
+            let nodes = &structure.elements[element].nodes;
+            let [a, b] = [0, 1].map(|end| structure.nodes[nodes[end]].position);
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let length = dx.hypot(dy);
+            let stretch = Stretch { element, from, length, direction: [dx / length, dy / length] };
+            from += length;
+            stretch
+        };
+        structure.bars[bar].elements.clone().map(stretch).collect()
+    }
+
+    /// The element of a bar at a distance from its start, and the distance from the start of that element.
+    pub fn place_on_bar(&self, at: Cursor<'d>, bar: usize, distance: f64) -> Option<(usize, f64)> {
+        let stretches = self.stretches(bar);
+        let last = stretches.last()?;
+        let total = last.from + last.length;
+        // A distance computed by an expression may miss the end of the bar by rounding.
+        let room = 4.0 * f64::EPSILON * total;
+        if !(distance >= -room && distance <= total + room) {
+            at.problem(
+                format!(
+                    "the distance {distance} is not on the bar \"{}\", which is {total} long",
+                    self.structure.bars[bar].id
+                ),
+                format!("give a distance from its start between 0 and {total}"),
+            );
+            return None;
+        }
+        let stretch = stretches.iter().rev().find(|stretch| stretch.from <= distance).unwrap_or(&stretches[0]);
+        Some((stretch.element, (distance - stretch.from).clamp(0.0, stretch.length)))
+    }
+
+    /// Whether a superelement knows nothing of a displacement of this node.
+    pub fn lacks(&self, node: usize, component: Component) -> bool {
+        let knows = |element: &Superelement| element.dofs.contains(&(node, component));
+        self.structure.superelement.as_ref().is_some_and(|element| !knows(element)) && !self.body_of.contains_key(&node)
+    }
+
+    /// Reports a displacement along x or y asked of a node of a superelement that has none.
+    pub fn demand_displacement(&self, cursor: Cursor<'d>, node: usize, direction: [f64; 2], what: &str) -> bool {
+        let asked = [(Component::X, "x"), (Component::Y, "y")].into_iter().zip(direction);
+        let Some(((_, word), _)) = asked.into_iter().find(|((c, _), amount)| *amount != 0.0 && self.lacks(node, *c))
+        else {
+            return true;
+        };
+        cursor.problem(
+            format!("the node \"{}\" of the superelement has no dof \"{word}\": {what}", self.node_id(node)),
+            "keep this displacement when K is made and name it in `dofs`, or choose another direction",
+        );
+        false
+    }
+
+    /// Whether the structure consists of springs, rigid bodies or a superelement alone.
+    pub fn has_no_elements(&self) -> bool {
+        self.structure.elements.is_empty() && self.elements_complete
+    }
+
+    /// Reports a rotation asked of a node that has none. Silent while elements are missing for other reasons.
+    pub fn demand_rotation(&self, cursor: Cursor<'d>, node: usize, what: &str) -> bool {
+        if self.has_rotation[node] || !self.elements_complete {
+            return true;
+        }
+        cursor.problem(
+            format!("the node \"{}\" has no rotation: {what}", self.node_id(node)),
+            "only nodes of frame bars and of rigid bodies have one: remove it here",
+        );
+        false
+    }
+}
+
+/// The entries of a list that may be left out.
+pub fn entries<'d>(fields: &Fields<'d>, key: &str) -> Vec<Cursor<'d>> {
+    fields.optional(key).and_then(Cursor::list).map(Iterator::collect).unwrap_or_default()
+}
+
+/// The index of the material that `material` names.
+pub fn material_of<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<usize> {
+    let cursor = fields.required("material")?;
+    let name = cursor.string()?;
+    let index = builder.materials.get(name).copied();
+    if index.is_none() {
+        let mut known: Vec<&str> = builder.materials.keys().copied().collect();
+        known.sort_unstable();
+        cursor.unknown("material", name, &known);
+    }
+    index
+}
+
+/// The `id` of an entry, made known.
+pub fn id_of<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>, kind: &'static str) -> Option<&'d str> {
+    let cursor = fields.required("id")?;
+    let id = cursor.string()?;
+    builder.register(cursor.place(), id, kind);
+    Some(id)
+}
