@@ -1,0 +1,196 @@
+//! What a key of the full screen costs: milliseconds and bytes, at several numbers of contact pairs.
+//!
+//! ```text
+//! keys [WIDTHxHEIGHT] PAIRS…        a table in Markdown; 140x45 and 10 300 1000 if nothing is said
+//! ```
+//!
+//! `screen` is from the key to the bytes of its frame, `session` what the session's own thread works meanwhile.
+
+#[path = "../benches/common/mod.rs"]
+#[allow(dead_code)]
+mod common;
+
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use ratatui::backend::CrosstermBackend;
+use ratatui::layout::Rect;
+use ratatui::{Terminal, TerminalOptions, Viewport};
+
+use common::Plates;
+use stickslip::session::Session;
+use stickslip::tui::action::{Action, Effect, Job, Leave};
+use stickslip::tui::app::State;
+use stickslip::tui::draw::draw;
+use stickslip::tui::frame::Frame;
+use stickslip::tui::input;
+use stickslip::tui::key::Key;
+use stickslip::tui::keymap::Keymap;
+use stickslip::tui::shown::Shown;
+use stickslip::tui::theme::Look;
+use stickslip::tui::update::update;
+use stickslip::tui::worker::perform;
+use stickslip::watch::Quiet;
+
+type Failure = Box<dyn std::error::Error>;
+
+/// Counts what a terminal would get.
+#[derive(Clone, Default)]
+struct Counter(Rc<Cell<usize>>);
+
+impl Write for Counter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.set(self.0.get() + bytes.len());
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A screen on a session of its own.
+struct Rig {
+    session: Session,
+    state: State,
+    terminal: Terminal<CrosstermBackend<Frame<Counter>>>,
+    sent: Counter,
+}
+
+/// What a key cost.
+#[derive(Clone, Copy, Default)]
+struct Cost {
+    screen: Duration,
+    session: Duration,
+    bytes: usize,
+}
+
+impl Rig {
+    fn new(pairs: usize, (width, height): (u16, u16)) -> Result<Rig, Failure> {
+        let session = Session::new(Plates::with_pairs(pairs, 0.4).scenario(), &Quiet)?;
+        let look = Look { color: true, ascii: false };
+        let shown = Arc::new(Shown::of(&session));
+        let state = State::new(shown, look, Arc::new(Keymap::default()), (width, height), Leave::Quit);
+        let sent = Counter::default();
+        let viewport = Viewport::Fixed(Rect::new(0, 0, width, height));
+        let backend = CrosstermBackend::new(Frame::new(sent.clone()));
+        let terminal = Terminal::with_options(backend, TerminalOptions { viewport })?;
+        Ok(Rig { session, state, terminal, sent })
+    }
+
+    /// Presses a key, carries out the jobs that follow from it, draws after each as the loop does.
+    fn press(&mut self, key: &str) -> Result<Cost, Failure> {
+        let before = self.sent.0.get();
+        let key = Key::parse(key).ok_or_else(|| format!("no key `{key}`"))?;
+        let modifiers = if key.control { KeyModifiers::CONTROL } else { KeyModifiers::NONE };
+        let code = if key.code == KeyCode::Char(' ') { KeyCode::Char(' ') } else { key.code };
+        let mut cost = Cost::default();
+        let clock = Instant::now();
+        let action = input::action(&self.state, &KeyEvent::new(code, modifiers));
+        let mut effects = VecDeque::from(action.map_or_else(Vec::new, |action| update(&mut self.state, action)));
+        self.terminal.draw(|frame| draw(&self.state, frame))?;
+        cost.screen += clock.elapsed();
+        while let Some(effect) = effects.pop_front() {
+            if let Effect::Run(job) = effect {
+                let clock = Instant::now();
+                let done = self.work(job);
+                cost.session += clock.elapsed();
+                let clock = Instant::now();
+                effects.extend(update(&mut self.state, done));
+                self.terminal.draw(|frame| draw(&self.state, frame))?;
+                cost.screen += clock.elapsed();
+            }
+        }
+        cost.bytes = self.sent.0.get() - before;
+        Ok(cost)
+    }
+
+    fn work(&mut self, job: Job) -> Action {
+        Action::Done(Box::new(perform(&mut self.session, job, self.state.look.report(100), &Quiet)))
+    }
+}
+
+/// What is measured: its name, the keys that lead there, the keys that are pressed in turn.
+const ROWS: &[(&str, &[&str], &[&str])] = &[
+    ("row of Pairs", &["3"], &["down"]),
+    ("page of Pairs", &["3"], &["pagedown", "pageup"]),
+    ("order of Pairs", &["3"], &["s"]),
+    ("pair in Structure", &["1"], &["down"]),
+    ("zoom", &["1"], &["i", "o"]),
+    ("scale", &["1"], &["d", "D"]),
+    ("next pane", &["3"], &["tab"]),
+    ("next plot", &["5"], &["p"]),
+    ("row of Parameters", &["2"], &["down", "up"]),
+    ("letter of a command", &["2", ":"], &["x"]),
+    ("help", &["2"], &["?", "esc"]),
+    ("pivot back", &["4"], &["left"]),
+    ("slider", &["2", "down"], &["+"]),
+];
+const REPETITIONS: usize = 9;
+
+fn measure(size: (u16, u16), sizes: &[usize]) -> Result<(), Failure> {
+    let mut table: Vec<Vec<String>> = ROWS.iter().map(|(name, ..)| vec![(*name).to_owned()]).collect();
+    for &pairs in sizes {
+        for ((_, first, keys), row) in ROWS.iter().zip(&mut table) {
+            let mut rig = Rig::new(pairs, size)?;
+            for key in *first {
+                rig.press(key)?;
+            }
+            let mut costs = Vec::new();
+            for round in 0..REPETITIONS {
+                costs.push(rig.press(keys[round % keys.len()])?);
+            }
+            let median = |of: fn(&Cost) -> Duration| {
+                let mut times: Vec<Duration> = costs.iter().map(of).collect();
+                times.sort_unstable();
+                1e3 * times[REPETITIONS / 2].as_secs_f64()
+            };
+            let mut bytes: Vec<usize> = costs.iter().map(|cost| cost.bytes).collect();
+            bytes.sort_unstable();
+            row.push(format!("{:.2}", median(|cost| cost.screen)));
+            row.push(format!("{:.2}", median(|cost| cost.session)));
+            row.push(bytes[REPETITIONS / 2].to_string());
+        }
+    }
+    let mut out = io::stdout();
+    let heads = sizes.iter().map(|m| format!(" screen ms, m = {m} | session ms | bytes |"));
+    writeln!(out, "| key, {}x{} |{}", size.0, size.1, heads.collect::<String>())?;
+    writeln!(out, "| --- |{}", " ---: | ---: | ---: |".repeat(sizes.len()))?;
+    for row in table {
+        writeln!(out, "| {} |", row.join(" | "))?;
+    }
+    Ok(())
+}
+
+fn read(arguments: &[String]) -> Result<((u16, u16), Vec<usize>), Failure> {
+    let mut size = (140, 45);
+    let mut sizes = Vec::new();
+    for word in arguments {
+        match word.split_once('x') {
+            Some((width, height)) => size = (width.parse()?, height.parse()?),
+            None => sizes.push(word.parse()?),
+        }
+    }
+    if sizes.is_empty() {
+        sizes = vec![10, 300, 1000];
+    }
+    Ok((size, sizes))
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    crossterm::style::force_color_output(true);
+    match read(&arguments).and_then(|(size, sizes)| measure(size, &sizes)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
