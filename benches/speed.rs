@@ -162,11 +162,12 @@ fn frame(criterion: &mut Criterion) {
         let session = Session::new(scenario, &Quiet).expect("it has an answer");
         let look = Look { color: true, ascii: false };
         let size = (120, 40);
-        let state = State::new(Arc::new(Shown::of(&session)), look, Arc::new(Keymap::default()), size, Leave::Quit);
+        let mut state = State::new(Arc::new(Shown::of(&session)), look, Arc::new(Keymap::default()), size, Leave::Quit);
         let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("in memory");
         group.bench_function(name, |bench| {
             bench.iter(|| {
                 terminal.clear().expect("in memory");
+                state.pictures.clear();
                 terminal.draw(|frame| draw(&state, frame)).expect("in memory");
             });
         });

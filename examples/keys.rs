@@ -112,7 +112,8 @@ impl Rig {
     }
 
     fn work(&mut self, job: Job) -> Action {
-        Action::Done(Box::new(perform(&mut self.session, job, self.state.look.report(100), &Quiet)))
+        let style = self.state.look.report(100);
+        Action::Done(Box::new(perform(&mut self.session, &self.state.shown, job, style, &Quiet)))
     }
 }
 
@@ -137,8 +138,9 @@ const REPETITIONS: usize = 9;
 fn measure(size: (u16, u16), sizes: &[usize]) -> Result<(), Failure> {
     let mut table: Vec<Vec<String>> = ROWS.iter().map(|(name, ..)| vec![(*name).to_owned()]).collect();
     for &pairs in sizes {
+        let mut rig = Rig::new(pairs, size)?;
         for ((_, first, keys), row) in ROWS.iter().zip(&mut table) {
-            let mut rig = Rig::new(pairs, size)?;
+            rig.press("esc")?;
             for key in *first {
                 rig.press(key)?;
             }

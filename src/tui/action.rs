@@ -164,8 +164,17 @@ pub enum Job {
     Answers,
     /// The pivots of an answer that was found by a warm start.
     Pivots,
+    /// What moves at the place shown: its states are drawn first.
+    Motion,
     /// What would stop the collapse shown.
     Remedies,
+}
+
+impl Job {
+    /// Whether nobody asked for it: it gives way to whatever is asked for.
+    pub fn is_background(&self) -> bool {
+        matches!(self, Job::Pivots | Job::Motion | Job::Remedies)
+    }
 }
 
 /// How a job ended.

@@ -1,6 +1,7 @@
 //! The state of the screen. Nothing here draws, waits or computes.
 
 use std::collections::VecDeque;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -14,25 +15,13 @@ use crate::view::style::Role;
 
 use super::action::{Job, Leave};
 use super::entry::Entry;
+use super::kept::The;
 use super::keymap::Keymap;
 use super::pane::{Pane, Plot, SortKey};
-use super::shown::Shown;
+use super::pictures::{Order, Pictures};
+use super::shown::{Moment, Shown};
 use super::theme::Look;
-
-/// The part of the structure in view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Viewport {
-    /// 1 shows all of it.
-    pub zoom: f64,
-    /// Centre of the view from the centre of the structure, in its larger side.
-    pub centre: (f64, f64),
-}
-
-impl Default for Viewport {
-    fn default() -> Self {
-        Viewport { zoom: 1.0, centre: (0.0, 0.0) }
-    }
-}
+use super::viewport::Viewport;
 
 /// What is typed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -150,6 +139,8 @@ pub struct State {
     pub waiting: VecDeque<Job>,
     /// How far it is.
     pub progress: Option<(String, f64)>,
+    /// The collapse whose remedies were sought last.
+    pub remedies_sought: Option<The<Moment>>,
     /// A line at the bottom.
     pub message: Option<Message>,
     /// What is typed.
@@ -164,6 +155,8 @@ pub struct State {
     pub mouse: bool,
     /// The parameter whose slider the mouse holds.
     pub held: Option<usize>,
+    /// What was drawn and is kept.
+    pub pictures: Pictures,
 }
 
 impl State {
@@ -196,6 +189,7 @@ impl State {
             running: None,
             waiting: VecDeque::new(),
             progress: None,
+            remedies_sought: None,
             message: None,
             input: Input::None,
             history: Vec::new(),
@@ -203,6 +197,7 @@ impl State {
             tour: None,
             mouse: true,
             held: None,
+            pictures: Pictures::default(),
         };
         state.new_scenario();
         state
@@ -241,7 +236,7 @@ impl State {
 
     /// The plots that make sense now; never empty.
     pub fn plots(&self) -> Vec<Plot> {
-        let pairs = &self.shown.pairs;
+        let pairs = self.shown.pairs();
         let mut plots = match pairs.is_empty() {
             true => vec![Plot::P],
             // Where nothing rubs there are neither friction forces nor slips to look at.
@@ -277,24 +272,25 @@ impl State {
         self.wanted_step.or(self.shown.step()).map(|step| step.min(last))
     }
 
-    /// Indices of the pairs in the chosen order.
-    pub fn order(&self) -> Vec<usize> {
-        let pairs = &self.shown.pairs;
-        let mut order: Vec<usize> = (0..pairs.len()).collect();
-        let reserve = |pair: &PairState| pair.reserve_plus.min(pair.reserve_minus);
-        let number = |pair: &PairState| match self.sort {
-            SortKey::File => 0.0,
-            SortKey::State => f64::from(pair.state as u8),
-            SortKey::Slip => pair.z_t.abs(),
-            SortKey::Pressure => pair.x_n,
-            SortKey::Reserve => reserve(pair),
-            SortKey::Gap => pair.z_n,
-        };
-        order.sort_by(|a, b| number(&pairs[*a]).total_cmp(&number(&pairs[*b])).then(a.cmp(b)));
-        if self.descending {
-            order.reverse();
-        }
-        order
+    /// The pairs in the chosen order.
+    pub fn order(&self) -> Rc<Order> {
+        self.pictures.order.of((The::one(&self.shown.moment), self.sort, self.descending), || {
+            let pairs = self.shown.pairs();
+            let mut order: Vec<usize> = (0..pairs.len()).collect();
+            let number = |pair: &PairState| match self.sort {
+                SortKey::File => 0.0,
+                SortKey::State => f64::from(pair.state as u8),
+                SortKey::Slip => pair.z_t.abs(),
+                SortKey::Pressure => pair.x_n,
+                SortKey::Reserve => pair.reserve_plus.min(pair.reserve_minus),
+                SortKey::Gap => pair.z_n,
+            };
+            order.sort_by(|a, b| number(&pairs[*a]).total_cmp(&number(&pairs[*b])).then(a.cmp(b)));
+            if self.descending {
+                order.reverse();
+            }
+            Order::new(order)
+        })
     }
 
     /// Something to say until the next key.

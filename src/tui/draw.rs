@@ -16,6 +16,7 @@ use crate::view::style::Role;
 use super::app::State;
 use super::bindings::Context;
 use super::layout::{self, Places};
+use super::paint::inside;
 use super::pane::Pane;
 use super::{input, overlay, panes, tour};
 
@@ -103,7 +104,7 @@ fn outcome(state: &State) -> (String, Role) {
             class_word(ray.class),
             with_unit(
                 &short(ray.p),
-                crate::view::force_unit(&shown.scenario.units).filter(|_| !shown.pairs.is_empty()).as_deref()
+                crate::view::force_unit(&shown.scenario.units).filter(|_| !shown.pairs().is_empty()).as_deref()
             )
         ),
         None => outcome_word(answer.outcome).to_owned(),
@@ -112,8 +113,8 @@ fn outcome(state: &State) -> (String, Role) {
         text.push_str(", marginal");
     }
     text.push_str(&format!(" · {}", pivot_count(answer)));
-    if shown.position.is_none() && !shown.changes.is_empty() {
-        let count = shown.changes.len();
+    if !shown.moment.changes.is_empty() {
+        let count = shown.moment.changes.len();
         let s = if count == 1 { "" } else { "s" };
         text.push_str(&format!(" · {count} pair{s} changed"));
     }
@@ -163,7 +164,7 @@ fn draw_pane(state: &State, places: &Places, pane: Pane, area: Rect, shares: boo
         let room = usize::from(area.right().saturating_sub(x));
         buffer.set_stringn(x, area.y, format!(" {name} "), room, style);
     }
-    panes::draw(state, pane, panes::inside(area), buffer);
+    panes::draw(state, pane, inside(area), buffer);
 }
 
 /// The sentence of the pivot, or the tour.
@@ -212,12 +213,14 @@ fn draw_about(state: &State, area: Rect, buffer: &mut Buffer) {
 
 /// `changed: c3 stick → slip+, c4 …`.
 fn changes(state: &State) -> Option<String> {
-    let changes = &state.shown.changes;
-    if changes.is_empty() || state.shown.position.is_some() {
+    let changes = &state.shown.moment.changes;
+    if changes.is_empty() {
         return None;
     }
     let one = |change: &Change| format!("{} {} → {}", change.pair, change.from, change.to);
-    let all: Vec<String> = changes.iter().map(one).collect();
+    // no more than the line may hold
+    let most = usize::from(state.size.0);
+    let all: Vec<String> = changes.iter().take(most).map(one).collect();
     Some(format!("changed: {}", all.join(", ")))
 }
 

@@ -122,7 +122,7 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
     let rows = match state.shown.structure() {
         Some(structure) if !is_flat(structure) => left.height / 2,
         Some(_) => left.height / 4,
-        None if state.shown.pairs.is_empty() => 5,
+        None if state.shown.pairs().is_empty() => 5,
         None => 9,
     };
     let (structure, plot) = cut_rows(left, rows.max(5));

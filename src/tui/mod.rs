@@ -12,12 +12,16 @@ pub mod draw;
 pub mod entry;
 pub mod frame;
 pub mod input;
+pub mod kept;
 pub mod key;
 pub mod keymap;
 pub mod layout;
+pub mod listing;
 pub mod overlay;
+pub mod paint;
 pub mod pane;
 pub mod panes;
+pub mod pictures;
 pub mod runtime;
 pub mod shown;
 pub mod terminal;
@@ -25,6 +29,7 @@ pub mod theme;
 pub mod tour;
 pub mod update;
 pub mod vary;
+pub mod viewport;
 pub mod worker;
 
 #[cfg(test)]

@@ -203,7 +203,7 @@ pub fn draw_input(state: &State, bottom: Rect, buffer: &mut Buffer) -> Option<(u
         Input::Command(entry) => (
             ":".to_owned(),
             entry,
-            complete::hint(&entry.text, &state.shown.vocabulary)
+            complete::hint(&entry.text, state.shown.vocabulary())
                 .map(|hint| format!("{}{}", hint.insert, hint.note))
                 .unwrap_or_default(),
         ),

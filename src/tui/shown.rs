@@ -1,12 +1,12 @@
 //! What the screen shows of a session: a copy that shares the large parts, so that it can leave the session's thread.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
-use crate::session::language::complete::Vocabulary;
+use crate::session::language::complete::{self, Vocabulary};
 use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, RayClass, Start};
 use crate::session::{Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
@@ -28,32 +28,65 @@ pub struct Shown {
     pub previous: Option<Arc<Solved>>,
     /// The pivot chosen; `None` at the end.
     pub position: Option<usize>,
-    /// Pairs at that pivot.
-    pub pairs: Vec<PairState>,
-    /// Displacements at that pivot.
-    pub displacements: Option<Vec<NodeDisplacement>>,
-    /// z and w at that pivot; bare LCP only.
-    pub solution: Option<PlainSolution>,
-    /// p at that pivot.
-    pub p: Option<f64>,
-    /// Motion of the ray.
-    pub mode: Option<Vec<NodeDisplacement>>,
+    /// The state there.
+    pub moment: Arc<Moment>,
     /// What would stop the collapse, once it was looked for.
     pub remedies: Option<Arc<Remedies>>,
-    /// Names for completion.
-    pub vocabulary: Vocabulary,
-    /// Pairs whose state differs from the answer before.
+    /// Names for completion, gathered when the first letter asks for them.
+    vocabulary: Arc<OnceLock<Vocabulary>>,
+}
+
+/// The state at the place shown. It stays the same one until another answer or another pivot is shown, so that what is
+/// drawn of it can be kept.
+#[derive(Clone)]
+pub struct Moment {
+    /// The pairs.
+    pub pairs: Vec<PairState>,
+    /// Pairs whose state differs from the answer before; empty at a pivot on the way.
     pub changes: Vec<Change>,
+    /// Of each pair, which of the changes is its own.
+    change_of: Vec<Option<usize>>,
+    /// z and w; bare LCP only.
+    pub solution: Option<PlainSolution>,
+    /// p.
+    pub p: Option<f64>,
+    /// Displacements at a pivot on the way, motion of a ray at its end.
+    motion: Arc<Motion>,
+    /// Whether `motion` is still that of what was shown before: the states are drawn first.
+    is_behind: bool,
+}
+
+/// What moves; it takes a solution of the whole structure.
+#[derive(Clone, Default)]
+struct Motion {
+    displacements: Option<Vec<NodeDisplacement>>,
+    mode: Option<Vec<NodeDisplacement>>,
+}
+
+impl Motion {
+    fn of(session: &Session) -> Self {
+        Motion {
+            // at the end they stand in the answer
+            displacements: session.position().and_then(|_| session.displacements()),
+            mode: session.mode(),
+        }
+    }
 }
 
 impl Shown {
     /// A picture of the session as it is.
     pub fn of(session: &Session) -> Self {
-        let changes = match (session.answer(), session.previous_answer()) {
-            (Some(now), Some(before)) => difference::changes(before, now),
-            _ => Vec::new(),
-        };
-        Shown {
+        Self::take(session, None)
+    }
+
+    /// A picture of the session as it is now, where `last` was shown before: what did not change is taken from there,
+    /// and so is what takes long, until [`Shown::complete`].
+    pub fn after(last: &Shown, session: &Session) -> Self {
+        Self::take(session, Some(last))
+    }
+
+    fn take(session: &Session, last: Option<&Shown>) -> Self {
+        let mut shown = Shown {
             scenario: session.shared_scenario(),
             prepared: session.prepared(),
             values: session.values().clone(),
@@ -61,15 +94,63 @@ impl Shown {
             solved: session.solved(),
             previous: session.previous(),
             position: session.position(),
-            pairs: session.pairs(),
-            displacements: session.displacements(),
-            solution: session.solution(),
-            p: session.p(),
-            mode: session.mode(),
+            moment: Arc::default(),
             remedies: session.remedies(),
-            vocabulary: session.vocabulary(),
-            changes,
+            vocabulary: Arc::default(),
+        };
+        match last.filter(|last| last.is_same_moment(&shown)) {
+            Some(last) => shown.moment = Arc::clone(&last.moment),
+            None => {
+                let mut moment = Moment::of(session);
+                match last.filter(|last| Arc::ptr_eq(&last.scenario, &shown.scenario) && shown.needs_motion()) {
+                    Some(last) => (moment.motion, moment.is_behind) = (Arc::clone(&last.moment.motion), true),
+                    None => moment.motion = Arc::new(Motion::of(session)),
+                }
+                shown.moment = Arc::new(moment);
+            }
         }
+        if let Some(last) =
+            last.filter(|last| Arc::ptr_eq(&last.scenario, &shown.scenario) && last.values == shown.values)
+        {
+            shown.vocabulary = Arc::clone(&last.vocabulary);
+        }
+        shown
+    }
+
+    fn is_same_moment(&self, other: &Shown) -> bool {
+        let same = |a: &Option<Arc<Solved>>, b: &Option<Arc<Solved>>| match (a, b) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        self.solved.is_some()
+            && same(&self.solved, &other.solved)
+            && same(&self.previous, &other.previous)
+            && self.position == other.position
+    }
+
+    /// Whether something moves that the answer does not contain.
+    fn needs_motion(&self) -> bool {
+        self.structure().is_some() && (self.position.is_some() || self.at_ray())
+    }
+
+    /// Whether displacements are still to come: see [`Shown::complete`].
+    pub fn is_behind(&self) -> bool {
+        self.moment.is_behind
+    }
+
+    /// Computes what [`Shown::after`] left out, if the session still stands there.
+    pub fn complete(&mut self, session: &Session) {
+        if self.moment.is_behind {
+            let mut moment = (*self.moment).clone();
+            (moment.motion, moment.is_behind) = (Arc::new(Motion::of(session)), false);
+            self.moment = Arc::new(moment);
+        }
+    }
+
+    /// Names for completion.
+    pub fn vocabulary(&self) -> &Vocabulary {
+        self.vocabulary.get_or_init(|| complete::vocabulary(&self.scenario, &self.values))
     }
 
     /// The answer.
@@ -80,6 +161,30 @@ impl Shown {
     /// The answer before the last change.
     pub fn before(&self) -> Option<&Answer> {
         self.previous.as_deref().map(|solved| &solved.answer)
+    }
+
+    /// Pairs at the pivot shown.
+    pub fn pairs(&self) -> &[PairState] {
+        &self.moment.pairs
+    }
+
+    /// Displacements at the pivot shown; while [`Shown::is_behind`] those of what was shown before.
+    pub fn displacements(&self) -> Option<&[NodeDisplacement]> {
+        match (self.position, self.answer()) {
+            (None, Some(answer)) => answer.displacements.as_deref(),
+            _ => self.moment.motion.displacements.as_deref(),
+        }
+    }
+
+    /// Motion of the ray.
+    pub fn mode(&self) -> Option<&[NodeDisplacement]> {
+        self.moment.motion.mode.as_deref()
+    }
+
+    /// What the last change did to a pair.
+    pub fn change(&self, pair: usize) -> Option<&Change> {
+        let index = self.moment.change_of.get(pair).copied().flatten()?;
+        self.moment.changes.get(index)
     }
 
     /// The structure, if the scenario is one.
@@ -121,7 +226,49 @@ impl Shown {
     /// Whether the answer before is worth showing beside the present one.
     pub fn has_before(&self) -> bool {
         self.position.is_none()
-            && self.before().is_some_and(|before| before.is_answer() && before.pairs.len() == self.pairs.len())
+            && self.before().is_some_and(|before| before.is_answer() && before.pairs.len() == self.pairs().len())
             && self.answer().is_some_and(Answer::is_answer)
+    }
+
+    /// The same with nothing before it.
+    pub fn without_before(&self) -> Shown {
+        let mut shown = self.clone();
+        shown.previous = None;
+        let moment = Arc::make_mut(&mut shown.moment);
+        moment.changes.clear();
+        moment.change_of.clear();
+        shown
+    }
+}
+
+impl Default for Moment {
+    fn default() -> Self {
+        Moment {
+            pairs: Vec::new(),
+            changes: Vec::new(),
+            change_of: Vec::new(),
+            solution: None,
+            p: None,
+            motion: Arc::default(),
+            is_behind: false,
+        }
+    }
+}
+
+impl Moment {
+    fn of(session: &Session) -> Self {
+        let pairs = session.pairs();
+        let changes = match (session.answer(), session.previous_answer()) {
+            (Some(now), Some(before)) if session.position().is_none() => difference::changes(before, now),
+            _ => Vec::new(),
+        };
+        // changes come in the order of the pairs
+        let mut rest = changes.iter().enumerate().peekable();
+        let change_of = pairs
+            .iter()
+            .map(|pair| rest.next_if(|(_, change)| change.pair == pair.id).map(|(index, _)| index))
+            .collect();
+        let (solution, p) = (session.solution(), session.p());
+        Moment { pairs, changes, change_of, solution, p, ..Moment::default() }
     }
 }

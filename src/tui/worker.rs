@@ -20,8 +20,8 @@ const PATIENCE: Duration = Duration::from_millis(400);
 /// Between two looks at the progress.
 const PACE: Duration = Duration::from_millis(250);
 
-/// Does one job. The session is as it was if it fails.
-pub fn perform(session: &mut Session, job: Job, style: Style, watch: &dyn Watch) -> Done {
+/// Does one job after `last` was shown. The session is as it was if it fails.
+pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watch: &dyn Watch) -> Done {
     let mut output = Vec::new();
     let mut answers = None;
     let result = match &job {
@@ -29,6 +29,7 @@ pub fn perform(session: &mut Session, job: Job, style: Style, watch: &dyn Watch)
         Job::Step(step) => run(session, &format!("step to {step}"), &mut output, style, watch),
         Job::Line { text, .. } => run(session, text, &mut output, style, watch),
         Job::Pivots => session.ensure_pivots(&mut Output::text(&mut output, style, watch)).map(|()| Next::Continue),
+        Job::Motion => Ok(Next::Continue),
         Job::Remedies => session.ensure_remedies(watch).map(|()| Next::Continue),
         Job::Answers => session.all_answers(watch).map(|found| {
             answers = Some(found);
@@ -42,9 +43,13 @@ pub fn perform(session: &mut Session, job: Job, style: Style, watch: &dyn Watch)
             (Next::Continue, Some(error.to_string()), interrupted)
         }
     };
+    let mut shown = Shown::after(last, session);
+    if job == Job::Motion {
+        shown.complete(session);
+    }
     Done {
         job,
-        shown: Arc::new(Shown::of(session)),
+        shown: Arc::new(shown),
         output: String::from_utf8_lossy(&output).into_owned(),
         error,
         interrupted,
@@ -86,11 +91,12 @@ impl Worker {
         let stopped = Arc::new(AtomicU64::new(0));
         let asked = Arc::clone(&stopped);
         let work = move || {
+            let mut last = Arc::new(Shown::of(&session));
             while let Ok((number, job, style)) = incoming.recv() {
                 let watch =
                     WatchAdapter { number, stopped: &asked, send: &send, since: Mutex::new((Instant::now(), None)) };
                 let kept = job.clone();
-                let done = catch_unwind(AssertUnwindSafe(|| perform(&mut session, job, style, &watch)));
+                let done = catch_unwind(AssertUnwindSafe(|| perform(&mut session, &last, job, style, &watch)));
                 let done = done.unwrap_or_else(|_| Done {
                     job: kept,
                     shown: Arc::new(Shown::of(&session)),
@@ -100,6 +106,7 @@ impl Worker {
                     next: Next::Continue,
                     answers: None,
                 });
+                last = Arc::clone(&done.shown);
                 send(Action::Done(Box::new(done)));
             }
             session

@@ -6,8 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use crate::model::embedded;
+use crate::model::parameter::ParameterValues;
+use crate::model::quantity::Names;
 use crate::model::rules::Covering;
-use crate::model::scenario::Source;
+use crate::model::scenario::{Scenario, Source};
 
 use crate::session::language::command;
 use crate::session::language::expect;
@@ -61,35 +63,40 @@ pub struct Completion {
 impl Session {
     /// The names that can be completed now.
     pub fn vocabulary(&self) -> Vocabulary {
-        let (nodes, bars, elements) = match &self.scenario().source {
-            Source::Structure(structure) => (
-                structure.nodes.iter().map(|node| node.id.clone()).collect(),
-                structure.bars.iter().map(|bar| bar.id.clone()).collect(),
-                structure.named_elements.iter().map(|(id, _)| id.clone()).collect(),
-            ),
-            _ => (Vec::new(), Vec::new(), Vec::new()),
-        };
-        let pairs = match &self.scenario().source {
-            Source::Structure(structure) => structure.pairs.iter().map(|pair| pair.id.clone()).collect(),
-            Source::ContactSystem(system) => system.pairs.clone(),
-            Source::Lcp(_) => Vec::new(),
-        };
-        let scenario = self.scenario();
-        Vocabulary {
-            joints: self.names().joints().into_iter().map(str::to_owned).collect(),
-            probes: scenario.probes.iter().map(|(name, _)| name.clone()).collect(),
-            combinations: scenario.combinations.iter().map(|(name, _)| name.clone()).collect(),
-            parameters: self.values().free().map(|(name, value)| (name.clone(), value)).collect(),
-            pairs,
-            nodes,
-            bars,
-            elements,
-            cases: match &self.scenario().source {
-                Source::Structure(structure) => structure.load_cases.iter().map(|case| case.name.clone()).collect(),
-                Source::ContactSystem(system) => system.loads.iter().map(|load| load.name.clone()).collect(),
-                Source::Lcp(_) => Vec::new(),
-            },
-        }
+        vocabulary(self.scenario(), self.values())
+    }
+}
+
+/// The names of a scenario under these values.
+pub fn vocabulary(scenario: &Scenario, values: &ParameterValues) -> Vocabulary {
+    let (nodes, bars, elements) = match &scenario.source {
+        Source::Structure(structure) => (
+            structure.nodes.iter().map(|node| node.id.clone()).collect(),
+            structure.bars.iter().map(|bar| bar.id.clone()).collect(),
+            structure.named_elements.iter().map(|(id, _)| id.clone()).collect(),
+        ),
+        _ => (Vec::new(), Vec::new(), Vec::new()),
+    };
+    let pairs = match &scenario.source {
+        Source::Structure(structure) => structure.pairs.iter().map(|pair| pair.id.clone()).collect(),
+        Source::ContactSystem(system) => system.pairs.clone(),
+        Source::Lcp(_) => Vec::new(),
+    };
+    let cases = match &scenario.source {
+        Source::Structure(structure) => structure.load_cases.iter().map(|case| case.name.clone()).collect(),
+        Source::ContactSystem(system) => system.loads.iter().map(|load| load.name.clone()).collect(),
+        Source::Lcp(_) => Vec::new(),
+    };
+    Vocabulary {
+        joints: Names::of(scenario).joints().into_iter().map(str::to_owned).collect(),
+        probes: scenario.probes.iter().map(|(name, _)| name.clone()).collect(),
+        combinations: scenario.combinations.iter().map(|(name, _)| name.clone()).collect(),
+        parameters: values.free().map(|(name, value)| (name.clone(), value)).collect(),
+        pairs,
+        nodes,
+        bars,
+        elements,
+        cases,
     }
 }
 

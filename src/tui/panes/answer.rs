@@ -1,19 +1,30 @@
 //! How the run ended, its check, the rules, the values.
 
+use std::rc::Rc;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::tui::action::Job;
 use crate::tui::app::State;
+use crate::tui::paint::{put_lines, report};
+use crate::tui::pictures::{AnswerKey, Sheet};
 use crate::view::style::Role;
 use crate::view::{self, status};
 
-fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
+fn lines(state: &State, width: usize) -> Rc<Vec<Line<'static>>> {
+    let sheet = Sheet { width, look: state.look };
+    let looking = state.running == Some(Job::Remedies);
+    let key = AnswerKey::new(&state.shown.moment, state.shown.remedies.as_ref(), looking, sheet);
+    state.pictures.answer.of(key, || written(state, width))
+}
+
+fn written(state: &State, width: usize) -> Vec<Line<'static>> {
     let shown = &state.shown;
     match shown.answer() {
         Some(answer) => {
-            let mut lines = super::report(state.look, width, |out, style| {
+            let mut lines = report(state.look, width, |out, style| {
                 status::write(out, answer, &shown.scenario, &shown.values, style)
             });
             // the title of the scenario stands at the top of the screen
@@ -21,9 +32,7 @@ fn lines(state: &State, width: usize) -> Vec<Line<'static>> {
                 lines.remove(0);
             }
             if let Some(remedies) = &shown.remedies {
-                lines.extend(super::report(state.look, width, |out, style| {
-                    view::ray::write_remedies(out, remedies, style)
-                }));
+                lines.extend(report(state.look, width, |out, style| view::ray::write_remedies(out, remedies, style)));
             } else if state.running == Some(Job::Remedies) {
                 lines.push(Line::styled("looking for what would stop it", state.look.role(Role::Muted)));
             }
@@ -42,5 +51,5 @@ pub fn last_line(state: &State, area: Rect) -> usize {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let lines = lines(state, usize::from(area.width));
     let from = state.answer_scroll.min(lines.len().saturating_sub(usize::from(area.height)));
-    super::put_lines(&lines[from..], area, buffer);
+    put_lines(&lines[from..], area, buffer);
 }

@@ -1,13 +1,18 @@
 //! The table of the pairs.
 
+use std::rc::Rc;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Modifier;
 use ratatui::text::Line;
 
 use crate::session::results::PairState;
 use crate::tui::app::State;
+use crate::tui::kept::The;
+use crate::tui::listing::{GUTTER, Listing};
+use crate::tui::paint::{inside, put_lines, put_text, report};
 use crate::tui::pane::{Pane, SortKey};
+use crate::tui::pictures::Sheet;
 use crate::view::number::{short, with_unit};
 use crate::view::pairs::{state_words, write};
 use crate::view::style::Role;
@@ -27,73 +32,48 @@ pub fn note(state: &State) -> String {
 }
 
 /// Heading and a line per pair, in the chosen order.
-fn table(state: &State, order: &[usize], width: usize) -> (Vec<Line<'static>>, usize) {
-    let pairs: Vec<PairState> = order.iter().map(|index| state.shown.pairs[*index].clone()).collect();
-    let units = &state.shown.scenario.units;
-    let mut lines = super::report(state.look, width, |out, style| write(out, &pairs, units, style));
-    // the remark on columns that found no room; no pair begins with a bracket
-    if lines.last().and_then(|line| line.spans.first()).is_some_and(|span| span.content.trim_start().starts_with('(')) {
-        lines.pop();
-    }
-    let heading = lines.len().saturating_sub(pairs.len());
-    (lines, heading)
+fn listing(state: &State, width: u16) -> Rc<Listing> {
+    let sheet = Sheet { width: usize::from(width.saturating_sub(GUTTER)), look: state.look };
+    let key = (The::one(&state.shown.moment), state.sort, state.descending, sheet);
+    state.pictures.pairs.of(key, || {
+        let pairs: Vec<PairState> =
+            state.order().pairs.iter().map(|index| state.shown.pairs()[*index].clone()).collect();
+        let units = &state.shown.scenario.units;
+        let mut lines = report(state.look, sheet.width, |out, style| write(out, &pairs, units, style));
+        // the remark on columns that found no room; no pair begins with a bracket
+        let remark =
+            |line: &Line<'_>| line.spans.first().is_some_and(|span| span.content.trim_start().starts_with('('));
+        if lines.last().is_some_and(remark) {
+            lines.pop();
+        }
+        let rows = lines.split_off(lines.len().saturating_sub(pairs.len()));
+        Listing { heading: lines, rows }
+    })
 }
 
 /// The pair in a row of the screen.
 pub fn pair_at(state: &State, area: Rect, y: u16) -> Option<usize> {
-    let inside = super::inside(area);
+    let inside = inside(area);
     let order = state.order();
-    if order.is_empty() {
-        return None;
-    }
-    let (_, heading) = table(state, &order, usize::from(inside.width.saturating_sub(2)));
-    let rows = usize::from(inside.height).saturating_sub(heading);
-    let row = usize::from(y.checked_sub(inside.y)?).checked_sub(heading)?;
-    let selected = order.iter().position(|pair| *pair == state.pair);
-    let first = super::window(selected.unwrap_or(0), order.len(), rows);
-    (row < rows).then(|| order.get(first + row).copied())?
+    let row = listing(state, inside.width).row_at(order.place(state.pair), inside, y)?;
+    order.pairs.get(row).copied()
 }
 
 /// Draws the pane.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
-    if let Some(solution) = &state.shown.solution {
+    if let Some(solution) = &state.shown.moment.solution {
         draw_solution(state, &solution.z, &solution.w, area, buffer);
         return;
     }
     let order = state.order();
-    if order.is_empty() {
-        super::put_text(look, "no contact pairs", look.role(Role::Muted), area, buffer);
+    if order.pairs.is_empty() {
+        put_text(look, "no contact pairs", look.role(Role::Muted), area, buffer);
         return;
     }
-    let (lines, heading) = table(state, &order, usize::from(area.width.saturating_sub(2)));
-    let body = Rect::new(area.x + 2, area.y, area.width.saturating_sub(2), area.height);
-    super::put_lines(&lines[..heading.min(lines.len())], body, buffer);
-    let rows = usize::from(area.height).saturating_sub(heading);
-    let at = order.iter().position(|pair| *pair == state.pair).unwrap_or(0);
-    let first = super::window(at, order.len(), rows);
-    for (row, line) in lines[heading..].iter().skip(first).take(rows).enumerate() {
-        let y = area.y + (heading + row) as u16;
-        buffer.set_line(body.x, y, line, body.width);
-        let index = order[first + row];
-        let id = &state.shown.pairs[index].id;
-        let changed = state.shown.position.is_none() && state.shown.changes.iter().any(|change| change.pair == *id);
-        let selected = index == state.pair;
-        let mark = match (selected, changed) {
-            (true, true) => format!("{}*", look.report(1).mark()),
-            (true, false) => format!("{} ", look.report(1).mark()),
-            (false, true) => " *".to_owned(),
-            (false, false) => "  ".to_owned(),
-        };
-        buffer.set_stringn(area.x, y, mark, 2, look.role(Role::Accent));
-        if selected && state.focus == Pane::Pairs {
-            let row = Rect::new(area.x, y, area.width, 1);
-            buffer.set_style(row, look.selected());
-        } else if selected {
-            let row = Rect::new(area.x, y, area.width, 1);
-            buffer.set_style(row, ratatui::style::Style::new().add_modifier(Modifier::BOLD));
-        }
-    }
+    let changed = |row: usize| order.pairs.get(row).is_some_and(|pair| state.shown.change(*pair).is_some());
+    let selected = (order.place(state.pair), state.focus == Pane::Pairs);
+    listing(state, area.width).draw(look, selected, changed, area, buffer);
 }
 
 /// z and w of a bare LCP.
@@ -108,20 +88,18 @@ fn draw_solution(state: &State, z: &[f64], w: &[f64], area: Rect, buffer: &mut B
         let name = names.get(i).map_or("", String::as_str);
         lines.push(Line::raw(format!("{:<8}{:>14}{:>14}", look.fit(name, 8), short(*z), short(*w))));
     }
-    super::put_lines(&lines, area, buffer);
+    put_lines(&lines, area, buffer);
 }
 
 /// The selected pair in a line.
 pub fn about(state: &State) -> Option<String> {
-    let pair = state.shown.pairs.get(state.pair)?;
+    let pair = state.shown.pairs().get(state.pair)?;
     let units = &state.shown.scenario.units;
     let (force, length) = (force_unit(units), length_unit(units));
     let f = |value: f64| with_unit(&short(value), force.as_deref());
     let d = |value: f64| with_unit(&short(value), length.as_deref());
     let mut text = format!("{} {}", pair.id, state_words(pair));
-    if let Some(change) = state.shown.changes.iter().find(|c| c.pair == pair.id)
-        && state.shown.position.is_none()
-    {
+    if let Some(change) = state.shown.change(state.pair) {
         text.push_str(&format!(" (was {})", change.from));
     }
     text.push_str(&format!(" · x_n {}", f(pair.x_n)));

@@ -6,6 +6,8 @@ use ratatui::style::Modifier;
 use unicode_width::UnicodeWidthStr;
 
 use crate::tui::app::State;
+use crate::tui::listing::window;
+use crate::tui::paint::{inside, put_text};
 use crate::tui::pane::Pane;
 use crate::tui::vary;
 use crate::view::number::{short, with_unit};
@@ -26,7 +28,7 @@ fn widths(state: &State) -> (usize, usize) {
 
 /// First and last column of the sliders; `None` if there is no room for them.
 pub fn slider(state: &State, area: Rect) -> Option<(u16, u16)> {
-    let inside = super::inside(area);
+    let inside = inside(area);
     let (name, value) = widths(state);
     // mark, name, value, ends of the slider; names and values are short
     let start = inside.x + 2 + name as u16 + 1 + value as u16 + 2;
@@ -36,12 +38,12 @@ pub fn slider(state: &State, area: Rect) -> Option<(u16, u16)> {
 
 /// The parameter in a row of the screen.
 pub fn row_at(state: &State, area: Rect, y: u16) -> Option<usize> {
-    let inside = super::inside(area);
+    let inside = inside(area);
     if y < inside.y || y >= inside.bottom() {
         return None;
     }
     let count = state.shown.scenario.parameters.len();
-    let first = super::window(state.parameter, count, usize::from(inside.height));
+    let first = window(state.parameter, count, usize::from(inside.height));
     Some(first + usize::from(y - inside.y)).filter(|row| *row < count)
 }
 
@@ -51,13 +53,13 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let parameters = &state.shown.scenario.parameters;
     if parameters.is_empty() {
         let text = "nothing to vary: this scenario names no parameters";
-        super::put_text(look, text, look.role(Role::Muted), area, buffer);
+        put_text(look, text, look.role(Role::Muted), area, buffer);
         return;
     }
     let outer = Rect::new(area.x.saturating_sub(1), area.y.saturating_sub(1), area.width + 2, area.height + 2);
     let (name_width, value_width) = widths(state);
     let rows = usize::from(area.height);
-    let first = super::window(state.parameter, parameters.len(), rows);
+    let first = window(state.parameter, parameters.len(), rows);
     for (row, (index, (name, parameter))) in parameters.iter().enumerate().skip(first).take(rows).enumerate() {
         let y = area.y + row as u16;
         let selected = index == state.parameter;

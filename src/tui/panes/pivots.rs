@@ -1,24 +1,30 @@
 //! The pivots: what each turned, p after it, ties.
 
+use std::rc::Rc;
+use std::sync::Arc;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Modifier;
+use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
+use crate::session::Solved;
 use crate::session::results::PivotRecord;
 use crate::tui::app::State;
+use crate::tui::kept::The;
+use crate::tui::listing::{GUTTER, Listing};
+use crate::tui::paint::{inside, put_text};
 use crate::tui::pane::Pane;
+use crate::tui::pictures::Sheet;
+use crate::tui::theme::Look;
 use crate::view::force_unit;
 use crate::view::number::{in_column, largest, short, with_unit};
 use crate::view::pivots::of_contact;
 use crate::view::style::{Role, pad_left, pad_right};
 
-/// Rows of the heading.
-const HEADING: u16 = 1;
-
 /// p at the pivot shown.
 pub fn note(state: &State) -> String {
-    let Some(p) = state.shown.p else {
+    let Some(p) = state.shown.moment.p else {
         return String::new();
     };
     let Some(answer) = state.shown.answer().filter(|answer| !answer.pivots.is_empty()) else {
@@ -30,13 +36,10 @@ pub fn note(state: &State) -> String {
 
 /// The pivot in a row of the screen.
 pub fn step_at(state: &State, area: Rect, y: u16) -> Option<usize> {
-    let inside = super::inside(area);
-    let pivots = &state.shown.answer()?.pivots;
-    let row = y.checked_sub(inside.y)?.checked_sub(HEADING)?;
-    let rows = inside.height.saturating_sub(HEADING);
-    let first = super::window(at(state, pivots), pivots.len(), usize::from(rows));
-    let pivot = pivots.get(first + usize::from(row))?;
-    (row < rows).then_some(pivot.step)
+    let (solved, inside) = (state.shown.solved.as_ref()?, inside(area));
+    let pivots = &solved.answer.pivots;
+    let row = listing(state, solved, inside.width).row_at(at(state, pivots), inside, y)?;
+    pivots.get(row).map(|pivot| pivot.step)
 }
 
 /// Row of the pivot shown.
@@ -58,83 +61,94 @@ pub fn turned(pivot: &PivotRecord, arrow: &str) -> String {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
     let muted = look.role(Role::Muted);
-    let Some(answer) = state.shown.answer() else {
-        super::put_text(look, "not solved yet", muted, area, buffer);
+    let Some(solved) = &state.shown.solved else {
+        put_text(look, "not solved yet", muted, area, buffer);
         return;
     };
-    let pivots = &answer.pivots;
+    let pivots = &solved.answer.pivots;
     if pivots.is_empty() {
         let text = if state.shown.is_warm() {
             "followed from the last answer; its pivots come in a moment"
         } else {
             "no pivots: with every joint on nothing is violated, so the main system is the answer"
         };
-        super::put_text(look, text, muted, area, buffer);
+        put_text(look, text, muted, area, buffer);
         return;
     }
-    let scale = largest(pivots.iter().map(|pivot| pivot.p));
-    let rows = usize::from(area.height.saturating_sub(HEADING));
-    let selected = at(state, pivots);
-    let first = super::window(selected, pivots.len(), rows);
-    let seen = &pivots[first..(first + rows).min(pivots.len())];
-    let arrow = look.report(1).arrow();
-    let numbers: Vec<String> = pivots.iter().map(|pivot| in_column(pivot.p, scale)).collect();
-    let number = numbers.iter().map(String::len).max().unwrap_or(1).max(3);
-    let step = pivots.last().map_or(1, |p| p.step.to_string().len());
-    let ties = pivots.iter().any(|pivot| pivot.ties.len() > 1);
-    let tie = if ties { 7 } else { 0 };
-    // mark, step, what turned, p, ties
-    let fixed = 2 + step + 2 + 1 + number + tie;
-    // what stopped p, where there is room for it
-    let longest = pivots.iter().map(|pivot| pivot.leaving.width()).max().unwrap_or(0);
-    let until = if usize::from(area.width) >= fixed + 24 + longest { longest.max(5) + 3 } else { 0 };
-    let words = usize::from(area.width).saturating_sub(fixed + until).clamp(6, 30);
-    let heading = format!(
-        "  {} {} {}{}{}",
-        pad_left("", step),
-        pad_right(" turned", words + 1),
-        pad_left("p", number),
-        if until > 0 { pad_right("   until", until) } else { String::new() },
-        if ties { "   ties" } else { "" }
-    );
-    buffer.set_stringn(area.x, area.y, heading, usize::from(area.width), look.role(Role::Header));
-    for (row, pivot) in seen.iter().enumerate() {
-        let y = area.y + HEADING + row as u16;
-        let here = first + row == selected;
-        let mark = if here { look.report(1).mark() } else { ' ' };
-        let mut what = turned(pivot, arrow);
-        if what.width() > words {
-            what = what.replace(&format!(" {arrow} "), " ").replace(" in, ", "/").replace(" out", "");
-        }
-        let text = format!(
-            "{mark} {}  {} {}",
-            pad_left(&pivot.step.to_string(), step),
-            pad_right(&look.fit(&what, words), words),
-            pad_left(&numbers[first + row], number),
-        );
-        let style = look.role(if here { Role::Accent } else { Role::Plain });
-        let (x, _) = buffer.set_stringn(area.x, y, text, usize::from(area.width), style);
-        let x = if until > 0 {
-            let text = format!("   {}", pad_right(&look.fit(&pivot.leaving, until - 3), until - 3));
-            let room = usize::from(area.right().saturating_sub(x));
-            buffer.set_stringn(x, y, text, room, look.role(Role::Muted)).0
-        } else {
-            x
-        };
-        if pivot.ties.len() > 1 {
-            let text = pad_left(&pivot.ties.len().to_string(), tie);
-            let room = usize::from(area.right().saturating_sub(x));
-            buffer.set_stringn(x, y, text, room, look.role(Role::Warning));
-        }
-        if here {
-            let row = Rect::new(area.x, y, area.width, 1);
-            if state.focus == Pane::Pivots {
-                buffer.set_style(row, look.selected());
-            } else {
-                buffer.set_style(row, ratatui::style::Style::new().add_modifier(Modifier::BOLD));
-            }
-        }
+    let selected = (at(state, pivots), state.focus == Pane::Pivots);
+    listing(state, solved, area.width).draw(look, selected, |_| false, area, buffer);
+}
+
+/// The columns of the list.
+struct Columns {
+    /// Digits of the number of the pivot.
+    step: usize,
+    /// What it turned.
+    words: usize,
+    /// p.
+    number: usize,
+    /// What stopped p; 0 where there is no room for it.
+    until: usize,
+    /// How many were tied; 0 where none were.
+    tie: usize,
+}
+
+impl Columns {
+    fn of(pivots: &[PivotRecord], numbers: &[String], width: usize) -> Columns {
+        let step = pivots.last().map_or(1, |pivot| pivot.step.to_string().len());
+        let number = numbers.iter().map(String::len).max().unwrap_or(1).max(3);
+        let tie = if pivots.iter().any(|pivot| pivot.ties.len() > 1) { 7 } else { 0 };
+        let fixed = step + 2 + 1 + number + tie;
+        let longest = pivots.iter().map(|pivot| pivot.leaving.width()).max().unwrap_or(0);
+        let until = if width >= fixed + 24 + longest { longest.max(5) + 3 } else { 0 };
+        Columns { step, words: width.saturating_sub(fixed + until).clamp(6, 30), number, until, tie }
     }
+}
+
+fn listing(state: &State, solved: &Arc<Solved>, width: u16) -> Rc<Listing> {
+    let look = state.look;
+    let sheet = Sheet { width: usize::from(width.saturating_sub(GUTTER)), look };
+    state.pictures.pivots.of((The::one(solved), sheet), || {
+        let pivots = &solved.answer.pivots;
+        let scale = largest(pivots.iter().map(|pivot| pivot.p));
+        let numbers: Vec<String> = pivots.iter().map(|pivot| in_column(pivot.p, scale)).collect();
+        let columns = Columns::of(pivots, &numbers, sheet.width);
+        let heading = format!(
+            "{} {} {}{}{}",
+            pad_left("", columns.step),
+            pad_right(" turned", columns.words + 1),
+            pad_left("p", columns.number),
+            if columns.until > 0 { pad_right("   until", columns.until) } else { String::new() },
+            if columns.tie > 0 { "   ties" } else { "" }
+        );
+        Listing {
+            heading: vec![Line::styled(heading, look.role(Role::Header))],
+            rows: pivots.iter().zip(&numbers).map(|(pivot, p)| row(pivot, p, &columns, look)).collect(),
+        }
+    })
+}
+
+fn row(pivot: &PivotRecord, p: &str, columns: &Columns, look: Look) -> Line<'static> {
+    let arrow = look.report(1).arrow();
+    let mut what = turned(pivot, arrow);
+    if what.width() > columns.words {
+        what = what.replace(&format!(" {arrow} "), " ").replace(" in, ", "/").replace(" out", "");
+    }
+    let mut spans = vec![Span::raw(format!(
+        "{}  {} {}",
+        pad_left(&pivot.step.to_string(), columns.step),
+        pad_right(&look.fit(&what, columns.words), columns.words),
+        pad_left(p, columns.number),
+    ))];
+    if columns.until > 0 {
+        let room = columns.until - 3;
+        let text = format!("   {}", pad_right(&look.fit(&pivot.leaving, room), room));
+        spans.push(Span::styled(text, look.role(Role::Muted)));
+    }
+    if pivot.ties.len() > 1 {
+        spans.push(Span::styled(pad_left(&pivot.ties.len().to_string(), columns.tie), look.role(Role::Warning)));
+    }
+    Line::from(spans)
 }
 
 /// The sentence of what is shown: the pivot, the ray, or that there was none.

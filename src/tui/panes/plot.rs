@@ -7,7 +7,10 @@ use ratatui::text::Line;
 use crate::session::diagram::Internal;
 use crate::session::results::PairState;
 use crate::tui::app::State;
+use crate::tui::kept::The;
+use crate::tui::paint::{paste, put_lines, put_text, report};
 use crate::tui::pane::Plot;
+use crate::tui::pictures::PlotKey;
 use crate::view::plot::scene::{Magnification, Picture};
 use crate::view::plot::structure::write_with_diagrams;
 use crate::view::plot::trace;
@@ -23,9 +26,23 @@ const AROUND: u16 = 5;
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
     if state.shown.answer().is_none() {
-        super::put_text(look, "not solved yet", look.role(Role::Muted), area, buffer);
+        put_text(look, "not solved yet", look.role(Role::Muted), area, buffer);
         return;
     }
+    let key = PlotKey {
+        moment: The::one(&state.shown.moment),
+        size: (area.width, area.height),
+        look,
+        plot: state.plot,
+        ghost: state.ghost,
+    };
+    paste(&state.pictures.plots.of(key, || picture(state, area)), area, buffer);
+}
+
+/// As many plots as there is room for, drawn anew.
+fn picture(state: &State, area: Rect) -> Buffer {
+    let area = Rect::new(0, 0, area.width, area.height);
+    let mut buffer = Buffer::empty(area);
     let plots = state.plots();
     let from = plots.iter().position(|plot| *plot == state.plot).unwrap_or_default();
     let count = (area.height / ROWS).clamp(1, plots.len() as u16);
@@ -33,9 +50,10 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     for i in 0..count {
         let plot = plots[(from + usize::from(i)) % plots.len()];
         let rest = area.height - i * height;
-        let part = Rect::new(area.x, area.y + i * height, area.width, if i + 1 == count { rest } else { height });
-        super::put_lines(&lines(state, plot, part), part, buffer);
+        let part = Rect::new(0, i * height, area.width, if i + 1 == count { rest } else { height });
+        put_lines(&lines(state, plot, part), part, &mut buffer);
     }
+    buffer
 }
 
 fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
@@ -56,7 +74,7 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
     let now_label = match shown.position {
         Some(step) => format!("pivot {step}"),
         None if shown.at_ray() => {
-            let p = shown.p.map(crate::view::number::short).unwrap_or_default();
+            let p = shown.moment.p.map(crate::view::number::short).unwrap_or_default();
             format!("last vertex, p = {p}")
         }
         None => String::new(),
@@ -65,13 +83,13 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         .before()
         .filter(|_| state.ghost && shown.has_before())
         .map(|answer| answer.pairs.as_slice())
-        .filter(|pairs| *pairs != shown.pairs.as_slice());
+        .filter(|pairs| *pairs != shown.pairs());
     let states: Vec<(&str, &[PairState])> = match before {
-        Some(before) => vec![("now", shown.pairs.as_slice()), ("before", before)],
-        None => vec![(now_label.as_str(), shown.pairs.as_slice())],
+        Some(before) => vec![("now", shown.pairs()), ("before", before)],
+        None => vec![(now_label.as_str(), shown.pairs())],
     };
     fitting(area, |height| {
-        super::report(state.look, width, |out, style| zone::write(out, quantity, &states, units, height, style))
+        report(state.look, width, |out, style| zone::write(out, quantity, &states, units, height, style))
     })
 }
 
@@ -87,7 +105,7 @@ fn pivots(state: &State, area: Rect) -> Vec<Line<'static>> {
         ];
     }
     fitting(area, |height| {
-        super::report(state.look, usize::from(area.width), |out, style| {
+        report(state.look, usize::from(area.width), |out, style| {
             trace::write(out, &answer.pivots, shown.position, &shown.scenario.units, height, style)
         })
     })
@@ -107,11 +125,11 @@ fn along_bars(state: &State, force: Internal, area: Rect) -> Vec<Line<'static>> 
             title,
             structure,
             displacements: None,
-            pairs: Some(&shown.pairs),
+            pairs: Some(shown.pairs()),
             magnification: Magnification::Auto,
             height,
         };
-        super::report(state.look, usize::from(area.width), |out, style| {
+        report(state.look, usize::from(area.width), |out, style| {
             write_with_diagrams(out, &picture, (members, force), &shown.scenario.units, style)
         })
     })
@@ -123,8 +141,8 @@ fn ray(state: &State, area: Rect) -> Vec<Line<'static>> {
         return Vec::new();
     };
     fitting(area, |height| {
-        super::report(state.look, usize::from(area.width), |out, style| {
-            zone::mode(out, ray, &shown.pairs, &shown.scenario.units, height, style)
+        report(state.look, usize::from(area.width), |out, style| {
+            zone::mode(out, ray, shown.pairs(), &shown.scenario.units, height, style)
         })
     })
 }

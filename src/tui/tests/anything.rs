@@ -35,7 +35,9 @@ proptest! {
         for action in actions {
             rig.act(action);
             if rig.state.size.0 > 0 && rig.state.size.1 > 0 {
-                rig.buffer();
+                let kept = rig.buffer();
+                rig.state.pictures.clear();
+                prop_assert_eq!(kept, rig.buffer(), "a kept picture is not what is shown");
             }
             let state = &rig.state;
             // all jobs are done: what is shown is the session
@@ -44,7 +46,7 @@ proptest! {
             prop_assert_eq!(&state.shown.values, rig.session.values());
             prop_assert_eq!(state.shown.position, rig.session.position());
             prop_assert!(state.parameter < state.shown.values.len().max(1));
-            prop_assert!(state.pair < state.shown.pairs.len().max(1));
+            prop_assert!(state.pair < state.shown.pairs().len().max(1));
             prop_assert!(state.plots().contains(&state.plot));
             prop_assert!(!state.moving || state.shown.at_ray());
         }

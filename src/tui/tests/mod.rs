@@ -61,7 +61,7 @@ impl Rig {
 
     /// Does a job as the worker would.
     fn perform(&mut self, job: Job) -> Done {
-        perform(&mut self.session, job, self.state.look.report(76), &Quiet)
+        perform(&mut self.session, &self.state.shown, job, self.state.look.report(76), &Quiet)
     }
 
     /// Lets an action happen and every job that follows from it; gives the other effects.

@@ -18,7 +18,7 @@ fn a_slider_moves_the_geometry() {
     assert_eq!((rig.state.value("L"), rig.state.value("W")), (2.5, 25.0));
     assert_eq!(rig.state.shown.structure().unwrap().nodes[1].position, [2.5, 0.0]);
     // N = 5 W − 0.1 W = 122.5, u = N L / (E A) = 3.0625.
-    let slip = rig.state.shown.pairs[0].z_t;
+    let slip = rig.state.shown.pairs()[0].z_t;
     assert!((slip - 3.0625).abs() < 1e-12, "{slip}");
     assert!(rig.screen().contains("= 10*L"), "{}", rig.screen());
     rig.press(&["down", "+"]);
@@ -86,7 +86,7 @@ fn a_newer_value_stops_the_older_solve() {
     rig.state.parameter = 2;
     assert_eq!(update(&mut rig.state, more()), []);
     rig.state.parameter = 0;
-    let mut stopped = rig.perform(Job::Step(0));
+    let mut stopped = rig.perform(Job::Motion);
     stopped.job = set(0.55);
     stopped.error = Some("interrupted".into());
     stopped.interrupted = true;
@@ -109,7 +109,7 @@ fn progress_is_shown_and_can_be_stopped() {
     update(&mut rig.state, progress());
     assert!(rig.screen().contains("Lemke, pivot 64 42 %"), "{}", rig.screen());
     assert_eq!(update(&mut rig.state, Action::Do(Do::Stop)), [Effect::Stop]);
-    let mut stopped = rig.perform(Job::Step(0));
+    let mut stopped = rig.perform(Job::Motion);
     stopped.job = Job::Set { name: "f".into(), value: 0.55 };
     stopped.error = Some("interrupted".into());
     stopped.interrupted = true;

@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn stepping_moves_every_pane() {
     let mut rig = Rig::new("beam", 140, 45);
-    let slipping = |rig: &Rig| rig.state.shown.pairs.iter().filter(|pair| pair.state == PairMotion::SlipPlus).count();
+    let slipping = |rig: &Rig| rig.state.shown.pairs().iter().filter(|pair| pair.state == PairMotion::SlipPlus).count();
     assert_eq!(slipping(&rig), 4);
     rig.press(&["home"]);
     assert_eq!((rig.state.step(), slipping(&rig)), (Some(0), 0));
@@ -62,7 +62,7 @@ fn the_mode_moves_only_at_a_ray() {
     rig.act(Action::Paste("330".into()));
     rig.press(&["enter"]);
     assert!(rig.state.shown.at_ray());
-    let mode = rig.state.shown.mode.clone().unwrap();
+    let mode = rig.state.shown.mode().unwrap().to_vec();
     // the beam slides as a whole
     assert!(mode.iter().all(|u| (u.ux - 1.0).abs() < 1e-9 && u.uy.abs() < 1e-9));
     rig.press(&["m"]);

@@ -11,7 +11,7 @@ fn the_tour_tells_what_is_true() {
         assert_eq!(rig.state.tour, Some(step - 1));
         insta::assert_snapshot!(format!("tour-{step}"), rig.screen());
         let answer = rig.state.shown.answer().unwrap();
-        outcomes.push((answer.outcome, rig.state.shown.step(), rig.state.shown.p));
+        outcomes.push((answer.outcome, rig.state.shown.step(), rig.state.shown.moment.p));
         rig.press(&["enter"]);
     }
     assert_eq!(rig.state.tour, None);

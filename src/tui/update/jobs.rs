@@ -8,6 +8,7 @@ use crate::view::style::Role;
 use super::{output, selection, tour};
 use crate::tui::action::{Done, Effect, Job, Leave};
 use crate::tui::app::{Overlay, PERIOD, State};
+use crate::tui::kept::The;
 use crate::tui::tour::STEPS;
 
 /// Runs a job now, or after the one at work. Of the same slider only the newest value counts: an older solve is
@@ -38,7 +39,7 @@ pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
             }
         }
         Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
-        Job::Answers | Job::Line { .. } | Job::Pivots | Job::Remedies => {}
+        Job::Answers | Job::Line { .. } | Job::Pivots | Job::Motion | Job::Remedies => {}
     }
     state.waiting.push_back(job);
     effects
@@ -70,8 +71,10 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         state.new_scenario();
     }
     settle(state, &done.job);
-    let changed = matches!(done.job, Job::Set { .. } | Job::Pivots | Job::Remedies);
-    let looked = done.job == Job::Remedies;
+    if done.job == Job::Remedies && done.interrupted {
+        state.remedies_sought = None;
+    }
+    let changed = matches!(done.job, Job::Set { .. }) || done.job.is_background();
     let followed = changed && !done.interrupted && done.error.is_none();
     if let Some(error) = done.error {
         if done.interrupted {
@@ -106,18 +109,24 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         // The answer is there; its pivots follow unless a slider moves on.
         effects.extend(order(state, Job::Pivots));
     }
-    if !looked {
-        effects.extend(background(state));
-    }
+    effects.extend(background(state));
     effects
 }
 
-/// What is computed while nothing else is asked for: the remedies of a collapse. Whatever is asked for stops it.
+/// What is computed while nothing else is asked for: first what moves, then the remedies of a collapse.
 pub fn background(state: &mut State) -> Vec<Effect> {
-    if state.running.is_some() || !state.waiting.is_empty() || !state.shown.lacks_remedies() {
+    if state.running.is_some() || !state.waiting.is_empty() {
         return Vec::new();
     }
-    order(state, Job::Remedies)
+    let here = The::one(&state.shown.moment);
+    if state.shown.is_behind() {
+        order(state, Job::Motion)
+    } else if state.shown.lacks_remedies() && state.remedies_sought.as_ref() != Some(&here) {
+        state.remedies_sought = Some(here);
+        order(state, Job::Remedies)
+    } else {
+        Vec::new()
+    }
 }
 
 /// Brings the selections and what was asked for in line with what is shown.
@@ -130,19 +139,16 @@ fn settle(state: &mut State, job: &Job) {
     if !state.waiting.iter().any(|job| matches!(job, Job::Step(_))) {
         state.wanted_step = None;
     }
-    let count = state.shown.pairs.len();
+    let count = state.shown.pairs().len();
     state.pair = state.pair.min(count.saturating_sub(1));
     state.parameter = state.parameter.min(state.shown.values.len().saturating_sub(1));
     if let (Some(at), Job::Line { shows: false, .. }) = (state.tour, job)
         && let Some(step) = STEPS.get(at)
     {
         state.plot = step.plot;
-        if at == 0 && (state.shown.previous.is_some() || !state.shown.changes.is_empty()) {
+        if at == 0 && (state.shown.previous.is_some() || !state.shown.moment.changes.is_empty()) {
             // the tour begins here: there is nothing before it
-            let mut shown = (*state.shown).clone();
-            shown.previous = None;
-            shown.changes.clear();
-            state.shown = Arc::new(shown);
+            state.shown = Arc::new(state.shown.without_before());
         }
     }
     let plots = state.plots();

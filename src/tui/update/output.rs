@@ -36,7 +36,7 @@ pub(super) fn show_output(state: &mut State, job: &Job, output: &str) {
                 state.say(Role::Plain, text);
             }
         }
-        Job::Step(_) | Job::Answers | Job::Remedies => {}
+        Job::Step(_) | Job::Answers | Job::Motion | Job::Remedies => {}
     }
 }
 
@@ -55,6 +55,7 @@ pub(super) fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
         Job::Step(_) => "step".into(),
         Job::Answers => "answers".into(),
         Job::Pivots => "pivots".into(),
+        Job::Motion => "displacements".into(),
         Job::Remedies => "ray".into(),
     };
     let style = state.look.role(role);

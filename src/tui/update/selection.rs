@@ -3,6 +3,7 @@
 use super::steps::step_by;
 use crate::tui::action::Effect;
 use crate::tui::app::{Overlay, State};
+use crate::tui::paint::inside;
 use crate::tui::pane::{Pane, SortKey};
 use crate::tui::{layout, overlay, panes};
 
@@ -39,14 +40,12 @@ pub(super) fn select(state: &mut State, by: isize) -> Vec<Effect> {
     match state.focus {
         Pane::Parameters => state.parameter = moved(state.parameter, state.shown.values.len()),
         Pane::Pairs | Pane::Structure => {
-            let order = match state.focus {
-                Pane::Pairs => state.order(),
-                _ => (0..state.shown.pairs.len()).collect(),
+            let order = state.order();
+            let to = match state.focus {
+                Pane::Pairs => order.pairs.get(moved(order.place(state.pair), order.pairs.len())).copied(),
+                _ => Some(moved(state.pair, order.pairs.len())),
             };
-            let at = order.iter().position(|pair| *pair == state.pair);
-            if let Some(pair) = order.get(moved(at.unwrap_or_default(), order.len())) {
-                state.pair = *pair;
-            }
+            state.pair = to.unwrap_or_default();
         }
         Pane::Pivots => return step_by(state, by),
         Pane::Plot => turn_plot(state, by.signum()),
@@ -77,5 +76,5 @@ pub(super) fn sort_by_next(state: &mut State) {
 
 /// The last line that may stand at the top of the Answer pane.
 pub(super) fn last_answer_line(state: &State) -> usize {
-    layout::area_of(state, Pane::Answer).map_or(0, |area| panes::answer::last_line(state, panes::inside(area)))
+    layout::area_of(state, Pane::Answer).map_or(0, |area| panes::answer::last_line(state, inside(area)))
 }

@@ -36,7 +36,7 @@ pub(super) fn zoom(state: &mut State, by: f64) {
 }
 
 fn deform(state: &mut State, by: f64) {
-    let now = state.magnification.unwrap_or_else(|| panes::structure::automatic(state));
+    let now = state.magnification.unwrap_or_else(|| panes::structure::scale(state));
     let new = now * by;
     if new.is_finite() && new > 0.0 {
         state.magnification = Some(new);
@@ -51,7 +51,7 @@ pub(super) fn move_mode(state: &mut State) {
             _ => "no ray here: there is an answer, and no mode of collapse",
         };
         state.say(Role::Warning, why);
-    } else if state.shown.mode.is_none() {
+    } else if state.shown.mode().is_none() {
         state.say(Role::Warning, "this ray has no motion that could be drawn");
     } else {
         state.moving = !state.moving;

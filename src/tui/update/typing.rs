@@ -41,7 +41,7 @@ pub(super) fn edit(state: &mut State, change: Edit) {
 pub(super) fn complete(state: &mut State) {
     let shown = Arc::clone(&state.shown);
     if let Input::Command(entry) = &mut state.input {
-        entry.complete(&shown.vocabulary);
+        entry.complete(shown.vocabulary());
     }
 }
 

@@ -1,0 +1,74 @@
+//! A list in a pane: a heading and rows, one of them selected; only the rows in view are drawn.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use ratatui::text::Line;
+
+use super::paint::put_lines;
+use super::theme::Look;
+use crate::view::style::Role;
+
+/// Columns ahead of every row, for its mark.
+pub const GUTTER: u16 = 2;
+
+/// First of `rows` rows that show the selected one of `count`.
+pub fn window(selected: usize, count: usize, rows: usize) -> usize {
+    selected.saturating_sub(rows / 2).min(count.saturating_sub(rows))
+}
+
+/// The list.
+#[derive(Default)]
+pub struct Listing {
+    /// Stays at the top.
+    pub heading: Vec<Line<'static>>,
+    /// The rows.
+    pub rows: Vec<Line<'static>>,
+}
+
+impl Listing {
+    /// First row in view and how many there are.
+    fn window(&self, selected: usize, area: Rect) -> (usize, usize) {
+        let room = usize::from(area.height).saturating_sub(self.heading.len());
+        (window(selected, self.rows.len(), room), room)
+    }
+
+    /// The row at a line of the screen.
+    pub fn row_at(&self, selected: usize, area: Rect, y: u16) -> Option<usize> {
+        let (first, room) = self.window(selected, area);
+        let row = usize::from(y.checked_sub(area.y)?).checked_sub(self.heading.len())?;
+        Some(first + row).filter(|at| row < room && *at < self.rows.len())
+    }
+
+    /// Draws it; `starred` rows bear a star. The selected row is reversed where the pane has the focus, else bold.
+    pub fn draw(
+        &self,
+        look: Look,
+        (selected, focused): (usize, bool),
+        starred: impl Fn(usize) -> bool,
+        area: Rect,
+        buffer: &mut Buffer,
+    ) {
+        let body = Rect::new(area.x + GUTTER, area.y, area.width.saturating_sub(GUTTER), area.height);
+        put_lines(&self.heading, body, buffer);
+        let (first, room) = self.window(selected, area);
+        for (row, line) in self.rows.iter().enumerate().skip(first).take(room) {
+            // as many rows as the area has
+            let y = area.y + (self.heading.len() + row - first) as u16;
+            buffer.set_line(body.x, y, line, body.width);
+            let mark = if row == selected { look.report(1).mark() } else { ' ' };
+            let star = if starred(row) { '*' } else { ' ' };
+            buffer.set_stringn(area.x, y, format!("{mark}{star}"), usize::from(GUTTER), look.role(Role::Accent));
+            if row == selected {
+                let style = if focused { look.selected() } else { Style::new().add_modifier(Modifier::BOLD) };
+                buffer.set_style(Rect::new(area.x, y, area.width, 1), style);
+            }
+        }
+    }
+
+    /// The text of a row.
+    pub fn text(&self, row: usize) -> String {
+        let spans = self.rows.get(row).into_iter().flat_map(|line| &line.spans);
+        spans.map(|span| span.content.as_ref()).collect()
+    }
+}
