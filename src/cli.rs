@@ -17,7 +17,8 @@ use crate::model::problem::Problems;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::model::schema;
-use crate::session::{Answer, commands::import, commands::paths, commands::script, exit_status, load};
+use crate::session::commands::{import, new, paths, script};
+use crate::session::{Answer, exit_status, load};
 use crate::session::{CommandError, Format, History, Output, Session, diagnose};
 use crate::signals::{self, Signals, TerminalWatch, is_dumb};
 use crate::text::printable::{self, Printable};
@@ -92,6 +93,21 @@ enum Command {
         /// For people, or one JSON object with what was found
         #[arg(long, value_enum, default_value_t = Form::Text)]
         format: Form,
+    },
+    /// Write a scenario to begin with; without KIND, list the kinds
+    ///
+    /// The kinds are portal, continuous-beam, pipeline, block, block-stack, wall, arch, dam, footing, retaining-wall and
+    /// press-fit. Their dimensions are parameters, or counts of parts: NAME=VALUE chooses any of them, the others stay as
+    /// `stickslip new` lists them. The file has comments and is KIND.json if none is named; one that is there already stays
+    /// as it is.
+    #[command(after_help = "Examples:\n  stickslip new\n  stickslip new wall courses=5 bricks=4 f=0.5 wall-5.json")]
+    New {
+        /// What to begin with
+        #[arg(value_name = "KIND")]
+        kind: Option<String>,
+        /// Values of its parameters and counts, and the file
+        #[arg(value_name = "NAME=VALUE|FILE")]
+        words: Vec<String>,
     },
     /// Turn an LCP of Siconos (FILE.dat) into a scenario
     ///
@@ -406,6 +422,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
         Some(Command::Sweep(arguments)) => sweep(&arguments, &style, &mut out),
         Some(Command::Merge { files, out: to }) => merge(&files, to.as_deref(), &style, &mut out),
         Some(Command::Check { scenarios, format }) => check(&scenarios, format, &style, &mut out),
+        Some(Command::New { kind, words }) => begin(kind.as_deref(), &words, &style, &mut out),
         Some(Command::Import { file }) => {
             let watch = TerminalWatch::new(&Signals::install()?);
             let (written, rows) = import::import(&file, &watch)?;
@@ -427,6 +444,28 @@ fn run(cli: Cli) -> Result<u8, Failure> {
             Ok(0)
         }
     }
+}
+
+/// `new`: the kinds, or a scenario of one of them and what to type next.
+fn begin(kind: Option<&str>, words: &[String], style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let Some(kind) = kind else {
+        view::templates::write(out, &new::kinds()?, style)?;
+        return Ok(0);
+    };
+    let watch = TerminalWatch::new(&Signals::install()?);
+    let (path, scenario) = new::write(kind, words, &watch)?;
+    let file = new::typed(&path);
+    let open = format!("  stickslip {file}");
+    let wide = open.chars().count() + 4;
+    let lines = [
+        format!("wrote {}: {}", path.display(), scenario.title),
+        format!("{open:<wide$}  opens it at the prompt, solved"),
+        format!("  stickslip tui {file}  shows it in the full screen, to vary it"),
+    ];
+    for line in lines {
+        writeln!(out, "{}", style.text(&line))?;
+    }
+    Ok(0)
 }
 
 /// A scenario named on the command line.

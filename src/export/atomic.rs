@@ -24,6 +24,38 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>
     replace(path, content).map_err(|source| WriteError { path: path.to_owned(), source })
 }
 
+/// Writes a new file in the same way; one that is there already stays as it is.
+///
+/// # Errors
+/// There is something of this name already; whatever the system or `content` says.
+pub fn create(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CreateError> {
+    let there = |_| CreateError::There(path.to_owned());
+    fs::symlink_metadata(path).map_or(Ok(()), |metadata| Err(there(metadata)))?;
+    let failed = |source| CreateError::Failed { path: path.to_owned(), source };
+    let file = written(path, content, None).map_err(failed)?;
+    // it may have come meanwhile
+    file.persist_noclobber(path).map(drop).map_err(|error| match error.error.kind() {
+        io::ErrorKind::AlreadyExists => CreateError::There(path.to_owned()),
+        _ => failed(error.error),
+    })
+}
+
+/// A new file that could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum CreateError {
+    /// The name is taken.
+    #[error("{} exists already and stays as it is: name another file, or move it away first", .0.display())]
+    There(PathBuf),
+    /// The system does not let it.
+    #[error("cannot write {}: {source}", path.display())]
+    Failed {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
 /// Why no temporary file can be made in `folder`, without the name of that file, which says nothing and differs from run
 /// to run.
 fn refusal(folder: &Path, error: &io::Error) -> io::Error {
@@ -66,6 +98,17 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     if before.as_ref().is_some_and(fs::Permissions::readonly) {
         return Err(io::Error::from(io::ErrorKind::PermissionDenied));
     }
+    let file = written(&target, content, before)?;
+    file.persist(&target).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// The content in a temporary file beside `target`, with `permissions`, on the disk.
+fn written(
+    target: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    permissions: Option<fs::Permissions>,
+) -> io::Result<tempfile::NamedTempFile> {
     let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -84,12 +127,11 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
         content(&mut out)?;
         out.flush()?;
     }
-    if let Some(permissions) = before {
+    if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions)?;
     }
     file.as_file().sync_all()?;
-    file.persist(&target).map_err(|error| error.error)?;
-    Ok(())
+    Ok(file)
 }
 
 #[cfg(test)]
@@ -108,6 +150,24 @@ mod tests {
         assert!(failed.expect_err("fails").to_string().contains("disk full"));
         assert_eq!(fs::read(&path).expect("there"), b"old");
         assert_eq!(fs::read_dir(folder.path()).expect("folder").count(), 1);
+    }
+
+    #[test]
+    fn a_new_file_takes_the_place_of_nothing() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a.json");
+        create(&path, |out| out.write_all(b"first")).expect("new");
+        let error = create(&path, |_| unreachable!("nothing is asked for")).expect_err("there").to_string();
+        assert!(error.contains("exists already"), "{error}");
+        // one that comes while it is written
+        let other = folder.path().join("b.json");
+        let late = create(&other, |_| fs::write(&other, "theirs"));
+        assert!(matches!(late, Err(CreateError::There(_))), "{late:?}");
+        assert_eq!(fs::read(&path).expect("there"), b"first");
+        assert_eq!(fs::read(&other).expect("there"), b"theirs");
+        assert_eq!(fs::read_dir(folder.path()).expect("folder").count(), 2);
+        let missing = create(&folder.path().join("no/such.json"), |_| Ok(())).expect_err("no folder").to_string();
+        assert!(missing.contains("no/such.json") && !missing.contains(".stickslip-"), "{missing}");
     }
 
     #[test]

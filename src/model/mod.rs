@@ -3,6 +3,7 @@
 //! `load` (text) → `locate` (tree with places) → `decode` (typed, all problems in one pass; `grid`, `edge` make
 //! plates, `mortar` joins edges) → `scenario` (what everything later works on).
 
+pub mod amend;
 pub mod component;
 mod decode;
 pub mod edge;
@@ -30,5 +31,6 @@ pub mod siconos;
 pub mod structure;
 pub mod superelement;
 pub mod support;
+pub mod template;
 pub mod uses;
 mod words;

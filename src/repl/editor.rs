@@ -71,7 +71,7 @@ impl Completer for Editing {
                 format!("{text:<wide$}  {about}")
             };
             // a folder or an unfinished word goes on without a blank
-            let goes_on = text.ends_with(['/', ':']);
+            let goes_on = text.ends_with(['/', ':', '=']);
             let replacement = if only && !goes_on { format!("{text} ") } else { text };
             Shown { display, replacement }
         };

@@ -412,7 +412,8 @@ impl Session {
         // `expect error` and `echo` look at or pass by the message of the command before them
         let keeps_error =
             matches!(parsed, Ok(None | Some(command::Command::Expect { .. } | command::Command::Echo { .. })));
-        let is_load = matches!(parsed, Ok(Some(command::Command::Load { .. })));
+        let is_load =
+            matches!(parsed, Ok(Some(command::Command::Load { .. } | command::Command::New { kind: Some(_), .. })));
         let result = match parsed {
             Ok(None) => return Ok(Next::Continue),
             Ok(Some(command)) => self.needs_scenario(&command, io).and_then(|()| self.apply(command, text, io)),
@@ -445,9 +446,9 @@ impl Session {
     /// Whether a command may run after a `load` that failed: one that comes by itself was meant for the scenario that is
     /// not there, and would change another.
     fn needs_scenario(&self, command: &command::Command, io: &Output<'_>) -> Result<(), CommandError> {
-        use language::command::Command::{Echo, Expect, Help, Load, Quit, Scenarios};
+        use language::command::Command::{Echo, Expect, Help, Load, New, Quit, Scenarios};
         let allowed = match command {
-            Load { .. } | Help { .. } | Quit | Echo { .. } | Scenarios => true,
+            Load { .. } | New { .. } | Help { .. } | Quit | Echo { .. } | Scenarios => true,
             Expect { words } => words.first().is_some_and(|word| word == "error"),
             _ => false,
         };

@@ -32,6 +32,7 @@ pub mod svg;
 pub mod sweep;
 pub mod table;
 pub mod tableau;
+pub mod templates;
 pub mod ties;
 pub mod warnings;
 pub mod why;

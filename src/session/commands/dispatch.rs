@@ -39,6 +39,7 @@ impl Session {
         }
         match command {
             Command::Load { scenario } => self.load(&scenario, text, io)?,
+            Command::New { kind, words } => self.new_scenario(kind.as_deref(), &words, text, io)?,
             Command::Scenarios => scenarios(io)?,
             Command::Save { file } => self.save(file.as_deref(), io)?,
             Command::Params => self.report_parameters(io)?,
@@ -113,7 +114,7 @@ impl Session {
     }
 
     /// [`Session::change`] with lines ahead of the status line.
-    fn change_noting(
+    pub(in crate::session) fn change_noting(
         &mut self,
         next: Setup,
         text: &str,

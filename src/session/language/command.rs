@@ -26,6 +26,21 @@ pub enum Command {
         #[arg(value_name = "SCENARIO")]
         scenario: String,
     },
+    /// Write a scenario to begin with, load it and solve it; without KIND, list the kinds
+    ///
+    /// The kinds are portal, continuous-beam, pipeline, block, block-stack, wall, arch, dam, footing, retaining-wall and
+    /// press-fit. Their dimensions are parameters, or counts of parts: NAME=VALUE chooses any of them, the others stay as
+    /// `new` lists them. The file has comments, which `save` keeps, and is KIND.json if none is named; one that is there
+    /// already stays as it is.
+    #[command(after_help = "Example:\n  new\n  new wall courses=5 bricks=4 f=0.5 wall-5.json")]
+    New {
+        /// What to begin with
+        #[arg(value_name = "KIND")]
+        kind: Option<String>,
+        /// Values of its parameters and counts, and the file
+        #[arg(value_name = "NAME=VALUE FILE")]
+        words: Vec<String>,
+    },
     /// List the embedded scenarios
     #[command(after_help = "Example:\n  scenarios")]
     Scenarios,
@@ -676,7 +691,7 @@ pub fn grammar() -> clap::Command {
 }
 
 /// Commands that were not there in 0.1.
-const SINCE_0_2: &[&str] = &["find", "show", "summary", "combine", "envelope", "import"];
+const SINCE_0_2: &[&str] = &["find", "show", "summary", "combine", "envelope", "import", "new"];
 
 /// The full name of a command: itself, an alias, or a prefix that only one command has.
 ///

@@ -10,6 +10,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Names;
 use crate::model::rules::Covering;
 use crate::model::scenario::{Scenario, Source};
+use crate::model::template;
 
 use crate::session::language::command;
 use crate::session::language::expect;
@@ -206,6 +207,7 @@ fn usage(name: &str) -> String {
     };
     match name {
         "set" => return "NAME VALUE".to_owned(),
+        "new" => return "KIND [NAME=VALUE…] [FILE]".to_owned(),
         "step" => return "[N|back N|to K|first|last]".to_owned(),
         "pairs" => return "[PAIR…] [sort KEY]".to_owned(),
         "pivots" => return "[FROM..TO]".to_owned(),
@@ -292,6 +294,19 @@ fn of_path(given: &[String], vocabulary: &Vocabulary) -> Vec<Candidate> {
     pairs.chain(words).map(|word| candidate(word, "")).collect()
 }
 
+/// What can be chosen of the kind that follows `new`, but for what was chosen already.
+fn of_template(given: &[String]) -> Vec<Candidate> {
+    let Some(template) = given.first().and_then(|kind| template::find(kind).ok()) else {
+        return Vec::new();
+    };
+    let Ok(scenario) = template.default_scenario() else {
+        return Vec::new();
+    };
+    let chosen = |name: &str| given.iter().any(|word| word.split_once('=').is_some_and(|(known, _)| known == name));
+    let choices = template.choices(&scenario).into_iter().filter(|choice| !chosen(&choice.name));
+    choices.map(|choice| candidate(format!("{}=", choice.name), choice.about)).collect()
+}
+
 /// The names behind a `value_name` of the grammar.
 fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -> Vec<Candidate> {
     let plain = |names: &[String]| names.iter().map(|name| candidate(name, "")).collect::<Vec<_>>();
@@ -312,6 +327,8 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             all.extend(files(word));
             all
         }
+        "KIND" => template::ALL.iter().map(|template| candidate(template.kind, "")).collect(),
+        "NAME=VALUE FILE" => of_template(given).into_iter().chain(files(word)).collect(),
         "FILE" => {
             let mut all = files(word);
             if word.is_empty() && given.is_empty() {

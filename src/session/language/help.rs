@@ -6,7 +6,7 @@ use crate::session::language::command::{GrammarError, grammar, resolve};
 
 /// The groups of `help`, each with its commands in the order shown; every command stands in one of them.
 pub const GROUPS: &[(&str, &[&str])] = &[
-    ("scenario", &["load", "scenarios", "save", "params", "set", "reset", "undo", "redo", "diff", "import"]),
+    ("scenario", &["load", "new", "scenarios", "save", "params", "set", "reset", "undo", "redo", "diff", "import"]),
     (
         "answer",
         &[
