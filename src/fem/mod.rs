@@ -28,6 +28,7 @@
 //! Cholesky with the joints, by `supernodes`), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, stresses, reactions).
 
 pub mod main_system;
+pub mod matrices;
 pub mod recovery;
 
 mod assembly;

@@ -143,6 +143,11 @@ impl Pair {
         [Some((node, 1.0)), against.map(|against| (against, -1.0))].into_iter().flatten().collect()
     }
 
+    /// Whether one node stands on each side, or one on the firm ground.
+    pub fn is_of_nodes(&self) -> bool {
+        !self.slides_on_ground && matches!(self.weights[..], [(_, 1.0)] | [(_, 1.0), (_, -1.0)])
+    }
+
     /// Unit tangent t: n turned by −90° (clockwise); n = (0, 1) gives t = (1, 0).
     pub fn tangent(&self) -> [f64; 2] {
         [self.normal[1], -self.normal[0]]

@@ -429,7 +429,7 @@ impl Session {
 }
 
 /// `scenarios`.
-fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
+pub(super) fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
     let list = embedded::list();
     io.report(
         || list.iter().map(|(name, title)| json!({"name": name, "title": title})).collect(),

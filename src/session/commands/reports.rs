@@ -180,11 +180,16 @@ impl Session {
         Ok(())
     }
 
-    fn write_solution(&self, solution: &PlainSolution, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        let names: Vec<String> = match &self.now.scenario.source {
+    /// Names of the rows of a bare LCP.
+    pub(super) fn solution_names(&self, solution: &PlainSolution) -> Vec<String> {
+        match &self.now.scenario.source {
             Source::Lcp(lcp) => lcp.names.clone(),
             _ => (1..=solution.z.len()).map(|i| i.to_string()).collect(),
-        };
+        }
+    }
+
+    fn write_solution(&self, solution: &PlainSolution, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        let names = self.solution_names(solution);
         let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
         let head = format!("{:<wide$} {:>14} {:>14}", "row", "z", "w");
         writeln!(out, "{}", style.paint(Role::Header, &head))?;

@@ -14,6 +14,7 @@ use thiserror::Error;
 
 use crate::path::grid::Shard;
 
+use super::export::Export;
 use crate::session::language::tokens::{self, OpenQuote};
 
 /// One command with its arguments.
@@ -393,8 +394,8 @@ pub enum Command {
     /// Write tables, pictures, a report, the mesh with its results, or the LCP, to a file
     ///
     /// Tables go to .csv or .json: `export WHAT [OF] FILE`, where OF are the quantities of `quantities` and `envelope`, or
-    /// the parameter of `sensitivity`. A table is what the command shows, at the pivot chosen by `step`, after `stages`
-    /// at the end of the history.
+    /// the words that `sensitivity`, `critical`, `find`, `limit` and `check` take. A table is what the command shows, at
+    /// the pivot chosen by `step`, after `stages` at the end of the history.
     ///
     /// `export report FILE.html` is one file with its figures, `FILE.md` has them beside it as FILE-structure.svg and so
     /// on. It bears no date, so that the same answer gives the same file; `export report date FILE` adds it.
@@ -412,9 +413,13 @@ pub enum Command {
     /// or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a scenario reads M back with
     /// `"M": { "file": "FILE.mtx" }`.
     ///
+    /// `export stiffness` writes K of the elements to FILE.mtx, F of each load case to FILE.CASE.mtx, and to FILE.json the
+    /// scenario that reads them back as a superelement: with the dofs of the rows, and supports, ties, springs and contacts
+    /// beside it at the present values.
+    ///
     /// A file that is there is replaced, whole or not at all; never the scenario itself.
     #[command(
-        after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export structure beam.svg\n  export report beam.html\n  export path force c6 c5 path.svg\n  export result answer.json\n  export lcp beam-lcp.json"
+        after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export structure beam.svg\n  export report beam.html\n  export path force c6 c5 path.svg\n  export result answer.json\n  export lcp beam-lcp.json\n  export find F2 0..400 where z_t c3 > 0 places.csv\n  export stiffness k.mtx"
     )]
     Export {
         /// What to write
@@ -528,77 +533,6 @@ pub enum Picture {
 pub enum CheckHow {
     /// In exact arithmetic
     Exact,
-}
-
-/// What `export` writes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Export {
-    /// Contact pairs
-    Pairs,
-    /// Pivots
-    Pivots,
-    /// Displacements of the nodes
-    Displacements,
-    /// Member end forces
-    Members,
-    /// Reactions of supports and springs
-    Reactions,
-    /// Stresses at the nodes of plates, quads and triangles
-    Stresses,
-    /// Resultants of the edge contacts
-    Resultants,
-    /// Quantities that are named
-    Quantities,
-    /// Probes of the scenario
-    Probes,
-    /// Parameters with their values and ranges
-    Parameters,
-    /// Load combinations
-    Combinations,
-    /// Least and largest value over the combinations
-    Envelope,
-    /// Every answer that `enumerate` finds
-    Answers,
-    /// Every covering, tie-break and engine
-    Compare,
-    /// What one more unit of a parameter does to the pairs
-    Sensitivity,
-    /// Stages of the history that `stages` followed
-    Stages,
-    /// What the last `trace` or `stages` followed
-    Path,
-    /// The last `sweep` that was shown
-    Sweep,
-    /// What `summary` shows
-    Summary,
-    /// The whole result as `solve --format json` prints it
-    Result,
-    /// The scenario, its answer, tables and figures: one file of HTML, or Markdown
-    Report,
-    /// The structure with its results, for ParaView
-    Vtu,
-    /// Picture: the structure with the states of its pairs, deformed
-    Structure,
-    /// Picture: the collapse mode of a ray
-    Mode,
-    /// Picture: slip along the contact zone
-    Slip,
-    /// Picture: friction force within its bound
-    Force,
-    /// Picture: distance open
-    Gap,
-    /// Picture: compressive force
-    Pressure,
-    /// Picture: p over the pivots
-    P,
-    /// Picture: bending moments
-    Moment,
-    /// Picture: shear forces
-    Shear,
-    /// Picture: normal forces
-    Axial,
-    /// The LCP for other solvers: a scenario of its own (.json) or Matrix Market (.mtx)
-    Lcp,
 }
 
 /// The word of `restore discard`.

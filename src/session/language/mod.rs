@@ -4,6 +4,7 @@
 pub mod command;
 pub mod complete;
 pub mod expect;
+pub mod export;
 pub mod help;
 pub(in crate::session) mod selection;
 pub mod setting;

@@ -4,13 +4,14 @@
 mod lcp;
 mod pictures;
 mod report;
+mod stiffness;
 pub(super) mod tables;
 mod vtu;
 
 use std::fs;
 use std::path::Path;
 
-use crate::session::language::command::Export;
+use crate::session::language::export::Export;
 use crate::session::{CommandError, Output, Session};
 
 impl Session {
@@ -39,6 +40,7 @@ impl Session {
         self.spare_scenario(path)?;
         match what {
             Export::Lcp => return self.export_lcp(path, io),
+            Export::Stiffness => return self.export_stiffness(path, io),
             Export::Report => self.export_report(of, path, io),
             Export::Vtu => self.export_vtu(path, ending == "pvd", io),
             _ if ending == "svg" => self.export_picture(what, of, path, io.watch),
@@ -55,34 +57,5 @@ impl Session {
             return Err(CommandError::Refused(refusal));
         }
         Ok(())
-    }
-}
-
-impl Export {
-    /// Endings of the files it can be written to.
-    fn endings(self) -> &'static [&'static str] {
-        match self {
-            Export::Result | Export::Summary => &["json"],
-            Export::Vtu => &["vtu", "pvd"],
-            Export::Report => &["html", "md"],
-            Export::Lcp => &["json", "mtx"],
-            Export::Path => &["csv", "json", "svg"],
-            Export::Structure | Export::Mode | Export::Slip | Export::Force | Export::Gap | Export::Pressure => {
-                &["svg"]
-            }
-            Export::P | Export::Moment | Export::Shear | Export::Axial => &["svg"],
-            _ => &["csv", "json"],
-        }
-    }
-
-    /// How many words may stand between it and the file.
-    fn most_words(self, ending: &str) -> usize {
-        match self {
-            Export::Quantities | Export::Envelope => usize::MAX,
-            Export::Slip | Export::Force | Export::Gap | Export::Pressure => usize::MAX,
-            Export::Path if ending == "svg" => usize::MAX,
-            Export::Sensitivity | Export::Report | Export::Moment | Export::Shear | Export::Axial => 1,
-            _ => 0,
-        }
     }
 }

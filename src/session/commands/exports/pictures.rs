@@ -6,7 +6,7 @@ use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::OutcomeKind;
 use crate::export::atomic;
 use crate::session::commands::plots::Shape;
-use crate::session::language::command::Export;
+use crate::session::language::export::Export;
 use crate::session::{CommandError, Session};
 use crate::view::members::extremes;
 use crate::view::number::{short, with_unit};

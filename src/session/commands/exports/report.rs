@@ -10,7 +10,7 @@ use crate::answer::record::{Answer, MemberForces};
 use crate::export::atomic;
 use crate::model::scenario::Source;
 use crate::path::stages::{self, History};
-use crate::session::language::command::Export;
+use crate::session::language::export::Export;
 use crate::session::{CommandError, Output, Session, worker};
 use crate::solve::numbers::factors;
 use crate::view;

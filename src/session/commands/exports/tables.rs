@@ -9,7 +9,8 @@ use crate::answer::record::Answer;
 use crate::answer::stress::StressPlace;
 use crate::export::table::{Table, unfolded};
 use crate::export::{atomic, csv, json as json_export, path as path_export};
-use crate::session::language::command::Export;
+use crate::session::commands::dispatch::scenarios;
+use crate::session::language::export::Export;
 use crate::session::{CommandError, Format, Output, Session};
 
 impl Session {
@@ -23,7 +24,9 @@ impl Session {
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let written = match what {
-            Export::Pairs | Export::Pivots | Export::Displacements | Export::Members | Export::Reactions if csv => {
+            Export::Pairs | Export::Pivots | Export::Displacements | Export::Members | Export::Reactions
+                if csv && !self.is_solution(what) =>
+            {
                 let shown = self.shown(what)?;
                 atomic::write(path, |out| records_csv(what, &shown, out))
             }
@@ -63,8 +66,18 @@ impl Session {
         Err(self.none(missing, answer))
     }
 
+    /// Whether the pairs are z and w of a bare LCP.
+    fn is_solution(&self, what: Export) -> bool {
+        what == Export::Pairs && self.solution().is_some()
+    }
+
     fn table_json(&mut self, what: Export, of: &[String], io: &mut Output<'_>) -> Result<Value, CommandError> {
+        let one = |command: &str, expected: &str| match of {
+            [word] => Ok(word.clone()),
+            _ => Err(CommandError::Refused(format!("export {command}: {expected}, as `{command}` takes it?"))),
+        };
         Ok(match what {
+            Export::Pairs if self.is_solution(what) => self.solution_rows(),
             Export::Pairs => json_export::pairs(&self.shown(what)?),
             Export::Pivots => json_export::pivots(&self.shown(what)?),
             Export::Displacements => json_export::displacements(&self.shown(what)?),
@@ -89,6 +102,42 @@ impl Session {
                 return Err(CommandError::Refused("export: of which quantities? `help show` lists them".to_owned()));
             }
             Export::Quantities | Export::Probes => report(io, |io| self.show(of, io))?,
+            Export::Ties => report(io, |io| self.report_ties(io))?,
+            Export::Tableau => report(io, |io| self.report_tableau(io))?,
+            Export::Diff => report(io, |io| self.report_difference(io))?,
+            Export::Check => match of.first().map(String::as_str) {
+                None => report(io, |io| self.report_check(io))?,
+                Some("exact") => report(io, |io| self.check_exactly(io))?,
+                Some(word) => {
+                    let refusal = format!("export check: `{word}` makes no sense here: only `exact` may follow");
+                    return Err(CommandError::Refused(refusal));
+                }
+            },
+            Export::Ray => report(io, |io| self.report_ray(io))?,
+            Export::Remedies => {
+                let mut ray = report(io, |io| self.report_ray(io))?;
+                match ray["remedies"].take() {
+                    Value::Null => {
+                        let refusal = "no remedies: nothing is known that would stop this ray";
+                        return Err(CommandError::Refused(refusal.to_owned()));
+                    }
+                    found => found,
+                }
+            }
+            Export::Critical => {
+                let friction = one("critical", "of which friction parameter")?;
+                report(io, |io| self.critical(&friction, io))?
+            }
+            Export::Find if of.is_empty() => {
+                let refusal = "export find: what? the words that `find` takes stand before the file";
+                return Err(CommandError::Refused(refusal.to_owned()));
+            }
+            Export::Find => report(io, |io| self.find(of, io))?,
+            Export::Limit => {
+                let load = one("limit", "of which load")?;
+                report(io, |io| self.limit(&load, io))?
+            }
+            Export::Scenarios => report(io, scenarios)?,
             Export::Parameters => report(io, |io| self.report_parameters(io))?,
             Export::Combinations => report(io, |io| self.combine(None, io))?,
             Export::Envelope => report(io, |io| self.envelope(of, io))?,
@@ -118,6 +167,21 @@ impl Session {
             Export::Envelope => Table::of(&list("envelope")),
             Export::Compare => Table::of(&list("rows")),
             Export::Sensitivity => Table::of(&unfolded(&list("parameters"), "pairs")),
+            Export::Ties => Table::of(&[list("ties"), list("degenerate")].concat()),
+            Export::Tableau => dictionary(value),
+            Export::Ray => Table::of(&list("direction")),
+            Export::Limit => {
+                let mut row = vec![value.clone()];
+                if let Value::Object(collapse) = &mut row[0]["collapse"] {
+                    collapse.remove("direction");
+                }
+                Table::of(&row)
+            }
+            Export::Find if value.get("places").is_some() => {
+                let holds = list("holds").into_iter().map(|ends| json!({"from": ends[0], "to": ends[1]}));
+                Table::of(&holds.chain(list("places")).collect::<Vec<_>>())
+            }
+            Export::Check | Export::Critical | Export::Find => Table::of(std::slice::from_ref(value)),
             Export::Stages => Table::of(&without(list("stages"), &["changes", "pairs"])),
             Export::Answers => {
                 let numbered = list("answers").into_iter().enumerate().map(
@@ -127,6 +191,14 @@ impl Session {
             }
             _ => Table::of(value.as_array().map_or(&[], Vec::as_slice)),
         }
+    }
+
+    /// Rows with their names, z and w.
+    fn solution_rows(&self) -> Value {
+        let Some(solution) = self.solution() else { return Value::Null };
+        let names = self.solution_names(&solution);
+        let rows = names.iter().zip(solution.z.iter().zip(&solution.w));
+        rows.map(|(name, (z, w))| json!({"row": name, "z": z, "w": w})).collect()
     }
 
     fn stresses(&self, io: &Output<'_>) -> Result<Vec<Value>, CommandError> {
@@ -175,6 +247,16 @@ impl Session {
         }
         Ok(report)
     }
+}
+
+/// A dictionary: what is basic, its value, and its rate in each variable that is not.
+fn dictionary(value: &Value) -> Table {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let names = list(&value["nonbasic"]).into_iter().filter_map(|name| Some(name.as_str()?.to_owned()));
+    let columns = ["basic".to_owned(), "value".to_owned()].into_iter().chain(names).collect();
+    let row = |((basic, value), rates): ((Value, Value), Value)| [vec![basic, value], list(&rates)].concat();
+    let basic = list(&value["basic"]).into_iter().zip(list(&value["values"]));
+    Table { columns, rows: basic.zip(list(&value["rates"])).map(row).collect() }
 }
 
 /// The report of a command.

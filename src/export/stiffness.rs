@@ -1,0 +1,174 @@
+//! K and F of a structure in Matrix Market files, and the scenario that reads them back as a superelement.
+
+use std::collections::{HashMap, HashSet};
+use std::io::{self, Write};
+
+use serde_json::{Map, Value, json};
+
+use crate::fem::matrices::Matrices;
+use crate::model::pair::Pair;
+use crate::model::parameter::ParameterValues;
+use crate::model::scenario::Units;
+use crate::model::structure::{Component, Load, Spring, Structure};
+
+/// A structure with its matrices and its values.
+pub struct Stiffness<'a> {
+    /// The structure at these values.
+    pub structure: &'a Structure,
+    /// The values.
+    pub values: &'a ParameterValues,
+    /// Its K and F.
+    pub matrices: &'a Matrices,
+}
+
+/// Ids of the format for names of every kind, none twice: `lower[0,8]` becomes `lower_0_8`.
+#[derive(Default)]
+struct Ids(HashSet<String>);
+
+impl Ids {
+    fn of(&mut self, name: &str) -> String {
+        let plain: String =
+            name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '_' }).collect();
+        let plain = plain.trim_end_matches('_');
+        let base =
+            if plain.starts_with(|c: char| c.is_ascii_alphabetic()) { plain.to_owned() } else { format!("n_{plain}") };
+        let mut id = base.clone();
+        let mut number = 1;
+        while !self.0.insert(id.clone()) {
+            number += 1;
+            id = format!("{base}-{number}");
+        }
+        id
+    }
+}
+
+fn word(component: Component) -> &'static str {
+    match component {
+        Component::X => "x",
+        Component::Y => "y",
+        Component::R => "r",
+    }
+}
+
+impl Stiffness<'_> {
+    /// The scenario beside the matrices, and how many pairs it cannot tell: those of edges whose nodes do not match.
+    /// `file` gives the name of the file of K (`None`) or of a load case.
+    pub fn scenario(&self, title: &str, units: &Units, file: &dyn Fn(Option<&str>) -> String) -> (Value, usize) {
+        let mut ids = Ids::default();
+        let nodes: Vec<String> = self.structure.nodes.iter().map(|node| ids.of(&node.id)).collect();
+        let cases = self.structure.load_cases.iter().map(|case| {
+            let factor = case.factor.value(self.values);
+            (case.name.clone(), json!({"file": file(Some(&case.name)), "factor": factor}))
+        });
+        let places = self.structure.nodes.iter().zip(&nodes).map(|(node, id)| (id.clone(), json!(node.position)));
+        let dofs = self.matrices.dofs.iter().map(|(node, component)| json!([nodes[*node], word(*component)]));
+        let named = |list: &[usize]| list.iter().map(|&node| nodes[node].clone()).collect::<Vec<_>>();
+        let ties = self.structure.ties.iter().map(|tie| {
+            let fixed: Vec<&str> = tie.components.iter().map(|component| word(*component)).collect();
+            json!({"nodes": named(&tie.nodes), "fixed": fixed})
+        });
+        let rigid =
+            self.structure.rigid.iter().map(|body| json!({"id": ids.of(&body.id), "nodes": named(&body.nodes)}));
+        let rigid: Vec<Value> = rigid.collect();
+        let (told, untold): (Vec<&Pair>, Vec<&Pair>) =
+            self.structure.pairs.iter().partition(|pair| Pair::is_of_nodes(pair));
+        let contacts = told.into_iter().map(|pair| self.contact(pair, &nodes, ids.of(&pair.id)));
+        let contacts: Vec<Value> = contacts.collect();
+        let mut scenario = json!({
+            "format": "stickslip/1",
+            "title": title,
+            "superelement": {
+                "stiffness": {"file": file(None)},
+                "loads": cases.collect::<Map<String, Value>>(),
+                "nodes": places.collect::<Map<String, Value>>(),
+                "dofs": dofs.collect::<Vec<Value>>(),
+            },
+            "supports": self.supports(&nodes),
+            "ties": ties.collect::<Vec<Value>>(),
+            "rigid": rigid,
+            "springs": self.structure.springs.iter().map(|one| spring(one, &nodes)).collect::<Vec<Value>>(),
+            "contacts": contacts,
+        });
+        let labels = [("length", &units.length), ("force", &units.force)];
+        let labels: Map<String, Value> =
+            labels.into_iter().filter_map(|(key, unit)| Some((key.to_owned(), json!(unit.as_ref()?)))).collect();
+        if !labels.is_empty() {
+            scenario["units"] = labels.into();
+        }
+        (scenario, untold.len())
+    }
+
+    /// One entry for each node, and one more for each further case that moves it.
+    fn supports(&self, nodes: &[String]) -> Vec<Value> {
+        let mut settlements: HashMap<usize, Vec<(&str, [f64; 3])>> = HashMap::new();
+        for case in &self.structure.load_cases {
+            for load in &case.loads {
+                let Load::Settlement { node, component, value } = *load else { continue };
+                let of = settlements.entry(node).or_default();
+                if of.last().is_none_or(|(name, _)| *name != case.name) {
+                    of.push((&case.name, [0.0; 3]));
+                }
+                if let Some((_, amounts)) = of.last_mut() {
+                    amounts[component as usize] += value;
+                }
+            }
+        }
+        let mut fixed: Vec<(usize, Vec<&str>)> = Vec::new();
+        let mut place_of = HashMap::new();
+        for support in &self.structure.supports {
+            let place = *place_of.entry(support.node).or_insert_with(|| {
+                fixed.push((support.node, Vec::new()));
+                fixed.len() - 1
+            });
+            fixed[place].1.push(word(support.component));
+        }
+        let entry = |(node, fixed): (usize, Vec<&str>)| match settlements.get(&node) {
+            None => vec![json!({"at": nodes[node], "fixed": fixed})],
+            Some(of) => of
+                .iter()
+                .map(|(case, amounts)| json!({"at": nodes[node], "fixed": fixed, "settlement": amounts, "case": case}))
+                .collect(),
+        };
+        fixed.into_iter().flat_map(entry).collect()
+    }
+
+    fn contact(&self, pair: &Pair, nodes: &[String], id: String) -> Value {
+        let against = pair.weights.get(1).map_or("ground", |(node, _)| nodes[*node].as_str());
+        let mut contact = json!({
+            "id": id, "node": nodes[pair.node], "against": against, "normal": pair.normal, "law": pair.law.name(),
+        });
+        for (key, number) in pair.law.numbers() {
+            contact[key] = json!(number.value(self.values));
+        }
+        contact
+    }
+}
+
+fn spring(spring: &Spring, nodes: &[String]) -> Value {
+    let ends = spring.nodes();
+    let factor = |wanted: Component| {
+        let own = spring.terms.iter().find(|term| term.node == ends[0] && term.component == wanted);
+        own.map_or(0.0, |term| term.factor)
+    };
+    let mut value = match factor(Component::R) {
+        0.0 => json!({"direction": [factor(Component::X), factor(Component::Y)], "stiffness": spring.stiffness}),
+        _ => json!({"rotation": spring.stiffness}),
+    };
+    match ends[..] {
+        [a, b, ..] => value["between"] = json!([nodes[a], nodes[b]]),
+        _ => value["at"] = json!(nodes[ends[0]]),
+    }
+    value
+}
+
+/// Writes K as the lower triangle of a symmetric matrix in coordinate format.
+///
+/// # Errors
+/// Those of `out`.
+pub fn matrix(out: &mut dyn Write, matrices: &Matrices) -> io::Result<()> {
+    let order = matrices.dofs.len();
+    writeln!(out, "%%MatrixMarket matrix coordinate real symmetric")?;
+    writeln!(out, "% K without supports and springs; the rows are the dofs of the scenario beside it")?;
+    writeln!(out, "{order} {order} {}", matrices.stiffness.len())?;
+    matrices.stiffness.iter().try_for_each(|(i, j, value)| writeln!(out, "{} {} {value:e}", i + 1, j + 1))
+}

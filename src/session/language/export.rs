@@ -1,0 +1,131 @@
+//! What `export` writes, to which files.
+
+use clap::ValueEnum;
+
+/// What `export` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Export {
+    /// Contact pairs
+    Pairs,
+    /// Pivots
+    Pivots,
+    /// Pivots with tied rows, and vertices with basics at zero
+    Ties,
+    /// Dictionary at the pivot shown
+    Tableau,
+    /// Displacements of the nodes
+    Displacements,
+    /// Member end forces
+    Members,
+    /// Reactions of supports and springs
+    Reactions,
+    /// Stresses at the nodes of plates, quads and triangles
+    Stresses,
+    /// Resultants of the edge contacts
+    Resultants,
+    /// Quantities that are named
+    #[value(alias = "show")]
+    Quantities,
+    /// Probes of the scenario
+    Probes,
+    /// Parameters with their values and ranges
+    #[value(alias = "params")]
+    Parameters,
+    /// What differs from the file
+    Diff,
+    /// Numbers of the check; `check exact`: what it proves
+    Check,
+    /// Load combinations
+    #[value(alias = "combine")]
+    Combinations,
+    /// Least and largest value over the combinations
+    Envelope,
+    /// Every answer that `enumerate` finds
+    #[value(alias = "enumerate")]
+    Answers,
+    /// The direction of the ray, and what it means
+    Ray,
+    /// What would stop the collapse of a ray
+    Remedies,
+    /// Every covering, tie-break and engine
+    Compare,
+    /// What one more unit of a parameter does to the pairs
+    Sensitivity,
+    /// The friction above which more than one answer is possible
+    Critical,
+    /// Where a quantity is as wanted
+    Find,
+    /// The limit of a load
+    Limit,
+    /// Stages of the history that `stages` followed
+    Stages,
+    /// What the last `trace` or `stages` followed
+    #[value(alias = "trace")]
+    Path,
+    /// The last `sweep` that was shown
+    Sweep,
+    /// What `summary` shows
+    Summary,
+    /// The embedded scenarios
+    Scenarios,
+    /// The whole result as `solve --format json` prints it
+    Result,
+    /// The scenario, its answer, tables and figures: one file of HTML, or Markdown
+    Report,
+    /// The structure with its results, for ParaView
+    Vtu,
+    /// Picture: the structure with the states of its pairs, deformed
+    Structure,
+    /// Picture: the collapse mode of a ray
+    Mode,
+    /// Picture: slip along the contact zone
+    Slip,
+    /// Picture: friction force within its bound
+    Force,
+    /// Picture: distance open
+    Gap,
+    /// Picture: compressive force
+    Pressure,
+    /// Picture: p over the pivots
+    P,
+    /// Picture: bending moments
+    Moment,
+    /// Picture: shear forces
+    Shear,
+    /// Picture: normal forces
+    Axial,
+    /// The LCP for other solvers: a scenario of its own (.json) or Matrix Market (.mtx)
+    Lcp,
+    /// K and F for other programs, with the scenario that reads them back as a superelement (.json or .mtx)
+    Stiffness,
+}
+
+impl Export {
+    /// Endings of the files it can be written to.
+    pub fn endings(self) -> &'static [&'static str] {
+        match self {
+            Export::Result | Export::Summary => &["json"],
+            Export::Vtu => &["vtu", "pvd"],
+            Export::Report => &["html", "md"],
+            Export::Lcp | Export::Stiffness => &["json", "mtx"],
+            Export::Path => &["csv", "json", "svg"],
+            Export::Structure | Export::Mode | Export::Slip | Export::Force | Export::Gap | Export::Pressure => {
+                &["svg"]
+            }
+            Export::P | Export::Moment | Export::Shear | Export::Axial => &["svg"],
+            _ => &["csv", "json"],
+        }
+    }
+
+    /// How many words may stand between it and the file.
+    pub fn most_words(self, ending: &str) -> usize {
+        match self {
+            Export::Quantities | Export::Envelope | Export::Find => usize::MAX,
+            Export::Slip | Export::Force | Export::Gap | Export::Pressure => usize::MAX,
+            Export::Path if ending == "svg" => usize::MAX,
+            Export::Sensitivity | Export::Critical | Export::Limit | Export::Check | Export::Report => 1,
+            Export::Moment | Export::Shear | Export::Axial => 1,
+            _ => 0,
+        }
+    }
+}
