@@ -135,7 +135,7 @@ impl Stiffness<'_> {
     fn contact(&self, pair: &Pair, nodes: &[String], id: String) -> Value {
         let against = pair.weights.get(1).map_or("ground", |(node, _)| nodes[*node].as_str());
         let mut contact = json!({
-            "id": id, "node": nodes[pair.node], "against": against, "normal": pair.normal, "law": pair.law.name(),
+            "id": id, "node": nodes[pair.node], "against": against, "normal": pair.normal, "law": pair.law.kind(),
         });
         for (key, number) in pair.law.numbers() {
             contact[key] = json!(number.value(self.values));

@@ -12,8 +12,9 @@ use super::parameter::{Formulas, Number, Parameter, ParameterValues};
 use super::problem::{Problem, Problems};
 use super::quantity::Quantity;
 use super::rules::Rules;
-use super::structure::Structure;
+use super::structure::{Load, Structure};
 use super::uses::Uses;
+use crate::text::hash::Hash;
 
 /// Labels of the author's units; nothing is converted.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -159,6 +160,36 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// Hash of its text and of what stands in the files it names: meshes and matrices.
+    pub fn hash(&self) -> Hash {
+        let mut hash = Hash::of(&self.text);
+        let mut numbers = |rows: &mut dyn Iterator<Item = f64>| {
+            hash = rows.fold(hash, |hash, number| hash.and(&number.to_bits().to_le_bytes()));
+        };
+        match &self.source {
+            Source::ContactSystem(given) => numbers(&mut given.matrix.rows().iter().flatten().copied()),
+            Source::Lcp(lcp) => numbers(&mut lcp.matrix.iter().flatten().copied()),
+            Source::Structure(structure) => {
+                if let Some(element) = &structure.superelement {
+                    let entries = element.entries.iter().flat_map(|&(i, j, value)| [i as f64, j as f64, value]);
+                    numbers(&mut entries.into_iter());
+                    let loads = structure.load_cases.iter().flat_map(|case| &case.loads);
+                    let forces = loads.filter_map(|load| match *load {
+                        Load::Nodal { node, force: [x, y], moment } => Some([node as f64, x, y, moment]),
+                        _ => None,
+                    });
+                    numbers(&mut forces.flatten());
+                }
+            }
+        }
+        let mut meshes: Vec<_> = self.meshes.0.iter().collect();
+        meshes.sort_by_key(|(name, _)| name.as_str());
+        for (name, mesh) in meshes {
+            hash = mesh.hash(hash.and(name.as_bytes()));
+        }
+        hash
+    }
+
     /// A problem of this scenario that only a later stage could find, placed at a JSON path such as those in
     /// [`Places`] (at the nearest place around it if the path leads nowhere).
     pub fn problem_at(&self, path: &str, message: impl Into<String>, help: impl Into<String>) -> Problems {

@@ -14,7 +14,7 @@ use crate::answer::record::{Answer, OutcomeKind, State};
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
 use crate::model::rules::Rules;
-use crate::model::scenario::{Scenario, Source};
+use crate::model::scenario::Scenario;
 use crate::solve::{PrepareError, Prepared};
 use crate::text::hash::Hash;
 use crate::text::printable;
@@ -62,7 +62,7 @@ pub struct Header {
     pub version: String,
     /// Name of the scenario.
     pub scenario: String,
-    /// Of the text of the scenario, the values that are not varied and the rules.
+    /// Of the scenario with the files it names, the values that are not varied and the rules.
     pub hash: String,
     /// Ranges of the axes.
     pub grid: Vec<String>,
@@ -136,13 +136,7 @@ struct Row {
 impl Sweep<'_> {
     /// The header of the file.
     pub fn header(&self) -> Header {
-        let mut hash = Hash::of(&self.scenario.text);
-        if let Source::ContactSystem(given) = &self.scenario.source {
-            // The matrix may stand in a file of its own.
-            for entry in given.matrix.rows().iter().flatten() {
-                hash = hash.and(&entry.to_bits().to_le_bytes());
-            }
-        }
+        let mut hash = self.scenario.hash();
         for (name, value) in self.values.free() {
             if self.grid.axes.iter().all(|axis| axis.name != *name) {
                 hash = hash.and(name.as_bytes());

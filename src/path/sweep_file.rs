@@ -104,8 +104,14 @@ pub(super) fn read_header(path: &Path, line: &str) -> Result<(Header, Format), S
 
 /// The first difference of two headers, shards aside.
 fn difference(found: &Header, expected: &Header) -> Option<(&'static str, String, String)> {
+    // The folder may be another one on another machine.
+    let [name, wanted] = [found, expected].map(|header| {
+        let name = Path::new(&header.scenario).file_name();
+        name.map_or_else(|| header.scenario.clone(), |name| name.to_string_lossy().into_owned())
+    });
     let pairs = [
-        ("scenario or values", &found.hash, &expected.hash),
+        ("scenario", &name, &wanted),
+        ("hash of the scenario, its files, values and rules", &found.hash, &expected.hash),
         ("version of the program", &found.version, &expected.version),
     ];
     for (what, a, b) in pairs {

@@ -1,7 +1,7 @@
 //! A report as a list of blocks, written as Markdown or as one file of HTML.
 
 use super::table::{Align, Table};
-use crate::text::printable::xml as escaped;
+use crate::text::printable::{is_unprintable, xml as escaped};
 
 /// Longer tables show so many rows of their beginning and of their end.
 const ENDS: usize = 20;
@@ -97,7 +97,7 @@ impl Report {
                 Block::Text(words) => text.push_str(&format!("{}\n\n", plain(words))),
                 Block::Table(table, how) => text.push_str(&markdown_table(table, how)),
                 Block::Figure { name, title, .. } => {
-                    text.push_str(&format!("![{}](<{}>)\n\n", plain(title), file(name)));
+                    text.push_str(&format!("![{}](<{}>)\n\n", plain(title), link(&file(name))));
                 }
             }
         }
@@ -155,17 +155,32 @@ fn markdown_table(table: &Table, how: &str) -> String {
     text
 }
 
-/// Text in Markdown: characters that would be markup are escaped.
+/// Text in Markdown: characters that would be markup are escaped; what steers a terminal is `?`, as in HTML.
 fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
             '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '~' | '&' => plain.extend(['\\', c]),
-            c if c.is_control() => plain.push(' '),
+            '\n' | '\t' => plain.push(' '),
+            c if is_unprintable(c) => plain.push('?'),
             c => plain.push(c),
         }
     }
     plain
+}
+
+/// The name of a file between < and > of a link: what cannot stand there is written by its bytes.
+fn link(file: &str) -> String {
+    let mut link = String::with_capacity(file.len());
+    for c in file.chars() {
+        if is_unprintable(c) || matches!(c, '<' | '>' | '\\' | '%') {
+            let mut bytes = [0; 4];
+            c.encode_utf8(&mut bytes).bytes().for_each(|byte| link.push_str(&format!("%{byte:02X}")));
+        } else {
+            link.push(c);
+        }
+    }
+    link
 }
 
 #[cfg(test)]
@@ -178,6 +193,23 @@ mod tests {
         table.rows =
             (0..100).map(|i| Row::new(vec![Cell::from(format!("j|{i}")), Cell::from(format!("{i}.5"))])).collect();
         table
+    }
+
+    #[test]
+    fn nothing_that_steers_a_terminal_stands_in_a_report() {
+        let hostile = "a\u{1b}[31m\u{9b}\u{202e}\u{2066}b\r\nc\u{7f}";
+        let mut table = Table::new(vec![Column::words(hostile)]);
+        table.rows = vec![Row::new(vec![Cell::from(hostile)])];
+        let figure = Block::Figure { name: "slip".into(), title: hostile.into(), svg: String::new() };
+        let blocks = vec![Block::Heading(hostile.into()), Block::Text(hostile.into()), Block::Table(table, ""), figure];
+        let report = Report { title: hostile.into(), blocks };
+        let file = |name: &str| format!("{hostile}>-{name}.svg");
+        let markdown = report.markdown(hostile, &file);
+        assert!(markdown.contains("b%0D%0Ac%7F%3E-slip.svg>)"), "{markdown}");
+        for text in [markdown, report.html(hostile)] {
+            assert!(text.chars().all(|c| c == '\n' || !is_unprintable(c)), "{text:?}");
+            assert!(text.contains("b? c?") && !text.contains("b\n"), "{text}");
+        }
     }
 
     #[test]

@@ -23,7 +23,10 @@ struct Case {
 
 impl Case {
     fn new(name: &str, axes: &[&str]) -> Case {
-        let scenario = embedded::load(name).expect("embedded");
+        Case::of(embedded::load(name).expect("embedded"), axes)
+    }
+
+    fn of(scenario: Scenario, axes: &[&str]) -> Case {
         let axes = axes.iter().map(|axis| Axis::parse(axis).expect("an axis")).collect();
         Case {
             prepared: prepare(&scenario, &Quiet).expect("sound"),
@@ -208,6 +211,47 @@ fn altered_rows_are_refused() {
         ] {
             assert!(error.contains("earlier version") && error.contains("run the sweep again"), "{error}");
         }
+    }
+}
+
+/// Shards of scenarios of other names, other texts, or other meshes and matrices behind the same text.
+#[test]
+fn shards_of_other_scenarios_are_refused() {
+    let folder = tempfile::tempdir().expect("a place");
+    let at = |name: &str| folder.path().join(name);
+    let mesh = |height: f64| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 {height} 0\n4 0 {height} 0\n\
+             $EndNodes\n$Elements\n1\n1 3 2 1 1 1 2 3 4\n$EndElements\n"
+        )
+    };
+    let chain = |k: f64| format!("%%MatrixMarket matrix array real general\n2 2\n{k}\n0\n0\n{k}\n");
+    let by_mesh = r#"{"format": "stickslip/1", "title": "t", "parameters": {"f": 0.5}, "materials": {"m": {"E": 1e3, "nu": 0, "density": 1}},
+        "meshes": [{"id": "m", "file": "a.msh", "materials": {"*": {"material": "m", "thickness": 1, "plane": "stress"}}}],
+        "contacts": [{"id": "c", "edge": "m.bottom", "against": "ground", "friction": "f"}],
+        "loads": {"w": {"items": [{"gravity": {"acceleration": [0, -1]}}]}}}"#;
+    let by_matrix = r#"{"format": "stickslip/1", "title": "t", "parameters": {"f": 0.5},
+        "superelement": {"stiffness": {"file": "k.mtx"}, "nodes": {"a": [0, 0]}, "dofs": [["a", "x"], ["a", "y"]]},
+        "contacts": [{"id": "c", "node": "a", "against": "ground", "normal": [0, 1], "friction": "f"}],
+        "loads": {"w": {"items": [{"point": {"at": "a", "force": [1, -1]}}]}}}"#;
+    let shard = |text: &str, file: &str, [height, stiffness]: [f64; 2], number: &str| -> PathBuf {
+        fs::write(at("a.msh"), mesh(height)).expect("written");
+        fs::write(at("k.mtx"), chain(stiffness)).expect("written");
+        fs::write(at(file), text).expect("written");
+        let scenario = stickslip::model::load::load_file(&at(file)).unwrap_or_else(|error| panic!("{error}"));
+        let rows = Case::of(scenario, &["f=0.2:0.8:0.2"]).bytes(number, Format::Csv);
+        let path = at(&format!("{}.csv", number.replace('/', "-")));
+        fs::write(&path, rows).expect("written");
+        path
+    };
+    for (text, changed) in [(by_mesh, [2.0, 1.0]), (by_matrix, [1.0, 2.0])] {
+        let first = shard(text, "s.json", [1.0, 1.0], "1/2");
+        let second = |file: &str, values: [f64; 2]| merged(&[first.clone(), shard(text, file, values, "2/2")]);
+        assert_eq!(second("s.json", [1.0, 1.0]).expect("one sweep").0, 4);
+        let error = second("other.json", [1.0, 1.0]).expect_err("another name").to_string();
+        assert!(error.contains("its scenario is other.json, here it is s.json"), "{error}");
+        let error = second("s.json", changed).expect_err("another file").to_string();
+        assert!(error.contains("its hash of the scenario"), "{error}");
     }
 }
 

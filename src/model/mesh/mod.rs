@@ -22,6 +22,7 @@ use std::sync::Arc;
 
 use super::problem::{Problem, Problems};
 pub use super::shape::Shape;
+use crate::text::hash::Hash;
 
 /// What is wrong with a mesh, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -211,6 +212,32 @@ impl Mesh {
     /// Whether two names mean the same group.
     pub fn same_name(&self, one: &str, other: &str) -> bool {
         one == other || self.ignores_case && one.eq_ignore_ascii_case(other)
+    }
+
+    /// A hash with nodes, elements and groups behind what it has.
+    pub fn hash(&self, mut hash: Hash) -> Hash {
+        let mut put = |number: u64| hash = hash.and(&number.to_le_bytes());
+        for node in &self.nodes {
+            put(node.tag);
+            node.position.iter().for_each(|x| put(x.to_bits()));
+        }
+        for element in &self.elements {
+            put(element.tag);
+            element.nodes.iter().for_each(|node| put(u64::from(*node)));
+        }
+        for group in &self.groups {
+            group.name.bytes().for_each(|byte| put(u64::from(byte)));
+            match &group.members {
+                Members::Points(all) | Members::NodeSet(all) | Members::Lines(all) | Members::Areas(all) => {
+                    all.iter().for_each(|index| put(u64::from(*index)));
+                }
+                Members::Sides(all) => all.iter().for_each(|(element, side)| {
+                    put(u64::from(*element));
+                    put(side.map_or(u64::MAX, u64::from));
+                }),
+            }
+        }
+        hash
     }
 
     /// Indices of the areas.
