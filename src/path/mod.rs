@@ -7,6 +7,7 @@ pub mod find;
 pub mod friction;
 pub mod grid;
 pub mod limit;
+pub mod map;
 pub mod load;
 pub mod merge;
 pub mod profile;

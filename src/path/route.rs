@@ -10,6 +10,7 @@ use super::friction::{self, FrictionEnd, FrictionPath, is_friction};
 use super::load::{self, LoadEnd, LoadPath, LoadReach};
 use super::quantity::{Facts, NoValue, Value};
 use super::start::PathError;
+use crate::answer::record::PairState;
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::quantity::Quantity;
 use crate::model::rules::Rules;
@@ -210,6 +211,11 @@ impl Route<'_> {
         [low, self.stretches.iter().map(|stretch| stretch.to).fold(f64::NEG_INFINITY, f64::max)]
     }
 
+    /// Whether everything on it is straight between its breakpoints: a path over a load.
+    pub fn is_straight(&self) -> bool {
+        self.legs.iter().all(|leg| matches!(leg.way, Way::Load(_)))
+    }
+
     /// Why the path does not lead to both ends of the range, in sentences.
     pub fn ends(&self) -> Vec<String> {
         self.legs.iter().filter_map(|leg| leg.end.clone()).collect()
@@ -224,6 +230,24 @@ impl Route<'_> {
         })
     }
 
+    /// The pairs at a value within a stretch; `None` where its equations are singular.
+    pub fn pairs(&self, stretch: &Stretch, at: f64) -> Option<Vec<PairState>> {
+        let leg = &self.legs[stretch.leg];
+        let prepared = &leg.there.prepared;
+        match &leg.way {
+            Way::Load(path) => path.pairs_within(path.ground(prepared), stretch.index, at),
+            Way::Friction(path) => path.pairs_within(prepared, &self.values_at(leg, at), stretch.index),
+        }
+    }
+
+    fn values_at(&self, leg: &Leg, at: f64) -> ParameterValues {
+        let mut values = leg.there.values.clone();
+        if values.contains_key(&self.name) {
+            values.insert(self.name.clone(), at);
+        }
+        values
+    }
+
     /// A quantity at a value within a stretch.
     ///
     /// # Errors
@@ -231,23 +255,12 @@ impl Route<'_> {
     pub fn value(&self, stretch: &Stretch, at: f64, quantity: &Quantity) -> Result<Value, NoValue> {
         let Basis { scenario, watch, .. } = self.basis;
         let leg = &self.legs[stretch.leg];
-        let There { prepared, values } = &*leg.there;
-        let mut values = values.clone();
-        if values.contains_key(&self.name) {
-            values.insert(self.name.clone(), at);
-        }
-        let missing = || NoValue("no answer".to_owned());
-        match &leg.way {
-            Way::Load(path) => {
-                let prepared = path.ground(prepared);
-                let pairs = path.pairs_within(prepared, stretch.index, at).ok_or_else(missing)?;
-                Facts::of_state(scenario, prepared, &values, path.case_factors(at), &pairs, watch).value(quantity)
-            }
-            Way::Friction(path) => {
-                let pairs = path.pairs_within(prepared, &values, stretch.index).ok_or_else(missing)?;
-                let factors = factors(prepared, &values);
-                Facts::of_state(scenario, prepared, &values, factors, &pairs, watch).value(quantity)
-            }
-        }
+        let values = self.values_at(leg, at);
+        let pairs = self.pairs(stretch, at).ok_or_else(|| NoValue("no answer".to_owned()))?;
+        let (prepared, factors) = match &leg.way {
+            Way::Load(path) => (path.ground(&leg.there.prepared), path.case_factors(at)),
+            Way::Friction(_) => (&*leg.there.prepared, factors(&leg.there.prepared, &values)),
+        };
+        Facts::of_state(scenario, prepared, &values, factors, &pairs, watch).value(quantity)
     }
 }

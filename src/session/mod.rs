@@ -137,6 +137,7 @@ pub struct Session {
     depth: usize,
     /// What the last `trace` or `stages` followed.
     path: Option<Arc<PathRecord>>,
+    map: Option<Arc<commands::map::Drawn>>,
     /// The table of the last `sweep` that was shown.
     swept: Option<Arc<Table>>,
     /// What would stop the collapse of this answer, once it was looked for.
@@ -197,6 +198,7 @@ impl Session {
             trouble: None,
             depth: 0,
             path: None,
+            map: None,
             swept: None,
             remedies: None,
             followed: None,

@@ -11,6 +11,7 @@ pub mod enumerate;
 pub mod exact;
 pub mod find;
 pub mod loose;
+pub mod map;
 pub mod members;
 pub mod mesh;
 pub mod number;

@@ -8,15 +8,15 @@ use stickslip::session::{Format, Output, Session};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
-fn session(scenario: Scenario) -> Session {
+pub(super) fn session(scenario: Scenario) -> Session {
     Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn beam() -> Session {
+pub(super) fn beam() -> Session {
     session(embedded::load("beam").expect("embedded"))
 }
 
-fn report(session: &mut Session, command: &str) -> Result<Value, String> {
+pub(super) fn report(session: &mut Session, command: &str) -> Result<Value, String> {
     let mut text = Vec::new();
     let mut io = Output::text(&mut text, Style::default(), &Quiet);
     io.format = Format::JsonLines;
@@ -25,18 +25,18 @@ fn report(session: &mut Session, command: &str) -> Result<Value, String> {
     Ok(line["report"].clone())
 }
 
-fn text(session: &mut Session, command: &str) -> String {
+pub(super) fn text(session: &mut Session, command: &str) -> String {
     let mut text = Vec::new();
     let mut io = Output::text(&mut text, Style::default(), &Quiet);
     session.execute(command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
     String::from_utf8(text).expect("text")
 }
 
-fn number(value: &Value) -> f64 {
+pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-fn near(found: &Value, expected: f64, tolerance: f64) {
+pub(super) fn near(found: &Value, expected: f64, tolerance: f64) {
     assert!((number(found) - expected).abs() <= tolerance, "{found} is not {expected} within {tolerance:e}");
 }
 

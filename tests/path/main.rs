@@ -8,6 +8,7 @@ mod hertz;
 mod history;
 mod limit;
 mod load;
+mod map;
 mod load_amounts;
 mod random;
 mod session;

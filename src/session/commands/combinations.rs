@@ -191,14 +191,14 @@ impl Session {
     }
 
     /// Parameters and load cases with their ranges, those of their sliders where they are left out.
-    fn axes(&self, words: &[String]) -> Result<Vec<Axis>, CommandError> {
+    pub(in crate::session) fn axes(&self, words: &[String], command: &str) -> Result<Vec<Axis>, CommandError> {
         let mut axes: Vec<Axis> = Vec::new();
         let mut rest = words;
         while let Some((name, after)) = rest.split_first() {
             let name = self.varied(name)?.to_owned();
             let (range, after) = match after.split_first() {
-                Some((word, after)) if word.contains("..") => (find::range(word, "envelope")?, after),
-                _ => (self.slider(&name, "envelope … over")?, after),
+                Some((word, after)) if word.contains("..") => (find::range(word, command)?, after),
+                _ => (self.slider(&name, command)?, after),
             };
             if axes.iter().any(|axis| axis.name == name) {
                 return Err(CommandError::Refused(format!("envelope: {name} is named twice")));
@@ -220,7 +220,7 @@ impl Session {
         words: &[String],
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let axes = self.axes(words)?;
+        let axes = self.axes(words, "envelope … over")?;
         let ground = self.ground(io.watch)?;
         let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
         let (over, asked, prepared) = (axes.clone(), quantities.clone(), ground.prepared);

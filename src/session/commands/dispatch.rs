@@ -74,6 +74,7 @@ impl Session {
             Command::Limit { name } => self.limit(&name, io)?,
             Command::Sensitivity { parameter } => self.sensitivity(parameter.as_deref(), io)?,
             Command::Find { words } => self.find(&words, io)?,
+            Command::Map { words } => self.draw_map(&words, io)?,
             Command::Stages { stage } => self.stages(stage, io)?,
             Command::Sweep { words, out, resume, shard, columns } => {
                 self.sweep(&words, out.as_deref(), resume, shard, columns.as_deref(), io)?;

@@ -5,6 +5,7 @@ pub(in crate::session) mod dispatch;
 pub(in crate::session) mod exports;
 pub(in crate::session) mod find;
 pub mod import;
+pub(in crate::session) mod map;
 pub mod new;
 pub mod paths;
 pub(in crate::session) mod plots;

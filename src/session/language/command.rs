@@ -273,6 +273,19 @@ pub enum Command {
         #[arg(value_name = "FOUND", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
+    /// Cut the plane of two parameters into its regions of equal working scheme
+    ///
+    /// `map P [A..B] Q [C..D] [of QUANTITY]`: parameters or load cases, horizontal and vertical; the ranges are those of
+    /// the sliders where they are left out. One of the two is followed on its exact path while the other stands still;
+    /// where the order of the schemes changes is found to the last digits. Each region gets its area, and at a place inside
+    /// its states, or the collapse with its motion and what is proved of it, and the quantity. In small problems other
+    /// answers are looked for there; their regions are hatched. `export map FILE.svg|.json` writes the last map.
+    #[command(after_help = "Example:\n  map f 0..1 F2 0..400\n  map f 0..1 F2 0..400 of z_t c6")]
+    Map {
+        /// The two parameters or load cases with their ranges, `of` and a quantity
+        #[arg(value_name = "MAPPED", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+        words: Vec<String>,
+    },
     /// Show what one more unit of a parameter does to forces and slips
     #[command(after_help = "Example:\n  sensitivity\n  sensitivity f")]
     Sensitivity {
@@ -625,7 +638,7 @@ pub fn grammar() -> clap::Command {
 }
 
 /// Commands that were not there in 0.1.
-const SINCE_0_2: &[&str] = &["find", "show", "summary", "combine", "envelope", "import", "new"];
+const SINCE_0_2: &[&str] = &["find", "show", "summary", "combine", "envelope", "import", "map", "new"];
 
 /// The full name of a command: itself, an alias, or a prefix that only one command has.
 ///

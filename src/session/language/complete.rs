@@ -386,6 +386,15 @@ fn names_of(kind: &str, given: &[String], vocabulary: &Vocabulary, word: &str) -
             all.extend(vocabulary.cases.iter().map(|case| candidate(case, "load case")));
             all
         }),
+        "MAPPED" => match given.iter().position(|word| word == "of") {
+            Some(at) => plain(&quantities::next_names(&given[at + 1..], vocabulary)),
+            None => {
+                let mut all = parameters();
+                all.extend(vocabulary.cases.iter().map(|case| candidate(case, "load case")));
+                all.extend(fixed(&["of"]).into_iter().filter(|_| !given.is_empty()));
+                all
+            }
+        },
         "NAME" | "SWEPT" => parameters(),
         "OF" => match given.first().map(String::as_str) {
             Some("path") => of_path(&given[1..], vocabulary),

@@ -64,6 +64,8 @@ pub enum Export {
     Path,
     /// The last `sweep` that was shown
     Sweep,
+    /// The last `map`, as a picture or as JSON
+    Map,
     /// What `summary` shows
     Summary,
     /// The embedded scenarios
@@ -109,6 +111,7 @@ impl Export {
             Export::Report => &["html", "md"],
             Export::Lcp | Export::Stiffness => &["json", "mtx"],
             Export::Path => &["csv", "json", "svg"],
+            Export::Map => &["svg", "json"],
             Export::Structure | Export::Mode | Export::Slip | Export::Force | Export::Gap | Export::Pressure => {
                 &["svg"]
             }

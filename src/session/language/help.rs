@@ -25,7 +25,7 @@ pub const GROUPS: &[(&str, &[&str])] = &[
     ),
     ("pivots", &["pivots", "step", "why", "ties", "tableau"]),
     ("trouble", &["ray", "compare", "enumerate", "critical"]),
-    ("paths", &["sweep", "trace", "limit", "find", "sensitivity", "stages"]),
+    ("paths", &["sweep", "trace", "limit", "find", "map", "sensitivity", "stages"]),
     ("pictures", &["plot", "tui"]),
     ("scripts", &["source", "record", "expect", "export", "echo", "restore"]),
     ("help", &["help", "tour", "history", "quit"]),

@@ -3,6 +3,7 @@
 
 pub mod chart;
 pub mod forces;
+pub mod map;
 pub mod structure;
 
 use std::fmt::Write;

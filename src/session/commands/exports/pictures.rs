@@ -50,6 +50,12 @@ impl Session {
             Export::Pressure => zone(Quantity::Pressure),
             Export::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
             Export::Path => Ok(self.chart_figure(&self.path_chart(of, watch)?.0, &self.need_path()?.end)),
+            Export::Map => {
+                let drawn = self.need_map()?;
+                let [a, b] = &drawn.map.axes;
+                let caption = self.caption(&format!("Working schemes over {} and {}", a.name, b.name));
+                Ok(svg::map::figure(&drawn.map, &self.map_labels(drawn), &caption))
+            }
             Export::Mode => self.shape_figure(&self.mode_shape()?),
             Export::Moment => self.forces_figure(Internal::Moment, of),
             Export::Shear => self.forces_figure(Internal::Shear, of),

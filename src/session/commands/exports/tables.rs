@@ -84,6 +84,7 @@ impl Session {
             Export::Members => json_export::members(&self.shown(what)?),
             Export::Reactions => json_export::reactions(&self.shown(what)?),
             Export::Path => json!(self.need_path()?),
+            Export::Map => self.map_json(self.need_map()?),
             Export::Result => {
                 self.need_quantities()?;
                 self.result(false).unwrap_or_default()

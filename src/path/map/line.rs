@@ -1,0 +1,199 @@
+//! One line of the map: the working schemes over one parameter while the other stands still.
+
+use crate::answer::record::{PairState, State};
+use crate::path::route::{Basis, Route};
+use crate::path::start::PathError;
+
+/// Where, within a part without an answer, another answer is looked for, as shares of its length.
+const PROBES: [f64; 3] = [0.25, 0.625, 1.0];
+/// The first place is so near to the end of the path, as a share of the range.
+const BESIDE: f64 = 1e-9;
+/// So often a path may begin again behind the end of another.
+const AGAIN: usize = 8;
+/// Intervals of a line over a parameter without an exact path.
+const CELLS: usize = 24;
+/// There a change is narrowed to this share of the range.
+const NARROW: f64 = 1e-11;
+/// Parts shorter than this share of the range are rounding of the place where two others meet.
+const NOTHING: f64 = 1e-13;
+
+/// What holds at a place: the state of each pair, or no answer.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Scheme {
+    /// In the order of the pairs.
+    Pairs(Vec<State>),
+    /// No answer was found.
+    NoAnswer,
+}
+
+/// A part of a line in one scheme.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Lower end.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+    /// What holds inside.
+    pub scheme: Scheme,
+}
+
+/// A line across the map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// The value of the parameter that stands still.
+    pub at: f64,
+    /// The parts, upwards, without gaps.
+    pub parts: Vec<Part>,
+}
+
+impl Line {
+    /// The schemes in order: lines with the same sequence belong to one panel.
+    pub fn same_sequence(&self, other: &Line) -> bool {
+        self.parts.len() == other.parts.len() && self.parts.iter().zip(&other.parts).all(|(a, b)| a.scheme == b.scheme)
+    }
+
+    /// The places where the scheme changes, with both ends of the line.
+    pub fn bounds(&self) -> impl Iterator<Item = f64> + '_ {
+        self.parts.first().map(|part| part.from).into_iter().chain(self.parts.iter().map(|part| part.to))
+    }
+}
+
+fn scheme(pairs: &[PairState]) -> Scheme {
+    Scheme::Pairs(pairs.iter().map(|pair| pair.state).collect())
+}
+
+/// The lines of a map: `along` is followed exactly where that can be done, `across` stands still.
+pub struct Lines<'a> {
+    /// The scenario made ready.
+    pub basis: Basis<'a>,
+    /// The parameter that is followed.
+    pub along: &'a str,
+    /// Its range.
+    pub range: [f64; 2],
+    /// The parameter that stands still on a line.
+    pub across: &'a str,
+}
+
+impl Lines<'_> {
+    /// The line at a value of `across`, and whether it was followed on exact paths.
+    ///
+    /// # Errors
+    /// A value that the scenario cannot take, an interruption.
+    pub fn line(&self, at: f64) -> Result<(Line, bool), PathError> {
+        let there = self.basis.at(self.across, at)?;
+        let basis = Basis { prepared: &there.prepared, values: &there.values, ..self.basis };
+        let mut parts = Vec::new();
+        let exact = self.fill(basis, self.range, AGAIN, &mut parts)?;
+        parts.sort_by(|a: &Part, b| a.from.total_cmp(&b.from));
+        Ok((Line { at, parts: self.joined(parts) }, exact))
+    }
+
+    /// Fills a range with parts: along the exact path where there is an answer, and where that ends again from another
+    /// answer, if one is found.
+    fn fill(&self, basis: Basis<'_>, range: [f64; 2], again: usize, parts: &mut Vec<Part>) -> Result<bool, PathError> {
+        let route = match Route::new(basis, self.along, range) {
+            Ok(Some(route)) => route,
+            Ok(None) => return self.cells(basis, range, parts).map(|()| false),
+            Err(PathError::NoStart { .. }) => {
+                parts.push(Part { from: range[0], to: range[1], scheme: Scheme::NoAnswer });
+                return Ok(true);
+            }
+            Err(error) => return Err(error),
+        };
+        for stretch in &route.stretches {
+            let middle = 0.5 * (stretch.from + stretch.to);
+            let scheme = route.pairs(stretch, middle).map_or(Scheme::NoAnswer, |pairs| scheme(&pairs));
+            parts.push(Part { from: stretch.from, to: stretch.to, scheme });
+        }
+        let [low, high] = route.covered();
+        if low > range[0] {
+            self.beyond(basis, [low, range[0]], again, parts)?;
+        }
+        if high < range[1] {
+            self.beyond(basis, [high, range[1]], again, parts)?;
+        }
+        Ok(true)
+    }
+
+    /// From the end of a path to the end of the range: no answer, unless one is found at one of a few places.
+    fn beyond(
+        &self,
+        basis: Basis<'_>,
+        [from, to]: [f64; 2],
+        again: usize,
+        parts: &mut Vec<Part>,
+    ) -> Result<(), PathError> {
+        let span = |a: f64, b: f64| [a.min(b), a.max(b)];
+        let nearest = BESIDE * (self.range[1] - self.range[0]);
+        let probes = std::iter::once(nearest / (to - from).abs()).chain(PROBES).filter(|share| *share <= 1.0);
+        let probes = probes.filter(|_| again > 0 && (to - from).abs() > nearest);
+        for (index, share) in probes.enumerate() {
+            let at = from + share * (to - from);
+            if !basis.solve(&basis.at(self.along, at)?)?.answer.is_answer() {
+                continue;
+            }
+            // Both ways from there; what is before it has none at its other end.
+            let [low, high] = span(at, to);
+            if low < high {
+                self.fill(basis, [low, high], again - 1, parts)?;
+            }
+            if index > 0 {
+                let beside = from + nearest * (to - from).signum();
+                return self.fill(basis, span(beside, at), again - 1, parts).map(drop);
+            }
+            return Ok(());
+        }
+        let [from, to] = span(from, to);
+        parts.push(Part { from, to, scheme: Scheme::NoAnswer });
+        Ok(())
+    }
+
+    /// Without an exact path: answers of their own at some places, each change between two of them narrowed.
+    fn cells(&self, basis: Basis<'_>, [low, high]: [f64; 2], parts: &mut Vec<Part>) -> Result<(), PathError> {
+        let look = |at: f64| -> Result<(f64, Scheme), PathError> {
+            let solved = basis.solve(&basis.at(self.along, at)?)?;
+            let found = if solved.answer.is_answer() { scheme(&solved.answer.pairs) } else { Scheme::NoAnswer };
+            Ok((at, found))
+        };
+        let mut last = look(low)?;
+        let mut from = low;
+        for cell in 1..=CELLS {
+            let end = look(if cell == CELLS { high } else { low + (high - low) * cell as f64 / CELLS as f64 })?;
+            while last.1 != end.1 {
+                let (mut a, mut b) = (last.clone(), end.clone());
+                while b.0 - a.0 > NARROW * (high - low) {
+                    let middle = look(0.5 * (a.0 + b.0))?;
+                    if middle.1 == a.1 { a = middle } else { b = middle }
+                }
+                let to = 0.5 * (a.0 + b.0);
+                parts.push(Part { from, to, scheme: a.1 });
+                (from, last) = (to, b);
+            }
+            last = end;
+        }
+        parts.push(Part { from, to: high, scheme: last.1 });
+        Ok(())
+    }
+
+    /// Neighbours in one scheme as one part; parts of no length left out; no gaps.
+    fn joined(&self, parts: Vec<Part>) -> Vec<Part> {
+        let [low, high] = self.range;
+        let mut joined: Vec<Part> = Vec::new();
+        for part in parts.into_iter().filter(|part| part.to - part.from > NOTHING * (high - low)) {
+            match joined.last_mut() {
+                Some(last) if last.scheme == part.scheme => last.to = last.to.max(part.to),
+                Some(last) => {
+                    let from = last.to;
+                    if part.to > from {
+                        joined.push(Part { from, ..part });
+                    }
+                }
+                None => joined.push(Part { from: low, ..part }),
+            }
+        }
+        if let Some(last) = joined.last_mut() {
+            last.to = high;
+        }
+        joined
+    }
+}

@@ -1,0 +1,305 @@
+//! The plane of two parameters cut into its regions of equal working scheme.
+//!
+//! Across the plane run *lines*: one parameter followed on its exact path, the other standing still. Lines that pass the
+//! same schemes in the same order make a *panel*; where the order changes is found by halving, to the last digits. The
+//! bounds of the parts of a panel are smooth curves (straight for two loads), whose areas Gauss's rule gives. Parts of
+//! neighbouring panels that touch and have one scheme make a *region*.
+
+mod line;
+mod panel;
+
+use serde::Serialize;
+
+pub use line::{Part, Scheme};
+pub use panel::Panel;
+
+use self::line::Lines;
+use self::panel::Cutter;
+use super::envelope::Axis;
+use super::quantity::{Facts, Value};
+use super::route::{Basis, Route};
+use super::start::PathError;
+use crate::answer::record::{RayClass, State, Verdict};
+use crate::model::quantity::Quantity;
+
+/// Other answers are looked for in maps of at most so many pairs …
+const ENUMERATED_PAIRS: usize = 8;
+/// … and so many regions.
+const ENUMERATED_REGIONS: usize = 64;
+/// Parts of neighbouring panels that have less than this share of the range in common do not touch.
+const TOUCHING: f64 = 1e-9;
+
+/// A region: one scheme, connected.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Region {
+    /// Its letter in the picture.
+    pub letter: String,
+    /// State of each pair by its id; `None` where there is no answer.
+    pub states: Option<Vec<(String, State)>>,
+    /// Area, in the units of the two parameters.
+    pub area: f64,
+    /// A place well inside, in the order of the axes.
+    pub at: [f64; 2],
+    /// Without an answer: the class of the ray at that place.
+    pub class: Option<RayClass>,
+    /// What is proved of it there.
+    pub verdict: Option<Verdict>,
+    /// The motion there, in words.
+    pub mode: Option<String>,
+    /// How many answers there are at that place, proved; `None` where that was not looked for.
+    pub answers: Option<usize>,
+    /// The quantity asked for, at that place.
+    pub value: Option<serde_json::Value>,
+}
+
+/// The map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// Horizontal and vertical axis.
+    pub axes: [Axis; 2],
+    /// The regions, from the left below.
+    pub regions: Vec<Region>,
+    /// The strips, in the order of the parameter across them.
+    pub panels: Vec<Panel>,
+    /// For every panel the region of each of its parts.
+    pub region_of: Vec<Vec<usize>>,
+    /// Index of the axis along the lines.
+    pub along: usize,
+    /// Whether every bound lies on an exact path.
+    pub exact: bool,
+    /// What limits it, in sentences.
+    pub notes: Vec<String>,
+}
+
+impl Map {
+    /// The region at a place, in the order of the axes; `None` outside.
+    pub fn region_at(&self, place: [f64; 2]) -> Option<usize> {
+        let (along, across) = (place[self.along], place[1 - self.along]);
+        let panel = self.panels.iter().position(|panel| across <= panel.ends()[1]).unwrap_or(self.panels.len() - 1);
+        let bounds = self.panels[panel].bounds(across);
+        let part = bounds[1..].iter().position(|bound| along <= *bound).unwrap_or(bounds.len().checked_sub(2)?);
+        self.region_of[panel].get(part).copied()
+    }
+
+    /// The outlines of a region's parts, in the order of the axes, panel by panel.
+    pub fn outlines(&self, region: usize) -> Vec<Vec<[f64; 2]>> {
+        let mut outlines = Vec::new();
+        for (panel, regions) in self.panels.iter().zip(&self.region_of) {
+            for part in (0..regions.len()).filter(|part| regions[*part] == region) {
+                let corner = |along: f64, across: f64| {
+                    if self.along == 0 { [along, across] } else { [across, along] }
+                };
+                let lower = panel.lines.iter().map(|line| corner(line.parts[part].from, line.at));
+                let upper = panel.lines.iter().rev().map(|line| corner(line.parts[part].to, line.at));
+                outlines.push(lower.chain(upper).collect());
+            }
+        }
+        outlines
+    }
+}
+
+/// The map of two parameters (or factors of load cases); `quantity` is read at a place of every region.
+///
+/// # Errors
+/// Axes that cannot be varied, an interruption; see [`PathError`].
+pub fn map(basis: Basis<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Result<Map, PathError> {
+    if basis.prepared.system().is_none() {
+        return Err(PathError::Plain("map"));
+    }
+    let along = along(basis, &axes)?;
+    let across = &axes[1 - along];
+    let lines = Lines { basis, along: &axes[along].name, range: axes[along].range, across: &across.name };
+    let mut cutter = Cutter::new(&lines, across.range);
+    let panels = cutter.panels()?;
+    let exact = cutter.exact;
+    let region_of = connected(&panels, axes[along].range);
+    let mut map = Map { axes, regions: Vec::new(), panels, region_of, along, exact, notes: Vec::new() };
+    map.describe(basis, quantity)?;
+    map.say(basis);
+    Ok(map)
+}
+
+/// The axis along which the lines run: a load if one of the two is one (its paths are straight), else a friction.
+fn along(basis: Basis<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
+    let mut best = (0, 0);
+    for (index, axis) in axes.iter().enumerate() {
+        let exact = match Route::new(basis, &axis.name, axis.range) {
+            Ok(Some(route)) if route.is_straight() => 2,
+            Ok(Some(_)) => 1,
+            Ok(None) => 0,
+            Err(PathError::NoStart { .. }) => 1,
+            Err(error) => return Err(error),
+        };
+        if exact > best.1 {
+            best = (index, exact);
+        }
+    }
+    Ok(best.0)
+}
+
+/// The region of each part of each panel, numbered from the left below.
+fn connected(panels: &[Panel], range: [f64; 2]) -> Vec<Vec<usize>> {
+    let mut parents: Vec<usize> = Vec::new();
+    fn root(parents: &mut [usize], mut at: usize) -> usize {
+        while parents[at] != at {
+            parents[at] = parents[parents[at]];
+            at = parents[at];
+        }
+        at
+    }
+    let starts: Vec<usize> = panels
+        .iter()
+        .map(|panel| {
+            let start = parents.len();
+            parents.extend(start..start + panel.areas.len());
+            start
+        })
+        .collect();
+    for (k, two) in panels.windows(2).enumerate() {
+        let (below, above) = (&two[0].lines[two[0].lines.len() - 1], &two[1].lines[0]);
+        for (i, a) in below.parts.iter().enumerate() {
+            for (j, b) in above.parts.iter().enumerate().filter(|(_, b)| b.scheme == a.scheme) {
+                if a.to.min(b.to) - a.from.max(b.from) > TOUCHING * (range[1] - range[0]) {
+                    let (i, j) = (root(&mut parents, starts[k] + i), root(&mut parents, starts[k + 1] + j));
+                    parents[i.max(j)] = i.min(j);
+                }
+            }
+        }
+    }
+    let mut numbers: Vec<Option<usize>> = vec![None; parents.len()];
+    let mut next = 0;
+    (panels.iter().zip(&starts))
+        .map(|(panel, start)| {
+            (0..panel.areas.len())
+                .map(|part| {
+                    let root = root(&mut parents, start + part);
+                    *numbers[root].get_or_insert_with(|| {
+                        next += 1;
+                        next - 1
+                    })
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// A, B, …, Z, AA, …
+fn letters(mut index: usize) -> String {
+    let mut word = String::new();
+    loop {
+        word.insert(0, char::from(b'A' + (index % 26) as u8));
+        if index < 26 {
+            return word;
+        }
+        index = index / 26 - 1;
+    }
+}
+
+impl Map {
+    /// The regions from the panels, each with what an answer at a place inside shows.
+    fn describe(&mut self, basis: Basis<'_>, quantity: Option<&Quantity>) -> Result<(), PathError> {
+        let count = self.region_of.iter().flatten().max().map_or(0, |last| last + 1);
+        let ids: Vec<String> =
+            basis.prepared.system().map(|system| system.pairs.iter().map(|pair| pair.id.clone()).collect()).unwrap_or_default();
+        let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS;
+        for region in 0..count {
+            basis.watch.progress("regions", region as f64 / count as f64);
+            let mut area = 0.0;
+            let mut largest = (f64::NEG_INFINITY, 0, 0);
+            for (number, (panel, regions)) in self.panels.iter().zip(&self.region_of).enumerate() {
+                for part in (0..regions.len()).filter(|part| regions[*part] == region) {
+                    area += panel.areas[part];
+                    if panel.areas[part] > largest.0 {
+                        largest = (panel.areas[part], number, part);
+                    }
+                }
+            }
+            let (_, panel, part) = largest;
+            let [low, high] = self.panels[panel].ends();
+            let across = 0.5 * (low + high);
+            let bounds = self.panels[panel].bounds(across);
+            let inside = 0.5 * (bounds[part] + bounds[part + 1]);
+            let at = if self.along == 0 { [inside, across] } else { [across, inside] };
+            let states = match &self.panels[panel].lines[0].parts[part].scheme {
+                Scheme::Pairs(states) => Some(ids.iter().cloned().zip(states.iter().copied()).collect()),
+                Scheme::NoAnswer => None,
+            };
+            let mut found = Region {
+                letter: letters(region),
+                states,
+                area,
+                at,
+                class: None,
+                verdict: None,
+                mode: None,
+                answers: None,
+                value: None,
+            };
+            self.look(basis, &mut found, enumerated, quantity)?;
+            self.regions.push(found);
+        }
+        Ok(())
+    }
+
+    /// What an answer of its own at the region's place shows.
+    fn look(
+        &self,
+        basis: Basis<'_>,
+        region: &mut Region,
+        enumerated: bool,
+        quantity: Option<&Quantity>,
+    ) -> Result<(), PathError> {
+        let settings = [(self.axes[0].name.as_str(), region.at[0]), (self.axes[1].name.as_str(), region.at[1])];
+        let there = basis.at_all(&settings)?;
+        if region.states.is_none() {
+            let solved = there.prepared.solve(basis.scenario, &there.values, basis.rules, basis.watch);
+            let solved = solved.map_err(|error| {
+                if error.is_interrupted() { PathError::Interrupted } else { PathError::Target(error.to_string()) }
+            })?;
+            if let Some(ray) = &solved.answer.ray {
+                region.class = Some(ray.class);
+                region.verdict = ray.verdict;
+                region.mode = Some(ray.mode.clone()).filter(|mode| !mode.is_empty());
+            }
+            return Ok(());
+        }
+        if enumerated && let Ok(all) = there.prepared.all_answers(&there.values, basis.watch) {
+            let proved = all.complete && all.undecided == 0 && all.continua.is_empty();
+            region.answers = proved.then_some(all.answers.len());
+        }
+        if let Some(quantity) = quantity {
+            let solved = basis.solve(&there)?;
+            let facts = Facts::of_answer(basis.scenario, &there.prepared, &there.values, &solved, basis.watch);
+            region.value = facts.value(quantity).ok().map(|value: Value| value.json());
+        }
+        Ok(())
+    }
+
+    /// What the map does not show.
+    fn say(&mut self, basis: Basis<'_>) {
+        let pairs = basis.prepared.system().map_or(0, |system| system.pairs.len());
+        if !self.exact {
+            self.notes.push(format!(
+                "no exact path leads over {}: its lines are answers of their own, each change between two of them \
+                 narrowed by halving; what happens twice between two of them is not seen",
+                self.axes[self.along].name
+            ));
+        }
+        if pairs > ENUMERATED_PAIRS || self.regions.len() > ENUMERATED_REGIONS {
+            self.notes.push(format!(
+                "other answers were not looked for (that is done for up to {ENUMERATED_PAIRS} pairs and \
+                 {ENUMERATED_REGIONS} regions)"
+            ));
+        } else if self.regions.iter().any(|region| region.answers.is_some_and(|answers| answers > 1)) {
+            self.notes.push("hatched: at the marked place more than one answer is possible; the map shows the one that \
+                             is followed from its lower end".to_owned());
+        }
+        if self.regions.iter().any(|region| region.states.is_none()) {
+            self.notes.push(
+                "without an answer: examined at the marked place; beyond the end of a path other answers were looked \
+                 for at four places of each line"
+                    .to_owned(),
+            );
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! `map`: the plane of two parameters cut into its regions of equal working scheme.
+
+use std::sync::Arc;
+
+use serde_json::{Value as Json, json};
+
+use crate::model::quantity::Quantity;
+use crate::path::envelope::Axis;
+use crate::path::map::{Map, map};
+use crate::path::route::Basis;
+use crate::session::{CommandError, Output, Session, worker};
+use crate::view;
+
+fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
+    Err(CommandError::Refused(text.into()))
+}
+
+/// The last map that was drawn, and of what.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// The map.
+    pub map: Map,
+    /// What was read at the marked places.
+    pub quantity: Option<Quantity>,
+}
+
+impl Session {
+    /// `map P [A..B] Q [C..D] [of QUANTITY]`.
+    pub(in crate::session) fn draw_map(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (words, quantity) = match words.iter().position(|word| word == "of") {
+            None => (words, None),
+            Some(at) => {
+                let quantities = self.quantities(&words[at + 1..])?;
+                let [quantity] = &quantities[..] else {
+                    return refused("map: one quantity after `of`");
+                };
+                if !quantity.is_of_state() {
+                    return refused(format!("map: `{quantity}` is no quantity of a single state"));
+                }
+                (&words[..at], Some(quantity.clone()))
+            }
+        };
+        let axes = self.axes(words, "map")?;
+        let Ok(axes) = <[Axis; 2]>::try_from(axes) else {
+            return refused("map: expected two parameters or load cases: `map P A..B Q C..D [of QUANTITY]`");
+        };
+        if axes[0].name == axes[1].name {
+            return refused(format!("map: {} twice; the axes are two different parameters", axes[0].name));
+        }
+        let ground = self.ground(io.watch)?;
+        let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
+        let (prepared, asked) = (ground.prepared, quantity.clone());
+        let found = worker::run(io.watch, move |watch| {
+            let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
+            map(basis, axes, asked.as_ref())
+        })??;
+        let drawn = Arc::new(Drawn { map: found, quantity });
+        io.report(
+            || self.map_json(&drawn),
+            |out, style| view::map::write(out, &drawn.map, &self.map_labels(&drawn), style),
+        )?;
+        self.map = Some(drawn);
+        Ok(())
+    }
+
+    /// The last map.
+    ///
+    /// # Errors
+    /// None was drawn.
+    pub(in crate::session) fn need_map(&self) -> Result<&Drawn, CommandError> {
+        match &self.map {
+            Some(drawn) => Ok(drawn),
+            None => refused("no map yet: `map P A..B Q C..D` draws one"),
+        }
+    }
+
+    /// Units of the axes and of the quantity.
+    pub(in crate::session) fn map_labels(&self, drawn: &Drawn) -> view::map::Labels<'_> {
+        let units = &self.now.scenario.units;
+        let unit = |axis: &Axis| self.now.scenario.parameters.get(&axis.name)?.unit.as_deref();
+        let quantity = drawn.quantity.as_ref().map(|quantity| (quantity.to_string(), quantity.unit(units)));
+        view::map::Labels { units: [unit(&drawn.map.axes[0]), unit(&drawn.map.axes[1])], quantity }
+    }
+
+    pub(in crate::session) fn map_json(&self, drawn: &Drawn) -> Json {
+        let Drawn { map, quantity } = drawn;
+        let axis = |axis: &Axis| json!({"parameter": axis.name, "from": axis.range[0], "to": axis.range[1]});
+        let regions = map.regions.iter().enumerate().map(|(index, region)| {
+            let mut entry = json!(region);
+            entry["states"] = match &region.states {
+                Some(states) => states.iter().map(|(id, state)| (id.clone(), json!(state))).collect::<serde_json::Map<_, _>>().into(),
+                None => Json::Null,
+            };
+            entry["outcome"] = json!(if region.states.is_some() { "answer" } else { "ray" });
+            entry["outlines"] = json!(map.outlines(index));
+            entry
+        });
+        json!({
+            "axes": map.axes.iter().map(axis).collect::<Vec<_>>(),
+            "quantity": quantity.as_ref().map(ToString::to_string),
+            "regions": regions.collect::<Vec<_>>(),
+            "exact": map.exact,
+            "notes": map.notes,
+        })
+    }
+}
