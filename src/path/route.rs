@@ -136,6 +136,19 @@ impl<'a> Route<'a> {
     /// # Errors
     /// No answer at either end or at the present value; see [`PathError`].
     pub fn new(basis: Basis<'a>, name: &str, range: [f64; 2]) -> Result<Option<Route<'a>>, PathError> {
+        Route::from_end(basis, name, range, false)
+    }
+
+    /// The same, looking for a start at the upper end first: where there are several answers it may be another one.
+    ///
+    /// # Errors
+    /// As [`Route::new`].
+    pub fn from_end(
+        basis: Basis<'a>,
+        name: &str,
+        range: [f64; 2],
+        upper: bool,
+    ) -> Result<Option<Route<'a>>, PathError> {
         let mut route = Route { basis, name: name.to_owned(), legs: Vec::new(), stretches: Vec::new() };
         let present = match basis.prepared.cases.iter().find(|(known, _)| known == name) {
             Some((_, factor)) => factor.value(basis.values),
@@ -143,6 +156,9 @@ impl<'a> Route<'a> {
         };
         let [low, high] = range;
         let mut starts = vec![(low, vec![high]), (high, vec![low])];
+        if upper {
+            starts.reverse();
+        }
         if low < present && present < high {
             starts.push((present, vec![low, high]));
         }

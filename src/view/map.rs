@@ -36,8 +36,7 @@ pub fn fill(map: &Map, region: usize, column: usize, row: usize) -> char {
     if found.states.is_none() {
         return '.';
     }
-    let several = found.answers.is_some_and(|answers| answers > 1);
-    if several && (column + row) % 2 == 0 { '/' } else { found.letter.chars().last().unwrap_or('?') }
+    if found.has_several() && (column + row) % 2 == 0 { '/' } else { found.letter.chars().last().unwrap_or('?') }
 }
 
 /// The picture, line by line from above; each cell with its region.
@@ -86,8 +85,7 @@ fn picture(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -
     let width = style.width.saturating_sub(gutter + 4).clamp(8, WIDEST);
     writeln!(out, "{}", style.paint(Role::Header, &style.text(&named(map, labels, 1))))?;
     let rows = cells(map, width, HEIGHT);
-    let marks: Vec<(usize, usize)> =
-        (0..map.regions.len()).map(|region| mark(map, region, width, HEIGHT)).collect();
+    let marks: Vec<(usize, usize)> = (0..map.regions.len()).map(|region| mark(map, region, width, HEIGHT)).collect();
     for (row, regions) in rows.iter().enumerate() {
         let label = match row {
             0 => &high,
@@ -141,8 +139,7 @@ pub fn states(states: &[(String, State)]) -> String {
     ];
     let mut parts = Vec::new();
     for (state, word) in words {
-        let ids: Vec<&str> =
-            states.iter().filter(|(_, found)| *found == state).map(|(id, _)| id.as_str()).collect();
+        let ids: Vec<&str> = states.iter().filter(|(_, found)| *found == state).map(|(id, _)| id.as_str()).collect();
         if ids.is_empty() {
             continue;
         }
@@ -158,10 +155,16 @@ pub fn states(states: &[(String, State)]) -> String {
 /// What holds in a region, in words.
 pub fn meaning(region: &Region) -> String {
     match &region.states {
-        Some(found) => match region.answers {
-            Some(answers) if answers > 1 => format!("{} ({answers} answers)", states(found)),
-            _ => states(found),
-        },
+        Some(found) => {
+            let mut text = states(found);
+            if let Some(other) = &region.other {
+                text.push_str(&format!("; from the upper end: {}", states(other)));
+            }
+            match region.answers {
+                Some(answers) if answers > 1 => format!("{text} ({answers} answers at the marked place)"),
+                _ => text,
+            }
+        }
         None => {
             let class = region.class.map_or("no answer", class_word);
             let words = [Some(class.to_owned()), region.verdict.map(|verdict| verdict_word(verdict).to_owned())];

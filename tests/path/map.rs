@@ -4,11 +4,16 @@ use serde_json::Value;
 use stickslip::model::load::load_text;
 
 use super::find::{beam, near, number, report, session, text};
+use stickslip::session::Output;
+use stickslip::view::style::Style;
+use stickslip::watch::Quiet;
 
 fn region<'a>(map: &'a Value, states: &[(&str, &str)]) -> &'a Value {
-    let found = map["regions"].as_array().unwrap().iter().find(|region| {
-        states.iter().all(|(pair, state)| region["states"][*pair] == *state)
-    });
+    let found = map["regions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|region| states.iter().all(|(pair, state)| region["states"][*pair] == *state));
     found.unwrap_or_else(|| panic!("no region {states:?} in {map}"))
 }
 
@@ -45,36 +50,88 @@ fn the_beam_over_friction_and_pull() {
     }
 }
 
-use stickslip::session::Output;
-use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
-
 fn quiet(text: &mut Vec<u8>) -> Output<'_> {
     Output::text(text, Style::default(), &Quiet)
 }
 
-/// One pair on a normal spring of 2 and a tangential one of 3, coupled by `c`: R = [[2, c], [c, 3]] with RF = (−N, T)
-/// (x = R z + RF …, so a load of N presses and T pushes).
+/// One pair on a normal spring of 2 and a tangential one of 3, coupled by `c`: λ = R z + RF with RF = (N, T).
 fn block(c: f64) -> String {
     format!(
-        r#"{{"format": "stickslip/1", "title": "A block", "parameters": {{
-             "f": {{"value": 0.5, "min": 0, "max": 1}}, "N": {{"value": 1}}, "T": {{"value": 0}}}},
-           "contact_system": {{"pairs": [{{"id": "a", "friction": "f"}}],
-             "stiffness": [[2, {c}], [{c}, 3]],
-             "cases": {{"normal": [1, 0], "shear": [0, 1]}},
-             "factors": {{"normal": "N", "shear": "T"}}}}}}"#
+        r#"{{"format": "stickslip/1", "title": "A block", "parameters": {{"f": 0.5, "N": 1, "T": 0}},
+           "contact_system": {{"pairs": ["a"], "friction": ["f"], "stiffness": [[2, {c}], [{c}, 3]],
+             "loads": {{"weight": {{"factor": "N", "vector": [1, 0]}}, "push": {{"factor": "T", "vector": [0, 1]}}}}}}}}"#
     )
 }
 
 /// Two loads: the cone |T| ≤ f N is left and right of the slips; every bound is a straight line.
 #[test]
 fn two_loads_give_polygons() {
-    let mut session = session(load_text("block.json", &block(0.0)).unwrap_or_else(|error| panic!("{error}")));
+    let mut session = session(load_text("block.json", &block(0.0), None).unwrap_or_else(|error| panic!("{error}")));
     let map = report(&mut session, "map T -2..2 N -1..2").unwrap();
-    println!("{}", text(&mut session, "map T -2..2 N -1..2"));
     // N > 0 presses: sticking where |T| < N / 2: a triangle of height 2 and base 2; the rest of N > 0 slips to both sides.
     near(&region(&map, &[("a", "stick")])["area"], 2.0, 1e-9);
     near(&region(&map, &[("a", "slip+")])["area"], 3.0, 1e-9);
     near(&region(&map, &[("a", "slip-")])["area"], 3.0, 1e-9);
     near(&region(&map, &[("a", "open")])["area"], 4.0, 1e-9);
+}
+
+/// Two blocks with the same friction, the first pushed by T, coupled by k; its slip −z adds c z to its pressure:
+/// T − 3 z = f (1 − c z) while it slips alone, and k z = f where it takes the second with it: a parabola in f.
+#[test]
+fn friction_against_load_gives_curves() {
+    let (c, k): (f64, f64) = (0.5, 1.0);
+    let scenario = format!(
+        r#"{{"format": "stickslip/1", "title": "Two blocks", "parameters": {{
+             "f": {{"value": 0.2, "min": 0, "max": 0.5}}, "T": {{"value": 0, "min": 0, "max": 3}}}},
+           "contact_system": {{"pairs": ["a", "b"], "friction": ["f", "f"],
+             "stiffness": [[2, 0, {c}, 0], [0, 2, 0, 0], [{c}, 0, 3, {k}], [0, 0, {k}, 3]],
+             "loads": {{"weight": {{"factor": 1, "vector": [1, 1, 0, 0]}},
+                        "push": {{"factor": "T", "vector": [0, 0, 1, 0]}}}}}}}}"#
+    );
+    let mut session = session(load_text("blocks.json", &scenario, None).unwrap_or_else(|error| panic!("{error}")));
+    let map = report(&mut session, "map f T").unwrap();
+    // ∫ over 0 … 1/2 of f, of 3 f / k + f (1 − c f / k) − f, and the rest of 1.5.
+    let stick = 0.125;
+    let alone = 3.0 / k * 0.125 - c / k * 0.125 / 3.0;
+    near(&region(&map, &[("a", "stick"), ("b", "stick")])["area"], stick, 1e-9);
+    near(&region(&map, &[("a", "slip-"), ("b", "stick")])["area"], alone, 1e-9);
+    near(&region(&map, &[("a", "slip-"), ("b", "slip+")])["area"], 1.5 - stick - alone, 1e-9);
+    assert_eq!(map["regions"].as_array().unwrap().len(), 3);
+}
+
+/// Beyond the critical friction (f c > 3): with N = 1 sticking is possible for |T| < f, opening for T > 3 / c, and both,
+/// with slipping, between. Upwards the block sticks until T = f, downwards it stays open until T = 3 / c.
+#[test]
+fn several_answers_are_found_from_both_ends() {
+    let mut session = session(load_text("block.json", &block(2.4), None).unwrap_or_else(|error| panic!("{error}")));
+    session.execute("set N 1", &mut quiet(&mut Vec::new())).unwrap();
+    let map = report(&mut session, "map T 0..2 f 1.3..1.8").unwrap();
+    let both = map["regions"].as_array().unwrap().iter().find(|region| !region["other"].is_null()).unwrap();
+    assert_eq!((&both["states"]["a"], &both["other"]["a"]), (&"stick".into(), &"open".into()));
+    assert_eq!(both["answers"], 3);
+    // ∫ f − 3 / c df over 1.3 … 1.8
+    near(&both["area"], (1.8 * 1.8 - 1.3 * 1.3) / 2.0 - 1.25 * 0.5, 1e-9);
+    near(&region(&map, &[("a", "open")])["area"], 2.0 * 0.5 - (1.8 * 1.8 - 1.3 * 1.3) / 2.0, 1e-9);
+    assert!(text(&mut session, "map T 0..2 f 1.3..1.8").contains("hatched: more than one answer"));
+}
+
+/// What cannot be mapped is refused in words, and nothing is exported before there is a map.
+#[test]
+fn what_is_no_map_is_refused() {
+    let mut session = beam();
+    for (command, part) in [
+        ("map", "required"),
+        ("map f 0..1", "expected two parameters"),
+        ("map f 0..1 f 0..1", "f is named twice"),
+        ("map f 0..1 F3 0..1", "no parameter or load case `F3`"),
+        ("map f 1..0 F2 0..400", "the smaller value comes first"),
+        ("map f -1..1 F2 0..400", "f"),
+        ("map f 0..1 F2 0..400 of", "quantity"),
+        ("map f 0..1 F2 0..400 of limit pull", "no quantity of a single state"),
+        ("export map x.svg", "no map yet"),
+        ("export map x.csv", "must end in"),
+    ] {
+        let refusal = report(&mut session, command).unwrap_err();
+        assert!(refusal.contains(part), "{command}: {refusal}");
+    }
 }

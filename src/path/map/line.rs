@@ -14,6 +14,8 @@ const AGAIN: usize = 8;
 const CELLS: usize = 24;
 /// There a change is narrowed to this share of the range.
 const NARROW: f64 = 1e-11;
+/// Bounds met upwards and downwards that are nearer than this share of the range are one place.
+const SAME: f64 = 1e-10;
 /// Parts shorter than this share of the range are rounding of the place where two others meet.
 const NOTHING: f64 = 1e-13;
 
@@ -22,6 +24,8 @@ const NOTHING: f64 = 1e-13;
 pub enum Scheme {
     /// In the order of the pairs.
     Pairs(Vec<State>),
+    /// Followed from the upper end another answer is met: both, the one from the lower end first.
+    Several(Vec<State>, Vec<State>),
     /// No answer was found.
     NoAnswer,
 }
@@ -62,6 +66,29 @@ fn scheme(pairs: &[PairState]) -> Scheme {
     Scheme::Pairs(pairs.iter().map(|pair| pair.state).collect())
 }
 
+/// The parts of both ways over a line: where they differ there is more than one answer. Bounds nearer than `same` are
+/// one.
+fn overlaid(upwards: &[Part], downwards: &[Part], same: f64) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for a in upwards {
+        let mut from = a.from;
+        for b in downwards.iter().filter(|b| b.to > a.from + same && b.from < a.to - same) {
+            let to = if b.to > a.to - same { a.to } else { b.to };
+            let scheme = match (&a.scheme, &b.scheme) {
+                (Scheme::Pairs(a), Scheme::Pairs(b)) if a != b => Scheme::Several(a.clone(), b.clone()),
+                (Scheme::NoAnswer, other) => other.clone(),
+                (scheme, _) => scheme.clone(),
+            };
+            parts.push(Part { from, to, scheme });
+            from = to;
+        }
+        if from < a.to {
+            parts.push(Part { from, to: a.to, scheme: a.scheme.clone() });
+        }
+    }
+    parts
+}
+
 /// The lines of a map: `along` is followed exactly where that can be done, `across` stands still.
 pub struct Lines<'a> {
     /// The scenario made ready.
@@ -82,19 +109,35 @@ impl Lines<'_> {
     pub fn line(&self, at: f64) -> Result<(Line, bool), PathError> {
         let there = self.basis.at(self.across, at)?;
         let basis = Basis { prepared: &there.prepared, values: &there.values, ..self.basis };
-        let mut parts = Vec::new();
-        let exact = self.fill(basis, self.range, AGAIN, &mut parts)?;
-        parts.sort_by(|a: &Part, b| a.from.total_cmp(&b.from));
-        Ok((Line { at, parts: self.joined(parts) }, exact))
+        let (mut upwards, mut downwards) = (Vec::new(), Vec::new());
+        let exact = self.fill(basis, (self.range, false), AGAIN, &mut upwards)?;
+        let upwards = self.joined(upwards);
+        // Lines over cells are answers of their own and do not depend on the end they start from.
+        if exact {
+            self.fill(basis, (self.range, true), AGAIN, &mut downwards)?;
+        }
+        let downwards = self.joined(downwards);
+        Ok((Line { at, parts: self.joined(overlaid(&upwards, &downwards, SAME * self.length())) }, exact))
+    }
+
+    fn length(&self) -> f64 {
+        self.range[1] - self.range[0]
     }
 
     /// Fills a range with parts: along the exact path where there is an answer, and where that ends again from another
     /// answer, if one is found.
-    fn fill(&self, basis: Basis<'_>, range: [f64; 2], again: usize, parts: &mut Vec<Part>) -> Result<bool, PathError> {
-        let route = match Route::new(basis, self.along, range) {
-            Ok(Some(route)) => route,
+    fn fill(
+        &self,
+        basis: Basis<'_>,
+        (range, upper): ([f64; 2], bool),
+        again: usize,
+        parts: &mut Vec<Part>,
+    ) -> Result<bool, PathError> {
+        let route = match Route::from_end(basis, self.along, range, upper) {
+            Ok(Some(route)) if !route.stretches.is_empty() => route,
             Ok(None) => return self.cells(basis, range, parts).map(|()| false),
-            Err(PathError::NoStart { .. }) => {
+            // No answer, or one that stands at its very end.
+            Ok(Some(_)) | Err(PathError::NoStart { .. }) => {
                 parts.push(Part { from: range[0], to: range[1], scheme: Scheme::NoAnswer });
                 return Ok(true);
             }
@@ -107,10 +150,10 @@ impl Lines<'_> {
         }
         let [low, high] = route.covered();
         if low > range[0] {
-            self.beyond(basis, [low, range[0]], again, parts)?;
+            self.beyond(basis, ([low, range[0]], upper), again, parts)?;
         }
         if high < range[1] {
-            self.beyond(basis, [high, range[1]], again, parts)?;
+            self.beyond(basis, ([high, range[1]], upper), again, parts)?;
         }
         Ok(true)
     }
@@ -119,12 +162,12 @@ impl Lines<'_> {
     fn beyond(
         &self,
         basis: Basis<'_>,
-        [from, to]: [f64; 2],
+        ([from, to], upper): ([f64; 2], bool),
         again: usize,
         parts: &mut Vec<Part>,
     ) -> Result<(), PathError> {
         let span = |a: f64, b: f64| [a.min(b), a.max(b)];
-        let nearest = BESIDE * (self.range[1] - self.range[0]);
+        let nearest = BESIDE * self.length();
         let probes = std::iter::once(nearest / (to - from).abs()).chain(PROBES).filter(|share| *share <= 1.0);
         let probes = probes.filter(|_| again > 0 && (to - from).abs() > nearest);
         for (index, share) in probes.enumerate() {
@@ -135,11 +178,11 @@ impl Lines<'_> {
             // Both ways from there; what is before it has none at its other end.
             let [low, high] = span(at, to);
             if low < high {
-                self.fill(basis, [low, high], again - 1, parts)?;
+                self.fill(basis, ([low, high], upper), again - 1, parts)?;
             }
             if index > 0 {
                 let beside = from + nearest * (to - from).signum();
-                return self.fill(basis, span(beside, at), again - 1, parts).map(drop);
+                return self.fill(basis, (span(beside, at), upper), again - 1, parts).map(drop);
             }
             return Ok(());
         }
@@ -176,8 +219,9 @@ impl Lines<'_> {
     }
 
     /// Neighbours in one scheme as one part; parts of no length left out; no gaps.
-    fn joined(&self, parts: Vec<Part>) -> Vec<Part> {
+    fn joined(&self, mut parts: Vec<Part>) -> Vec<Part> {
         let [low, high] = self.range;
+        parts.sort_by(|a, b| a.from.total_cmp(&b.from));
         let mut joined: Vec<Part> = Vec::new();
         for part in parts.into_iter().filter(|part| part.to - part.from > NOTHING * (high - low)) {
             match joined.last_mut() {

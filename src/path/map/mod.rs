@@ -36,6 +36,8 @@ pub struct Region {
     pub letter: String,
     /// State of each pair by its id; `None` where there is no answer.
     pub states: Option<Vec<(String, State)>>,
+    /// Where the answer that is followed from the upper end is another one: its states.
+    pub other: Option<Vec<(String, State)>>,
     /// Area, in the units of the two parameters.
     pub area: f64,
     /// A place well inside, in the order of the axes.
@@ -50,6 +52,13 @@ pub struct Region {
     pub answers: Option<usize>,
     /// The quantity asked for, at that place.
     pub value: Option<serde_json::Value>,
+}
+
+impl Region {
+    /// Whether more than one answer was found.
+    pub fn has_several(&self) -> bool {
+        self.other.is_some() || self.answers.is_some_and(|answers| answers > 1)
+    }
 }
 
 /// The map.
@@ -199,8 +208,11 @@ impl Map {
     /// The regions from the panels, each with what an answer at a place inside shows.
     fn describe(&mut self, basis: Basis<'_>, quantity: Option<&Quantity>) -> Result<(), PathError> {
         let count = self.region_of.iter().flatten().max().map_or(0, |last| last + 1);
-        let ids: Vec<String> =
-            basis.prepared.system().map(|system| system.pairs.iter().map(|pair| pair.id.clone()).collect()).unwrap_or_default();
+        let ids: Vec<String> = basis
+            .prepared
+            .system()
+            .map(|system| system.pairs.iter().map(|pair| pair.id.clone()).collect())
+            .unwrap_or_default();
         let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS;
         for region in 0..count {
             basis.watch.progress("regions", region as f64 / count as f64);
@@ -220,13 +232,16 @@ impl Map {
             let bounds = self.panels[panel].bounds(across);
             let inside = 0.5 * (bounds[part] + bounds[part + 1]);
             let at = if self.along == 0 { [inside, across] } else { [across, inside] };
-            let states = match &self.panels[panel].lines[0].parts[part].scheme {
-                Scheme::Pairs(states) => Some(ids.iter().cloned().zip(states.iter().copied()).collect()),
-                Scheme::NoAnswer => None,
+            let named = |states: &[State]| Some(ids.iter().cloned().zip(states.iter().copied()).collect());
+            let (states, other) = match &self.panels[panel].lines[0].parts[part].scheme {
+                Scheme::Pairs(states) => (named(states), None),
+                Scheme::Several(states, other) => (named(states), named(other)),
+                Scheme::NoAnswer => (None, None),
             };
             let mut found = Region {
                 letter: letters(region),
                 states,
+                other,
                 area,
                 at,
                 class: None,
@@ -287,12 +302,17 @@ impl Map {
         }
         if pairs > ENUMERATED_PAIRS || self.regions.len() > ENUMERATED_REGIONS {
             self.notes.push(format!(
-                "other answers were not looked for (that is done for up to {ENUMERATED_PAIRS} pairs and \
+                "other answers were looked for only by following each line from both ends (at the marked places all of them \
+                 are counted for up to {ENUMERATED_PAIRS} pairs and \
                  {ENUMERATED_REGIONS} regions)"
             ));
-        } else if self.regions.iter().any(|region| region.answers.is_some_and(|answers| answers > 1)) {
-            self.notes.push("hatched: at the marked place more than one answer is possible; the map shows the one that \
-                             is followed from its lower end".to_owned());
+        }
+        if self.regions.iter().any(Region::has_several) {
+            self.notes.push(
+                "hatched: more than one answer is possible; the map shows the one that is followed from the lower end \
+                 of a line"
+                    .to_owned(),
+            );
         }
         if self.regions.iter().any(|region| region.states.is_none()) {
             self.notes.push(

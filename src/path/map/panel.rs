@@ -1,8 +1,8 @@
 //! Strips of the map in which every line passes the same schemes in the same order, and the areas of their parts.
 
 use super::line::{Line, Lines};
-use crate::path::start::PathError;
 use crate::explain::words::short;
+use crate::path::start::PathError;
 
 /// Strips looked at first.
 const STRIPS: usize = 16;
@@ -125,7 +125,24 @@ impl<'a> Cutter<'a> {
                 self.measure(start.clone(), end.clone(), 0, &mut panels)?;
             }
         }
+        self.close(&mut panels);
         Ok(panels)
+    }
+
+    /// Gives the slits between panels, and those at the border, to their neighbours.
+    fn close(&self, panels: &mut [Panel]) {
+        let ends: Vec<[f64; 2]> = panels.iter().map(Panel::ends).collect();
+        for (k, panel) in panels.iter_mut().enumerate() {
+            let before = if k == 0 { ends[k][0] - self.range[0] } else { 0.5 * (ends[k][0] - ends[k - 1][1]) };
+            let after = match ends.get(k + 1) {
+                Some(next) => 0.5 * (next[0] - ends[k][1]),
+                None => self.range[1] - ends[k][1],
+            };
+            let (first, last) = (&panel.lines[0], &panel.lines[panel.lines.len() - 1]);
+            for (area, (a, b)) in panel.areas.iter_mut().zip(first.parts.iter().zip(&last.parts)) {
+                *area += before * (a.to - a.from) + after * (b.to - b.from);
+            }
+        }
     }
 
     /// Appends lines up to `end` so that the sequence changes between neighbours at one place only.

@@ -201,7 +201,7 @@ impl Session {
                 _ => (self.slider(&name, command)?, after),
             };
             if axes.iter().any(|axis| axis.name == name) {
-                return Err(CommandError::Refused(format!("envelope: {name} is named twice")));
+                return Err(CommandError::Refused(format!("{command}: {name} is named twice")));
             }
             axes.push(Axis { name, range });
             rest = after;

@@ -44,9 +44,6 @@ impl Session {
         let Ok(axes) = <[Axis; 2]>::try_from(axes) else {
             return refused("map: expected two parameters or load cases: `map P A..B Q C..D [of QUANTITY]`");
         };
-        if axes[0].name == axes[1].name {
-            return refused(format!("map: {} twice; the axes are two different parameters", axes[0].name));
-        }
         let ground = self.ground(io.watch)?;
         let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
         let (prepared, asked) = (ground.prepared, quantity.clone());
@@ -87,10 +84,12 @@ impl Session {
         let axis = |axis: &Axis| json!({"parameter": axis.name, "from": axis.range[0], "to": axis.range[1]});
         let regions = map.regions.iter().enumerate().map(|(index, region)| {
             let mut entry = json!(region);
-            entry["states"] = match &region.states {
-                Some(states) => states.iter().map(|(id, state)| (id.clone(), json!(state))).collect::<serde_json::Map<_, _>>().into(),
-                None => Json::Null,
-            };
+            for (key, states) in [("states", &region.states), ("other", &region.other)] {
+                let states = states.as_ref().map(|states| {
+                    states.iter().map(|(id, state)| (id.clone(), json!(state))).collect::<serde_json::Map<_, _>>()
+                });
+                entry[key] = json!(states);
+            }
             entry["outcome"] = json!(if region.states.is_some() { "answer" } else { "ray" });
             entry["outlines"] = json!(map.outlines(index));
             entry

@@ -26,10 +26,7 @@ pub fn figure(map: &Map, labels: &Labels<'_>, caption: &Caption) -> String {
     let bottom = top + HEIGHT;
     drawing.text((left, top - 8.0), &name(1), SMALL, Anchor::Start, BLACK, "");
     let place = |[a, b]: [f64; 2]| {
-        (
-            left + (a - x[0]) / (x[1] - x[0]) * (right - left),
-            bottom - (b - y[0]) / (y[1] - y[0]) * HEIGHT,
-        )
+        (left + (a - x[0]) / (x[1] - x[0]) * (right - left), bottom - (b - y[0]) / (y[1] - y[0]) * HEIGHT)
     };
     drawing.put(
         "<defs><pattern id=\"several\" width=\"8\" height=\"8\" patternUnits=\"userSpaceOnUse\" \
@@ -47,7 +44,7 @@ pub fn figure(map: &Map, labels: &Labels<'_>, caption: &Caption) -> String {
             None => ("#9a9a9a", 0.55),
         };
         drawing.put(&format!("<path d=\"{path}\" fill=\"{fill}\" fill-opacity=\"{opacity}\"/>"));
-        if region.answers.is_some_and(|answers| answers > 1) {
+        if region.has_several() {
             drawing.put(&format!("<path d=\"{path}\" fill=\"url(#several)\" fill-opacity=\"0.35\"/>"));
         }
     }
