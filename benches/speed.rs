@@ -86,7 +86,7 @@ fn resolve(criterion: &mut Criterion) {
     for pairs in [100, 300] {
         let ready = Ready::new(&Plates::with_pairs(pairs, 0.4));
         let rules = ready.scenario.rules;
-        let solve = |values: &_| ready.prepared.solve(&ready.scenario, values, rules, &Quiet).expect("an answer");
+        let solve = |values: &_| ready.prepared.case(&ready.scenario, values).under(rules).solve().expect("an answer");
         group.bench_function(BenchmarkId::new("cold", pairs), |bench| {
             let values = ready.values(&[]);
             bench.iter(|| black_box(solve(&values)));
@@ -100,7 +100,12 @@ fn resolve(criterion: &mut Criterion) {
                     let clock = Instant::now();
                     for step in 1..=steps {
                         let values = &ends[usize::from(step % 2 == 1)];
-                        last = ready.prepared.follow(&last, values, rules, &Quiet).expect("the path gets there");
+                        last = ready
+                            .prepared
+                            .case(&ready.scenario, values)
+                            .under(rules)
+                            .follow(&last)
+                            .expect("the path gets there");
                     }
                     clock.elapsed()
                 });
@@ -127,7 +132,7 @@ fn renewed(criterion: &mut Criterion) {
                     let (renewed, _) =
                         prepared.renewed(&scenario, &values, &Quiet).expect("it stands").expect("something moved");
                     prepared = renewed;
-                    black_box(prepared.solve(&scenario, &values, scenario.rules, &Quiet).expect("an answer"))
+                    black_box(prepared.case(&scenario, &values).solve().expect("an answer"))
                 });
             });
         }

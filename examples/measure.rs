@@ -129,7 +129,7 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
     let ready = Ready::new(&Plates { traction, ..Plates::with_pairs(pairs, friction) });
     let rules = ready.scenario.rules;
     let cold = |changes: &[(&str, f64)]| {
-        timed(|| ready.prepared.solve(&ready.scenario, &ready.values(changes), rules, &Quiet))
+        timed(|| ready.prepared.case(&ready.scenario, &ready.values(changes)).under(rules).solve())
     };
     let mut colds = (Vec::new(), Vec::new());
     let mut changed = serde_json::Map::new();
@@ -153,7 +153,8 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
             colds.1.push(last.answer.timings.lemke);
             for round in 0..6 {
                 let values = if round % 2 == 0 { &there } else { &back };
-                let (seconds, followed) = timed(|| ready.prepared.follow(&last, values, rules, &Quiet));
+                let (seconds, followed) =
+                    timed(|| ready.prepared.case(&ready.scenario, values).under(rules).follow(&last));
                 let Some(followed) = followed else {
                     failed += 1;
                     break;
@@ -197,7 +198,7 @@ fn resolve(arguments: &[String]) -> Result<Value, Failure> {
             values.insert(parameter.to_owned(), if round % 2 == 0 { there } else { here });
             let (making, renewed) = timed(|| prepared.renewed(&scenario, &values, &Quiet));
             prepared = renewed?.ok_or("nothing moved")?.0;
-            let (solving, solved) = timed(|| prepared.solve(&scenario, &values, scenario.rules, &Quiet));
+            let (solving, solved) = timed(|| prepared.case(&scenario, &values).solve());
             size = solved?.answer.size.unknowns;
             ready.push(making);
             whole.push(making + solving);

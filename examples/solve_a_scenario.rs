@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let prepared = prepare(&scenario, &Quiet)?;
     // Everything else follows the values of the parameters.
     let values = scenario.parameter_values();
-    let solved = prepared.solve(&scenario, &values, scenario.rules, &Quiet)?;
+    let solved = prepared.case(&scenario, &values).solve()?;
 
     println!("{}: {:?} after {} pivots", scenario.title, solved.answer.outcome, solved.answer.pivot_count);
     for pivot in &solved.answer.pivots {

@@ -7,7 +7,6 @@ use serde_json::{Map, Value, json};
 use stickslip::answer::record::{OutcomeKind, Verdict};
 use stickslip::model::rules::Rules;
 use stickslip::path::limit::limit;
-use stickslip::watch::Quiet;
 
 mod common;
 
@@ -60,7 +59,7 @@ fn arch(blocks: usize, thickness: f64, friction: f64) -> Case {
 
 fn limit_of(case: &Case) -> (f64, stickslip::answer::record::Ray, bool) {
     let values = case.scenario.parameter_values();
-    let found = limit(&case.prepared, &case.scenario, &values, None, "quake", &Quiet).expect("a path");
+    let found = limit(case.prepared.case(&case.scenario, &values), None, "quake").expect("a path");
     (found.factor.expect("a limit"), found.collapse.expect("a collapse"), found.confirmed)
 }
 

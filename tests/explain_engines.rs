@@ -67,7 +67,11 @@ impl Problem {
 
 fn solve(prepared: &Prepared, scenario: &Scenario, engine: Engine) -> Solved {
     let rules = Rules { engine, ..Rules::default() };
-    prepared.solve(scenario, &scenario.parameter_values(), rules, &Quiet).expect("the default rules fit every problem")
+    prepared
+        .case(scenario, &scenario.parameter_values())
+        .under(rules)
+        .solve()
+        .expect("the default rules fit every problem")
 }
 
 /// Positive definite R; `whole`: small integers, so that ties are everywhere. Mixed laws, gaps, cohesion.

@@ -22,7 +22,7 @@ fn solve((scenario, prepared): &(Scenario, Prepared), sets: &[(&str, f64)], rule
     for (name, value) in sets {
         assert!(values.insert((*name).to_owned(), *value).is_some(), "{name}");
     }
-    prepared.solve(scenario, &values, rules, &Quiet).unwrap_or_else(|error| panic!("{error}"))
+    prepared.case(scenario, &values).under(rules).solve().unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn mechanism(solved: &Solved) -> &Ray {
@@ -174,7 +174,7 @@ fn margins_of_the_bar_are_its_breakpoints() {
         values.insert("f".into(), 0.5);
         values
     };
-    let margins = solved.margins(&beam.1, &beam.0, &values, 0);
+    let margins = solved.margins(beam.1.case(&beam.0, &values), 0);
     let pull = margins.iter().find(|margin| margin.parameter.contains("pull")).expect("a margin in the pull");
     let (up, down) = (pull.up.as_ref().expect("up"), pull.down.as_ref().expect("down"));
     close(up.at, 150.0, 1e-9);
@@ -240,7 +240,7 @@ fn rates_below_the_rounding_of_their_terms_are_zero() {
         let case = load(name);
         let values = case.0.parameter_values();
         let solved = solve(&case, &[], Rules::default());
-        let found = stickslip::path::sensitivity::sensitivity(&case.1, &case.0, &solved, &values).expect("rates");
+        let found = stickslip::path::sensitivity::sensitivity(case.1.case(&case.0, &values), &solved).expect("rates");
         for parameter in &found.parameters {
             let largest = |read: fn(&stickslip::path::sensitivity::PairRate) -> f64| {
                 parameter.pairs.iter().map(|pair| read(pair).abs()).fold(0.0, f64::max)

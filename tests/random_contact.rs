@@ -217,7 +217,7 @@ fn every_rule_answers_right_or_says_so() {
         let case = common::Case::text(&text);
         for rules in common::all_rules() {
             let values = case.scenario.parameter_values();
-            let Ok(solved) = case.prepared.solve(&case.scenario, &values, rules, &stickslip::watch::Quiet) else {
+            let Ok(solved) = case.prepared.case(&case.scenario, &values).under(rules).solve() else {
                 continue; // `weight` without friction
             };
             let answer = solved.answer;

@@ -84,7 +84,7 @@ fn solve(folder: &Path, mut scenario: Value) -> Answer {
     let scenario = load_text("test", &text, Some(&folder.join("test.json"))).unwrap_or_else(|e| panic!("{e}"));
     let prepared = prepare(&scenario, &Quiet).unwrap_or_else(|e| panic!("{e}"));
     let values = scenario.parameter_values();
-    prepared.solve(&scenario, &values, scenario.rules, &Quiet).unwrap_or_else(|e| panic!("{e}")).answer
+    prepared.case(&scenario, &values).solve().unwrap_or_else(|e| panic!("{e}")).answer
 }
 
 fn refused(folder: &Path, mut scenario: Value) -> String {

@@ -142,7 +142,7 @@ fn scenario(matrix: &[Vec<f64>], q: &[f64], covering: Option<&[f64]>) -> String 
 fn solved(matrix: &[Vec<f64>], q: &[f64], covering: Option<&[f64]>) -> Solved {
     let scenario = load_text("lcp", &scenario(matrix, q, covering), None).expect("a scenario");
     let prepared = prepare(&scenario, &Quiet).expect("prepared");
-    prepared.solve(&scenario, &scenario.parameter_values(), scenario.rules, &Quiet).expect("solved")
+    prepared.case(&scenario, &scenario.parameter_values()).solve().expect("solved")
 }
 
 /// A bimatrix game of k × k with integer costs in copositive form: strategies x, y and the two values, each as a

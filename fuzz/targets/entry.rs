@@ -47,7 +47,7 @@ fn solve(scenario: &Scenario) {
     }
     let watch = Budget::new(&Quiet, TIME);
     if let Ok(prepared) = prepare(scenario, &watch)
-        && let Ok(solved) = prepared.solve(scenario, &scenario.parameter_values(), scenario.rules, &watch)
+        && let Ok(solved) = prepared.case(scenario, &scenario.parameter_values()).watched(&watch).solve()
     {
         // an answer has passed its check, or is none
         assert!(!solved.answer.is_answer() || solved.answer.check.passed);

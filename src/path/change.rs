@@ -14,6 +14,29 @@ pub struct Change {
     pub to: String,
 }
 
+/// A place of a path over a load or over friction at which the scheme changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Breakpoint {
+    /// The load factor, exact to rounding, or the friction, to 1e-10 relative or better.
+    pub value: f64,
+    /// Index of the first place of the path at this value: of its knots, or of its samples.
+    pub place: usize,
+    /// The pairs that change.
+    pub changes: Vec<Change>,
+    /// Whether the pairs move by a finite amount here: at constant load before it goes on, or from one of several answers
+    /// under this friction, which ends, to another.
+    pub jump: bool,
+    /// The changes in words: `pair c5 slips +`.
+    pub sentence: String,
+}
+
+impl Breakpoint {
+    /// With its sentence.
+    pub fn new(value: f64, place: usize, changes: Vec<Change>, jump: bool) -> Breakpoint {
+        Breakpoint { value, place, sentence: sentence(&changes), changes, jump }
+    }
+}
+
 /// The state of a pair as a path tells it: its word, and for an open pair held by cohesion what it does.
 fn word((state, held): (State, Option<State>)) -> String {
     match held {

@@ -1,14 +1,15 @@
 //! The least or the most of a parameter under which there is an answer: a bracket with a checked answer on one side and
 //! a proved collapse on the other.
 
-use super::friction::{self, FrictionEnd, is_friction};
-use super::load::{self, LoadEnd, LoadReach};
-use super::route::{Basis, There};
+use super::end::PathEnd;
+use super::friction::is_friction;
 use super::start::PathError;
+use super::way::Way;
 use crate::answer::record::{OutcomeKind, RayClass, Verdict};
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
 use crate::model::uses::Redone;
+use crate::solve::Case;
 
 /// Values looked at before the search between two of them.
 const CELLS: usize = 32;
@@ -70,9 +71,9 @@ pub struct Edge {
 ///
 /// # Errors
 /// No answer anywhere in the range; see [`PathError`].
-pub fn edge(basis: Basis<'_>, name: &str, range: [f64; 2], which: Which) -> Result<Edge, PathError> {
+pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result<Edge, PathError> {
     let run = |value: f64| -> Result<Run, PathError> {
-        let solved = basis.solve(&basis.at(name, value)?)?;
+        let solved = case.at(name, value)?.case(case).solve_briefly()?;
         let ray = solved.ray.as_ref();
         Ok(Run {
             value,
@@ -86,7 +87,7 @@ pub fn edge(basis: Basis<'_>, name: &str, range: [f64; 2], which: Which) -> Resu
     let mut answer = None;
     for k in 0..=CELLS {
         let share = k as f64 / CELLS as f64;
-        basis.watch.progress(&format!("{name} = {}", from + share * (to - from)), share);
+        case.watch.progress(&format!("{name} = {}", from + share * (to - from)), share);
         let next = run(if k == CELLS { to } else { from + share * (to - from) })?;
         if next.is_answer() {
             answer = Some(next);
@@ -130,36 +131,29 @@ pub fn edge(basis: Basis<'_>, name: &str, range: [f64; 2], which: Which) -> Resu
             }
         }
     }
-    let exact = end_of_path(basis, name, &answer, &collapse)?;
+    let exact = end_of_path(case, name, &answer, &collapse)?;
     Ok(Edge {
         value: exact.unwrap_or(answer.value),
         exact: exact.is_some(),
         // A motion that certifies the collapse does so under less friction too; a search through the schemes holds only there.
-        beyond: which == Which::Least && collapse.verdict == Some(Verdict::Certified) && is_friction_alone(basis, name),
+        beyond: which == Which::Least && collapse.verdict == Some(Verdict::Certified) && is_friction_alone(case, name),
         answer,
         collapse: Some(collapse),
     })
 }
 
 /// Where the exact path from the answer towards the collapse ends, between the two or within their rounding.
-fn end_of_path(basis: Basis<'_>, name: &str, answer: &Run, collapse: &Run) -> Result<Option<f64>, PathError> {
-    let there = basis.at(name, answer.value)?;
-    let solved = basis.solve(&there)?;
-    let (Basis { scenario, watch, .. }, There { prepared, values }) = (basis, &there);
+fn end_of_path(case: Case<'_>, name: &str, answer: &Run, collapse: &Run) -> Result<Option<f64>, PathError> {
+    let there = case.at(name, answer.value)?;
+    let here = there.case(case);
+    let solved = here.solve_briefly()?;
     let target = collapse.value + (collapse.value - answer.value);
-    let is_case = prepared.cases.iter().any(|(case, _)| case == name);
-    let end = if is_friction(prepared, values, name) && !is_case {
-        friction::trace(prepared, scenario, values, Some(&solved), name, target.max(0.0), watch).map(|path| {
-            let end = path.schemes.last().map(|last| last.to);
-            end.filter(|_| path.end == FrictionEnd::NoAnswer)
-        })
-    } else {
-        let reach = LoadReach { to: Some(target), through: false };
-        load::trace(prepared, scenario, values, Some(&solved), name, reach, watch).map(|path| {
-            let end = path.factors.last().copied();
-            end.filter(|_| matches!(path.end, LoadEnd::Limit(_)) && !path.from_zero)
-        })
-    };
+    let target = if is_friction(here, name) { target.max(0.0) } else { target };
+    let end = Way::follow(here, &solved, name, target).map(|way| match &way {
+        Way::Friction(path) => path.schemes.last().map(|last| last.to).filter(|_| path.end == PathEnd::NoAnswer),
+        Way::Load(path) if !path.from_zero => path.limit(),
+        Way::Load(_) => None,
+    });
     let room = 2.0 * (answer.value - collapse.value).abs();
     match end {
         Ok(end) => Ok(end.filter(|end| (end - answer.value).abs() <= room && (end - collapse.value).abs() <= room)),
@@ -170,12 +164,12 @@ fn end_of_path(basis: Basis<'_>, name: &str, answer: &Run, collapse: &Run) -> Re
 }
 
 /// Whether the parameter is a friction coefficient as it stands, and nothing else: then less of it bears no more.
-fn is_friction_alone(basis: Basis<'_>, name: &str) -> bool {
-    let Some(system) = basis.prepared.system() else { return false };
-    let mut moved = basis.values.clone();
-    moved.insert(name.to_owned(), basis.values.get(name).copied().unwrap_or_default() + 1.0);
-    let elsewhere = basis.scenario.uses.between(basis.values, &moved) > Redone::Lcp
-        || basis.prepared.cases.iter().any(|(_, factor)| factor.names().contains(&name));
+fn is_friction_alone(case: Case<'_>, name: &str) -> bool {
+    let Some(system) = case.prepared.system() else { return false };
+    let mut moved = case.values.clone();
+    moved.insert(name.to_owned(), case.values.get(name).copied().unwrap_or_default() + 1.0);
+    let elsewhere = case.scenario.uses.between(case.values, &moved) > Redone::Lcp
+        || case.prepared.cases.iter().any(|(_, factor)| factor.names().contains(&name));
     let law = |law: &Law| {
         law.numbers().into_iter().all(|(key, number)| match number {
             Number::Value(_) => true,
@@ -184,5 +178,5 @@ fn is_friction_alone(basis: Basis<'_>, name: &str) -> bool {
             Number::Expression(_) => false,
         })
     };
-    !elsewhere && basis.values.formulas().iter().next().is_none() && system.pairs.iter().all(|pair| law(&pair.law))
+    !elsewhere && case.values.formulas().iter().next().is_none() && system.pairs.iter().all(|pair| law(&pair.law))
 }

@@ -3,9 +3,11 @@
 
 use super::profile::{Shape, profile};
 use super::quantity::{Facts, Value};
-use super::route::{Basis, Route};
+use super::route::Route;
 use super::start::PathError;
 use crate::model::quantity::Quantity;
+use crate::solve::Case;
+use crate::solve::error::QuestionError;
 
 /// Values of each parameter on a grid over one, two or three of them.
 const POINTS: [usize; 3] = [41, 11, 7];
@@ -50,13 +52,13 @@ pub struct Envelope {
 ///
 /// # Errors
 /// No answer to start from; see [`PathError`].
-pub fn envelope(basis: Basis<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Envelope, PathError> {
+pub fn envelope(case: Case<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Envelope, PathError> {
     if let ([axis], true) = (axes, quantities.iter().all(Quantity::is_of_state))
-        && let Some(route) = Route::new(basis, &axis.name, axis.range)?
+        && let Some(route) = Route::new(case, &axis.name, axis.range)?
     {
         return Ok(on_route(&route, axis, quantities));
     }
-    on_grid(basis, axes, quantities)
+    on_grid(case, axes, quantities)
 }
 
 /// Takes a value into the peaks, the first of equals.
@@ -96,33 +98,34 @@ fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope
 
 /// The quantities of an answer of its own; `None` without one.
 fn values(
-    basis: &Basis<'_>,
+    case: Case<'_>,
     axes: &[Axis],
     at: &[f64],
     quantities: &[Quantity],
 ) -> Result<Option<Vec<Option<f64>>>, PathError> {
     let settings: Vec<(&str, f64)> = axes.iter().zip(at).map(|(axis, value)| (axis.name.as_str(), *value)).collect();
-    let there = match basis.at_all(&settings) {
+    let there = match case.at_all(&settings) {
         Ok(there) => there,
         // Values without a model: nothing to read there.
-        Err(PathError::Target(_)) => return Ok(None),
-        Err(error) => return Err(error),
+        Err(QuestionError::Refused(_)) => return Ok(None),
+        Err(error) => return Err(error.into()),
     };
-    let solved = basis.solve(&there)?;
+    let case = there.case(case);
+    let solved = case.solve_briefly()?;
     if !solved.answer.is_answer() {
         return Ok(None);
     }
-    let facts = Facts::of_answer(basis.scenario, &there.prepared, &there.values, &solved, basis.watch);
+    let facts = Facts::of_answer(case, &solved);
     Ok(Some(quantities.iter().map(|quantity| facts.value(quantity).ok()?.number()).collect()))
 }
 
-fn on_grid(basis: Basis<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Envelope, PathError> {
+fn on_grid(case: Case<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Envelope, PathError> {
     let points = POINTS[axes.len().clamp(1, POINTS.len()) - 1];
     let count = points.pow(axes.len() as u32);
     let mut all: Vec<Peaks> = vec![[None, None]; quantities.len()];
     let mut without = 0;
     for number in 0..count {
-        basis.watch.progress("envelope", number as f64 / count as f64);
+        case.watch.progress("envelope", number as f64 / count as f64);
         let mut rest = number;
         let at: Vec<f64> = axes
             .iter()
@@ -132,7 +135,7 @@ fn on_grid(basis: Basis<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<E
                 if k + 1 == points { *high } else { low + (high - low) * k as f64 / (points - 1) as f64 }
             })
             .collect();
-        match values(&basis, axes, &at, quantities)? {
+        match values(case, axes, &at, quantities)? {
             None => without += 1,
             Some(found) => {
                 for (peaks, value) in all.iter_mut().zip(found) {
@@ -144,7 +147,7 @@ fn on_grid(basis: Basis<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<E
     for (peaks, quantity) in all.iter_mut().zip(quantities) {
         for (sign, peak) in [-1.0, 1.0].into_iter().zip(peaks.iter_mut()) {
             if let Some(peak) = peak {
-                refine(&basis, axes, quantity, sign, 1.0 / (points - 1) as f64, peak)?;
+                refine(case, axes, quantity, sign, 1.0 / (points - 1) as f64, peak)?;
             }
         }
     }
@@ -159,7 +162,7 @@ fn on_grid(basis: Basis<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<E
 
 /// Moves to a neighbour while that is better, then halves the distance.
 fn refine(
-    basis: &Basis<'_>,
+    case: Case<'_>,
     axes: &[Axis],
     quantity: &Quantity,
     sign: f64,
@@ -172,7 +175,7 @@ fn refine(
             for direction in [-1.0, 1.0] {
                 let mut at = peak.at.clone();
                 at[k] = (at[k] + direction * step * (high - low)).clamp(*low, *high);
-                let found = values(basis, axes, &at, std::slice::from_ref(quantity))?;
+                let found = values(case, axes, &at, std::slice::from_ref(quantity))?;
                 let Some(value) = found.and_then(|found| found[0]) else { continue };
                 if sign * value > sign * peak.value {
                     (peak.value, peak.at) = (value, at);

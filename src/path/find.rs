@@ -3,10 +3,12 @@
 
 use super::profile::{ROUNDING, Shape, number, profile, zero};
 use super::quantity::Value;
-use super::route::{Basis, Route};
+use super::route::Route;
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::path::quantity::Facts;
+use crate::solve::Case;
+use crate::solve::error::QuestionError;
 
 /// Intervals into which a range is cut where there is no exact path.
 pub const CELLS: usize = 40;
@@ -98,16 +100,16 @@ struct Part {
 /// # Errors
 /// No answer to start from; see [`PathError`].
 pub fn find(
-    basis: Basis<'_>,
+    case: Case<'_>,
     name: &str,
     range: [f64; 2],
     quantity: &Quantity,
     wanted: &Wanted,
 ) -> Result<Found, PathError> {
-    let route = if quantity.is_of_state() { Route::new(basis, name, range)? } else { None };
+    let route = if quantity.is_of_state() { Route::new(case, name, range)? } else { None };
     match route {
         Some(route) => Ok(on_route(&route, range, quantity, wanted)),
-        None => on_grid(basis, name, range, quantity, wanted),
+        None => on_grid(case, name, range, quantity, wanted),
     }
 }
 
@@ -209,23 +211,24 @@ fn gather(parts: &[Part], wanted: &Wanted, place: impl Fn(f64) -> Place) -> Foun
 }
 
 /// The quantity of an answer of its own at a value.
-fn solved_value(basis: &Basis<'_>, name: &str, at: f64, quantity: &Quantity) -> Result<Option<Value>, PathError> {
-    let there = match basis.at(name, at) {
+fn solved_value(case: Case<'_>, name: &str, at: f64, quantity: &Quantity) -> Result<Option<Value>, PathError> {
+    let there = match case.at(name, at) {
         Ok(there) => there,
         // Values without a model: nothing to read there.
-        Err(PathError::Target(_)) => return Ok(None),
-        Err(error) => return Err(error),
+        Err(QuestionError::Refused(_)) => return Ok(None),
+        Err(error) => return Err(error.into()),
     };
-    let solved = basis.solve(&there)?;
+    let case = there.case(case);
+    let solved = case.solve_briefly()?;
     if !solved.answer.is_answer() && quantity.is_of_state() {
         return Ok(None);
     }
-    let facts = Facts::of_answer(basis.scenario, &there.prepared, &there.values, &solved, basis.watch);
+    let facts = Facts::of_answer(case, &solved);
     Ok(facts.value(quantity).ok())
 }
 
 fn on_grid(
-    basis: Basis<'_>,
+    case: Case<'_>,
     name: &str,
     range: [f64; 2],
     quantity: &Quantity,
@@ -233,7 +236,7 @@ fn on_grid(
 ) -> Result<Found, PathError> {
     let [low, high] = range;
     let look = |at: f64| -> Result<(f64, Option<Value>, Option<i8>), PathError> {
-        let value = solved_value(&basis, name, at, quantity)?;
+        let value = solved_value(case, name, at, quantity)?;
         let side = side(wanted, value.as_ref(), 0.0);
         Ok((at, value, side))
     };
@@ -241,7 +244,7 @@ fn on_grid(
     let mut parts: Vec<Part> = Vec::new();
     let mut brackets: Vec<[f64; 2]> = Vec::new();
     for k in 1..=CELLS {
-        basis.watch.progress(&format!("{name} = {}", last.0), k as f64 / CELLS as f64);
+        case.watch.progress(&format!("{name} = {}", last.0), k as f64 / CELLS as f64);
         let next = look(if k == CELLS { high } else { low + (high - low) * k as f64 / CELLS as f64 })?;
         let (mut a, mut b) = (last.clone(), next.clone());
         if a.2 != b.2 {

@@ -1,15 +1,13 @@
 //! The limit load of a case: factor, safety, how the structure collapses, and what has been proved of it.
 
-use super::load::{LoadEnd, LoadPath, LoadReach, trace};
+use super::end::PathEnd;
+use super::load::{LoadPath, LoadReach, trace};
 use super::start::PathError;
 use crate::answer::record::Ray;
 use crate::explain::ray;
-use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Rules};
-use crate::model::scenario::Scenario;
 use crate::solve::numbers::factors;
-use crate::solve::{PrepareError, Prepared, Solved};
-use crate::watch::Watch;
+use crate::solve::{Case, Prepared, Solved};
 
 /// The limit is confirmed by independent runs at (1 ± this) of it.
 const BESIDE: f64 = 1e-6;
@@ -58,44 +56,16 @@ fn nine_digits(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }
 
-/// The structure under another value of what is followed.
-struct Beside {
-    prepared: Prepared,
-    factors: Vec<f64>,
-}
-
-impl Beside {
-    fn new(
-        path: &LoadPath,
-        prepared: &Prepared,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        value: f64,
-        watch: &dyn Watch,
-    ) -> Result<Beside, PathError> {
-        if !path.moves_loads() {
-            let factors = path.case_factors(value);
-            return Ok(Beside { prepared: prepared.with_factors(&factors), factors });
-        }
+/// The structure under another value of what is followed, made ready, and its load factors.
+fn beside(path: &LoadPath, case: Case<'_>, value: f64) -> Result<(Prepared, Vec<f64>), PathError> {
+    if path.moves_loads() {
         // Where the parameter stands in the loads themselves they are told as they are there.
-        let mut values = values.clone();
-        values.insert(path.parameter.name.clone(), value);
-        let renewed = prepared.renewed(scenario, &values, watch).map_err(|error| match error {
-            PrepareError::Interrupted => PathError::Interrupted,
-            PrepareError::Problems(problems) => PathError::Missing(problems.to_string()),
-        })?;
-        let factors = factors(renewed.as_ref().map_or(prepared, |(there, _)| there), &values);
-        let prepared =
-            renewed.map_or_else(|| prepared.with_factors(&factors), |(there, _)| there.with_factors(&factors));
-        Ok(Beside { prepared, factors })
+        let there = case.at(&path.parameter.name, value)?;
+        let factors = factors(&there.prepared, &there.values);
+        return Ok((there.prepared.with_factors(&factors), factors));
     }
-
-    /// What `solve` finds there.
-    fn solve(&self, scenario: &Scenario, values: &ParameterValues, watch: &dyn Watch) -> Result<Solved, PathError> {
-        self.prepared.solve_briefly(scenario, values, Rules::default(), watch).map_err(|error| {
-            if error.is_interrupted() { PathError::Interrupted } else { PathError::Missing(error.to_string()) }
-        })
-    }
+    let factors = path.case_factors(value);
+    Ok((case.prepared.with_factors(&factors), factors))
 }
 
 /// Finds the limit of a load case or load parameter from the present answer (from 0 where there is none): upwards, or
@@ -103,44 +73,38 @@ impl Beside {
 ///
 /// # Errors
 /// See [`PathError`].
-pub fn limit(
-    prepared: &Prepared,
-    scenario: &Scenario,
-    values: &ParameterValues,
-    solved: Option<&Solved>,
-    name: &str,
-    watch: &dyn Watch,
-) -> Result<Limit, PathError> {
-    let case = prepared.cases.iter().find(|(case, _)| case == name);
-    let given = case.map_or_else(|| values.get(name).copied(), |(_, factor)| Some(factor.value(values)));
+pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limit, PathError> {
+    let Case { prepared, values, .. } = case;
+    let known = prepared.cases.iter().find(|(known, _)| known == name);
+    let given = known.map_or_else(|| values.get(name).copied(), |(_, factor)| Some(factor.value(values)));
     let negative = given.is_some_and(|given| given < 0.0);
     let to = negative.then_some(f64::NEG_INFINITY);
-    let path = trace(prepared, scenario, values, solved, name, LoadReach { to, through: false }, watch)?;
+    let path = trace(case, solved, name, LoadReach { to, through: false })?;
     let present = path.parameter.present;
     let factor = path.limit();
     let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
     let mut limit = Limit { present, factor, safety, collapse: None, confirmed: false, beyond: None, path };
-    let (Some(factor), LoadEnd::Limit(direction)) = (factor, &limit.path.end) else {
+    let (Some(factor), PathEnd::Limit(direction)) = (factor, &limit.path.end) else {
         return Ok(limit);
     };
     // A limit of 0 has no size of its own.
     let size = [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
     let outwards = if to.is_some() { -BESIDE * size } else { BESIDE * size };
     let over = factor + outwards;
-    let beside = |value| Beside::new(&limit.path, prepared, scenario, values, value, watch);
-    let there = beside(over)?;
-    let Some(system) = there.prepared.system() else { return Ok(limit) };
-    let above = there.solve(scenario, values, watch)?;
+    let solve = |prepared: &Prepared| Case { prepared, ..case }.under(Rules::default()).solve_briefly();
+    let (there, factors) = beside(&limit.path, case, over)?;
+    let Some(system) = there.system() else { return Ok(limit) };
+    let above = solve(&there)?;
     if above.answer.is_answer() && !above.answer.marginal {
         return Ok(Limit { factor: None, safety: None, beyond: Some(over), ..limit });
     }
     if factor != 0.0 && !above.answer.is_answer() {
-        let below = beside(factor - outwards)?.solve(scenario, values, watch)?;
-        limit.confirmed = below.answer.is_answer();
+        let (there, _) = beside(&limit.path, case, factor - outwards)?;
+        limit.confirmed = solve(&there)?.answer.is_answer();
     }
     let numbers = limit.path.numbers(over);
-    let cases = there.prepared.named_factors(&there.factors);
-    let subject = there.prepared.subject(system, &numbers, &cases);
+    let cases = there.named_factors(&factors);
+    let subject = there.subject(system, &numbers, &cases);
     let mut collapse = ray::look(&subject, limit.path.contact(), direction, 0.0);
     if let Some(found) = &above.ray {
         collapse.class = found.class;

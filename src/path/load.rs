@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use super::change::{Change, changes, sentence};
-use super::rate::fixed_place;
+use super::change::{Breakpoint, changes};
+use super::end::PathEnd;
+use super::load_parameter::LoadParameter;
 use super::start::{PIVOTS, PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
@@ -17,200 +18,10 @@ use crate::contact::system::ContactSystem;
 use crate::explain::words::short;
 use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::mirrored::MirroredLcp;
-use crate::lcp::outcome::{Point, RayDirection};
+use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Path, Reach};
-use crate::model::jet::Dependence;
-use crate::model::parameter::ParameterValues;
-use crate::model::scenario::Scenario;
-use crate::model::uses::Region;
-use crate::solve::load_rates::LoadRates;
 use crate::solve::numbers::{contact_numbers, factors};
-use crate::solve::{PrepareError, Prepared, Solved};
-use crate::watch::Watch;
-
-/// What a load path varies: the factor of a case, or a parameter in which the factors of some cases are affine.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadParameter {
-    /// As asked for: the case or the parameter.
-    pub name: String,
-    /// The cases it drives.
-    pub cases: Vec<DrivenCase>,
-    /// Its present value.
-    pub present: f64,
-}
-
-/// A case whose factor is offset + rate · θ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DrivenCase {
-    /// Index of the case.
-    pub case: usize,
-    /// Factor at θ = 0.
-    pub offset: f64,
-    /// Growth of the factor per unit of θ.
-    pub rate: f64,
-}
-
-impl LoadParameter {
-    /// Finds a case of this name, or the cases that depend on the parameter of this name. Where that stands in the loads
-    /// themselves, what they grow by makes cases of their own, and the geometry with those comes back too.
-    ///
-    /// # Errors
-    /// An unknown name; a parameter that moves something else too, or a load in another way than a + b θ.
-    fn find(
-        prepared: &Prepared,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        name: &str,
-    ) -> Result<(LoadParameter, Option<Arc<Prepared>>), PathError> {
-        let system = prepared.system().ok_or(PathError::Plain("trace"))?;
-        if let Some(case) = prepared.cases.iter().position(|(known, _)| known == name) {
-            let cases = vec![DrivenCase { case, offset: 0.0, rate: 1.0 }];
-            let present = prepared.cases[case].1.value(values);
-            return Ok((LoadParameter { name: name.to_owned(), cases, present }, None));
-        }
-        let Some(present) = values.get(name).copied() else {
-            return Err(PathError::Unknown { name: name.to_owned(), known: known(prepared, scenario) });
-        };
-        let mixed = |why: String| PathError::Mixed { name: name.to_owned(), why };
-        if let Some(refusal) = values.formula(name).and_then(|_| scenario.refusal(name, present)) {
-            return Err(PathError::Target(refusal));
-        }
-        if let Some(why) = fixed_place(scenario, name) {
-            return Err(mixed(why));
-        }
-        let along = values.along(name);
-        let mut at_zero = values.clone();
-        at_zero.insert(name.to_owned(), 0.0);
-        let mut cases = Vec::new();
-        for (case, (known, factor)) in prepared.cases.iter().enumerate() {
-            let jet = factor.along(&along);
-            match jet.dependence {
-                Dependence::Constant => {}
-                Dependence::Affine => {
-                    cases.push(DrivenCase { case, offset: factor.value(&at_zero), rate: jet.rate });
-                }
-                Dependence::Nonlinear => {
-                    return Err(mixed(format!(
-                        "the factor of case {known}, {}, is no linear function of it: `sweep {name} A..B` varies it",
-                        factor.text()
-                    )));
-                }
-            }
-        }
-        let law = system.pairs.iter().find_map(|pair| {
-            let numbers = pair.law.numbers();
-            let (what, _) = numbers.into_iter().find(|(_, number)| along.dependence(number) != Dependence::Constant)?;
-            Some(format!("it is the {what} of pair {}", pair.id))
-        });
-        if let Some(why) = law {
-            let rest = if cases.is_empty() {
-                "; only loads and friction can be followed exactly, use `sweep` for the others"
-            } else {
-                " and the factor of a load case as well; give them parameters of their own"
-            };
-            return Err(mixed(format!("{why}{rest}")));
-        }
-        let mut parameter = LoadParameter { name: name.to_owned(), cases, present };
-        let grown = parameter.grown(prepared, scenario, values)?;
-        if parameter.cases.is_empty() && grown.is_some() {
-            return Err(PathError::Idle(parameter.name));
-        }
-        if parameter.cases.is_empty() {
-            return Err(PathError::Unknown { name: name.to_owned(), known: known(prepared, scenario) });
-        }
-        Ok((parameter, grown))
-    }
-
-    /// Adds the cases that the loads grow by along this parameter, where it stands in them.
-    fn grown(
-        &mut self,
-        prepared: &Prepared,
-        scenario: &Scenario,
-        values: &ParameterValues,
-    ) -> Result<Option<Arc<Prepared>>, PathError> {
-        let Some(place) = scenario.uses.place(&self.name, Region::Amount) else { return Ok(None) };
-        let mixed = |why: String| PathError::Mixed { name: self.name.clone(), why };
-        let LoadRates { prepared: grown, growing } =
-            prepared.load_rates(scenario, values, &self.name).map_err(|error| match error {
-                PrepareError::Problems(problems) => mixed(match problems.problems.first() {
-                    Some(first) => format!("{}: {}; {}", first.path, first.message, first.help),
-                    None => place.to_owned(),
-                }),
-                PrepareError::Interrupted => PathError::Interrupted,
-            })?;
-        let mut added = Vec::new();
-        for (k, &case) in growing.iter().enumerate() {
-            let (known, factor) = &prepared.cases[case];
-            if self.cases.iter().any(|driven| driven.case == case) {
-                return Err(mixed(format!(
-                    "it stands in the loads of case {known} ({place}) and in its factor: their product is no linear \
-                     function of it; `sweep {} A..B` varies it",
-                    self.name
-                )));
-            }
-            let rate = factor.value(values);
-            added.push(DrivenCase { case: prepared.cases.len() + k, offset: -rate * self.present, rate });
-        }
-        self.cases.extend(added);
-        Ok(Some(grown))
-    }
-
-    /// Puts the factors of the cases to their values at θ.
-    fn drive(&self, factors: &mut [f64], value: f64) {
-        for driven in &self.cases {
-            factors[driven.case] = driven.offset + driven.rate * value;
-        }
-    }
-
-    /// RF per unit of it.
-    fn direction(&self, system: &ContactSystem) -> DVector<f64> {
-        self.cases.iter().fold(DVector::zeros(system.joint_count()), |sum: DVector<f64>, driven| {
-            sum + driven.rate * &system.loads[driven.case].vector
-        })
-    }
-}
-
-/// The names that `trace` takes.
-pub fn known(prepared: &Prepared, scenario: &Scenario) -> String {
-    let cases: Vec<&str> = prepared.cases.iter().map(|(name, _)| name.as_str()).collect();
-    let parameters: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
-    let mut text =
-        if cases.is_empty() { "no load cases".to_owned() } else { format!("load cases {}", cases.join(", ")) };
-    if !parameters.is_empty() {
-        text.push_str(&format!("; parameters {}", parameters.join(", ")));
-    }
-    text
-}
-
-/// A load at which the scheme changes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadBreakpoint {
-    /// Factor, exact to rounding.
-    pub factor: f64,
-    /// Index of its knot in the path.
-    pub knot: usize,
-    /// The pairs that change.
-    pub changes: Vec<Change>,
-    /// The pairs moved by a finite amount at this factor before it was reached.
-    pub at_constant_load: bool,
-    /// `c5 slips +`, in words.
-    pub sentence: String,
-}
-
-/// Why a load path ends.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LoadEnd {
-    /// At the target.
-    Target,
-    /// At a turning point: beyond it there is no answer near the one followed.
-    Turning,
-    /// At the limit load.
-    Limit(RayDirection),
-    /// Nowhere: the last scheme holds for every larger factor.
-    Unbounded,
-    /// Back at the start, through turning points.
-    Returned,
-}
+use crate::solve::{Case, Prepared, Solved};
 
 /// A followed load path. Between two knots everything is affine in the factor.
 #[derive(Clone, Debug)]
@@ -226,9 +37,9 @@ pub struct LoadPath {
     /// The pairs at each knot.
     pub pairs: Vec<Vec<PairState>>,
     /// The breakpoints.
-    pub breakpoints: Vec<LoadBreakpoint>,
+    pub breakpoints: Vec<Breakpoint>,
     /// Why it ends.
-    pub end: LoadEnd,
+    pub end: PathEnd,
     /// Pivots made.
     pub pivots: usize,
     /// The knots and schemes, dimensionless.
@@ -257,17 +68,10 @@ pub struct LoadReach {
 ///
 /// # Errors
 /// See [`PathError`].
-pub fn trace(
-    prepared: &Prepared,
-    scenario: &Scenario,
-    values: &ParameterValues,
-    solved: Option<&Solved>,
-    name: &str,
-    reach: LoadReach,
-    watch: &dyn Watch,
-) -> Result<LoadPath, PathError> {
-    let (parameter, grown) = LoadParameter::find(prepared, scenario, values, name)?;
-    let prepared = grown.as_deref().unwrap_or(prepared);
+pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadReach) -> Result<LoadPath, PathError> {
+    let (parameter, grown) = LoadParameter::find(case, name)?;
+    let Case { values, watch, .. } = case;
+    let prepared = grown.as_deref().unwrap_or(case.prepared);
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
     if let Some(to) = reach.to
         && !to.is_finite()
@@ -313,11 +117,11 @@ pub fn trace(
     });
     let at = start + sign * path.knots.last().map_or(0.0, |knot| knot.t);
     let end = match &path.end {
-        End::Target => LoadEnd::Target,
-        End::Turning => LoadEnd::Turning,
-        End::Limit(ray) => LoadEnd::Limit(ray.clone()),
-        End::Unbounded => LoadEnd::Unbounded,
-        End::Returned => LoadEnd::Returned,
+        End::Target => PathEnd::Target,
+        End::Turning => PathEnd::Turning,
+        End::Limit(ray) => PathEnd::Limit(ray.clone()),
+        End::Unbounded => PathEnd::Unbounded,
+        End::Returned => PathEnd::Returned,
         End::Interrupted => return Err(PathError::Interrupted),
         End::PivotLimit => {
             return Err(PathError::Breakdown {
@@ -347,7 +151,7 @@ pub fn trace(
         direction,
         sign,
     };
-    if followed.end == LoadEnd::Target
+    if followed.end == PathEnd::Target
         && let (Some(last), Some(to)) = (followed.factors.last_mut(), reach.to)
     {
         *last = to;
@@ -394,7 +198,7 @@ impl LoadPath {
     /// The limit factor, where the path ends in one.
     pub fn limit(&self) -> Option<f64> {
         match self.end {
-            LoadEnd::Limit(_) => self.factors.last().copied(),
+            PathEnd::Limit(_) => self.factors.last().copied(),
             _ => None,
         }
     }
@@ -441,7 +245,7 @@ impl LoadPath {
         let t = self.sign * (factor - self.start);
         let knots = &self.path.knots;
         let beyond = knots.last().is_some_and(|last| t > last.t);
-        if beyond && self.end == LoadEnd::Unbounded {
+        if beyond && self.end == PathEnd::Unbounded {
             let point = self.beyond(t)?;
             return Some(self.pairs_of(prepared, system, &point));
         }
@@ -473,7 +277,7 @@ impl LoadPath {
     fn after_last(&self) -> Option<Point> {
         let last = self.path.knots.last()?;
         match &self.end {
-            LoadEnd::Limit(ray) => {
+            PathEnd::Limit(ray) => {
                 let mut point = last.point.clone();
                 let length = point.z.iter().fold(0.0, |a: f64, b| a.max(*b));
                 let length = if length > 0.0 { length } else { 1.0 };
@@ -485,7 +289,7 @@ impl LoadPath {
                 }
                 Some(point)
             }
-            LoadEnd::Unbounded => self.beyond(2.0 * last.t.max(1.0)),
+            PathEnd::Unbounded => self.beyond(2.0 * last.t.max(1.0)),
             _ => None,
         }
     }
@@ -511,35 +315,13 @@ impl LoadPath {
             if changes.is_empty() {
                 continue;
             }
-            self.breakpoints.push(LoadBreakpoint {
-                factor: self.factors[k],
-                knot: k,
-                sentence: sentence(&changes),
-                changes,
-                at_constant_load: k > 0 && knots[k].t == knots[k - 1].t,
-            });
+            let at_constant_load = k > 0 && knots[k].t == knots[k - 1].t;
+            self.breakpoints.push(Breakpoint::new(self.factors[k], k, changes, at_constant_load));
         }
     }
 
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
-        let name = &self.parameter.name;
-        let at = short(self.factors.last().copied().unwrap_or(self.start));
-        match &self.end {
-            LoadEnd::Target => format!("the target {name} = {at} is reached"),
-            LoadEnd::Turning => format!(
-                "turning point at {name} = {at}: the path goes on with a falling load only; beyond it the structure \
-                 jumps to another answer or has none (`--through` follows the path)"
-            ),
-            LoadEnd::Limit(_) => {
-                format!("limit load: beyond {name} = {at} nothing resists the motion in which the path ends")
-            }
-            LoadEnd::Unbounded => {
-                format!("beyond {name} = {at} nothing changes any more, however large the load")
-            }
-            LoadEnd::Returned => {
-                format!("the path came back to {name} = {at} through turning points")
-            }
-        }
+        self.end.sentence(&self.parameter.name, self.factors.last().copied().unwrap_or(self.start))
     }
 }

@@ -2,12 +2,15 @@
 
 pub mod change;
 pub mod edge;
+pub mod end;
 pub mod envelope;
 pub mod find;
 pub mod friction;
+mod friction_zero;
 pub mod grid;
 pub mod limit;
 pub mod load;
+pub mod load_parameter;
 pub mod map;
 pub mod merge;
 pub mod profile;
@@ -20,3 +23,4 @@ pub mod stages;
 pub mod start;
 pub mod sweep;
 pub mod sweep_file;
+pub mod way;

@@ -18,7 +18,7 @@ use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
 use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::Geometry;
-use crate::solve::{Prepared, Solved};
+use crate::solve::{Case, Prepared, Solved};
 use crate::watch::Watch;
 
 /// The value of a quantity.
@@ -104,54 +104,25 @@ pub struct Facts<'a> {
 
 impl<'a> Facts<'a> {
     /// Of an answer.
-    pub fn of_answer(
-        scenario: &'a Scenario,
-        prepared: &'a Prepared,
-        values: &'a ParameterValues,
-        solved: &'a Solved,
-        watch: &'a dyn Watch,
-    ) -> Facts<'a> {
+    pub fn of_answer(case: Case<'a>, solved: &'a Solved) -> Facts<'a> {
         let displacements = solved.answer.displacements.as_deref().map(from_nodes);
         Facts {
-            scenario,
-            values,
-            prepared: Some(prepared),
             answer: Some(&solved.answer),
             solved: Some(solved),
-            at_end: true,
-            pairs: &solved.answer.pairs,
             p: Some(solved.answer.p),
-            factors: factors(prepared, values),
             displacements: OnceCell::from(displacements),
-            members: OnceCell::new(),
-            history: None,
-            watch,
+            ..Facts::of_state(case, factors(case.prepared, case.values), &solved.answer.pairs)
         }
     }
 
     /// Of a state without an answer behind it: a place of a path, the end of a stage.
-    pub fn of_state(
-        scenario: &'a Scenario,
-        prepared: &'a Prepared,
-        values: &'a ParameterValues,
-        factors: Vec<f64>,
-        pairs: &'a [PairState],
-        watch: &'a dyn Watch,
-    ) -> Facts<'a> {
+    pub fn of_state(case: Case<'a>, factors: Vec<f64>, pairs: &'a [PairState]) -> Facts<'a> {
         Facts {
-            scenario,
-            values,
-            prepared: Some(prepared),
-            answer: None,
-            solved: None,
-            at_end: true,
+            prepared: Some(case.prepared),
             pairs,
-            p: None,
             factors,
             displacements: OnceCell::new(),
-            members: OnceCell::new(),
-            history: None,
-            watch,
+            ..Facts::of_nothing(case.scenario, case.values, case.watch)
         }
     }
 
@@ -194,21 +165,15 @@ impl<'a> Facts<'a> {
 
     /// The end of a stage, from 0.
     pub fn at_stage(&self, history: &'a History, stage: usize) -> Facts<'a> {
-        let end = &history.stages[stage];
+        let stage = &history.stages[stage];
         Facts {
-            answer: Some(&end.end),
-            solved: None,
-            at_end: true,
-            pairs: &end.end.pairs,
-            p: Some(end.end.p),
-            factors: end.moments.last().map_or_else(Vec::new, |moment| moment.factors.clone()),
-            displacements: OnceCell::from(end.end.displacements.as_deref().map(from_nodes)),
-            members: OnceCell::new(),
-            history: None,
-            scenario: self.scenario,
-            values: self.values,
+            answer: Some(&stage.end),
             prepared: self.prepared,
-            watch: self.watch,
+            pairs: &stage.end.pairs,
+            p: Some(stage.end.p),
+            factors: stage.moments.last().map_or_else(Vec::new, |moment| moment.factors.clone()),
+            displacements: OnceCell::from(stage.end.displacements.as_deref().map(from_nodes)),
+            ..Facts::of_nothing(self.scenario, self.values, self.watch)
         }
     }
 
@@ -485,8 +450,8 @@ impl<'a> Facts<'a> {
 
     fn of_load(&self, word: &str, name: &str) -> Result<f64, NoValue> {
         let prepared = self.prepared.ok_or_else(|| self.missing())?;
-        let found = limit::limit(prepared, self.scenario, self.values, self.solved, name, self.watch)
-            .map_err(|error| NoValue(error.to_string()))?;
+        let case = prepared.case(self.scenario, self.values).watched(self.watch);
+        let found = limit::limit(case, self.solved, name).map_err(|error| NoValue(error.to_string()))?;
         let value = if word == "limit" { found.factor } else { found.safety };
         value.ok_or_else(|| NoValue(format!("no limit: {}", found.end_sentence())))
     }

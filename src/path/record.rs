@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::change::Breakpoint;
 use super::friction::FrictionPath;
 use super::load::LoadPath;
 use super::stages::History;
@@ -49,6 +50,12 @@ pub struct PathRecord {
     pub end: String,
 }
 
+/// What changes at a place, in words; empty where nothing does.
+fn change_at(breakpoints: &[Breakpoint], place: usize) -> String {
+    let found = breakpoints.iter().find(|breakpoint| breakpoint.place == place);
+    found.map_or(String::new(), |breakpoint| breakpoint.sentence.clone())
+}
+
 impl PathRecord {
     /// Of a load path; `cases` are the names of all load cases.
     pub fn of_load(path: &LoadPath, cases: &[String]) -> PathRecord {
@@ -61,11 +68,7 @@ impl PathRecord {
                 stage: None,
                 value,
                 factors: path.case_factors(value).into_iter().take(cases.len()).collect(),
-                change: path
-                    .breakpoints
-                    .iter()
-                    .find(|breakpoint| breakpoint.knot == knot)
-                    .map_or(String::new(), |breakpoint| breakpoint.sentence.clone()),
+                change: change_at(&path.breakpoints, knot),
                 pairs: pairs.clone(),
             })
             .collect();
@@ -80,21 +83,16 @@ impl PathRecord {
 
     /// Of a friction path.
     pub fn of_friction(path: &FrictionPath) -> PathRecord {
-        let mut last = None;
         let places = path
             .samples
             .iter()
-            .map(|(value, pairs)| {
-                let at_break =
-                    path.breakpoints.iter().find(|breakpoint| breakpoint.value == *value && last != Some(*value));
-                last = Some(*value);
-                PathPlace {
-                    stage: None,
-                    value: *value,
-                    factors: Vec::new(),
-                    change: at_break.map_or(String::new(), |at| at.sentence.clone()),
-                    pairs: pairs.clone(),
-                }
+            .enumerate()
+            .map(|(place, (value, pairs))| PathPlace {
+                stage: None,
+                value: *value,
+                factors: Vec::new(),
+                change: change_at(&path.breakpoints, place),
+                pairs: pairs.clone(),
             })
             .collect();
         PathRecord {

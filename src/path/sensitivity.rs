@@ -10,10 +10,9 @@ use crate::contact::force_form::unknowns;
 use crate::contact::sums::{is_still, joint_forces};
 use crate::contact::system::ContactSystem;
 use crate::lcp::basis_solution::vertex;
-use crate::model::scenario::Scenario;
 use crate::model::uses::Region;
 use crate::solve::state::RunData;
-use crate::solve::{PrepareError, Prepared, Solved};
+use crate::solve::{Case, PrepareError, Solved};
 
 /// A variable of an answer counts as exactly on its limit below this multiple of the largest.
 const ON_LIMIT: f64 = 1e-11;
@@ -58,12 +57,8 @@ pub struct Sensitivity {
 ///
 /// # Errors
 /// Where there is no answer, or a bare LCP.
-pub fn sensitivity(
-    prepared: &Prepared,
-    scenario: &Scenario,
-    solved: &Solved,
-    values: &crate::model::parameter::ParameterValues,
-) -> Result<Sensitivity, PathError> {
+pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathError> {
+    let Case { scenario, prepared, values, .. } = case;
     let system = prepared.system().ok_or(PathError::Plain("sensitivity"))?;
     let (RunData::Contact { contact, numbers, .. }, Some(basis)) = (&solved.run, final_basis(solved)) else {
         return Err(PathError::Missing("there is no answer whose derivatives could be taken".to_owned()));
@@ -81,7 +76,7 @@ pub fn sensitivity(
     for name in settable.map(|(name, _)| name).filter(|name| fixed_place(scenario, name).is_none()) {
         let grown = match scenario.uses.place(name, Region::Amount) {
             None => None,
-            Some(_) => match prepared.load_rates(scenario, values, name) {
+            Some(_) => match case.load_rates(name) {
                 Ok(grown) => Some(grown),
                 // A number that is no linear function of it.
                 Err(PrepareError::Problems(_)) => continue,

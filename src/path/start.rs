@@ -9,6 +9,7 @@ use crate::lcp::basis_solution::{Basis, vertex};
 use crate::lcp::outcome::{Outcome, Point, RayDirection};
 use crate::model::rules::{Covering, TieBreak};
 use crate::solve::engines::run_scheme;
+use crate::solve::error::{QuestionError, SolveError};
 use crate::solve::{Solved, state::RunData};
 use crate::watch::Watch;
 
@@ -69,6 +70,21 @@ pub enum PathError {
     /// Stopped from outside.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<QuestionError> for PathError {
+    fn from(error: QuestionError) -> PathError {
+        match error {
+            QuestionError::Refused(why) => PathError::Target(why),
+            QuestionError::Interrupted => PathError::Interrupted,
+        }
+    }
+}
+
+impl From<SolveError> for PathError {
+    fn from(error: SolveError) -> PathError {
+        QuestionError::from(error).into()
+    }
 }
 
 /// An answer found without a path.

@@ -13,9 +13,7 @@ use super::quantity::Facts;
 use crate::answer::record::{Answer, OutcomeKind, State};
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
-use crate::model::rules::Rules;
-use crate::model::scenario::Scenario;
-use crate::solve::{PrepareError, Prepared};
+use crate::solve::{Case, PrepareError};
 use crate::text::hash::Hash;
 use crate::text::printable;
 use crate::watch::Watch;
@@ -35,14 +33,8 @@ pub enum Format {
 
 /// What is swept.
 pub struct Sweep<'a> {
-    /// Geometry.
-    pub prepared: &'a Prepared,
-    /// Scenario.
-    pub scenario: &'a Scenario,
-    /// Values of the parameters that are not varied.
-    pub values: &'a ParameterValues,
-    /// Rules of every run.
-    pub rules: Rules,
+    /// At the values of the parameters that are not varied.
+    pub case: Case<'a>,
     /// The points.
     pub grid: &'a Grid,
     /// Which part of them.
@@ -136,19 +128,19 @@ struct Row {
 impl Sweep<'_> {
     /// The header of the file.
     pub fn header(&self) -> Header {
-        let mut hash = self.scenario.hash();
-        for (name, value) in self.values.free() {
+        let mut hash = self.case.scenario.hash();
+        for (name, value) in self.case.values.free() {
             if self.grid.axes.iter().all(|axis| axis.name != *name) {
                 hash = hash.and(name.as_bytes());
                 hash = hash.and(&value.to_bits().to_le_bytes());
             }
         }
-        let rules = self.rules;
+        let rules = self.case.rules;
         hash = hash.and(format!("{} {} {}", rules.covering, rules.tie_break, rules.engine).as_bytes());
         Header {
             format: FORMAT.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            scenario: self.scenario.name.clone(),
+            scenario: self.case.scenario.name.clone(),
             hash: hash.long(),
             grid: self.grid.axes.iter().map(|axis| axis.range.clone()).collect(),
             points: self.grid.len(),
@@ -213,16 +205,16 @@ impl Sweep<'_> {
 
     /// The answer at one point; a refusal in words, or `None` where `watch` asked to stop.
     fn solve_at(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<(Vec<Value>, bool), Option<String>> {
-        let renewed = self.prepared.renewed(self.scenario, values, watch).map_err(|error| match error {
+        let Case { scenario, prepared, .. } = self.case;
+        let renewed = prepared.renewed(scenario, values, watch).map_err(|error| match error {
             PrepareError::Interrupted => None,
             PrepareError::Problems(problems) => Some(problems.to_string()),
         })?;
-        let prepared = renewed.as_ref().map_or(self.prepared, |(prepared, _)| prepared);
-        let solved = prepared
-            .solve_briefly(self.scenario, values, self.rules, watch)
-            .map_err(|error| (!error.is_interrupted()).then(|| error.to_string()))?;
+        let prepared = renewed.as_ref().map_or(prepared, |(prepared, _)| prepared);
+        let case = Case { prepared, values, watch, ..self.case };
+        let solved = case.solve_briefly().map_err(|error| (!error.is_interrupted()).then(|| error.to_string()))?;
         let mut fields = fields(&solved.answer);
-        let facts = Facts::of_answer(self.scenario, prepared, values, &solved, watch);
+        let facts = Facts::of_answer(case, &solved);
         let quantities = self.quantities.iter();
         fields.extend(quantities.map(|quantity| facts.value(quantity).map_or(Value::Null, |value| value.json())));
         if watch.stop() { Err(None) } else { Ok((fields, solved.answer.is_answer())) }
@@ -231,7 +223,7 @@ impl Sweep<'_> {
     /// `None` where `watch` asked to stop.
     fn row(&self, index: usize, hash: &str, watch: &dyn Watch) -> Option<Row> {
         let point = self.grid.point(index);
-        let mut values = self.values.clone();
+        let mut values = self.case.values.clone();
         for (axis, value) in self.grid.axes.iter().zip(&point) {
             values.insert(axis.name.clone(), *value);
         }

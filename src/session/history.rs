@@ -102,8 +102,7 @@ impl Session {
     /// A scenario without stages, a history that breaks down, an interruption.
     pub fn follow_stages(&mut self, watch: &dyn Watch) -> Result<Arc<History>, CommandError> {
         let ground = self.ground(watch)?;
-        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
-        let history = worker::run(watch, move |watch| stages::follow(&ground.prepared, &scenario, &values, watch))??;
+        let history = worker::run(watch, move |watch| stages::follow(ground.case(watch)))??;
         let history = Arc::new(history);
         self.path = Some(Arc::new(PathRecord::of_history(&history)));
         self.followed = Some(Arc::clone(&history));

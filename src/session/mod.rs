@@ -30,6 +30,7 @@ use crate::model::uses::Redone;
 use crate::path::record::PathRecord;
 pub use crate::path::stages::History;
 use crate::solve;
+use crate::solve::Case;
 pub use crate::solve::{Prepared, Solved};
 use crate::text::printable;
 use crate::watch::Watch;
@@ -529,6 +530,11 @@ impl Setup {
         }
     }
 
+    /// What was chosen, with the geometry made ready for it.
+    fn case<'a>(&'a self, prepared: &'a Prepared, watch: &'a dyn Watch) -> Case<'a> {
+        prepared.case(&self.scenario, &self.values).under(self.rules).watched(watch)
+    }
+
     /// Solves cold, preparing the geometry if that was not done yet.
     fn solve(&mut self, watch: &dyn Watch) -> Result<Arc<Solved>, CommandError> {
         self.solve_from(None, watch)
@@ -547,9 +553,10 @@ impl Setup {
                 },
                 None => (Arc::new(solve::prepare_at(&scenario, &values, watch)?), Redone::Stiffness),
             };
+            let case = prepared.case(&scenario, &values).under(rules).watched(watch);
             let solved = match last.filter(|_| redone < Redone::Stiffness) {
-                Some(last) => prepared.solve_from(&last, &scenario, &values, rules, watch),
-                None => prepared.solve(&scenario, &values, rules, watch),
+                Some(last) => case.solve_from(&last),
+                None => case.solve(),
             };
             let mut solved = solved.map_err(|error| {
                 if error.is_interrupted() { CommandError::Interrupted } else { CommandError::Solve(error.to_string()) }

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
+use super::case::Case;
 use super::engines::{EXACT_PAIRS, keep_scheme, run_exact_contact, run_tableau};
 use super::error::SolveError;
 use super::finish::empty_answer;
@@ -21,53 +22,33 @@ use crate::explain::{ray, sentence};
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::parametric::Parametric;
 use crate::lcp::pivot::PivotLog;
-use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules};
-use crate::model::scenario::Scenario;
 use crate::watch::Watch;
 
-impl Prepared {
-    /// Solves for the given parameter values under the given rules.
+impl Case<'_> {
+    /// Solves.
     ///
     /// # Errors
     /// See [`SolveError`]. A run that ends in a ray or breaks down is no error: the answer says so.
-    pub fn solve(
-        &self,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        rules: Rules,
-        watch: &dyn Watch,
-    ) -> Result<Solved, SolveError> {
-        self.solve_as(scenario, values, rules, false, watch)
+    pub fn solve(self) -> Result<Solved, SolveError> {
+        self.solve_as(false)
     }
 
-    /// As [`Prepared::solve`], without looking for what would stop a collapse: for sweeps, which only count.
+    /// As [`Case::solve`], without looking for what would stop a collapse: for sweeps, which only count.
     ///
     /// # Errors
-    /// As [`Prepared::solve`].
-    pub fn solve_briefly(
-        &self,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        rules: Rules,
-        watch: &dyn Watch,
-    ) -> Result<Solved, SolveError> {
-        self.solve_as(scenario, values, rules, true, watch)
+    /// As [`Case::solve`].
+    pub fn solve_briefly(self) -> Result<Solved, SolveError> {
+        self.solve_as(true)
     }
 
-    fn solve_as(
-        &self,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        rules: Rules,
-        brief: bool,
-        watch: &dyn Watch,
-    ) -> Result<Solved, SolveError> {
+    fn solve_as(self, brief: bool) -> Result<Solved, SolveError> {
+        let Case { scenario, prepared, values, rules, watch } = self;
         if let Some(refusal) = scenario.law_refusal(values) {
             return Err(SolveError::Value(refusal));
         }
         let start = Instant::now();
-        let mut solved = match &*self.geometry {
+        let mut solved = match &*prepared.geometry {
             Geometry::Plain { lcp, q, names, covering_given } => {
                 if rules.covering != Covering::default() {
                     return Err(SolveError::CoveringOfPlain(rules.covering));
@@ -76,10 +57,10 @@ impl Prepared {
                 solve_plain_judged(&problem, rules, watch)?
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                self.solve_contact_judged(system, values, rules, brief, watch)?
+                prepared.solve_contact_judged(system, values, rules, brief, watch)?
             }
         };
-        if let Geometry::Contact { remarks, .. } = &*self.geometry {
+        if let Geometry::Contact { remarks, .. } = &*prepared.geometry {
             solved.answer.notes.extend(remarks.iter().cloned());
         }
         solved.answer.notes.extend(scenario.notes.iter().cloned());
@@ -91,12 +72,14 @@ impl Prepared {
             );
         }
         let timings = &mut solved.answer.timings;
-        timings.factor = self.factor_seconds;
-        timings.condense = self.condense_seconds;
-        timings.total = self.seconds + start.elapsed().as_secs_f64();
+        timings.factor = prepared.factor_seconds;
+        timings.condense = prepared.condense_seconds;
+        timings.total = prepared.seconds + start.elapsed().as_secs_f64();
         Ok(solved)
     }
+}
 
+impl Prepared {
     /// One run under exactly these rules. A ray is classified; nothing is proved of it yet.
     ///
     /// What is left of p beside the load is nothing only where the state passes its check without it: where it does not,

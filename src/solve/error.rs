@@ -1,5 +1,6 @@
 //! Why nothing was solved, and why a question has no answer.
 
+use super::prepared::PrepareError;
 use crate::contact::lcp::CoveringError;
 use crate::model::rules::Covering;
 
@@ -55,6 +56,12 @@ pub enum QuestionError {
 
 impl From<SolveError> for QuestionError {
     fn from(error: SolveError) -> Self {
+        if error.is_interrupted() { QuestionError::Interrupted } else { QuestionError::Refused(error.to_string()) }
+    }
+}
+
+impl From<PrepareError> for QuestionError {
+    fn from(error: PrepareError) -> Self {
         if error.is_interrupted() { QuestionError::Interrupted } else { QuestionError::Refused(error.to_string()) }
     }
 }

@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use super::case::Case;
 use super::numbers::contact_numbers;
 use super::prepared::{Geometry, Prepared};
 use super::state::{RunData, Solved};
@@ -17,7 +18,6 @@ use crate::explain::ties::{TieReport, ties};
 use crate::explain::unpressed::unpressed;
 use crate::explain::vertex::Naming;
 use crate::lcp::basis_solution::vertex;
-use crate::model::parameter::ParameterValues;
 use crate::model::plausible;
 use crate::model::problem::Problem;
 use crate::model::rules::{Engine, Rules};
@@ -58,13 +58,7 @@ impl Solved {
 
     /// How far the final scheme holds, in every load factor and friction parameter; empty without an answer that came
     /// from pivots.
-    pub fn margins(
-        &self,
-        prepared: &Prepared,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        pair: usize,
-    ) -> Vec<Margin> {
+    pub fn margins(&self, Case { scenario, prepared, values, .. }: Case<'_>, pair: usize) -> Vec<Margin> {
         let (RunData::Contact { contact, numbers, factors, pivots, last }, Some(system)) =
             (&self.run, prepared.system())
         else {

@@ -7,9 +7,8 @@ use crate::answer::record::{Answer, PairState, Start};
 use crate::contact::lcp::contact_lcp_like;
 use crate::contact::numbers::ContactNumbers;
 use crate::lcp::outcome::Point;
-use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Engine, Rules};
-use crate::model::scenario::Scenario;
+use crate::solve::case::Case;
 use crate::solve::error::SolveError;
 use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::Prepared;
@@ -22,52 +21,46 @@ pub const WARM_PAIRS: usize = 150;
 /// Two answers whose forces and slips differ by less than this, relative to the largest, are the same.
 const SAME: f64 = 1e-7;
 
-impl Prepared {
-    /// Solves for other parameter values, from the last answer where the model has [`WARM_PAIRS`] pairs or more, the
-    /// rules are the defaults and the last answer can be followed; otherwise as [`Prepared::solve`]. A warm answer
-    /// passes the same fresh check; it has no pivots of Lemke's algorithm (`answer.start` says so).
+impl Case<'_> {
+    /// Solves from the last answer where the model has [`WARM_PAIRS`] pairs or more, the rules are the defaults and the
+    /// last answer can be followed; otherwise as [`Case::solve`]. A warm answer passes the same fresh check; it has no
+    /// pivots of Lemke's algorithm (`answer.start` says so).
     ///
     /// # Errors
-    /// As [`Prepared::solve`].
-    pub fn solve_from(
-        &self,
-        last: &Solved,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        rules: Rules,
-        watch: &dyn Watch,
-    ) -> Result<Solved, SolveError> {
-        let large = self.system().is_some_and(|system| system.pairs.len() >= WARM_PAIRS);
-        let usual = rules.are_default() && rules.engine == Engine::Scheme;
+    /// As [`Case::solve`].
+    pub fn solve_from(self, last: &Solved) -> Result<Solved, SolveError> {
+        let large = self.prepared.system().is_some_and(|system| system.pairs.len() >= WARM_PAIRS);
+        let usual = self.rules.are_default() && self.rules.engine == Engine::Scheme;
         if large
             && usual
             && last.answer.is_answer()
-            && scenario.law_refusal(values).is_none()
-            && let Some(solved) = self.follow(last, values, rules, watch)
+            && self.scenario.law_refusal(self.values).is_none()
+            && let Some(solved) = self.follow(last)
         {
             return Ok(solved);
         }
-        self.solve(scenario, values, rules, watch)
+        self.solve()
     }
 
     /// The answer reached from the last one, if it passes its check. Public for tests and measurements of the warm
     /// start alone: any number of pairs.
-    pub fn follow(&self, last: &Solved, values: &ParameterValues, rules: Rules, watch: &dyn Watch) -> Option<Solved> {
-        let system = self.system()?;
+    pub fn follow(self, last: &Solved) -> Option<Solved> {
+        let Case { prepared, values, rules, watch, .. } = self;
+        let system = prepared.system()?;
         let slot = last.warm.as_ref()?;
         let mut guard = slot.lock().unwrap_or_else(PoisonError::into_inner);
         // Taken out, so that nothing half-way stays behind where the path fails.
         let mut kept = guard.take()?;
         let start = Instant::now();
-        let factors = factors(self, values);
+        let factors = factors(prepared, values);
         let numbers = contact_numbers(system, &factors, values);
         let numbers_seconds = start.elapsed().as_secs_f64();
-        let (mut solved, mut seconds) = self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
+        let (mut solved, mut seconds) = prepared.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
         if !solved.answer.is_answer() {
             // The way is made; only its end was not sharp enough.
             let way = solved.answer.start;
             kept.refine();
-            let (refined, more) = self.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
+            let (refined, more) = prepared.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
             solved = refined;
             solved.answer.start = way;
             seconds += more;
@@ -78,14 +71,16 @@ impl Prepared {
         let answer = &mut solved.answer;
         *guard = Some(kept);
         drop(guard);
-        answer.timings.factor = self.factor_seconds;
-        answer.timings.condense = self.condense_seconds;
+        answer.timings.factor = prepared.factor_seconds;
+        answer.timings.condense = prepared.condense_seconds;
         answer.timings.lemke = numbers_seconds + seconds;
-        answer.timings.total = self.seconds + start.elapsed().as_secs_f64();
+        answer.timings.total = prepared.seconds + start.elapsed().as_secs_f64();
         solved.warm = Some(Arc::clone(slot));
         Some(solved)
     }
+}
 
+impl Prepared {
     /// The checked state at the numbers, followed in the kept dictionary, and the seconds that the following took.
     fn follow_kept(
         &self,

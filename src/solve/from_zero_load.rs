@@ -104,7 +104,7 @@ mod tests {
             let scenario = embedded::load(name).expect("embedded");
             let prepared = prepare(&scenario, &Quiet).expect("sound");
             let values = scenario.parameter_values();
-            let cold = prepared.solve(&scenario, &values, scenario.rules, &Quiet).expect("solved");
+            let cold = prepared.case(&scenario, &values).solve().expect("solved");
             assert!(cold.answer.is_answer(), "{name}");
             let system = prepared.system().expect("a contact problem");
             let factors = factors(&prepared, &values);

@@ -5,11 +5,12 @@
 
 use std::sync::Arc;
 
+use super::case::Case;
 use super::prepared::{PrepareError, Prepared};
 use crate::model::load::{at_values, rates_along};
-use crate::model::parameter::{Number, ParameterValues};
+use crate::model::parameter::Number;
 use crate::model::problem::Problems;
-use crate::model::scenario::{GivenLoad, Scenario, Source};
+use crate::model::scenario::{GivenLoad, Source};
 use crate::model::structure::LoadCase;
 
 /// A scenario made ready with the growth of its loads beside them.
@@ -20,21 +21,17 @@ pub struct LoadRates {
     pub growing: Vec<usize>,
 }
 
-impl Prepared {
-    /// Splits the loads along a parameter that stands in them; this must be ready for `values`.
+impl Case<'_> {
+    /// Splits the loads along a parameter that stands in them.
     ///
     /// # Errors
     /// A number of the loads that is no linear function of the parameter, with its place; loads that cannot be applied.
-    pub fn load_rates(
-        &self,
-        scenario: &Scenario,
-        values: &ParameterValues,
-        parameter: &str,
-    ) -> Result<LoadRates, PrepareError> {
+    pub fn load_rates(self, parameter: &str) -> Result<LoadRates, PrepareError> {
+        let Case { scenario, prepared: here, values, .. } = self;
         let rates = rates_along(scenario, values, parameter).map_err(PrepareError::Problems)?;
         let mut both = at_values(scenario, values).map_err(PrepareError::Problems)?;
         let own = |case: &str| (format!("{case} per {parameter}"), Number::Value(0.0));
-        let (mut cases, mut growing) = (self.cases.clone(), Vec::new());
+        let (mut cases, mut growing) = (here.cases.clone(), Vec::new());
         match (&mut both.source, rates.source) {
             (Source::Structure(structure), Source::Structure(rates)) => {
                 for (index, mut case) in rates.load_cases.into_iter().enumerate() {
@@ -57,8 +54,8 @@ impl Prepared {
             }
             _ => {}
         }
-        cases.extend(growing.iter().map(|&case: &usize| own(&self.cases[case].0)));
-        let mut prepared = self.with_loads(&both, values)?.ok_or_else(|| {
+        cases.extend(growing.iter().map(|&case: &usize| own(&here.cases[case].0)));
+        let mut prepared = here.with_loads(&both, values)?.ok_or_else(|| {
             PrepareError::Problems(Problems::of_file(scenario.name.as_str(), "a bare LCP has no loads", ""))
         })?;
         prepared.cases = cases;

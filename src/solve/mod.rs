@@ -7,7 +7,7 @@
 //! let prepared = prepare(&scenario, &Quiet)?;
 //! let mut values = scenario.parameter_values();
 //! values.insert("F2".to_owned(), 250.0).expect("a parameter of the beam");
-//! let answer = prepared.solve(&scenario, &values, scenario.rules, &Quiet)?.answer;
+//! let answer = prepared.case(&scenario, &values).solve()?.answer;
 //! // Pair c6 slips on its bound f x_n = 0.5 · 100 kN.
 //! let c6 = &answer.pairs[5];
 //! assert!(answer.is_answer() && (c6.x_t + 0.5 * 100.0).abs() < 1e-9);
@@ -15,6 +15,7 @@
 //! ```
 
 pub mod all_answers;
+pub mod case;
 mod cold;
 pub mod compare;
 mod critical;
@@ -38,6 +39,7 @@ pub mod state;
 pub mod warm;
 mod written_out;
 
+pub use case::Case;
 pub use error::SolveError;
 pub use prepared::{PrepareError, Prepared, prepare, prepare_at};
 pub use state::Solved;

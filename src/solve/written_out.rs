@@ -73,9 +73,9 @@ mod tests {
             let text = scenario(&lcp, &names, name).to_string();
             let exported = load_text("exported", &text, None).expect("a scenario");
             let again = prepare(&exported, &Quiet).expect("prepared");
-            let solved = again.solve(&exported, &exported.parameter_values(), exported.rules, &Quiet).expect("solved");
+            let solved = again.case(&exported, &exported.parameter_values()).solve().expect("solved");
             let z = solved.answer.solution.expect("an lcp has one").z;
-            let direct = prepared.solve(&loaded, &values, loaded.rules, &Quiet).expect("solved");
+            let direct = prepared.case(&loaded, &values).solve().expect("solved");
             let expected: Vec<f64> = match (&direct.answer.solution, prepared.system()) {
                 (Some(solution), _) => solution.z.clone(),
                 (None, system) => rows(system.expect("contact"))

@@ -8,9 +8,10 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairState, RayClass, Verdict};
 use crate::model::scenario::Units;
-use crate::path::friction::{FrictionEnd, FrictionPath};
+use crate::path::end::PathEnd;
+use crate::path::friction::FrictionPath;
 use crate::path::limit::Limit;
-use crate::path::load::{LoadEnd, LoadPath};
+use crate::path::load::LoadPath;
 
 /// A breakpoint with the digits it has been found to: ten, without trailing zeros.
 pub fn exact(value: f64) -> String {
@@ -61,6 +62,13 @@ fn breakpoints(
     table.write(out, style)
 }
 
+fn role_of(end: &PathEnd) -> Role {
+    match end {
+        PathEnd::Target | PathEnd::Unbounded => Role::Muted,
+        PathEnd::Turning | PathEnd::Limit(_) | PathEnd::Returned | PathEnd::NoAnswer => Role::Warning,
+    }
+}
+
 /// Writes the breakpoints of a load path and how it ended.
 pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &Style) -> io::Result<()> {
     let name = &path.parameter.name;
@@ -77,20 +85,16 @@ pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &S
             .iter()
             .map(|breakpoint| {
                 let mut sentence = breakpoint.sentence.clone();
-                if breakpoint.at_constant_load {
+                if breakpoint.jump {
                     sentence.push_str(" (after moving at constant load)");
                 }
-                let slip = max_slip(&path.pairs[breakpoint.knot]);
-                (breakpoint.factor, sentence, Some(slip))
+                let slip = max_slip(&path.pairs[breakpoint.place]);
+                (breakpoint.value, sentence, Some(slip))
             })
             .collect();
         breakpoints(out, name, &rows, units, style)?;
     }
-    let role = match path.end {
-        LoadEnd::Target | LoadEnd::Unbounded => Role::Muted,
-        _ => Role::Warning,
-    };
-    sentences(out, &path.end_sentence(), role, style)
+    sentences(out, &path.end_sentence(), role_of(&path.end), style)
 }
 
 /// Writes the breakpoints of a friction path, its intervals and how it ended.
@@ -111,18 +115,13 @@ pub fn write_friction(out: &mut dyn Write, path: &FrictionPath, units: &Units, s
                 } else {
                     ""
                 };
-                let slip =
-                    path.samples.iter().find(|(value, _)| *value == breakpoint.value).map(|(_, pairs)| max_slip(pairs));
-                (breakpoint.value, format!("{}{jump}", breakpoint.sentence), slip)
+                let slip = max_slip(&path.samples[breakpoint.place].1);
+                (breakpoint.value, format!("{}{jump}", breakpoint.sentence), Some(slip))
             })
             .collect();
         breakpoints(out, &path.name, &rows, units, style)?;
     }
-    let role = match path.end {
-        FrictionEnd::Target => Role::Muted,
-        FrictionEnd::NoAnswer => Role::Warning,
-    };
-    sentences(out, &path.end_sentence(), role, style)
+    sentences(out, &path.end_sentence(), role_of(&path.end), style)
 }
 
 /// Writes the limit load, the safety and the collapse.

@@ -74,7 +74,7 @@ impl Case {
         for (name, value) in set {
             values.insert((*name).to_owned(), *value).expect("a parameter");
         }
-        self.prepared.solve(&self.scenario, &values, rules, &Quiet).unwrap_or_else(|e| panic!("{e}"))
+        self.prepared.case(&self.scenario, &values).under(rules).solve().unwrap_or_else(|e| panic!("{e}"))
     }
 }
 

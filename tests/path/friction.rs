@@ -3,7 +3,8 @@
 use stickslip::model::embedded;
 use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::Scenario;
-use stickslip::path::friction::{FrictionEnd, FrictionPath, trace};
+use stickslip::path::end::PathEnd;
+use stickslip::path::friction::{FrictionPath, trace};
 use stickslip::path::sensitivity::sensitivity;
 use stickslip::solve::{Prepared, Solved, prepare};
 use stickslip::watch::Quiet;
@@ -19,13 +20,13 @@ fn load(name: &str, set: &[(&str, f64)]) -> (Scenario, Prepared, ParameterValues
 }
 
 fn solve(scenario: &Scenario, prepared: &Prepared, values: &ParameterValues) -> Solved {
-    prepared.solve(scenario, values, scenario.rules, &Quiet).expect("solvable")
+    prepared.case(scenario, values).solve().expect("solvable")
 }
 
 fn follow(name: &str, from: f64, to: f64) -> FrictionPath {
     let (scenario, prepared, values) = load(name, &[("f", from)]);
     let solved = solve(&scenario, &prepared, &values);
-    trace(&prepared, &scenario, &values, Some(&solved), "f", to, &Quiet).expect("a path")
+    trace(prepared.case(&scenario, &values), Some(&solved), "f", to).expect("a path")
 }
 
 /// Validation 12, computed independently.
@@ -36,7 +37,7 @@ fn the_frames_hold_their_schemes_in_the_known_intervals() {
     {
         for (from, to) in [(0.1, 6.0), (6.0, 0.1)] {
             let path = follow(name, from, to);
-            assert_eq!(path.end, FrictionEnd::Target);
+            assert_eq!(path.end, PathEnd::Target);
             let mut found: Vec<f64> = path.breakpoints.iter().map(|b| b.value).collect();
             found.sort_by(f64::total_cmp);
             assert_eq!(found.len(), 3, "{name} {:?}", path.breakpoints);
@@ -56,7 +57,7 @@ fn the_frames_hold_their_schemes_in_the_known_intervals() {
 #[test]
 fn an_answer_that_ends_jumps_to_another() {
     let path = follow("klarbring", 4.0, 1.0);
-    assert_eq!(path.end, FrictionEnd::Target);
+    assert_eq!(path.end, PathEnd::Target);
     assert_eq!(path.breakpoints.len(), 1, "{:?}", path.breakpoints);
     let breakpoint = &path.breakpoints[0];
     assert!((breakpoint.value - 5.0 / 3.0).abs() <= 1e-8, "{breakpoint:?}");
@@ -77,7 +78,7 @@ fn the_beam_sticks_support_by_support_as_friction_grows() {
     }
     // Towards less friction the beam slides away at f = 2.5/6.
     let path = follow("beam", 0.45, 0.1);
-    assert_eq!(path.end, FrictionEnd::NoAnswer);
+    assert_eq!(path.end, PathEnd::NoAnswer);
     let last = path.intervals.last().expect("an interval").to;
     assert!((last - 2.5 / 6.0).abs() <= 1e-9, "{last}");
 }
@@ -93,7 +94,7 @@ fn sensitivities_agree_with_differences() {
     ] {
         let (scenario, prepared, values) = load(name, &set);
         let solved = solve(&scenario, &prepared, &values);
-        let found = sensitivity(&prepared, &scenario, &solved, &values).expect("an answer");
+        let found = sensitivity(prepared.case(&scenario, &values), &solved).expect("an answer");
         assert!(found.on_limit.is_empty(), "{name}: {:?}", found.on_limit);
         for rate in &found.parameters {
             let at = |sign: f64| {

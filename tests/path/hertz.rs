@@ -96,7 +96,7 @@ fn pressure_and_stick_zone_are_those_of_the_closed_forms() {
     for (shear, stick) in [(5.0, FRAC_2_SQRT_PI), (7.5, FRAC_2_PI.sqrt())] {
         let scenario = load_text("hertz", &scenario(shear), None).expect("sound");
         let prepared = prepare(&scenario, &Quiet).expect("sound");
-        let history = follow(&prepared, &scenario, &scenario.parameter_values(), &Quiet).expect("a history");
+        let history = follow(prepared.case(&scenario, &scenario.parameter_values())).expect("a history");
         assert_eq!(history.end, HistoryEnd::Complete);
         let end = |stage: usize| &history.stages[stage].moments.last().expect("moments").pairs;
         let x = along();

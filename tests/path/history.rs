@@ -424,8 +424,8 @@ fn try_histories(seeds: std::ops::Range<u64>, clamped: bool, steps: usize) -> Ta
         let scenario = load_text("random", &text, None).unwrap_or_else(|problems| panic!("{problems}\n{text}"));
         let prepared = prepare(&scenario, &Quiet).expect("sound");
         let values = scenario.parameter_values();
-        let history = follow(&prepared, &scenario, &values, &Quiet)
-            .unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        let history =
+            follow(prepared.case(&scenario, &values)).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
         let data = Data::of(&prepared, &values);
         tally.events += history.stages.iter().map(|stage| stage.moments.len() - 1).sum::<usize>();
         let own =
@@ -554,8 +554,7 @@ fn hot_pipes_are_followed_at_every_temperature() {
             let warm = 0.025 * f64::from(step);
             values.insert("T".to_owned(), warm);
             let place = format!("{supports} supports, T = {warm}");
-            let history =
-                follow(&prepared, &scenario, &values, &Quiet).unwrap_or_else(|error| panic!("{place}: {error}"));
+            let history = follow(prepared.case(&scenario, &values)).unwrap_or_else(|error| panic!("{place}: {error}"));
             assert_eq!(history.end, HistoryEnd::Complete, "{place}");
             let data = Data::of(&prepared, &values);
             assert_eq!(breach(&data, &history), None, "{place}");

@@ -2,9 +2,10 @@
 
 use stickslip::model::embedded;
 use stickslip::model::scenario::Scenario;
+use stickslip::path::end::PathEnd;
 use stickslip::path::limit::limit;
-use stickslip::path::load::{LoadEnd, LoadPath, LoadReach, trace};
-use stickslip::solve::{Prepared, Solved, prepare};
+use stickslip::path::load::{LoadPath, LoadReach, trace};
+use stickslip::solve::{self, Prepared, Solved, prepare};
 use stickslip::watch::Quiet;
 
 struct Case {
@@ -23,19 +24,23 @@ impl Case {
         Case { prepared: prepare(&scenario, &Quiet).expect("sound"), values, scenario }
     }
 
+    fn case(&self) -> solve::Case<'_> {
+        self.prepared.case(&self.scenario, &self.values)
+    }
+
     fn solve(&self) -> Solved {
-        self.prepared.solve(&self.scenario, &self.values, self.scenario.rules, &Quiet).expect("solvable")
+        self.case().solve().expect("solvable")
     }
 
     fn trace(&self, name: &str, to: Option<f64>) -> LoadPath {
         let reach = LoadReach { to, through: false };
         let solved = self.solve();
-        trace(&self.prepared, &self.scenario, &self.values, Some(&solved), name, reach, &Quiet).expect("a path")
+        trace(self.case(), Some(&solved), name, reach).expect("a path")
     }
 
     fn limit(&self, name: &str) -> stickslip::path::limit::Limit {
         let solved = self.solve();
-        limit(&self.prepared, &self.scenario, &self.values, Some(&solved), name, &Quiet).expect("a path")
+        limit(self.case(), Some(&solved), name).expect("a path")
     }
 }
 
@@ -55,12 +60,12 @@ fn the_beam_slips_support_by_support_and_then_as_a_whole() {
     let r = 50.0;
     assert_eq!(path.breakpoints.len(), 6);
     for (k, breakpoint) in path.breakpoints.iter().enumerate() {
-        close(breakpoint.factor, (k + 1) as f64 * r, 1e-12);
+        close(breakpoint.value, (k + 1) as f64 * r, 1e-12);
         assert_eq!(breakpoint.changes.len(), 1, "{breakpoint:?}");
         assert_eq!(breakpoint.changes[0].pair, format!("c{}", 6 - k));
         assert_eq!(breakpoint.changes[0].to, "slip+");
     }
-    assert!(matches!(path.end, LoadEnd::Limit(_)), "{:?}", path.end);
+    assert!(matches!(path.end, PathEnd::Limit(_)), "{:?}", path.end);
     // Between the breakpoints: z_j = (L/EA) [(n − j + 1) ρ + r (n − j)(n − j + 1)/2].
     let pairs = path.pairs_at(&case.prepared, 2.5 * r).expect("on the path");
     for (j, factor) in [(1usize, 2.0 * 0.5 + 1.0), (2, 0.5), (3, 0.0)] {
@@ -84,12 +89,12 @@ fn the_beam_slips_support_by_support_and_then_as_a_whole() {
 fn more_weight_on_a_sliding_beam_ends_nowhere() {
     let case = Case::new("beam", &[]);
     let path = case.trace("weight", None);
-    assert_eq!(path.end, LoadEnd::Unbounded);
+    assert_eq!(path.end, PathEnd::Unbounded);
     // F2 = 250 slips n = ⌊250 / (0.5 F)⌋ supports: the last breakpoint, to none, at F = 500.
-    close(path.breakpoints.last().expect("some").factor, 500.0, 1e-12);
+    close(path.breakpoints.last().expect("some").value, 500.0, 1e-12);
     // Less weight instead: the limit from the other side, 6 f F = 250.
     let path = case.trace("F", Some(10.0));
-    assert!(matches!(path.end, LoadEnd::Limit(_)));
+    assert!(matches!(path.end, PathEnd::Limit(_)));
     close(*path.factors.last().expect("knots"), 250.0 / 3.0, 1e-12);
 }
 
@@ -98,10 +103,10 @@ fn everything_from_zero_load_at_once() {
     // No weight and no pull: every pair is degenerate at the start.
     let case = Case::new("beam", &[("F", 0.0), ("F2", 0.0)]);
     let path = case.trace("F", None);
-    assert_eq!(path.end, LoadEnd::Unbounded);
+    assert_eq!(path.end, PathEnd::Unbounded);
     assert!(path.breakpoints.is_empty(), "{:?}", path.breakpoints);
     let path = case.trace("F2", None);
-    assert!(matches!(path.end, LoadEnd::Limit(_)), "{:?}", path.end);
+    assert!(matches!(path.end, PathEnd::Limit(_)), "{:?}", path.end);
     assert_eq!(path.limit(), Some(0.0));
 }
 
@@ -147,7 +152,7 @@ fn the_path_passes_through_the_answers_of_its_loads() {
         for factor in factors {
             case.values.insert(load.to_owned(), 0.0).expect("a parameter");
             let path = case.trace(load, Some(factor));
-            assert_eq!(path.end, LoadEnd::Target, "{name} {factor}");
+            assert_eq!(path.end, PathEnd::Target, "{name} {factor}");
             let found = path.pairs.last().expect("the end");
             case.values.insert(load.to_owned(), factor).expect("a parameter");
             let solved = case.solve();
@@ -172,14 +177,11 @@ fn a_warm_answer_can_be_followed_and_differentiated() {
     let before = case.solve();
     case.values.insert("T".to_owned(), 110.0).expect("a parameter");
     let rules = case.scenario.rules;
-    let warm = case.prepared.follow(&before, &case.values, rules, &Quiet).expect("a way");
+    let warm = case.case().under(rules).follow(&before).expect("a way");
     let cold = case.solve();
     let basis = stickslip::path::start::final_basis(&warm).expect("a scheme");
     assert!(!basis.z.is_empty());
-    let rates = |solved: &Solved| {
-        stickslip::path::sensitivity::sensitivity(&case.prepared, &case.scenario, solved, &case.values)
-            .expect("an answer")
-    };
+    let rates = |solved: &Solved| stickslip::path::sensitivity::sensitivity(case.case(), solved).expect("an answer");
     let (a, b) = (rates(&warm), rates(&cold));
     for (a, b) in a.parameters.iter().zip(&b.parameters) {
         let size = b.pairs.iter().map(|pair| pair.z_t.abs()).fold(0.0, f64::max);
@@ -188,6 +190,6 @@ fn a_warm_answer_can_be_followed_and_differentiated() {
         }
     }
     let reach = LoadReach { to: None, through: false };
-    let path = trace(&case.prepared, &case.scenario, &case.values, Some(&warm), "push", reach, &Quiet).expect("a path");
+    let path = trace(case.case(), Some(&warm), "push", reach).expect("a path");
     close(path.limit().expect("a limit"), 150.0, 1e-9);
 }

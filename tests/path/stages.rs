@@ -19,7 +19,7 @@ fn run(name: &str, stages: &str, set: &[(&str, f64)]) -> (Scenario, Prepared, Hi
     for (name, value) in set {
         values.insert((*name).to_owned(), *value).expect("a parameter");
     }
-    let history = follow(&prepared, &scenario, &values, &Quiet).expect("a history");
+    let history = follow(prepared.case(&scenario, &values)).expect("a history");
     (scenario, prepared, history)
 }
 
@@ -81,7 +81,7 @@ fn one_loading_in_one_stage_or_many_is_the_one_shot_answer() {
     ] {
         let (scenario, prepared, history) = run(name, stages, &set);
         assert_eq!(history.end, HistoryEnd::Complete, "{name}");
-        let solved = prepared.solve(&scenario, &scenario.parameter_values(), scenario.rules, &Quiet).expect("solvable");
+        let solved = prepared.case(&scenario, &scenario.parameter_values()).solve().expect("solvable");
         assert!(solved.answer.notes.iter().any(|note| note.contains("history")));
         let last = history.stages.last().expect("stages");
         for stage in &history.stages {
@@ -126,7 +126,7 @@ fn a_slider_follows_its_falling_weight() {
                  { "w": 2, "h": -300 }, { "w": 2 }, { "w": 0.5 }, { "w": 0.5 }, {}, { "w": 1, "h": 300 }] }"#;
     let scenario = load_text("slider", text, None).expect("sound");
     let prepared = prepare(&scenario, &Quiet).expect("sound");
-    let history = follow(&prepared, &scenario, &scenario.parameter_values(), &Quiet).expect("a history");
+    let history = follow(prepared.case(&scenario, &scenario.parameter_values())).expect("a history");
     assert_eq!(history.end, HistoryEnd::Complete);
     // (h − f w)/k on the way up, (h + f w)/k on the way down, and where neither is reached the slip before. Without
     // any weight the spring takes it home.
@@ -177,7 +177,7 @@ fn a_bar_on_a_slope_ratchets_down_at_each_cycle() {
     );
     let scenario = load_text("ratchet", &text, None).expect("sound");
     let prepared = prepare(&scenario, &Quiet).expect("sound");
-    let history = follow(&prepared, &scenario, &scenario.parameter_values(), &Quiet).expect("a history");
+    let history = follow(prepared.case(&scenario, &scenario.parameter_values())).expect("a history");
     assert_eq!(history.end, HistoryEnd::Complete);
     let end = |stage: usize, pair: usize| history.stages[stage].moments.last().expect("an end").pairs[pair].z_t;
     let shift = -2.0 * (50.0 / 1000.0 - 8.8 / 1000.0);

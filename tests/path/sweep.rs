@@ -38,10 +38,7 @@ impl Case {
 
     fn sweep(&self, shard: &str, format: Format) -> Sweep<'_> {
         Sweep {
-            prepared: &self.prepared,
-            scenario: &self.scenario,
-            values: &self.values,
-            rules: self.scenario.rules,
+            case: self.prepared.case(&self.scenario, &self.values),
             grid: &self.grid,
             shard: shard.parse::<Shard>().expect("a shard"),
             format,

@@ -11,11 +11,11 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, OutcomeKind, RayClass, State, Verdict};
 use stickslip::model::rules::{Covering, Rules};
+use stickslip::path::end::PathEnd;
 use stickslip::path::limit::limit;
 use stickslip::path::sensitivity::sensitivity;
 use stickslip::path::stages::{History, HistoryEnd, follow_factors};
 use stickslip::path::{friction, load};
-use stickslip::watch::Quiet;
 
 use crate::common::balance::{imbalance, incompatibility, nodal_imbalance};
 use crate::common::laws::violation;
@@ -310,14 +310,14 @@ fn paths_and_sensitivities_of_a_guide() {
     let solved = case.solved(&[("T", 0.5)], case.scenario.rules);
     let (prepared, scenario) = (&case.prepared, &case.scenario);
     let reach = load::LoadReach { to: Some(-1.0), through: false };
-    let path = load::trace(prepared, scenario, &values, Some(&solved), "P", reach, &Quiet).expect("a path");
-    assert_eq!(path.end, load::LoadEnd::Target);
-    let at: Vec<f64> = path.breakpoints.iter().map(|breakpoint| breakpoint.factor).collect();
+    let path = load::trace(prepared.case(scenario, &values), Some(&solved), "P", reach).expect("a path");
+    assert_eq!(path.end, PathEnd::Target);
+    let at: Vec<f64> = path.breakpoints.iter().map(|breakpoint| breakpoint.value).collect();
     near_all("breakpoints", &at, &[k * 0.01, -k * 0.02], 1e-12);
-    let path = friction::trace(prepared, scenario, &values, Some(&solved), "f", 1.0, &Quiet).expect("a path");
+    let path = friction::trace(prepared.case(scenario, &values), Some(&solved), "f", 1.0).expect("a path");
     let at: Vec<f64> = path.breakpoints.iter().map(|breakpoint| breakpoint.value).collect();
     near_all("breakpoints", &at, &[0.5 / (1.0 - k * 0.01)], 1e-11);
-    let found = sensitivity(prepared, scenario, &solved, &values).expect("rates");
+    let found = sensitivity(prepared.case(scenario, &values), &solved).expect("rates");
     let of = |name: &str| &found.parameters.iter().find(|rate| rate.parameter == name).expect("a parameter").pairs[0];
     let pressed = 1.0 - k * 0.01;
     near("dz_t/df", of("f").z_t, -pressed / k_a, 1e-12, 0.01);
@@ -362,7 +362,7 @@ fn limit_of_the_corner() {
     let case = corner(0.2);
     let values = case.scenario.parameter_values();
     let solved = case.solved(&[], case.scenario.rules);
-    let found = limit(&case.prepared, &case.scenario, &values, Some(&solved), "push", &Quiet).expect("a path");
+    let found = limit(case.prepared.case(&case.scenario, &values), Some(&solved), "push").expect("a path");
     close("limit", found.factor.expect("a limit"), 0.4, 1e-10);
     assert!(found.confirmed);
 }
@@ -370,7 +370,7 @@ fn limit_of_the_corner() {
 fn history(case: &Case, stages: &[[f64; 2]]) -> History {
     let values = case.scenario.parameter_values();
     let targets: Vec<Vec<f64>> = stages.iter().map(|stage| stage.to_vec()).collect();
-    follow_factors(&case.prepared, &values, &targets, &Quiet).unwrap_or_else(|error| panic!("{error}"))
+    follow_factors(case.prepared.case(&case.scenario, &values), &targets).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Pressed with P = 1 on its low side, then pulled to and fro. Friction bound r = f (P − k g₁). Pulled by T the tip slips by

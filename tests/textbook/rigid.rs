@@ -334,7 +334,7 @@ fn settlements_and_histories_of_bodies() {
     scenario["stages"] = json!([{ "weight": 1 }, { "weight": 1, "moved": 1 }, { "weight": 1, "moved": -1 }]);
     let case = Case::json(scenario);
     let values = case.scenario.parameter_values();
-    let history = follow(&case.prepared, &case.scenario, &values, &Quiet).expect("a history");
+    let history = follow(case.prepared.case(&case.scenario, &values)).expect("a history");
     let end = &history.stages[1].end;
     near("slip", end.pairs[0].z_t, f * w / kh - 0.2, 1e-12, 1.0);
     near_all("drag", &reaction(end, "a"), &[f * w, w, 2.0 * w - f * w], 1e-12);

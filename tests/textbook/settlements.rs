@@ -116,7 +116,7 @@ fn the_work_of_a_settlement_is_counted() {
         "stages": [{ "lift": 0.03 }, { "lift": 0.01 }]
     }));
     let values = case.scenario.parameter_values();
-    let history = stickslip::path::stages::follow(&case.prepared, &case.scenario, &values, &stickslip::watch::Quiet)
+    let history = stickslip::path::stages::follow(case.prepared.case(&case.scenario, &values))
         .unwrap_or_else(|error| panic!("{error}"));
     let stored = |d: f64| 1.5 * EI * d * d / L.powi(3);
     for (stage, right) in history.stages.iter().zip([stored(0.03), stored(0.01) - stored(0.03)]) {

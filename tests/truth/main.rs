@@ -148,7 +148,7 @@ fn run(problems: usize, seed: u64) -> Count {
         };
         let mut values = loaded.parameter_values();
         let rules = Rules::default();
-        let mut solved = prepared.solve(&loaded, &values, rules, &Quiet).expect("solved");
+        let mut solved = prepared.case(&loaded, &values).under(rules).solve().expect("solved");
         if !solved.answer.is_answer() {
             judge_claim(&problem, &solved.answer, &mut count, &text);
             continue;
@@ -161,7 +161,7 @@ fn run(problems: usize, seed: u64) -> Count {
             let mut moved = problem.clone();
             moved.load.iter_mut().for_each(|load| *load *= factor);
             values.insert("F".to_owned(), factor);
-            let Some(next) = prepared.follow(&solved, &values, rules, &Quiet) else {
+            let Some(next) = prepared.case(&loaded, &values).under(rules).follow(&solved) else {
                 break;
             };
             count.warm += 1;
@@ -231,7 +231,8 @@ fn what_has_no_answer_is_proved_to_have_none_at_any_scale() {
         let loaded = stickslip::model::load::load_text("test", &common::scenario_text(problem.clone()), None);
         let loaded = loaded.unwrap_or_else(|problems| panic!("{problems}"));
         let prepared = stickslip::solve::prepare(&loaded, &Quiet).expect("sound");
-        let solved = prepared.solve(&loaded, &loaded.parameter_values(), Rules::default(), &Quiet).expect("solved");
+        let solved =
+            prepared.case(&loaded, &loaded.parameter_values()).under(Rules::default()).solve().expect("solved");
         let verdict = solved.answer.ray.as_ref().and_then(|ray| ray.verdict);
         assert!(matches!(verdict, Some(Verdict::Certified | Verdict::Proved)), "{problem}: {:?}", solved.answer);
     }

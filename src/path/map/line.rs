@@ -1,8 +1,9 @@
 //! One line of the map: the working schemes over one parameter while the other stands still.
 
 use crate::answer::record::{PairState, State};
-use crate::path::route::{Basis, Route};
+use crate::path::route::Route;
 use crate::path::start::PathError;
+use crate::solve::Case;
 
 /// Where, within a part without an answer, another answer is looked for, as shares of its length.
 const PROBES: [f64; 3] = [0.25, 0.625, 1.0];
@@ -92,7 +93,7 @@ fn overlaid(upwards: &[Part], downwards: &[Part], same: f64) -> Vec<Part> {
 /// The lines of a map: `along` is followed exactly where that can be done, `across` stands still.
 pub struct Lines<'a> {
     /// The scenario made ready.
-    pub basis: Basis<'a>,
+    pub case: Case<'a>,
     /// The parameter that is followed.
     pub along: &'a str,
     /// Its range.
@@ -107,14 +108,14 @@ impl Lines<'_> {
     /// # Errors
     /// A value that the scenario cannot take, an interruption.
     pub fn line(&self, at: f64) -> Result<(Line, bool), PathError> {
-        let there = self.basis.at(self.across, at)?;
-        let basis = Basis { prepared: &there.prepared, values: &there.values, ..self.basis };
+        let there = self.case.at(self.across, at)?;
+        let case = there.case(self.case);
         let (mut upwards, mut downwards) = (Vec::new(), Vec::new());
-        let exact = self.fill(basis, (self.range, false), AGAIN, &mut upwards)?;
+        let exact = self.fill(case, (self.range, false), AGAIN, &mut upwards)?;
         let upwards = self.joined(upwards);
         // Lines over cells are answers of their own and do not depend on the end they start from.
         if exact {
-            self.fill(basis, (self.range, true), AGAIN, &mut downwards)?;
+            self.fill(case, (self.range, true), AGAIN, &mut downwards)?;
         }
         let downwards = self.joined(downwards);
         Ok((Line { at, parts: self.joined(overlaid(&upwards, &downwards, SAME * self.length())) }, exact))
@@ -128,14 +129,14 @@ impl Lines<'_> {
     /// answer, if one is found.
     fn fill(
         &self,
-        basis: Basis<'_>,
+        case: Case<'_>,
         (range, upper): ([f64; 2], bool),
         again: usize,
         parts: &mut Vec<Part>,
     ) -> Result<bool, PathError> {
-        let route = match Route::from_end(basis, self.along, range, upper) {
+        let route = match Route::from_end(case, self.along, range, upper) {
             Ok(Some(route)) if !route.stretches.is_empty() => route,
-            Ok(None) => return self.cells(basis, range, parts).map(|()| false),
+            Ok(None) => return self.cells(case, range, parts).map(|()| false),
             // No answer, or one that stands at its very end.
             Ok(Some(_)) | Err(PathError::NoStart { .. }) => {
                 parts.push(Part { from: range[0], to: range[1], scheme: Scheme::NoAnswer });
@@ -150,10 +151,10 @@ impl Lines<'_> {
         }
         let [low, high] = route.covered();
         if low > range[0] {
-            self.beyond(basis, ([low, range[0]], upper), again, parts)?;
+            self.beyond(case, ([low, range[0]], upper), again, parts)?;
         }
         if high < range[1] {
-            self.beyond(basis, ([high, range[1]], upper), again, parts)?;
+            self.beyond(case, ([high, range[1]], upper), again, parts)?;
         }
         Ok(true)
     }
@@ -161,7 +162,7 @@ impl Lines<'_> {
     /// From the end of a path to the end of the range: no answer, unless one is found at one of a few places.
     fn beyond(
         &self,
-        basis: Basis<'_>,
+        case: Case<'_>,
         ([from, to], upper): ([f64; 2], bool),
         again: usize,
         parts: &mut Vec<Part>,
@@ -172,17 +173,17 @@ impl Lines<'_> {
         let probes = probes.filter(|_| again > 0 && (to - from).abs() > nearest);
         for (index, share) in probes.enumerate() {
             let at = from + share * (to - from);
-            if !basis.solve(&basis.at(self.along, at)?)?.answer.is_answer() {
+            if !case.at(self.along, at)?.case(case).solve_briefly()?.answer.is_answer() {
                 continue;
             }
             // Both ways from there; what is before it has none at its other end.
             let [low, high] = span(at, to);
             if low < high {
-                self.fill(basis, ([low, high], upper), again - 1, parts)?;
+                self.fill(case, ([low, high], upper), again - 1, parts)?;
             }
             if index > 0 {
                 let beside = from + nearest * (to - from).signum();
-                return self.fill(basis, (span(beside, at), upper), again - 1, parts).map(drop);
+                return self.fill(case, (span(beside, at), upper), again - 1, parts).map(drop);
             }
             return Ok(());
         }
@@ -192,9 +193,9 @@ impl Lines<'_> {
     }
 
     /// Without an exact path: answers of their own at some places, each change between two of them narrowed.
-    fn cells(&self, basis: Basis<'_>, [low, high]: [f64; 2], parts: &mut Vec<Part>) -> Result<(), PathError> {
+    fn cells(&self, case: Case<'_>, [low, high]: [f64; 2], parts: &mut Vec<Part>) -> Result<(), PathError> {
         let look = |at: f64| -> Result<(f64, Scheme), PathError> {
-            let solved = basis.solve(&basis.at(self.along, at)?)?;
+            let solved = case.at(self.along, at)?.case(case).solve_briefly()?;
             let found = if solved.answer.is_answer() { scheme(&solved.answer.pairs) } else { Scheme::NoAnswer };
             Ok((at, found))
         };

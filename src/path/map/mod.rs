@@ -17,10 +17,11 @@ use self::line::Lines;
 use self::panel::Cutter;
 use super::envelope::Axis;
 use super::quantity::{Facts, Value};
-use super::route::{Basis, Route};
+use super::route::Route;
 use super::start::PathError;
 use crate::answer::record::{RayClass, State, Verdict};
 use crate::model::quantity::Quantity;
+use crate::solve::Case;
 
 /// Other answers are looked for in maps of at most so many pairs …
 const ENUMERATED_PAIRS: usize = 8;
@@ -111,28 +112,28 @@ impl Map {
 ///
 /// # Errors
 /// Axes that cannot be varied, an interruption; see [`PathError`].
-pub fn map(basis: Basis<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Result<Map, PathError> {
-    if basis.prepared.system().is_none() {
+pub fn map(case: Case<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Result<Map, PathError> {
+    if case.prepared.system().is_none() {
         return Err(PathError::Plain("map"));
     }
-    let along = along(basis, &axes)?;
+    let along = along(case, &axes)?;
     let across = &axes[1 - along];
-    let lines = Lines { basis, along: &axes[along].name, range: axes[along].range, across: &across.name };
+    let lines = Lines { case, along: &axes[along].name, range: axes[along].range, across: &across.name };
     let mut cutter = Cutter::new(&lines, across.range);
     let panels = cutter.panels()?;
     let exact = cutter.exact;
     let region_of = connected(&panels, axes[along].range);
     let mut map = Map { axes, regions: Vec::new(), panels, region_of, along, exact, notes: Vec::new() };
-    map.describe(basis, quantity)?;
-    map.say(basis);
+    map.describe(case, quantity)?;
+    map.say(case);
     Ok(map)
 }
 
 /// The axis along which the lines run: a load if one of the two is one (its paths are straight), else a friction.
-fn along(basis: Basis<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
+fn along(case: Case<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
     let mut best = (0, 0);
     for (index, axis) in axes.iter().enumerate() {
-        let exact = match Route::new(basis, &axis.name, axis.range) {
+        let exact = match Route::new(case, &axis.name, axis.range) {
             Ok(Some(route)) if route.is_straight() => 2,
             Ok(Some(_)) => 1,
             Ok(None) => 0,
@@ -206,16 +207,16 @@ fn letters(mut index: usize) -> String {
 
 impl Map {
     /// The regions from the panels, each with what an answer at a place inside shows.
-    fn describe(&mut self, basis: Basis<'_>, quantity: Option<&Quantity>) -> Result<(), PathError> {
+    fn describe(&mut self, case: Case<'_>, quantity: Option<&Quantity>) -> Result<(), PathError> {
         let count = self.region_of.iter().flatten().max().map_or(0, |last| last + 1);
-        let ids: Vec<String> = basis
+        let ids: Vec<String> = case
             .prepared
             .system()
             .map(|system| system.pairs.iter().map(|pair| pair.id.clone()).collect())
             .unwrap_or_default();
         let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS;
         for region in 0..count {
-            basis.watch.progress("regions", region as f64 / count as f64);
+            case.watch.progress("regions", region as f64 / count as f64);
             let mut area = 0.0;
             let mut largest = (f64::NEG_INFINITY, 0, 0);
             for (number, (panel, regions)) in self.panels.iter().zip(&self.region_of).enumerate() {
@@ -250,7 +251,7 @@ impl Map {
                 answers: None,
                 value: None,
             };
-            self.look(basis, &mut found, enumerated, quantity)?;
+            self.look(case, &mut found, enumerated, quantity)?;
             self.regions.push(found);
         }
         Ok(())
@@ -259,18 +260,15 @@ impl Map {
     /// What an answer of its own at the region's place shows.
     fn look(
         &self,
-        basis: Basis<'_>,
+        case: Case<'_>,
         region: &mut Region,
         enumerated: bool,
         quantity: Option<&Quantity>,
     ) -> Result<(), PathError> {
         let settings = [(self.axes[0].name.as_str(), region.at[0]), (self.axes[1].name.as_str(), region.at[1])];
-        let there = basis.at_all(&settings)?;
+        let there = case.at_all(&settings)?;
         if region.states.is_none() {
-            let solved = there.prepared.solve(basis.scenario, &there.values, basis.rules, basis.watch);
-            let solved = solved.map_err(|error| {
-                if error.is_interrupted() { PathError::Interrupted } else { PathError::Target(error.to_string()) }
-            })?;
+            let solved = there.case(case).solve()?;
             if let Some(ray) = &solved.answer.ray {
                 region.class = Some(ray.class);
                 region.verdict = ray.verdict;
@@ -278,21 +276,22 @@ impl Map {
             }
             return Ok(());
         }
-        if enumerated && let Ok(all) = there.prepared.all_answers(&there.values, basis.watch) {
+        if enumerated && let Ok(all) = there.prepared.all_answers(&there.values, case.watch) {
             let proved = all.complete && all.undecided == 0 && all.continua.is_empty();
             region.answers = proved.then_some(all.answers.len());
         }
         if let Some(quantity) = quantity {
-            let solved = basis.solve(&there)?;
-            let facts = Facts::of_answer(basis.scenario, &there.prepared, &there.values, &solved, basis.watch);
+            let there = there.case(case);
+            let solved = there.solve_briefly()?;
+            let facts = Facts::of_answer(there, &solved);
             region.value = facts.value(quantity).ok().map(|value: Value| value.json());
         }
         Ok(())
     }
 
     /// What the map does not show.
-    fn say(&mut self, basis: Basis<'_>) {
-        let pairs = basis.prepared.system().map_or(0, |system| system.pairs.len());
+    fn say(&mut self, case: Case<'_>) {
+        let pairs = case.prepared.system().map_or(0, |system| system.pairs.len());
         if !self.exact {
             self.notes.push(format!(
                 "no exact path leads over {}: its lines are answers of their own, each change between two of them \

@@ -89,12 +89,12 @@ impl<'a> Cutter<'a> {
                  ranges"
             )));
         }
-        if self.lines.basis.watch.stop() {
+        if self.lines.case.watch.stop() {
             return Err(PathError::Interrupted);
         }
         let [low, high] = self.range;
         let done = (at - low) / (high - low);
-        self.lines.basis.watch.progress(&format!("{} = {}", self.lines.across, short(at)), done);
+        self.lines.case.watch.progress(&format!("{} = {}", self.lines.across, short(at)), done);
         let (line, exact) = self.lines.line(at)?;
         self.exact &= exact;
         Ok(line)

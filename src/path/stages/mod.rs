@@ -27,22 +27,15 @@ use standing::Laws;
 use walk::Walk;
 
 use super::start::PathError;
-use crate::model::parameter::ParameterValues;
-use crate::model::scenario::Scenario;
-use crate::solve::Prepared;
+use crate::solve::Case;
 use crate::solve::numbers::{contact_numbers, factors};
-use crate::watch::Watch;
 
 /// Follows the stages of the scenario from the unloaded structure.
 ///
 /// # Errors
 /// No stages; a state that cannot be found; see [`PathError`]. A limit load on the way is no error.
-pub fn follow(
-    prepared: &Prepared,
-    scenario: &Scenario,
-    values: &ParameterValues,
-    watch: &dyn Watch,
-) -> Result<History, PathError> {
+pub fn follow(case: Case<'_>) -> Result<History, PathError> {
+    let Case { scenario, prepared, values, .. } = case;
     if scenario.stages.is_empty() {
         return Err(PathError::Missing(
             "the scenario has no `stages`: nothing tells the order of its loads (see the scenario format)".to_owned(),
@@ -62,19 +55,15 @@ pub fn follow(
             target
         })
         .collect();
-    follow_factors(prepared, values, &targets, watch)
+    follow_factors(case, &targets)
 }
 
 /// Follows the unloaded structure through the given factors of all load cases.
 ///
 /// # Errors
 /// As [`follow`].
-pub fn follow_factors(
-    prepared: &Prepared,
-    values: &ParameterValues,
-    targets: &[Vec<f64>],
-    watch: &dyn Watch,
-) -> Result<History, PathError> {
+pub fn follow_factors(case: Case<'_>, targets: &[Vec<f64>]) -> Result<History, PathError> {
+    let Case { prepared, values, watch, .. } = case;
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let none = vec![0.0; prepared.cases.len()];
     let numbers = contact_numbers(system, &none, values);

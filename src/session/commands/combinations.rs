@@ -7,9 +7,8 @@ use serde_json::{Value as Json, json};
 use crate::model::quantity::Quantity;
 use crate::path::envelope::{Axis, Peak, envelope};
 use crate::path::quantity::{Facts, NoValue, Value};
-use crate::path::route::Basis;
 use crate::solve::numbers::factors;
-use crate::solve::{Prepared, Solved};
+use crate::solve::{Case, Prepared, Solved};
 use crate::view;
 use crate::view::combinations::{Extreme, Line, Row};
 use crate::view::path::exact;
@@ -50,21 +49,21 @@ impl Session {
             return Err(CommandError::Refused(no_such("combination", name, names)));
         }
         let ground = self.ground(io.watch)?;
-        let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
         let name = name.map(str::to_owned);
         worker::run(io.watch, move |watch| {
-            let own = factors(&ground.prepared, &values);
+            let Case { scenario, values, .. } = ground.case(watch);
+            let own = factors(&ground.prepared, values);
             let chosen =
                 scenario.combinations.iter().filter(|(known, _)| name.as_ref().is_none_or(|name| name == known));
             let mut combined = Vec::new();
             for (name, combination) in chosen {
                 let factor = |(case, own): (&(String, _), &f64)| {
                     let named = combination.multipliers.iter().find(|(known, _)| *known == case.0);
-                    named.map_or(0.0, |(_, multiplier)| multiplier.value(&values) * own)
+                    named.map_or(0.0, |(_, multiplier)| multiplier.value(values) * own)
                 };
                 let factors: Vec<f64> = ground.prepared.cases.iter().zip(&own).map(factor).collect();
                 let prepared = Arc::new(ground.prepared.with_factors(&factors));
-                let solved = prepared.solve(&scenario, &values, rules, watch).map_err(|error| {
+                let solved = Case { prepared: &prepared, ..ground.case(watch) }.solve().map_err(|error| {
                     if error.is_interrupted() {
                         CommandError::Interrupted
                     } else {
@@ -78,7 +77,7 @@ impl Session {
     }
 
     fn facts_of<'a>(&'a self, combined: &'a Combined, watch: &'a dyn Watch) -> Facts<'a> {
-        Facts::of_answer(&self.now.scenario, &combined.prepared, &self.now.values, &combined.solved, watch)
+        Facts::of_answer(self.now.case(&combined.prepared, watch), &combined.solved)
     }
 
     /// `combine [NAME]`.
@@ -222,12 +221,8 @@ impl Session {
     ) -> Result<(), CommandError> {
         let axes = self.axes(words, "envelope … over")?;
         let ground = self.ground(io.watch)?;
-        let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
-        let (over, asked, prepared) = (axes.clone(), quantities.clone(), ground.prepared);
-        let found = worker::run(io.watch, move |watch| {
-            let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
-            envelope(basis, &over, &asked)
-        })??;
+        let (over, asked) = (axes.clone(), quantities.clone());
+        let found = worker::run(io.watch, move |watch| envelope(ground.case(watch), &over, &asked))??;
         let units = &self.now.scenario.units;
         let place = |peak: &Peak| -> serde_json::Map<String, Json> {
             axes.iter().zip(&peak.at).map(|(axis, at)| (axis.name.clone(), json!(at))).collect()

@@ -1,14 +1,12 @@
 //! `find`: values of a parameter at which a quantity is as wanted, or up to which there is an answer.
 
 use std::cmp::Ordering;
-use std::sync::Arc;
 
 use serde_json::{Value as Json, json};
 
 use crate::model::quantity::Quantity;
 use crate::path::edge::{Which, edge};
 use crate::path::find::{Found, Wanted, find};
-use crate::path::route::Basis;
 use crate::view;
 
 use crate::session::language::expect::{self, Expectation, Operator};
@@ -110,9 +108,8 @@ impl Session {
     pub(in crate::session) fn find(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let request = self.request(words)?;
         let ground = self.ground(io.watch)?;
-        let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
         let (name, range) = (request.name.clone(), request.range);
-        let unit = scenario.parameters.get(&name).and_then(|parameter| parameter.unit.clone());
+        let unit = self.now.scenario.parameters.get(&name).and_then(|parameter| parameter.unit.clone());
         let head = |extra: Json| {
             let mut report =
                 json!({"parameter": name, "from": range[0], "to": range[1], "condition": request.condition});
@@ -121,15 +118,11 @@ impl Session {
             }
             report
         };
-        let prepared = ground.prepared;
         let outcome = matches!(&request.quantity, Quantity::Plain("outcome"))
             && request.wanted == Wanted::Word("answer".to_owned());
         let name = request.name.clone();
         if let (Some(which), true) = (request.which, outcome) {
-            let found = worker::run(io.watch, move |watch| {
-                let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
-                edge(basis, &name, range, which)
-            })??;
+            let found = worker::run(io.watch, move |watch| edge(ground.case(watch), &name, range, which))??;
             let word = if which == Which::Least { "least" } else { "most" };
             io.report(
                 || {
@@ -142,10 +135,8 @@ impl Session {
             return Ok(());
         }
         let (quantity, wanted) = (request.quantity.clone(), request.wanted.clone());
-        let mut found = worker::run(io.watch, move |watch| {
-            let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
-            find(basis, &name, range, &quantity, &wanted)
-        })??;
+        let mut found =
+            worker::run(io.watch, move |watch| find(ground.case(watch), &name, range, &quantity, &wanted))??;
         if let Some(which) = request.which {
             keep_end(&mut found, which);
         }

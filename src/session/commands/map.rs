@@ -7,7 +7,6 @@ use serde_json::{Value as Json, json};
 use crate::model::quantity::Quantity;
 use crate::path::envelope::Axis;
 use crate::path::map::{Map, map};
-use crate::path::route::Basis;
 use crate::session::{CommandError, Output, Session, worker};
 use crate::view;
 
@@ -45,12 +44,8 @@ impl Session {
             return refused("map: expected two parameters or load cases: `map P A..B Q C..D [of QUANTITY]`");
         };
         let ground = self.ground(io.watch)?;
-        let (scenario, values, rules) = (Arc::clone(&self.now.scenario), self.now.values.clone(), self.now.rules);
-        let (prepared, asked) = (ground.prepared, quantity.clone());
-        let found = worker::run(io.watch, move |watch| {
-            let basis = Basis { prepared: &prepared, scenario: &scenario, values: &values, rules, watch };
-            map(basis, axes, asked.as_ref())
-        })??;
+        let asked = quantity.clone();
+        let found = worker::run(io.watch, move |watch| map(ground.case(watch), axes, asked.as_ref()))??;
         let drawn = Arc::new(Drawn { map: found, quantity });
         io.report(
             || self.map_json(&drawn),

@@ -22,7 +22,7 @@ use crate::path::start::PathError;
 use crate::path::sweep::Sweep;
 use crate::path::sweep_file::{SweepFileError, run_to_file};
 use crate::solve::numbers::factors;
-use crate::solve::{Prepared, Solved};
+use crate::solve::{Case, Prepared, Solved};
 use crate::view;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::zone::Quantity as Zone;
@@ -73,6 +73,12 @@ pub(in crate::session) struct PathStart {
     solved: Arc<Solved>,
 }
 
+impl PathStart {
+    pub(in crate::session) fn case<'a>(&'a self, watch: &'a dyn Watch) -> Case<'a> {
+        self.setup.case(&self.prepared, watch)
+    }
+}
+
 impl Session {
     /// The present setup, solved.
     pub(in crate::session) fn ground(&self, watch: &dyn Watch) -> Result<PathStart, CommandError> {
@@ -118,21 +124,19 @@ impl Session {
         };
         let ground = self.ground(io.watch)?;
         let units = self.now.scenario.units.clone();
-        let (prepared, solved) = (Arc::clone(&ground.prepared), ground.solved);
-        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
+        let geometry = Arc::clone(&ground.prepared);
         let what = name.to_owned();
-        let is_load = prepared.cases.iter().any(|(case, _)| *case == what);
-        if is_friction(&prepared, &values, name) && !is_load {
+        if is_friction(ground.case(io.watch), name) {
             let to = to.unwrap_or_else(|| {
-                let slider = scenario.parameters.get(name).and_then(|p| p.max);
-                let present = values.get(name).copied().unwrap_or_default();
+                let slider = self.now.scenario.parameters.get(name).and_then(|p| p.max);
+                let present = self.now.values.get(name).copied().unwrap_or_default();
                 slider.filter(|max| *max > present).unwrap_or(FRICTION.max(2.0 * present))
             });
             let path = worker::run(io.watch, move |watch| {
-                friction::trace(&prepared, &scenario, &values, Some(&solved), &what, to, watch)
+                friction::trace(ground.case(watch), Some(&ground.solved), &what, to)
             })??;
             let record = PathRecord::of_friction(&path);
-            let along = self.report_along(&ground.prepared, &record, &quantities, io.watch)?;
+            let along = self.report_along(&geometry, &record, &quantities, io.watch)?;
             io.report(
                 || {
                     json!({
@@ -158,10 +162,8 @@ impl Session {
             self.path = Some(Arc::new(record));
             return Ok(());
         }
-        let geometry = Arc::clone(&prepared);
         let path = worker::run(io.watch, move |watch| {
-            let reach = LoadReach { to, through };
-            load::trace(&prepared, &scenario, &values, Some(&solved), &what, reach, watch)
+            load::trace(ground.case(watch), Some(&ground.solved), &what, LoadReach { to, through })
         })??;
         let record = PathRecord::of_load(&path, &Self::case_names(&geometry));
         let along = self.report_along(&geometry, &record, &quantities, io.watch)?;
@@ -173,8 +175,8 @@ impl Session {
                     "start": path.start,
                     "from_zero": path.from_zero,
                     "breakpoints": path.breakpoints.iter().map(|at| json!({
-                        "factor": at.factor, "changes": at.changes, "sentence": at.sentence,
-                        "at_constant_load": at.at_constant_load,
+                        "factor": at.value, "changes": at.changes, "sentence": at.sentence,
+                        "at_constant_load": at.jump,
                     })).collect::<Vec<_>>(),
                     "limit": path.limit(),
                     "last": path.factors.last(),
@@ -193,13 +195,9 @@ impl Session {
     /// `limit LOAD`.
     pub(in crate::session) fn limit(&mut self, name: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let ground = self.ground(io.watch)?;
-        let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
         let cases = Self::case_names(&ground.prepared);
         let what = name.to_owned();
-        let found = worker::run(io.watch, move |watch| {
-            let PathStart { prepared, solved, .. } = &ground;
-            limit::limit(prepared, &scenario, &values, Some(solved), &what, watch)
-        })??;
+        let found = worker::run(io.watch, move |watch| limit::limit(ground.case(watch), Some(&ground.solved), &what))??;
         let unit = self.now.scenario.parameters.get(name).and_then(|parameter| parameter.unit.clone());
         io.report(
             || {
@@ -242,7 +240,7 @@ impl Session {
             return Err(no_derivatives(name, &refusal));
         }
         let ground = self.ground(io.watch)?;
-        let found = sensitivity(&ground.prepared, &self.now.scenario, &ground.solved, &self.now.values)?;
+        let found = sensitivity(ground.case(io.watch), &ground.solved)?;
         if let Some(name) = parameter
             && !found.parameters.iter().any(|rate| rate.parameter == name)
         {
@@ -280,7 +278,8 @@ impl Session {
             prepared.renewed(&self.now.scenario, &values, watch).map_err(|error| NoValue(error.to_string()))?;
         let prepared = renewed.as_ref().map_or(prepared, |(there, _)| there);
         let factors = if place.factors.is_empty() { factors(prepared, &values) } else { place.factors.clone() };
-        Ok(read(&Facts::of_state(&self.now.scenario, prepared, &values, factors, &place.pairs, watch)))
+        let case = prepared.case(&self.now.scenario, &values).watched(watch);
+        Ok(read(&Facts::of_state(case, factors, &place.pairs)))
     }
 
     /// The values of a quantity at the places of a path; `None` where it has none.
@@ -326,10 +325,7 @@ impl Session {
         let quantities = self.columns(columns)?;
         let ground = self.ground(io.watch)?;
         let sweep = Sweep {
-            prepared: &ground.prepared,
-            scenario: &self.now.scenario,
-            values: &self.now.values,
-            rules: ground.setup.rules,
+            case: ground.case(io.watch),
             grid: &grid,
             shard: shard.unwrap_or(Shard::WHOLE),
             format: match out {
@@ -480,10 +476,7 @@ impl Session {
             .ok_or_else(|| CommandError::Internal("a solved scenario has no prepared geometry".to_owned()))?;
         let quantities = self.columns(request.columns)?;
         let sweep = Sweep {
-            prepared: &prepared,
-            scenario: &self.now.scenario,
-            values: &self.now.values,
-            rules: self.now.rules,
+            case: self.now.case(&prepared, watch),
             grid: &grid,
             shard: request.shard.unwrap_or(Shard::WHOLE),
             format: match (request.format, request.out) {

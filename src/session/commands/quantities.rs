@@ -24,7 +24,7 @@ impl Session {
             return read(&Facts::of_nothing(scenario, &self.now.values, watch));
         };
         let shown = self.combination.as_ref().map_or(prepared, |combination| &combination.prepared);
-        let facts = Facts::of_answer(scenario, shown, &self.now.values, solved, watch);
+        let facts = Facts::of_answer(self.now.case(shown, watch), solved);
         if let Some(history) = &self.followed {
             return read(&facts.of_history(history));
         }

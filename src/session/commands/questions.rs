@@ -13,7 +13,7 @@ use crate::solve::all_answers::{AllAnswers, Continuum, Moving};
 use crate::solve::error::QuestionError;
 use crate::solve::{Prepared, Solved};
 use crate::view;
-use crate::watch::Watch;
+use crate::watch::{Quiet, Watch};
 
 use crate::session::{CommandError, Output, Remedies, Session, worker};
 
@@ -78,7 +78,7 @@ impl Session {
             return Vec::new();
         };
         let pair = solved.answer.pairs.iter().position(|pair| pair.id == id);
-        pair.map_or_else(Vec::new, |pair| solved.margins(prepared, &self.now.scenario, &self.now.values, pair))
+        pair.map_or_else(Vec::new, |pair| solved.margins(self.now.case(prepared, &Quiet), pair))
     }
 
     /// Looks for what would stop the collapse shown, where there is one and it was not looked for yet.

@@ -218,9 +218,7 @@ impl Session {
             Some(history) => Arc::clone(history),
             None => {
                 let ground = self.ground(watch)?;
-                let (scenario, values) = (Arc::clone(&self.now.scenario), self.now.values.clone());
-                let follow = move |watch: &dyn Watch| stages::follow(&ground.prepared, &scenario, &values, watch);
-                Arc::new(worker::run(watch, follow)??)
+                Arc::new(worker::run(watch, move |watch| stages::follow(ground.case(watch)))??)
             }
         };
         blocks.push(Block::Heading("Load history".into()));

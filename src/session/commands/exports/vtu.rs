@@ -52,7 +52,7 @@ impl Session {
             let gone = || CommandError::Refused(format!("pivot {step} cannot be shown"));
             let pairs = solved.pairs_at(shown, step).ok_or_else(gone)?;
             let displacements = solved.displacements_at(shown, step).ok_or_else(gone)?;
-            let facts = Facts::of_answer(&self.now.scenario, shown, &self.now.values, solved, io.watch);
+            let facts = Facts::of_answer(self.now.case(shown, io.watch), solved);
             write(&facts.at_pivot(&pairs, Some(&displacements), solved.p_at(step)), &file(step))?;
         }
         Ok((0..pivots).map(|step| step as f64).collect())

@@ -1,0 +1,43 @@
+//! Why a path ends.
+
+use crate::explain::words::short;
+use crate::lcp::outcome::RayDirection;
+
+/// Why a path over a load or over friction ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PathEnd {
+    /// At the target.
+    Target,
+    /// At a turning point of the load: beyond it there is no answer near the one followed.
+    Turning,
+    /// At the limit load.
+    Limit(RayDirection),
+    /// Nowhere: the last scheme holds for every larger load.
+    Unbounded,
+    /// Back at the start, through turning points of the load.
+    Returned,
+    /// At a value of friction where the answer followed ends and no other was found beyond.
+    NoAnswer,
+}
+
+impl PathEnd {
+    /// In a sentence; `name` is what was followed, `at` where the path ended.
+    pub fn sentence(&self, name: &str, at: f64) -> String {
+        let at = short(at);
+        match self {
+            PathEnd::Target => format!("the target {name} = {at} is reached"),
+            PathEnd::Turning => format!(
+                "turning point at {name} = {at}: the path goes on with a falling load only; beyond it the structure \
+                 jumps to another answer or has none (`--through` follows the path)"
+            ),
+            PathEnd::Limit(_) => {
+                format!("limit load: beyond {name} = {at} nothing resists the motion in which the path ends")
+            }
+            PathEnd::Unbounded => format!("beyond {name} = {at} nothing changes any more, however large the load"),
+            PathEnd::Returned => format!("the path came back to {name} = {at} through turning points"),
+            PathEnd::NoAnswer => {
+                format!("the answer that was followed ends at {name} = {at}, and no other was found beyond")
+            }
+        }
+    }
+}
