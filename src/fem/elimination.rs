@@ -9,14 +9,15 @@
 
 use std::collections::BTreeMap;
 
-use super::body_rows::{BodyRow, body_rows, over_constraint, reaches};
-use super::dof::{Dofs, root};
+use super::body_rows::{BodyRow, body_rows, over_constraint};
+use super::classes::Classes;
+use super::dof::Dofs;
 use super::doubled::Real;
 use super::error::{DependentJoint, Holder, MainSystemError, OverConstraint};
 use super::joint_rows::{JointReduction, JointRow, holders};
 use super::repeated::{Repeated, by_preference};
 use crate::model::pair::{Joint, JointDirection};
-use crate::model::structure::{Component, Load, Structure};
+use crate::model::structure::Structure;
 
 /// One base dof in terms of v and z.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,26 +38,6 @@ struct Sum {
     settled: Vec<(u32, f64)>,
     /// What the row would follow if the nodes of a body could leave their places: entries of G_A.
     bodies: Vec<(u32, f64)>,
-}
-
-/// What supports and ties make of the base dofs: classes of equal components.
-pub struct Classes {
-    /// Representative of the class of each base dof.
-    pub class: Vec<u32>,
-    /// Whether the class of each base dof is held by a support.
-    pub held: Vec<bool>,
-    /// The classes on which some load case imposes a displacement, with the numbers of those displacements in the rows
-    /// of the joints: they follow the joints.
-    pub settled: BTreeMap<u32, u32>,
-    /// Of the rotations of rigid bodies the distance at which they are reduced as a displacement.
-    pub reach: BTreeMap<u32, f64>,
-}
-
-impl Classes {
-    /// What one unit of the reduced unknown of a class is divided by in the rows of the bodies and joints.
-    pub fn unit(&self, class: u32) -> f64 {
-        self.reach.get(&class).copied().unwrap_or(1.0)
-    }
 }
 
 /// u = T v + G z + S s.
@@ -82,7 +63,7 @@ impl Elimination {
     /// Bodies that supports and ties hold more often than they can move; all joints that supports, ties and bodies alone
     /// hold.
     pub fn repeated(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Vec<Repeated>, MainSystemError> {
-        let classes = classes(structure, dofs, joints.len());
+        let classes = Classes::new(structure, dofs, joints.len());
         let mut reduction = JointReduction::default();
         let bodies = body_rows(structure, dofs);
         let beyond_settled = joints.len() + classes.settled.len();
@@ -120,7 +101,7 @@ impl Elimination {
     /// # Errors
     /// Bodies that supports and ties hold more often than they can move.
     pub fn new(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Elimination, MainSystemError> {
-        let classes = classes(structure, dofs, joints.len());
+        let classes = Classes::new(structure, dofs, joints.len());
         let Classes { class, held, settled, .. } = &classes;
         let is_class = |dof: usize| class[dof] as usize == dof && !held[dof];
 
@@ -276,6 +257,37 @@ impl Elimination {
             })
             .collect()
     }
+
+    /// Takes the forces inside rigid bodies out of nodal forces: f − Aᵀ μ with μ = G_Aᵀ f. What is left is for supports
+    /// and ties; in balance it is nothing where there are none.
+    pub fn take_out_body_forces<T: Real>(&self, forces: &mut [T]) {
+        let mut inner = vec![T::zero(); self.bodies().len()];
+        for (dof, force) in forces.iter().enumerate() {
+            for (row, a) in self.body_terms(dof) {
+                inner[row] += T::from(a) * *force;
+            }
+        }
+        for (row, inner) in std::iter::zip(self.bodies(), inner) {
+            for &(dof, a) in &row.terms {
+                forces[dof] -= T::from(a) * inner;
+            }
+        }
+    }
+
+    /// Adds to the sums of magnitudes of nodal forces what of them the bodies hand on.
+    pub fn add_body_forces(&self, magnitudes: &mut [f64]) {
+        let mut inner = vec![0.0; self.bodies().len()];
+        for (dof, magnitude) in magnitudes.iter().enumerate() {
+            for (row, a) in self.body_terms(dof) {
+                inner[row] += a.abs() * magnitude;
+            }
+        }
+        for (row, inner) in std::iter::zip(self.bodies(), inner) {
+            for &(dof, a) in &row.terms {
+                magnitudes[dof] += a.abs() * inner;
+            }
+        }
+    }
 }
 
 /// Reduces the rows of the bodies; they are numbered from `first` on.
@@ -300,46 +312,4 @@ fn reduce_bodies(
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(wrong) }
-}
-
-/// Classes of equal components, and which of them supports hold and move.
-fn classes(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
-    let mut parent: Vec<u32> = (0..dofs.count() as u32).collect();
-    for tie in &structure.ties {
-        for &component in &tie.components {
-            let mut tied = tie.nodes.iter().filter_map(|&n| dofs.of(n, component));
-            let Some(first) = tied.next() else { continue };
-            for other in tied {
-                let (a, b) = (root(&mut parent, first), root(&mut parent, other));
-                parent[a.max(b)] = a.min(b) as u32;
-            }
-        }
-    }
-    for body in &structure.rigid {
-        let turning = body.nodes.iter().filter_map(|&node| dofs.of(node, Component::R));
-        for (first, other) in turning.clone().zip(turning.skip(1)) {
-            let (a, b) = (root(&mut parent, first), root(&mut parent, other));
-            parent[a.max(b)] = a.min(b) as u32;
-        }
-    }
-    let class: Vec<u32> = (0..dofs.count()).map(|dof| root(&mut parent, dof) as u32).collect();
-    let mut held_class = vec![false; dofs.count()];
-    for support in &structure.supports {
-        // A support of a rotation that does not exist holds nothing.
-        if let Some(dof) = dofs.of(support.node, support.component) {
-            held_class[class[dof] as usize] = true;
-        }
-    }
-    let held = class.iter().map(|&c| held_class[c as usize]).collect();
-    let mut settled = BTreeMap::new();
-    for load in structure.load_cases.iter().flat_map(|case| &case.loads) {
-        if let Load::Settlement { node, component, .. } = *load
-            && let Some(dof) = dofs.of(node, component)
-        {
-            let next = (joints + settled.len()) as u32;
-            settled.entry(class[dof]).or_insert(next);
-        }
-    }
-    let reach = reaches(structure, dofs, &class);
-    Classes { class, held, settled, reach }
 }

@@ -2,8 +2,9 @@
 
 use nalgebra::DVector;
 
+use super::displacements::Displacements;
 use super::doubled::Real;
-use super::main_system::{Displacements, MainSystem};
+use super::main_system::MainSystem;
 use super::sparse::SymmetricSparse;
 
 /// A state of the structure with what acts on it.

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::classes::Classes;
 use super::dof::{Dofs, joint_dofs};
-use super::elimination::Classes;
 use super::error::Holder;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};

@@ -25,7 +25,8 @@
 //! The joints reach this module as rows of B ([`crate::model::pair::Joint`]); it knows no contact law.
 //!
 //! Order of reading: `dof`, `elimination` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor` (sparse
-//! Cholesky with the joints, by `supernodes`), `loose` (rigid motions of parts), [`main_system`] (R, RF, Z), [`recovery`] (member forces, stresses, reactions).
+//! Cholesky with the joints, by `supernodes`), `loose` (rigid motions of parts), [`main_system`] and `condense` (R, RF, Z),
+//! `expand` (displacements), [`recovery`] (member forces, stresses, reactions).
 
 pub mod main_system;
 pub mod matrices;
@@ -33,8 +34,11 @@ pub mod recovery;
 
 mod assembly;
 mod body_rows;
+mod classes;
+mod condense;
 mod contrast;
 mod dense;
+mod displacements;
 mod dof;
 mod doubled;
 mod element;
@@ -42,13 +46,16 @@ mod elimination;
 mod energy;
 mod equilibrium;
 mod error;
+mod expand;
 mod factor;
 mod joint_rows;
 mod kernel;
 mod loads;
 mod loose;
 mod memory;
+mod null_space;
 mod order;
+mod parts;
 mod refinement;
 mod repeated;
 mod sparse;
@@ -59,12 +66,13 @@ mod watch;
 #[cfg(test)]
 mod tests;
 
+pub use displacements::Displacements;
 pub use element::bar_load::Piece;
 pub use energy::Loaded;
 pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub(crate) use kernel::mutual_displacements;
 pub use loose::Motion;
-pub use main_system::{Displacements, MainSystem, Seconds, Unknowns};
+pub use main_system::{MainSystem, Seconds, Unknowns};
 pub use recovery::{EndForces, MemberForces, MembraneStress, NodeStress, Reaction};
 pub use repeated::Repeated;
 pub use sparse::SymmetricSparse;

@@ -1,5 +1,7 @@
 //! Load cases that load nothing.
 
+use std::collections::HashMap;
+
 use serde_json::Value;
 
 use super::{Warning, keys, texts};
@@ -11,11 +13,12 @@ use crate::model::structure::{Load, Structure};
 /// counted nowhere.
 pub fn of_structure(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<Warning> {
     let mut warnings = Vec::new();
+    let materials = Materials::of(structure, file);
     for case in &structure.load_cases {
         let path = format!("loads.{}", case.name);
         let of_case = file.get("loads").and_then(|loads| loads.get(&case.name));
         let items = of_case.and_then(|of_case| of_case.get("items"));
-        let without = without_property(structure, file, &path, items);
+        let without = without_property(&materials, structure, file, &path, items);
         let mut formulas = Vec::new();
         items.into_iter().for_each(|items| texts_of_numbers(items, &mut formulas));
         let empty = items.and_then(Value::as_array).is_none_or(Vec::is_empty);
@@ -72,24 +75,30 @@ fn counted(scenario: &Scenario, case: &str, factor: &Number, path: &str) -> Opti
 }
 
 /// Gravity on elements without density, temperature on elements without expansion.
-fn without_property(structure: &Structure, file: &Value, path: &str, items: Option<&Value>) -> Vec<Warning> {
-    let materials: Vec<&str> = keys(file, "materials").collect();
+fn without_property(
+    materials: &Materials<'_>,
+    structure: &Structure,
+    file: &Value,
+    path: &str,
+    items: Option<&Value>,
+) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for (index, item) in items.and_then(Value::as_array).into_iter().flatten().enumerate() {
         for (load, property) in [("gravity", "density"), ("temperature", "expansion")] {
             let Some(of_load) = item.get(load) else { continue };
             // A name that is no element of the file is one of a mesh: its material is not looked for.
-            let Some(on) = materials_on(structure, file, &materials, of_load.get("on")) else { continue };
+            let Some(on) = materials.on(of_load.get("on")) else { continue };
             let has = |&material: &usize| {
                 let material = &structure.materials[material];
                 if load == "gravity" { material.density != 0.0 } else { material.expansion != 0.0 }
             };
-            let given =
-                |&material: &usize| file["materials"][materials[material]].get(property).is_some_and(Value::is_string);
+            let given = |&material: &usize| {
+                file["materials"][materials.names[material]].get(property).is_some_and(Value::is_string)
+            };
             if on.iter().any(|material| has(material) || given(material)) {
                 continue;
             }
-            let mut named: Vec<&str> = on.iter().map(|&material| materials[material]).collect();
+            let mut named: Vec<&str> = on.iter().map(|&material| materials.names[material]).collect();
             named.dedup();
             let whose = match named[..] {
                 [] => "there are no elements".to_owned(),
@@ -106,24 +115,34 @@ fn without_property(structure: &Structure, file: &Value, path: &str, items: Opti
     warnings
 }
 
-/// The materials of the elements that a load is on, by index; `None` where a name cannot be followed.
-fn materials_on(structure: &Structure, file: &Value, materials: &[&str], on: Option<&Value>) -> Option<Vec<usize>> {
-    let Some(on) = on else {
-        let mut all: Vec<usize> = structure.elements.iter().map(|element| element.material).collect();
-        all.sort_unstable();
-        all.dedup();
-        return Some(all);
-    };
-    let element = |id: &Value| {
-        ["bars", "plates", "quads", "triangles"].iter().find_map(|key| {
-            file.get(key)?.as_array()?.iter().find(|entry| entry.get("id") == Some(id))?.get("material")?.as_str()
-        })
-    };
-    let found = on.as_array()?.iter().map(|id| {
-        let name = element(id)?;
-        materials.iter().position(|known| *known == name)
-    });
-    found.collect()
+/// The materials of the file and of its elements.
+struct Materials<'v> {
+    names: Vec<&'v str>,
+    /// Of all elements, in increasing order.
+    used: Vec<usize>,
+    /// Of bars, plates, quads and triangles by their ids.
+    of: HashMap<&'v str, usize>,
+}
+
+impl<'v> Materials<'v> {
+    fn of(structure: &Structure, file: &'v Value) -> Materials<'v> {
+        let names: Vec<&str> = keys(file, "materials").collect();
+        let number: HashMap<&str, usize> = names.iter().enumerate().map(|(index, name)| (*name, index)).collect();
+        let lists = ["bars", "plates", "quads", "triangles"].iter().filter_map(|key| file.get(key)?.as_array());
+        let material =
+            |entry: &'v Value| Some((entry.get("id")?.as_str()?, *number.get(entry.get("material")?.as_str()?)?));
+        let of = lists.flatten().filter_map(material).collect();
+        let mut used: Vec<usize> = structure.elements.iter().map(|element| element.material).collect();
+        used.sort_unstable();
+        used.dedup();
+        Materials { names, used, of }
+    }
+
+    /// Those of the elements that a load is on, by index; `None` where a name cannot be followed.
+    fn on(&self, on: Option<&Value>) -> Option<Vec<usize>> {
+        let Some(on) = on else { return Some(self.used.clone()) };
+        on.as_array()?.iter().map(|id| self.of.get(id.as_str()?).copied()).collect()
+    }
 }
 
 /// The texts of a list of loads that may be numbers: all but names.

@@ -1,0 +1,85 @@
+//! Classes of equal displacement components: what supports, ties and the rotations of rigid bodies make of the base dofs.
+
+use std::collections::BTreeMap;
+
+use super::dof::{Dofs, root};
+use crate::model::structure::{Component, Load, Structure};
+
+/// What supports and ties make of the base dofs: classes of equal components.
+pub struct Classes {
+    /// Representative of the class of each base dof.
+    pub class: Vec<u32>,
+    /// Whether the class of each base dof is held by a support.
+    pub held: Vec<bool>,
+    /// The classes on which some load case imposes a displacement, with the numbers of those displacements in the rows
+    /// of the joints: they follow the joints.
+    pub settled: BTreeMap<u32, u32>,
+    /// Of the rotations of rigid bodies the distance at which they are reduced as a displacement.
+    pub reach: BTreeMap<u32, f64>,
+}
+
+impl Classes {
+    /// Of all base dofs; the displacements imposed on supports are numbered behind the joints.
+    pub fn new(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
+        let mut parent: Vec<u32> = (0..dofs.count() as u32).collect();
+        for tie in &structure.ties {
+            for &component in &tie.components {
+                let mut tied = tie.nodes.iter().filter_map(|&n| dofs.of(n, component));
+                let Some(first) = tied.next() else { continue };
+                for other in tied {
+                    let (a, b) = (root(&mut parent, first), root(&mut parent, other));
+                    parent[a.max(b)] = a.min(b) as u32;
+                }
+            }
+        }
+        for body in &structure.rigid {
+            let turning = body.nodes.iter().filter_map(|&node| dofs.of(node, Component::R));
+            for (first, other) in turning.clone().zip(turning.skip(1)) {
+                let (a, b) = (root(&mut parent, first), root(&mut parent, other));
+                parent[a.max(b)] = a.min(b) as u32;
+            }
+        }
+        let class: Vec<u32> = (0..dofs.count()).map(|dof| root(&mut parent, dof) as u32).collect();
+        let mut held_class = vec![false; dofs.count()];
+        for support in &structure.supports {
+            // A support of a rotation that does not exist holds nothing.
+            if let Some(dof) = dofs.of(support.node, support.component) {
+                held_class[class[dof] as usize] = true;
+            }
+        }
+        let held = class.iter().map(|&c| held_class[c as usize]).collect();
+        let mut settled = BTreeMap::new();
+        for load in structure.load_cases.iter().flat_map(|case| &case.loads) {
+            if let Load::Settlement { node, component, .. } = *load
+                && let Some(dof) = dofs.of(node, component)
+            {
+                let next = (joints + settled.len()) as u32;
+                settled.entry(class[dof]).or_insert(next);
+            }
+        }
+        let reach = reaches(structure, dofs, &class);
+        Classes { class, held, settled, reach }
+    }
+
+    /// What one unit of the reduced unknown of a class is divided by in the rows of the bodies and joints.
+    pub fn unit(&self, class: u32) -> f64 {
+        self.reach.get(&class).copied().unwrap_or(1.0)
+    }
+}
+
+/// Of each class of rotations of bodies the reach of the largest body, a power of two: a rotation is reduced as the
+/// displacement at that distance, so that coefficients compare.
+fn reaches(structure: &Structure, dofs: &Dofs, class: &[u32]) -> BTreeMap<u32, f64> {
+    let mut reaches = BTreeMap::new();
+    for rigid in &structure.rigid {
+        let first = rigid.nodes[0];
+        let place = |node: usize, c: usize| structure.nodes[node].position[c];
+        let arm = |node: &usize| (place(*node, 0) - place(first, 0)).hypot(place(*node, 1) - place(first, 1));
+        let reach = rigid.nodes.iter().map(arm).fold(0.0, f64::max);
+        if let Some(dof) = dofs.of(first, Component::R).filter(|_| reach > 0.0) {
+            let known = reaches.entry(class[dof]).or_insert(0.0_f64);
+            *known = known.max(reach.log2().round().exp2());
+        }
+    }
+    reaches
+}

@@ -1,0 +1,199 @@
+//! R, RF and the kernel of R of a main system that is factorized; in doubled precision where f64 loses too much.
+
+use std::borrow::Cow;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::assembly::{on_joints, on_masters};
+use super::contrast;
+use super::dof::Dofs;
+use super::doubled::Real;
+use super::error::MainSystemError;
+use super::kernel::{self, RigidKernel};
+use super::loose::Motion;
+use super::main_system::MainSystem;
+use super::refinement::Verdict;
+use crate::model::structure::Structure;
+use crate::watch::Watch;
+
+/// R and RF are taken from the f64 factor where rounding costs them no more than this share; see
+/// [`MainSystem::loss`].
+const MOST_LOSS: f64 = 1e-12;
+
+impl MainSystem {
+    /// R, RF and their kernel, from the f64 factor if its rounding costs little, otherwise in doubled precision.
+    pub(super) fn condense(
+        &mut self,
+        structure: &Structure,
+        d: DMatrix<f64>,
+        watch: &dyn Watch,
+    ) -> Result<(), MainSystemError> {
+        if self.factor.is_shifted() {
+            return self.condense_doubled(structure, watch);
+        }
+        self.doubled = None;
+        self.r = self.factor.schur(d);
+        kernel::project(&mut self.r, &self.z);
+        self.take_loads();
+        self.refine_if_lost(structure, watch)
+    }
+
+    /// R and RF in doubled precision where rounding takes too much of them.
+    pub(super) fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        self.amplification = self.worst_amplification();
+        // Each term of uᵀ K u is off by ε at random, and there are as many as unknowns.
+        let loss = f64::EPSILON * self.amplification / (self.elimination.masters().max(1) as f64).sqrt();
+        if loss > MOST_LOSS { self.condense_doubled(structure, watch) } else { Ok(()) }
+    }
+
+    fn condense_doubled(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        let r = self.refinement(structure, watch)?.stiffness(watch)?;
+        self.r = r.ok_or_else(|| contrast::refusal(structure))?;
+        kernel::project(&mut self.r, &self.z);
+        self.amplification = 1.0;
+        self.take_loads_doubled(structure, watch)
+    }
+
+    /// RF from F by the f64 factor.
+    pub(super) fn take_loads(&mut self) {
+        let driving = self.driving_forces();
+        let loads: Vec<Vec<f64>> = driving.iter().map(|f| on_masters(&self.elimination, f)).collect();
+        let condensed = self.factor.project(&loads);
+        let rf = std::iter::zip(&driving, condensed.column_iter());
+        self.rf = rf.map(|(f, column)| column - DVector::from_vec(on_joints(&self.elimination, f))).collect();
+        self.balance_loads();
+    }
+
+    /// RF from F in doubled precision.
+    pub(super) fn take_loads_doubled(
+        &mut self,
+        structure: &Structure,
+        watch: &dyn Watch,
+    ) -> Result<(), MainSystemError> {
+        let f = std::mem::take(&mut self.f);
+        let settled = std::mem::take(&mut self.settled);
+        let rf = self.refinement(structure, watch)?.loads(&f, &settled, watch);
+        (self.f, self.settled) = (f, settled);
+        self.rf = rf?.ok_or_else(|| contrast::refusal(structure))?;
+        self.balance_loads();
+        Ok(())
+    }
+
+    /// F − K S s per load case: what moves the free unknowns.
+    pub(super) fn driving_forces(&self) -> Vec<Cow<'_, [f64]>> {
+        let cases = std::iter::zip(&self.f, &self.settled);
+        cases
+            .map(|(f, settled)| match settled {
+                None => Cow::Borrowed(&f[..]),
+                Some(settled) => Cow::Owned(std::iter::zip(f, self.k.times(settled)).map(|(f, k)| f - k).collect()),
+            })
+            .collect()
+    }
+
+    fn balance_loads(&mut self) {
+        let motions = &self.motions[..self.rigid.coefficients.nrows()];
+        for (rf, f) in std::iter::zip(&mut self.rf, &self.f) {
+            balance(rf, &self.rigid, motions, f, &self.dofs);
+        }
+    }
+
+    /// Σ|u||K||u| over uᵀ K u, the largest of a random dislocation that is no motion of the kernel and of the load
+    /// cases on the main system.
+    fn worst_amplification(&self) -> f64 {
+        let k = self.joints.len();
+        let mut state = 0.37;
+        let mut z = DVector::from_fn(k, |i, _| {
+            state = (state * 997.0_f64).fract() + 1e-3;
+            let size = self.r[(i, i)];
+            if size > 0.0 { (state - 0.5).signum() / size.sqrt() } else { 0.0 }
+        });
+        z -= &self.z * (self.z.transpose() * &z);
+        let none = vec![0.0; self.f.len()];
+        let mut fields = vec![self.plain_displacements(&none, &z)];
+        for case in 0..self.f.len() {
+            let mut factors = none.clone();
+            factors[case] = 1.0;
+            fields.push(self.plain_displacements(&factors, &DVector::zeros(k)));
+        }
+        let amplification = |u: &Vec<f64>| {
+            let terms = dot(&self.k.times_absolute(u), &u.iter().map(|u| u.abs()).collect::<Vec<_>>());
+            let energy = dot(&self.k.times(u), u).max(f64::EPSILON * terms);
+            if terms > 0.0 { terms / energy } else { 0.0 }
+        };
+        fields.iter().map(amplification).fold(0.0, f64::max)
+    }
+
+    /// Adds eigenvectors of R that cost no energy in K to the kernel.
+    pub(super) fn add_internal_mechanisms(
+        &mut self,
+        structure: &Structure,
+        watch: &dyn Watch,
+    ) -> Result<(), MainSystemError> {
+        let Some(suspects) = kernel::suspects(&self.r, &self.z)? else {
+            return Ok(());
+        };
+        let refined = self.doubled.is_some();
+        let idle = vec![0.0; self.dofs.count()];
+        for suspect in 0..suspects.count {
+            let mut z = suspects.vectors.column(suspect).into_owned();
+            let mut free = None;
+            // The eigenvector of a rounded R; what the structure resists is taken out of it twice.
+            for _ in 0..3 {
+                let refinement = self.refinement(structure, watch)?;
+                let Some((u, _)) = refinement.displacements(&idle, None, z.as_slice(), watch)? else { break };
+                if let Verdict::Mechanism = refinement.cost(structure, &u) {
+                    free = Some(u);
+                    break;
+                }
+                let force = on_joints(refinement.elimination, &refinement.k.times(&u));
+                z -= suspects.resisting(&DVector::from_iterator(force.len(), force.into_iter().map(Real::to_f64)));
+            }
+            if let Some(u) = free {
+                let u: Vec<f64> = u.into_iter().map(Real::to_f64).collect();
+                self.add_motion(&z, self.dofs.scatter(&u));
+            }
+        }
+        if !refined {
+            self.doubled = None;
+        }
+        kernel::project(&mut self.r, &self.z);
+        Ok(())
+    }
+
+    /// Adds a motion `u` without energy and its dislocations `z` to the kernel, unless it is in there.
+    fn add_motion(&mut self, z: &DVector<f64>, mut u: Vec<[f64; 3]>) {
+        let Some(extended) = kernel::extend(&self.z, z) else {
+            return;
+        };
+        let mut largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+        if largest == 0.0 {
+            largest = 1.0;
+        }
+        u.iter_mut().flatten().for_each(|u| *u /= largest);
+        self.motions.push(Motion { u, internal: true });
+        // The new column is (z − Z Zᵀ z) / norm, and z is B applied to largest · the new motion.
+        let at = self.z.ncols();
+        let norm = extended.column(at).dot(z);
+        let inside = &self.coefficients * (self.z.transpose() * z);
+        let mut coefficients = self.coefficients.clone().resize(at + 1, at + 1, 0.0);
+        coefficients.view_mut((0, at), (at, 1)).copy_from(&(-inside / norm));
+        coefficients[(at, at)] = largest / norm;
+        self.coefficients = coefficients;
+        self.z = extended;
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    std::iter::zip(a, b).map(|(a, b)| a * b).sum()
+}
+
+/// On the motions of loose parts RF is known exactly: uᵀ (Bᵀ RF + F) = 0. Puts that right to the last digit.
+fn balance(rf: &mut DVector<f64>, rigid: &RigidKernel, motions: &[Motion], f: &[f64], dofs: &Dofs) {
+    if motions.is_empty() {
+        return;
+    }
+    let work = motions.iter().map(|motion| -dot(&dofs.gather(&motion.u), f));
+    let work = DVector::from_iterator(motions.len(), work);
+    let error = rigid.coefficients.transpose() * work - rigid.z.transpose() * &*rf;
+    *rf += &rigid.z * error;
+}

@@ -1,0 +1,122 @@
+//! The way back from the joints to the displacements of the nodes.
+
+use nalgebra::DVector;
+
+use super::assembly::on_masters;
+use super::displacements::{Displacements, Tail};
+use super::doubled::{Doubled, Real};
+use super::main_system::MainSystem;
+use super::refinement::Refinement;
+use crate::watch::Quiet;
+
+impl MainSystem {
+    /// u under Σ factor·F and the mutual displacements `z` of all joints (the whole mutual displacement B u: with
+    /// an initial gap g it is z_n − g); those of repeated joints follow from the others.
+    ///
+    /// # Panics
+    /// If there are not as many factors as load cases and as many z as joints.
+    pub fn displacements(&self, factors: &[f64], z: &DVector<f64>) -> Displacements {
+        let z = &self.of_independent(z);
+        if let Some(k) = &self.doubled {
+            let refinement = Refinement { dofs: &self.dofs, k, elimination: &self.elimination, factor: &self.factor };
+            let f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_default();
+            let settled = self.settlement(factors);
+            // R and RF came from the same equations, so these converge too.
+            if let Ok(Some((u, error))) = refinement.displacements(&f, settled.as_deref(), z.as_slice(), &Quiet) {
+                let part = |part: fn(Doubled) -> f64| {
+                    let u: Vec<f64> = u.iter().map(|&u| part(u)).collect();
+                    self.dofs.scatter(&u)
+                };
+                return Displacements(part(Real::to_f64), Some(Tail { values: part(Doubled::tail), error }));
+            }
+        }
+        Displacements(self.dofs.scatter(&self.plain_displacements(factors, z)), None)
+    }
+
+    /// Σ factor·S s on the base dofs; `None` if no support settles.
+    pub(super) fn settlement(&self, factors: &[f64]) -> Option<Vec<f64>> {
+        sum_of_cases(self.settled.iter().map(Option::as_ref), factors)
+    }
+
+    /// The base dofs from the f64 factor, with one step of refinement: then the error of each equation is a few ε of
+    /// the terms of that equation (Skeel 1980), not of the largest of all.
+    pub(super) fn plain_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
+        assert_eq!(z.len(), self.joints.len(), "a z for every joint");
+        assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
+        let mut f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_else(|| vec![0.0; self.dofs.count()]);
+        let settled = self.settlement(factors);
+        if let Some(settled) = &settled {
+            for (f, k) in std::iter::zip(&mut f, self.k.times(settled)) {
+                *f -= k;
+            }
+        }
+        // K_m v = Tᵀ (F − K S s) − C z.
+        let mut v = on_masters(&self.elimination, &f);
+        for &(row, joint, value) in &self.c {
+            v[row as usize] -= value * z[joint as usize];
+        }
+        self.factor.solve(&mut v);
+        let u = self.elimination.expand(&v, z.as_slice());
+        let mut rest = self.k.times(&u);
+        for (rest, f) in std::iter::zip(&mut rest, &f) {
+            *rest = f - *rest;
+        }
+        let mut correction = on_masters(&self.elimination, &rest);
+        self.factor.solve(&mut correction);
+        for (v, correction) in std::iter::zip(&mut v, correction) {
+            *v += correction;
+        }
+        let mut u = self.elimination.expand(&v, z.as_slice());
+        for (u, settled) in std::iter::zip(&mut u, settled.into_iter().flatten()) {
+            *u += settled;
+        }
+        u
+    }
+
+    /// z of the [repeated](Self::repeated) joints under each load case per unit factor where no independent joint moves:
+    /// what supports that settle make of them.
+    pub fn repeated_offsets(&self) -> Vec<Vec<f64>> {
+        let of = |settled: &Option<Vec<f64>>, joint: usize| {
+            let Some(settled) = settled else { return 0.0 };
+            let mut z = 0.0;
+            self.each_term(&self.all_joints[joint], |dof, a| z += a * settled[dof]);
+            z
+        };
+        self.settled.iter().map(|case| self.repeated.iter().map(|joint| of(case, joint.joint)).collect()).collect()
+    }
+
+    /// Largest difference of a repeated joint's z from B u, as a share of the displacements of its nodes. Nodes at rest
+    /// have the rounding of the largest displacement.
+    pub fn compatibility_residual(&self, u: &Displacements, z: &DVector<f64>) -> f64 {
+        let length = |u: &[f64; 3]| u[0].hypot(u[1]);
+        let rounding = 64.0 * f64::EPSILON * u.0.iter().map(length).fold(0.0, f64::max);
+        let share = |joint: usize| {
+            let (mut rest, mut size) = (z[joint], z[joint].abs());
+            for (node, a) in &self.all_joints[joint].terms {
+                rest -= std::iter::zip(a, &u.0[*node]).map(|(a, u)| a * u).sum::<f64>();
+                size += length(&u.0[*node]);
+            }
+            if rest.abs() <= rounding { 0.0 } else { rest.abs() / size }
+        };
+        self.repeated.iter().map(|repeated| share(repeated.joint)).fold(0.0, f64::max)
+    }
+
+    /// The entries of the independent joints of a vector over all joints.
+    pub(super) fn of_independent(&self, z: &DVector<f64>) -> DVector<f64> {
+        assert_eq!(z.len(), self.all_joints.len(), "a z for every joint");
+        DVector::from_iterator(self.independent.len(), self.independent.iter().map(|&joint| z[joint]))
+    }
+}
+
+/// Σ factor·vector over the load cases that have one; `None` if none does.
+fn sum_of_cases<'a>(cases: impl Iterator<Item = Option<&'a Vec<f64>>>, factors: &[f64]) -> Option<Vec<f64>> {
+    let mut sum: Option<Vec<f64>> = None;
+    for (case, factor) in cases.zip(factors) {
+        let Some(case) = case else { continue };
+        let sum = sum.get_or_insert_with(|| vec![0.0; case.len()]);
+        for (sum, value) in std::iter::zip(sum, case) {
+            *sum += factor * value;
+        }
+    }
+    sum
+}

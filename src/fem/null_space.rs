@@ -1,0 +1,168 @@
+//! The null space of sparse rows: by singular values where it is small, by elimination where it is large.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::dense::svd;
+
+/// Most columns of which a singular value decomposition is made: its time grows with their third power.
+pub const DENSE: usize = 240;
+
+/// Σ coefficient · unknown.
+pub type Terms = Vec<(usize, f64)>;
+
+/// Basis of the null space, in echelon form: each vector has a leading one where the others are 0. Singular values below
+/// the share `null` of the largest count as zero, and in an elimination what is below that share of the terms it sums.
+/// `None` if the decomposition does not converge.
+pub fn null_basis(rows: &[Terms], columns: usize, null: f64) -> Option<DMatrix<f64>> {
+    let basis =
+        if columns <= DENSE { by_singular_values(rows, columns, null)? } else { by_elimination(rows, columns, null) };
+    Some(echelon(basis, columns))
+}
+
+fn by_singular_values(rows: &[Terms], columns: usize, null: f64) -> Option<Vec<DVector<f64>>> {
+    let mut a = DMatrix::zeros(rows.len(), columns);
+    for (i, row) in rows.iter().enumerate() {
+        for &(j, value) in row {
+            a[(i, j)] += value;
+        }
+    }
+    let svd = svd(&a)?;
+    let largest = svd.sigma.first().copied().unwrap_or(0.0);
+    let basis = std::iter::zip(&svd.sigma, svd.v.column_iter())
+        .filter(|(sigma, _)| **sigma <= null * largest)
+        .map(|(_, vector)| vector.into_owned());
+    Some(basis.collect())
+}
+
+/// What is left of a row: of each unknown the coefficient, and the sum of magnitudes that it is made of.
+type Sums = BTreeMap<usize, (f64, f64)>;
+
+fn add(sums: &mut Sums, unknown: usize, value: f64, magnitude: f64) {
+    let (sum, all) = sums.entry(unknown).or_default();
+    *sum += value;
+    *all += magnitude;
+}
+
+/// Gaussian elimination row by row, with the largest entry of a row as its pivot.
+fn by_elimination(rows: &[Terms], columns: usize, null: f64) -> Vec<DVector<f64>> {
+    // Unknown = −Σ a · others, in the order in which they were found: none holds the unknown of an older one.
+    let mut pivots: Vec<(usize, Terms)> = Vec::new();
+    let mut pivot_of = vec![usize::MAX; columns];
+    for row in rows {
+        let mut sums = Sums::new();
+        row.iter().for_each(|&(unknown, a)| add(&mut sums, unknown, a, a.abs()));
+        let oldest = |sums: &Sums| sums.keys().map(|&unknown| pivot_of[unknown]).min().filter(|at| *at != usize::MAX);
+        while let Some((unknown, terms)) = oldest(&sums).map(|at| &pivots[at]) {
+            let (value, magnitude) = sums.remove(unknown).unwrap_or_default();
+            if value.abs() > null * magnitude {
+                terms.iter().for_each(|&(other, a)| add(&mut sums, other, -value * a, magnitude * a.abs()));
+            }
+        }
+        sums.retain(|_, (value, magnitude)| value.abs() > null * *magnitude);
+        let largest = sums.iter().max_by(|a, b| a.1.0.abs().total_cmp(&b.1.0.abs()));
+        let Some((&unknown, &(pivot, _))) = largest else { continue };
+        sums.remove(&unknown);
+        pivot_of[unknown] = pivots.len();
+        pivots.push((unknown, sums.into_iter().map(|(other, (value, _))| (other, value / pivot)).collect()));
+    }
+    let free = (0..columns).filter(|unknown| pivot_of[*unknown] == usize::MAX);
+    let basis = free.map(|free| {
+        let mut vector = DVector::zeros(columns);
+        vector[free] = 1.0;
+        for (unknown, terms) in pivots.iter().rev() {
+            vector[*unknown] = -terms.iter().map(|&(other, a)| a * vector[other]).sum::<f64>();
+        }
+        vector
+    });
+    basis.collect()
+}
+
+fn echelon(mut basis: Vec<DVector<f64>>, columns: usize) -> DMatrix<f64> {
+    // Gauss–Jordan on the vectors, pivots from the left.
+    let mut done = 0;
+    for column in 0..columns {
+        let Some(best) = (done..basis.len()).max_by(|&a, &b| basis[a][column].abs().total_cmp(&basis[b][column].abs()))
+        else {
+            break;
+        };
+        if basis[best][column].abs() < 1e-6 {
+            continue;
+        }
+        basis.swap(done, best);
+        let pivot = basis[done][column];
+        basis[done] /= pivot;
+        let leading = basis[done].clone();
+        for (i, vector) in basis.iter_mut().enumerate() {
+            if i != done {
+                let factor = vector[column];
+                vector.axpy(-factor, &leading, 1.0);
+            }
+        }
+        done += 1;
+    }
+    for vector in &mut basis {
+        vector.apply(|x| {
+            if x.abs() < 1e-13 {
+                *x = 0.0;
+            }
+        });
+    }
+    let mut out = DMatrix::zeros(columns, basis.len());
+    for (i, vector) in basis.iter().enumerate() {
+        out.set_column(i, vector);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ring of bodies pinned to their neighbours at random places, rows in any order, some of them twice: both ways
+    /// find the same space, and it is the null space.
+    #[test]
+    fn elimination_finds_what_the_singular_values_find() {
+        let bodies = 30;
+        let mut state = 0.37_f64;
+        let mut random = || {
+            state = (state * 997.0).fract() + 1e-3;
+            2.0 * state - 1.0
+        };
+        for supported in [0, 1, 7] {
+            let mut rows: Vec<Terms> = Vec::new();
+            for body in 0..bodies {
+                let (one, other, arm) = (3 * body, 3 * ((body + 1) % bodies), [random(), random()]);
+                let x: Terms = vec![(one, 1.0), (one + 2, -arm[1]), (other, -1.0), (other + 2, arm[1])];
+                let y: Terms = vec![(one + 1, 1.0), (one + 2, arm[0]), (other + 1, -1.0), (other + 2, -arm[0])];
+                rows.extend([x.clone(), y, x]);
+            }
+            (0..supported).for_each(|support| rows.push(vec![(9 * support, 1.0), (9 * support + 2, random())]));
+            let columns = 3 * bodies;
+            let null = 1024.0 * f64::EPSILON;
+            let [one, other] =
+                [by_singular_values(&rows, columns, null).unwrap(), by_elimination(&rows, columns, null)]
+                    .map(|basis| echelon(basis, columns));
+            // Two equations a pin; those round the ring leave its rotations.
+            assert_eq!((one.ncols(), other.ncols()), (bodies - supported, bodies - supported));
+            assert!((&one - &other).amax() < 1e-9, "{}", (&one - &other).amax());
+            for row in &rows {
+                for vector in other.column_iter() {
+                    assert!(row.iter().map(|&(i, a)| a * vector[i]).sum::<f64>().abs() < 1e-11);
+                }
+            }
+        }
+    }
+
+    /// A chain of thousands of bodies that share x and y at one place each, the first one clamped: rotations are left.
+    #[test]
+    fn long_chains_are_quick() {
+        let bodies = 3000;
+        let mut rows: Vec<Terms> = vec![vec![(0, 1.0)], vec![(1, 1.0)], vec![(2, 1.0)]];
+        for other in (1..bodies).map(|body| 3 * body) {
+            rows.extend((0..3).map(|c| vec![(other + c, 1.0), (other + c - 3, -1.0)]));
+        }
+        assert_eq!(null_basis(&rows, 3 * bodies, 1024.0 * f64::EPSILON).unwrap().ncols(), 0);
+    }
+}

@@ -1,0 +1,119 @@
+//! Parts of a structure: elements that can only move as one rigid body.
+//!
+//! They have an edge in common, or are frame bars rigidly attached to one node, or have two nodes in one rigid body; a lone
+//! node is a part without rotation. A part of a superelement moves as its stiffness lets it. Parts that share a node are
+//! pinned there.
+
+use super::dof::root;
+use crate::model::structure::{Component, Structure};
+use crate::model::superelement::Part;
+
+/// Parts at every node.
+pub struct Parts {
+    /// Part numbers at each node; the first moves it, all others are pinned to that.
+    pub at_node: Vec<Vec<u32>>,
+    /// The part that turns with the rotation of the node.
+    pub turning: Vec<Option<u32>>,
+    /// Whether a part can turn (is more than a lone node).
+    pub turns: Vec<bool>,
+    /// The part of each part of the superelement; `u32::MAX` for one that lies in another cluster.
+    pub of_superelement: Vec<u32>,
+}
+
+/// The parts of the superelement, if there is one.
+pub fn superelement_parts(structure: &Structure) -> &[Part] {
+    structure.superelement.as_ref().map_or(&[], |element| &element.parts)
+}
+
+impl Parts {
+    /// From the elements, bodies and the superelement of a structure.
+    pub fn new(structure: &Structure) -> Parts {
+        // Rigid bodies count as elements, after the others, and so do the parts of a superelement.
+        let elements = structure.elements.len();
+        let beyond = elements + structure.rigid.len();
+        let given = superelement_parts(structure);
+        let mut parent: Vec<u32> = (0..(beyond + given.len()) as u32).collect();
+        let mut join = |a: u32, b: u32| {
+            let (a, b) = (root(&mut parent, a as usize), root(&mut parent, b as usize));
+            parent[a.max(b)] = a.min(b) as u32;
+        };
+        // Elements that share an edge.
+        let mut edges = Vec::new();
+        for (index, element) in structure.elements.iter().enumerate() {
+            edges.extend(element.sides().map(|[a, b]| (a.min(b) as u32, a.max(b) as u32, index as u32)));
+        }
+        edges.sort_unstable();
+        for pair in edges.windows(2) {
+            if (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1) {
+                join(pair[0].2, pair[1].2);
+            }
+        }
+        // Elements with two nodes in one body.
+        let body_of = structure.body_of_nodes();
+        for (index, element) in structure.elements.iter().enumerate() {
+            let bodies: Vec<usize> = element.nodes.iter().filter_map(|&node| body_of[node]).collect();
+            for (at, &body) in bodies.iter().enumerate() {
+                if bodies[..at].contains(&body) {
+                    join(index as u32, (elements + body) as u32);
+                }
+            }
+        }
+        // Frame bars rigidly attached to one node, or to a body.
+        let mut turning: Vec<Option<u32>> =
+            body_of.iter().map(|body| body.map(|body| (elements + body) as u32)).collect();
+        for (index, element) in structure.elements.iter().enumerate() {
+            for (end, &node) in element.nodes.iter().enumerate() {
+                if element.components(end).contains(&Component::R) {
+                    match turning[node] {
+                        Some(other) => join(index as u32, other),
+                        None => turning[node] = Some(index as u32),
+                    }
+                }
+            }
+        }
+        if let Some(element) = &structure.superelement {
+            let mut part_of = vec![None; structure.nodes.len()];
+            for (index, part) in given.iter().enumerate() {
+                part.nodes.iter().for_each(|&node| part_of[node] = Some((beyond + index) as u32));
+            }
+            for &(node, _) in element.dofs.iter().filter(|(_, component)| *component == Component::R) {
+                match (turning[node], part_of[node]) {
+                    (Some(body), Some(part)) => join(part, body),
+                    (_, part) => turning[node] = part,
+                }
+            }
+        }
+        // Number the parts; lone nodes come last.
+        let mut number = vec![u32::MAX; parent.len()];
+        let mut turns = Vec::new();
+        let mut part_of = |parent: &mut Vec<u32>, element: usize| {
+            let element = root(parent, element);
+            if number[element] == u32::MAX {
+                number[element] = turns.len() as u32;
+                turns.push(true);
+            }
+            number[element]
+        };
+        let mut at_node: Vec<Vec<u32>> = vec![Vec::new(); structure.nodes.len()];
+        let elements = structure.elements.iter().map(|element| &element.nodes);
+        let bodies = structure.rigid.iter().map(|body| &body.nodes);
+        let parts = given.iter().map(|part| &part.nodes);
+        for (index, nodes) in elements.chain(bodies).chain(parts).enumerate() {
+            let part = part_of(&mut parent, index);
+            for &node in nodes {
+                if !at_node[node].contains(&part) {
+                    at_node[node].push(part);
+                }
+            }
+        }
+        for turning in turning.iter_mut().flatten() {
+            *turning = part_of(&mut parent, *turning as usize);
+        }
+        let of_superelement = (0..given.len()).map(|part| part_of(&mut parent, beyond + part)).collect();
+        for parts in at_node.iter_mut().filter(|parts| parts.is_empty()) {
+            parts.push(turns.len() as u32);
+            turns.push(false);
+        }
+        Parts { at_node, turning, turns, of_superelement }
+    }
+}
