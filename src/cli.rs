@@ -17,7 +17,7 @@ use crate::model::problem::Problems;
 use crate::model::rules::{Covering, Engine, TieBreak};
 use crate::model::scenario::Scenario;
 use crate::model::schema;
-use crate::session::commands::{import, new, paths, script};
+use crate::session::commands::{import, new, script, sweep};
 use crate::session::{Answer, exit_status, load};
 use crate::session::{CommandError, Format, History, Output, Session, diagnose};
 use crate::signals::{self, Signals, TerminalWatch, is_dumb};
@@ -229,7 +229,7 @@ struct SweepArguments {
     settings: Settings,
     /// Only part K of N, for batch systems
     #[arg(long, value_name = "K/N")]
-    shard: Option<paths::Shard>,
+    shard: Option<sweep::Shard>,
     /// File to write; otherwise stdout
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -556,12 +556,12 @@ fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Resu
     let session = Session::with_settings(scenario, &arguments.settings.words(), &watch);
     watch.clear();
     let session = session?;
-    let request = paths::SweepRequest {
+    let request = sweep::SweepRequest {
         axes: &arguments.axes,
         shard: arguments.shard,
         format: arguments.format.map(|rows| match rows {
-            Rows::Csv => paths::Format::Csv,
-            Rows::Json => paths::Format::Json,
+            Rows::Csv => sweep::Format::Csv,
+            Rows::Json => sweep::Format::Json,
         }),
         out: arguments.out.as_deref(),
         resume: arguments.resume,
@@ -571,14 +571,14 @@ fn sweep(arguments: &SweepArguments, style: &Style, out: &mut dyn Write) -> Resu
     watch.clear();
     let done = done?;
     if let Some(path) = &arguments.out {
-        writeln!(out, "{}", style.text(&paths::done_sentence(&done, path)))?;
+        writeln!(out, "{}", style.text(&sweep::done_sentence(&done, path)))?;
     }
     Ok(if done.is_complete() { 0 } else { 130 })
 }
 
 fn merge(files: &[PathBuf], to: Option<&Path>, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
     let watch = TerminalWatch::new(&Signals::install()?);
-    let rows = paths::merge(files, to, out, &watch)?;
+    let rows = sweep::merge(files, to, out, &watch)?;
     if let Some(path) = to {
         writeln!(out, "{}", style.text(&format!("{rows} rows written to {}", path.display())))?;
     }

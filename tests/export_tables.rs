@@ -7,7 +7,7 @@ use serde_json::Value;
 use stickslip::answer::record::{Answer, OutcomeKind};
 use stickslip::model::embedded;
 use stickslip::model::load::load_file;
-use stickslip::session::language::help::GROUPS;
+use stickslip::session::commands;
 use stickslip::session::{CommandError, Output, Session};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
@@ -96,7 +96,7 @@ fn the_table_of_every_command_is_exported_or_it_has_none() {
     let at = |ending: &str| folder.path().join(format!("a.{ending}"));
     let listed: BTreeMap<&str, _> = COMMANDS.iter().copied().collect();
     assert_eq!(listed.len(), COMMANDS.len(), "a command stands there twice");
-    for name in GROUPS.iter().flat_map(|(_, names)| names.iter().copied()) {
+    for name in commands::all().map(|command| command.name) {
         let how = listed.get(name).unwrap_or_else(|| panic!("{name}: is its table exported?"));
         let Ok((before, what, column)) = how else { continue };
         let mut session = session("beam");

@@ -7,8 +7,9 @@ use std::time::Duration;
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
 use stickslip::model::scenario::{Scenario, Source};
-use stickslip::session::language::command::{self, Command};
-use stickslip::session::{Output, Session, commands::paths, language::complete, language::tokens};
+use stickslip::session::commands::sweep;
+use stickslip::session::language::{complete, grammar, tokens};
+use stickslip::session::{Output, Session};
 use stickslip::solve::prepare;
 use stickslip::view::style::Style;
 use stickslip::watch::{Budget, Quiet};
@@ -81,7 +82,7 @@ pub fn line(bytes: &[u8]) -> bool {
         assert!(found.start <= at && line.is_char_boundary(found.start));
     }
     complete::hint(line, &vocabulary);
-    tokens::commands(line).into_iter().all(|command| match command::parse(command) {
+    tokens::commands(line).into_iter().all(|command| match grammar::parse(command) {
         Ok(_) => true,
         Err(error) => {
             assert!(!error.to_string().is_empty());
@@ -90,40 +91,45 @@ pub fn line(bytes: &[u8]) -> bool {
     })
 }
 
+/// Commands that look at nothing but the session and are quick.
+const HARMLESS: &[&str] = &[
+    "set",
+    "reset",
+    "undo",
+    "redo",
+    "diff",
+    "params",
+    "status",
+    "pairs",
+    "displacements",
+    "members",
+    "reactions",
+    "show",
+    "pivots",
+    "step",
+    "why",
+    "ties",
+    "ray",
+    "expect",
+    "echo",
+    "help",
+];
+
 /// A script: the commands in it that look at nothing but the session, one after the other; the others are read only.
 pub fn script(bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let mut session = Session::new(embedded::load("beam").expect("embedded"), &Quiet).expect("solved");
     let mut all = true;
     for command in text.lines().flat_map(tokens::commands).take(20) {
-        let Ok(Some(parsed)) = command::parse(command) else {
+        let Ok(Some(parsed)) = grammar::parse(command) else {
             all = false;
             continue;
         };
-        let harmless = match &parsed {
-            Command::Load { scenario } => embedded::text(scenario).is_some(),
-            Command::Set { .. }
-            | Command::Reset { .. }
-            | Command::Undo
-            | Command::Redo
-            | Command::Diff
-            | Command::Params
-            | Command::Status
-            | Command::Pairs { .. }
-            | Command::Displacements { .. }
-            | Command::Members { .. }
-            | Command::Reactions
-            | Command::Show { .. }
-            | Command::Check { how: None }
-            | Command::Pivots { .. }
-            | Command::Step { .. }
-            | Command::Why { .. }
-            | Command::Ties
-            | Command::Ray
-            | Command::Expect { .. }
-            | Command::Echo { .. }
-            | Command::Help { .. } => true,
-            _ => false,
+        let argument = tokens::split(command).ok().and_then(|words| words.get(1).cloned());
+        let harmless = match parsed.command.name {
+            "load" => argument.is_some_and(|name| embedded::text(&name).is_some()),
+            "check" => argument.is_none(),
+            name => HARMLESS.contains(&name),
         };
         if harmless {
             let watch = Budget::new(&Quiet, TIME);
@@ -143,7 +149,7 @@ pub fn sweep(bytes: &[u8]) -> bool {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("part.csv");
     fs::write(&file, bytes).expect("a file");
-    match paths::merge(&[file], None, &mut io::sink(), &Quiet) {
+    match sweep::merge(&[file], None, &mut io::sink(), &Quiet) {
         Ok(_) => true,
         Err(error) => {
             assert!(!error.to_string().is_empty());

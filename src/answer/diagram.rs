@@ -2,27 +2,7 @@
 
 use super::record::MemberForces;
 use crate::fem::Piece;
-
-/// Which internal force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Internal {
-    /// N, tension positive.
-    Axial,
-    /// Q = dM/dx.
-    Shear,
-    /// M, positive with tension on the −y side of the bar.
-    Moment,
-}
-
-impl Internal {
-    /// All three in the order N, Q, M.
-    pub const ALL: [Internal; 3] = [Internal::Axial, Internal::Shear, Internal::Moment];
-
-    /// `N`, `Q` or `M`.
-    pub fn symbol(self) -> &'static str {
-        ["N", "Q", "M"][self as usize]
-    }
-}
+pub use crate::model::quantity::Internal;
 
 /// A value and the distance from the start of the bar at which it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -39,17 +39,4 @@ impl Stress {
         let distortion = 0.5 * ((x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2)) + 3.0 * xy * xy;
         Stress { place, sx: x, sy: y, sxy: xy, s1: middle + radius, s2: middle - radius, mises: distortion.sqrt() }
     }
-
-    /// The number that a word of the language of quantities means.
-    pub fn number(&self, word: &str) -> f64 {
-        match word {
-            "sx" => self.sx,
-            "sy" => self.sy,
-            "sxy" => self.sxy,
-            "s1" => self.s1,
-            "s2" => self.s2,
-            // The only word of the table that is left.
-            _ => self.mises,
-        }
-    }
 }

@@ -11,7 +11,8 @@ use rustyline::hint::Hinter;
 use rustyline::{Cmd, ConditionalEventHandler, Event, EventContext, Helper, Validator};
 
 use crate::session::language::complete::{self, Candidate, Vocabulary};
-use crate::session::{language::command, language::setting, language::tokens};
+use crate::session::language::error::GrammarError;
+use crate::session::language::{grammar, setting, tokens};
 use crate::view::style::{Role, Style};
 
 /// Completes, hints and colours by the grammar and the names of the session.
@@ -171,9 +172,9 @@ fn coloured(line: &str, style: &Style) -> String {
                 continue;
             }
             let role = if first {
-                match command::resolve(word) {
+                match grammar::resolve(word) {
                     Ok(_) => Role::Accent,
-                    Err(command::GrammarError::Ambiguous { .. }) => Role::Plain,
+                    Err(GrammarError::Ambiguous { .. }) => Role::Plain,
                     Err(_) => Role::Bad,
                 }
             } else if setting::number(word.trim_end_matches('%')).is_some() {

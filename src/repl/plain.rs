@@ -4,7 +4,8 @@ use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use crate::session::commands::script::{self, expects_error};
+use crate::session::commands::script;
+use crate::session::language::grammar::expects_error;
 use crate::session::{Next, Output, Session, language::tokens};
 use crate::text::printable::Printable;
 use crate::view::style::Style;

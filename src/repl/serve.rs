@@ -6,8 +6,9 @@ use std::sync::mpsc::RecvTimeoutError;
 use serde_json::{Value, json};
 
 use crate::export::json as json_export;
-use crate::session::commands::script::{LONGEST, expects_error};
-use crate::session::language::command::did_you_mean;
+use crate::session::commands::script::LONGEST;
+use crate::session::language::grammar::expects_error;
+use crate::session::language::suggestion::did_you_mean;
 use crate::session::{CommandError, Format, Next, Output, Session, language::tokens};
 use crate::signals::{Signals, TerminalWatch};
 use crate::text::printable;

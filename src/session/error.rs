@@ -8,11 +8,15 @@ use thiserror::Error;
 use crate::model::problem::Problems;
 use crate::solve::PrepareError;
 
+use super::save::SaveError;
 use super::worker::WorkerError;
-use crate::session::commands::save::SaveError;
-use crate::session::language::command::GrammarError;
+use crate::path::grid::GridError;
+use crate::path::start::PathError;
+use crate::path::sweep_file::SweepFileError;
+use crate::session::language::error::GrammarError;
 use crate::session::language::expect::{ExpectationSyntax, Unmet};
 use crate::session::language::setting::SetError;
+use crate::solve::error::QuestionError;
 
 /// A command that failed; the session is as it was.
 #[derive(Debug, Error)]
@@ -129,6 +133,41 @@ impl CommandError {
             CommandError::Interrupted => true,
             CommandError::Script { error, .. } => error.is_interrupted(),
             _ => false,
+        }
+    }
+}
+
+impl From<PathError> for CommandError {
+    fn from(error: PathError) -> Self {
+        match error {
+            PathError::Interrupted => CommandError::Interrupted,
+            lost @ PathError::Breakdown { .. } => CommandError::Lost(lost.to_string()),
+            error => CommandError::Refused(error.to_string()),
+        }
+    }
+}
+
+impl From<GridError> for CommandError {
+    fn from(error: GridError) -> Self {
+        CommandError::Refused(error.to_string())
+    }
+}
+
+impl From<SweepFileError> for CommandError {
+    fn from(error: SweepFileError) -> Self {
+        match error {
+            SweepFileError::Output(error) => CommandError::Output(error),
+            SweepFileError::Interrupted => CommandError::Interrupted,
+            error => CommandError::Refused(error.to_string()),
+        }
+    }
+}
+
+impl From<QuestionError> for CommandError {
+    fn from(error: QuestionError) -> Self {
+        match error {
+            QuestionError::Interrupted => CommandError::Interrupted,
+            QuestionError::Refused(text) => CommandError::Refused(text),
         }
     }
 }

@@ -4,8 +4,6 @@
 use std::io::{self, Write};
 use std::sync::Arc;
 
-use serde_json::{Value, json};
-
 use crate::answer::record::{Answer, NodeDisplacement, PairState};
 use crate::path::record::PathRecord;
 use crate::path::stages::{self, History, HistoryEnd};
@@ -14,7 +12,7 @@ use crate::view::number::short;
 use crate::view::style::Style;
 use crate::watch::Watch;
 
-use super::{CommandError, Output, Session, worker};
+use super::{CommandError, Session, worker};
 
 impl Session {
     /// The load history that quantities, `expect` and the tables mean at present.
@@ -108,62 +106,4 @@ impl Session {
         self.followed = Some(Arc::clone(&history));
         Ok(history)
     }
-
-    /// `stages [STAGE]`.
-    pub(super) fn stages(&mut self, stage: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let count = self.now.scenario.stages.len();
-        if let Some(number) = stage.filter(|number| count > 0 && !(1..=count).contains(number)) {
-            return Err(CommandError::Refused(format!("no stage {number}: there are stages 1 to {count}")));
-        }
-        let history = self.follow_stages(io.watch)?;
-        let index = match stage {
-            None => None,
-            Some(number) => {
-                self.stage_answer(number)?;
-                Some(number - 1)
-            }
-        };
-        let units = &self.now.scenario.units;
-        let place = self.history_place().unwrap_or_default();
-        io.report(
-            || history_json(&history),
-            |out, style| {
-                match index {
-                    None => view::stages::write(out, &history, units, style),
-                    Some(index) => view::stages::write_stage(out, &history, index, units, style),
-                }?;
-                let line =
-                    format!("quantities, `expect` and tables now stand {place}, until the next change or `solve`");
-                view::stages::write_line(out, &line, style)
-            },
-        )?;
-        Ok(())
-    }
-}
-
-pub(super) fn history_json(history: &History) -> Value {
-    let stages = history.stages.iter().map(|stage| {
-        let changes = stage.moments.iter().filter(|at| !at.changes.is_empty()).map(|at| {
-            json!({
-                "done": at.t, "factors": at.factors, "changes": at.changes,
-                "sentence": at.sentence, "jump": at.jump,
-            })
-        });
-        json!({
-            "pivots": stage.pivots,
-            "factors": stage.moments.last().map(|end| &end.factors),
-            "slip_increment": stage.slip,
-            "dissipated": stage.dissipated,
-            "work": stage.energy.map(|energy| energy.work),
-            "stored": stage.energy.map(|energy| energy.stored),
-            "balance": stage.energy.map(|energy| energy.residual),
-            "changes": changes.collect::<Vec<_>>(),
-            "pairs": stage.moments.last().map(|end| &end.pairs),
-        })
-    });
-    json!({
-        "cases": history.cases,
-        "stages": stages.collect::<Vec<_>>(),
-        "end": history.end_sentence(),
-    })
 }

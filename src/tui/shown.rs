@@ -6,7 +6,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
-use crate::session::language::complete::{self, Vocabulary};
+use crate::session::language::complete::Vocabulary;
 use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, RayClass, Start};
 use crate::session::{Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
@@ -150,7 +150,7 @@ impl Shown {
 
     /// Names for completion.
     pub fn vocabulary(&self) -> &Vocabulary {
-        self.vocabulary.get_or_init(|| complete::vocabulary(&self.scenario, &self.values))
+        self.vocabulary.get_or_init(|| Vocabulary::of(&self.scenario, &self.values))
     }
 
     /// The answer.

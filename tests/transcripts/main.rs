@@ -11,8 +11,9 @@ use std::sync::Arc;
 
 use rand::{Rng, SeedableRng};
 use stickslip::model::embedded;
+use stickslip::session::commands;
 use stickslip::session::journal::Journal;
-use stickslip::session::language::help::{GROUPS, help, overview};
+use stickslip::session::language::help::{help, overview};
 use stickslip::session::{CommandError, Format, Next, Output, Session, commands::script};
 use stickslip::view::style::Style;
 use stickslip::watch::{Quiet, Watch};
@@ -71,10 +72,8 @@ fn replay(text: &str, format: Format, keep_going: bool) -> (String, Vec<String>,
 #[test]
 fn help_of_everything() {
     let mut all = overview(&Style::default());
-    for (_, names) in GROUPS {
-        for name in *names {
-            all.push_str(&format!("\n──── help {name}\n{}", help(name, 80).unwrap()));
-        }
+    for name in commands::all().map(|command| command.name) {
+        all.push_str(&format!("\n──── help {name}\n{}", help(name, 80).unwrap()));
     }
     assert!(all.lines().all(|line| line.chars().count() <= 80));
     insta::assert_snapshot!("help", all);

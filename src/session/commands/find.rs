@@ -2,16 +2,69 @@
 
 use std::cmp::Ordering;
 
+use clap::Args;
 use serde_json::{Value as Json, json};
 
-use crate::model::quantity::Quantity;
+use crate::model::quantity::{OfAnswer, Quantity};
 use crate::path::edge::{Which, edge};
 use crate::path::find::{Found, Wanted, find};
 use crate::view;
 
+use crate::session::language::candidates::{Asked, Candidate};
+use crate::session::language::command::{Action, Command};
 use crate::session::language::expect::{self, Expectation, Operator};
 use crate::session::language::selection::no_such;
-use crate::session::{CommandError, Output, Session, worker};
+use crate::session::{CommandError, Next, Output, Session, worker};
+
+/// Find the values of a parameter or load at which a quantity is as wanted
+///
+/// `find NAME [A..B] where QUANTITY < | = | > VALUE` (or `QUANTITY WORD`) tells every interval and place in the range,
+/// which is that of the slider if it is left out. Where an exact path leads over NAME (loads, friction) they are
+/// exact and in order; elsewhere (geometry, stiffness) they are brackets between answers of their own.
+/// `find least|most NAME [A..B] where outcome answer` brackets the first value with an answer between a checked answer
+/// and a proved collapse; with another condition it is the first or the last place at which that holds.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  find F2 0..400 where z_t c3 > 0\n  find f 0..1 where x_t c1 = -50\n  find F2 where state c3 = slip+\n  find most F2 where outcome answer"
+)]
+pub struct Find {
+    /// `least` or `most`, the parameter or load case, the range, `where` and the condition
+    #[arg(value_name = "FOUND", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<String>,
+}
+
+pub const FIND: Command = Command { in_0_1: false, complete: words, ..Command::of::<Find>("find") };
+
+impl Action for Find {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.find(&self.words, io)?;
+        Ok(Next::Continue)
+    }
+}
+
+/// `least` or `most`, the parameter or load case, `where`, the condition.
+pub(super) fn words(asked: &Asked<'_>) -> Vec<Candidate> {
+    if let Some(at) = asked.given.iter().position(|word| word == "where") {
+        return match &asked.given[at + 1..] {
+            [subject, _] if subject == "state" => Candidate::plain(["="]),
+            [.., subject, sign] if sign == "=" && !expect::choices(subject).is_empty() => {
+                Candidate::plain(expect::choices(subject))
+            }
+            [subject, _, sign] if sign == "=" && subject == "state" => Candidate::plain(expect::choices("state")),
+            rest => asked.quantities(rest),
+        };
+    }
+    match asked.given {
+        [] => {
+            let mut all = asked.varied();
+            all.push(Candidate::new("least", "the first value with an answer"));
+            all.push(Candidate::new("most", "the last one"));
+            all
+        }
+        [word] if word == "least" || word == "most" => asked.varied(),
+        _ => vec![Candidate::new("where", "the condition")],
+    }
+}
 
 /// What stands behind `find`.
 struct Request {
@@ -118,7 +171,7 @@ impl Session {
             }
             report
         };
-        let outcome = matches!(&request.quantity, Quantity::Plain("outcome"))
+        let outcome = matches!(&request.quantity, Quantity::Answer(OfAnswer::Outcome))
             && request.wanted == Wanted::Word("answer".to_owned());
         let name = request.name.clone();
         if let (Some(which), true) = (request.which, outcome) {

@@ -4,11 +4,35 @@ use std::fs::OpenOptions;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+
 use crate::export::lcp;
 use crate::model::siconos;
-use crate::session::{CommandError, worker};
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::text::file::read_text;
 use crate::watch::Watch;
+
+/// Turn an LCP of Siconos (FILE.dat: dense, sparse or in blocks) into a scenario
+///
+/// Writes FILE.json beside it, which `load` opens; a file that is there already stays as it is.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  import lcp_mmc.dat; load lcp_mmc.json")]
+pub struct Import {
+    /// The file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+}
+
+pub const IMPORT: Command = Command { in_0_1: false, ..Command::of::<Import>("import") };
+
+impl Action for Import {
+    fn run(&self, _: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        let (written, rows) = import(&self.file, io.watch)?;
+        io.say(&format!("wrote {}: an LCP of {rows} rows", written.display()))?;
+        Ok(Next::Continue)
+    }
+}
 
 /// Writes the LCP of a Siconos file as a scenario beside it, FILE.json for FILE.dat; an existing file stays as it is.
 /// Returns the path of the scenario and the number of rows.

@@ -2,13 +2,52 @@
 
 use std::sync::Arc;
 
+use clap::Args;
 use serde_json::{Value as Json, json};
 
 use crate::model::quantity::Quantity;
 use crate::path::envelope::Axis;
-use crate::path::map::{Map, map};
-use crate::session::{CommandError, Output, Session, worker};
+use crate::path::map::{self, map};
+use crate::session::language::candidates::{Asked, Candidate};
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
+
+/// Cut the plane of two parameters into its regions of equal working scheme
+///
+/// `map P [A..B] Q [C..D] [of QUANTITY]`: parameters or load cases, horizontal and vertical; the ranges are those of
+/// the sliders where they are left out. One of the two is followed on its exact path while the other stands still;
+/// where the order of the schemes changes is found to the last digits. Each region gets its area, and at a place inside
+/// its states, or the collapse with its motion and what is proved of it, and the quantity. In small problems other
+/// answers are looked for there; their regions are hatched. `export map FILE.svg|.json` writes the last map.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  map f 0..1 F2 0..400\n  map f 0..1 F2 0..400 of z_t c6")]
+pub struct Map {
+    /// The two parameters or load cases with their ranges, `of` and a quantity
+    #[arg(value_name = "MAPPED", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<String>,
+}
+
+pub const MAP: Command = Command { in_0_1: false, complete: candidates, ..Command::of::<Map>("map") };
+
+impl Action for Map {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.draw_map(&self.words, io)?;
+        Ok(Next::Continue)
+    }
+}
+
+/// Two parameters or load cases with their ranges; after `of` a quantity.
+fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
+    if let Some(at) = asked.given.iter().position(|word| word == "of") {
+        return asked.quantities(&asked.given[at + 1..]);
+    }
+    let mut all = asked.varied();
+    if !asked.given.is_empty() {
+        all.extend(Candidate::plain(["of"]));
+    }
+    all
+}
 
 fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
     Err(CommandError::Refused(text.into()))
@@ -18,7 +57,7 @@ fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
 #[derive(Clone, Debug)]
 pub struct Drawn {
     /// The map.
-    pub map: Map,
+    pub map: map::Map,
     /// What was read at the marked places.
     pub quantity: Option<Quantity>,
 }

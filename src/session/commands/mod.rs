@@ -1,21 +1,96 @@
-//! What each command does: one file a group. `dispatch` hands a parsed command to its group.
+//! What each command does, one file an idea: its arguments and help, what may be typed next, and the doing. The table
+//! lists them; a new command is a file and its name here.
 
-pub(in crate::session) mod combinations;
-pub(in crate::session) mod dispatch;
+pub(in crate::session) mod along;
+pub(in crate::session) mod check;
+pub(in crate::session) mod combine;
+pub(in crate::session) mod compare;
+pub(in crate::session) mod critical;
+pub(in crate::session) mod enumerate;
+pub(in crate::session) mod envelope;
+pub(in crate::session) mod expect;
 pub(in crate::session) mod exports;
 pub(in crate::session) mod find;
+pub(in crate::session) mod help;
+pub(in crate::session) mod history;
 pub mod import;
+pub(in crate::session) mod limit;
+pub mod load;
 pub(in crate::session) mod map;
 pub mod new;
-pub mod paths;
+pub(in crate::session) mod parameters;
+pub(in crate::session) mod pivots;
+pub(in crate::session) mod plot_path;
 pub(in crate::session) mod plots;
-pub(in crate::session) mod quantities;
-pub(in crate::session) mod questions;
+pub(in crate::session) mod quit;
+pub(in crate::session) mod ray;
 pub(in crate::session) mod record;
-pub(in crate::session) mod reports;
 pub(in crate::session) mod restore;
-pub mod save;
+pub(in crate::session) mod save;
+pub(in crate::session) mod screen;
 pub mod script;
+pub(in crate::session) mod sensitivity;
+pub(in crate::session) mod set;
+pub(in crate::session) mod show;
 pub(in crate::session) mod side;
+pub(in crate::session) mod solve;
+pub(in crate::session) mod stages;
 pub(in crate::session) mod summary;
+pub mod sweep;
+pub(in crate::session) mod tableau;
+pub(in crate::session) mod tables;
+pub(in crate::session) mod trace;
+pub(in crate::session) mod undo;
 pub(in crate::session) mod why;
+
+use crate::session::language::command::Command;
+
+/// Every command, by the groups of `help`, in the order shown.
+pub static GROUPS: &[(&str, &[Command])] = &[
+    (
+        "scenario",
+        &[
+            load::LOAD,
+            new::NEW,
+            load::SCENARIOS,
+            save::SAVE,
+            parameters::PARAMS,
+            set::SET,
+            set::RESET,
+            undo::UNDO,
+            undo::REDO,
+            parameters::DIFF,
+            import::IMPORT,
+        ],
+    ),
+    (
+        "answer",
+        &[
+            solve::SOLVE,
+            solve::STATUS,
+            tables::PAIRS,
+            tables::DISPLACEMENTS,
+            tables::MEMBERS,
+            tables::REACTIONS,
+            show::SHOW,
+            summary::SUMMARY,
+            combine::COMBINE,
+            envelope::ENVELOPE,
+            check::CHECK,
+        ],
+    ),
+    ("pivots", &[pivots::PIVOTS, pivots::STEP, why::WHY, tableau::TIES, tableau::TABLEAU]),
+    ("trouble", &[ray::RAY, compare::COMPARE, enumerate::ENUMERATE, critical::CRITICAL]),
+    (
+        "paths",
+        &[sweep::SWEEP, trace::TRACE, limit::LIMIT, find::FIND, map::MAP, sensitivity::SENSITIVITY, stages::STAGES],
+    ),
+    ("pictures", &[plots::PLOT, screen::TUI]),
+    ("scripts", &[script::SOURCE, record::RECORD, expect::EXPECT, exports::EXPORT, script::ECHO, restore::RESTORE]),
+    ("help", &[help::HELP, screen::TOUR, history::HISTORY, quit::QUIT]),
+];
+
+/// Every command.
+pub fn all() -> impl Iterator<Item = &'static Command> {
+    GROUPS.iter().flat_map(|(_, commands)| commands.iter())
+}

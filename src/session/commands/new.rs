@@ -2,15 +2,71 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use serde_json::{Value, json};
 
-use super::super::{CommandError, Output, Session, Setup, worker};
 use crate::export::atomic;
 use crate::model::embedded;
 use crate::model::scenario::Scenario;
 use crate::model::template::{self, Choice, Template};
+use crate::session::language::candidates::{Asked, Candidate};
+use crate::session::language::command::{Action, Command};
+use crate::session::language::tokens;
+use crate::session::{CommandError, Next, Output, Session, Setup, worker};
 use crate::view;
 use crate::watch::Watch;
+
+/// Write a scenario to begin with, load it and solve it; without KIND, list the kinds
+///
+/// The kinds are portal, continuous-beam, pipeline, block, block-stack, wall, arch, dam, footing, retaining-wall and
+/// press-fit. Their dimensions are parameters, or counts of parts: NAME=VALUE chooses any of them, the others stay as
+/// `new` lists them. The file has comments, which `save` keeps, and is KIND.json if none is named; one that is there
+/// already stays as it is.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  new\n  new wall courses=5 bricks=4 f=0.5 wall-5.json")]
+pub struct New {
+    /// What to begin with
+    #[arg(value_name = "KIND")]
+    kind: Option<String>,
+    /// Values of its parameters and counts, and the file
+    #[arg(value_name = "NAME=VALUE FILE")]
+    words: Vec<String>,
+}
+
+pub const NEW: Command = Command {
+    in_0_1: false,
+    usage: Some("KIND [NAME=VALUE…] [FILE]"),
+    complete: candidates,
+    without_scenario: true,
+    ..Command::of::<New>("new")
+};
+
+impl Action for New {
+    fn run(&self, session: &mut Session, text: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.new_scenario(self.kind.as_deref(), &self.words, text, io)?;
+        Ok(Next::Continue)
+    }
+
+    fn loads(&self) -> bool {
+        self.kind.is_some()
+    }
+}
+
+/// The kind; then what can be chosen of it, but for what was chosen already, and the file.
+fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
+    let [kind, given @ ..] = asked.given else {
+        return Candidate::plain(template::ALL.iter().map(|template| template.kind));
+    };
+    let mut all = asked.files();
+    let chosen = |name: &str| given.iter().any(|word| word.split_once('=').is_some_and(|(known, _)| known == name));
+    if let Ok(template) = template::find(kind)
+        && let Ok(scenario) = template.default_scenario()
+    {
+        let choices = template.choices(&scenario).into_iter().filter(|choice| !chosen(&choice.name));
+        all.extend(choices.map(|choice| Candidate::new(format!("{}=", choice.name), choice.about)));
+    }
+    all
+}
 
 /// Every kind with its title and what can be chosen of it.
 ///
@@ -62,7 +118,7 @@ pub fn write(kind: &str, words: &[String], watch: &dyn Watch) -> Result<(PathBuf
 pub fn typed(path: &Path) -> String {
     let name = path.display().to_string();
     let place = if embedded::text(&name).is_some() || name.starts_with('-') { "./" } else { "" };
-    super::super::tokens::quote(&format!("{place}{name}"))
+    tokens::quote(&format!("{place}{name}"))
 }
 
 impl Session {

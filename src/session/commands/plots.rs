@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use crate::answer::diagram::Internal;
@@ -9,23 +10,110 @@ use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PivotReco
 use crate::model::structure::Structure;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::diagram;
-use crate::view::plot::scene::{Magnification, Picture};
+use crate::view::plot::scene::{self, Magnification};
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
 
-use crate::session::language::command::Picture as Wanted;
-use crate::session::{CommandError, Output, Session};
+use crate::session::language::candidates::{Asked, Candidate};
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session};
 
 /// Lines of a plot if the user names none.
 const HEIGHT: usize = 14;
 /// Lines of the picture of a structure if the user names none.
 const STRUCTURE_HEIGHT: usize = 20;
 
+/// What `plot` draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Picture {
+    /// Slip z_τ along the contact zone
+    Slip,
+    /// Friction force x_τ within its bound ±(f x_n + c)
+    Force,
+    /// Distance open z_n
+    Gap,
+    /// Compressive force x_n
+    Pressure,
+    /// p over the pivots
+    P,
+    /// The structure with the states of its pairs, and its deformed shape
+    Structure,
+    /// The collapse mode of a ray
+    Mode,
+    /// Bending moment along a bar, or along all bars where they lie
+    Moment,
+    /// Shear force likewise
+    Shear,
+    /// Normal force likewise
+    Axial,
+    /// Slip or force over the load, friction or history that was followed last
+    Path,
+}
+
+/// Draw a picture of the present state, or of the last path
+///
+/// `plot path [slip|force|gap|pressure] [PAIRS]`, or `plot path QUANTITY`, draws what the last `trace` or `stages`
+/// followed. A history is drawn over the load that goes to and fro most, or with `over CASE` at the end over another one.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  plot slip\n  plot force\n  plot structure\n  trace F2; plot path force c6 c5\n  \
+                        stages; plot path slip c6 over pull")]
+pub struct Plot {
+    /// What to draw
+    #[arg(value_name = "PICTURE")]
+    picture: Picture,
+    /// Pivots to draw on one axis: numbers, `first`, `last`, separated by commas
+    #[arg(long, value_name = "PIVOTS", value_delimiter = ',')]
+    at: Vec<String>,
+    /// Columns of the picture
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1000))]
+    width: Option<u16>,
+    /// Lines of the picture
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(5..=500))]
+    height: Option<u16>,
+    /// Bar, for moment, shear and axial (all of them without one); quantity, pairs and `over CASE`, for path
+    #[arg(value_name = "OF")]
+    of: Vec<String>,
+}
+
+pub const PLOT: Command = Command { complete: words, ..Command::of::<Plot>("plot") };
+
+impl Action for Plot {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.plot(self.picture, &self.at, self.width, self.height, &self.of, io)?;
+        Ok(Next::Continue)
+    }
+
+    fn needs_pivots(&self) -> bool {
+        matches!(self.picture, Picture::P | Picture::Path | Picture::Mode) || !self.at.is_empty()
+    }
+}
+
+/// Pivots for `--at`; a bar, or what of a path.
+fn words(asked: &Asked<'_>) -> Vec<Candidate> {
+    match (asked.option, asked.given) {
+        (Some("at"), _) => Candidate::plain(["first", "last", "first,last"]),
+        (None, [path, of @ ..]) if path == "path" => of_path(asked, of),
+        (None, [bars, ..]) if ["moment", "shear", "axial"].contains(&bars.as_str()) => {
+            Candidate::plain(&asked.names.bars)
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// What may follow `plot path` and the words after it.
+pub(in crate::session) fn of_path(asked: &Asked<'_>, given: &[String]) -> Vec<Candidate> {
+    if given.last().is_some_and(|word| word == "over") {
+        return asked.cases();
+    }
+    let words = ["slip", "force", "gap", "pressure", "over"];
+    Candidate::plain(asked.names.pairs.iter().map(String::as_str).chain(words))
+}
+
 impl Session {
     /// `plot PICTURE [OF] [--at PIVOTS] [--width N] [--height N]`.
     pub(in crate::session) fn plot(
         &self,
-        picture: Wanted,
+        picture: Picture,
         at: &[String],
         width: Option<u16>,
         height: Option<u16>,
@@ -38,8 +126,8 @@ impl Session {
         }
         let height = height.map(usize::from);
         let most = match picture {
-            Wanted::Moment | Wanted::Shear | Wanted::Axial => 1,
-            Wanted::Path => usize::MAX,
+            Picture::Moment | Picture::Shear | Picture::Axial => 1,
+            Picture::Path => usize::MAX,
             _ => 0,
         };
         let bar = of.first().map(String::as_str);
@@ -49,20 +137,20 @@ impl Session {
             )))
         } else {
             match picture {
-                Wanted::Slip => self.plot_zone(Quantity::Slip, at, height, io),
-                Wanted::Force => self.plot_zone(Quantity::Force, at, height, io),
-                Wanted::Gap => self.plot_zone(Quantity::Gap, at, height, io),
-                Wanted::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
+                Picture::Slip => self.plot_zone(Quantity::Slip, at, height, io),
+                Picture::Force => self.plot_zone(Quantity::Force, at, height, io),
+                Picture::Gap => self.plot_zone(Quantity::Gap, at, height, io),
+                Picture::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
                 _ if !at.is_empty() => Err(CommandError::Refused(
                     "plot: `--at` belongs to slip, force, gap and pressure; use `step` for the others".into(),
                 )),
-                Wanted::P => self.plot_p(height, io),
-                Wanted::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
-                Wanted::Structure => self.plot_structure(height, io),
-                Wanted::Mode => self.plot_mode(height, io),
-                Wanted::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
-                Wanted::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
-                Wanted::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
+                Picture::P => self.plot_p(height, io),
+                Picture::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
+                Picture::Structure => self.plot_structure(height, io),
+                Picture::Mode => self.plot_mode(height, io),
+                Picture::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
+                Picture::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
+                Picture::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
             }
         };
         io.style = saved;
@@ -281,8 +369,8 @@ pub(in crate::session) struct Shape<'a> {
 
 impl Shape<'_> {
     /// Its picture, so many rows high.
-    pub(in crate::session) fn picture(&self, height: usize) -> Picture<'_> {
-        Picture {
+    pub(in crate::session) fn picture(&self, height: usize) -> scene::Picture<'_> {
+        scene::Picture {
             title: &self.title,
             structure: self.structure,
             displacements: self.displacements.as_deref(),

@@ -4,22 +4,53 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use clap::{Args, ValueEnum};
+
 use crate::model::embedded;
 use crate::text::hash::Hash;
 
 use crate::session::journal::{self, Chosen, Record};
-use crate::session::{Change, CommandError, Output, Session, Setup, load};
+use crate::session::language::command::{Action, Command, Recorded};
+use crate::session::language::setting::{RULES, SetError};
+use crate::session::{Change, CommandError, Next, Output, Session, Setup, load};
+
+/// The word of `restore discard`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Discard {
+    /// Forget the changes
+    Discard,
+}
+
+/// Bring back the changes of a session in this directory that ended without `quit`
+///
+/// Values and rules are as they were after its last change, `undo` goes back through them; nothing is run again and
+/// no file is written.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  restore\n  restore discard")]
+pub struct Restore {
+    /// Forget those changes instead
+    #[arg(value_name = "DISCARD")]
+    discard: Option<Discard>,
+}
+
+pub const RESTORE: Command = Command { recorded: Recorded::State, ..Command::of::<Restore>("restore") };
+
+impl Action for Restore {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.restore(self.discard.is_some(), io)?;
+        Ok(Next::Continue)
+    }
+}
 
 impl Setup {
     /// As it is written into the journal.
     fn chosen(&self) -> Chosen {
-        let rules = self.rules;
         Chosen {
             scenario: self.scenario.name.clone(),
             file: self.scenario.path.is_some(),
             text: Hash::of(&self.scenario.text).long(),
             values: self.values.free().map(|(name, value)| (name.clone(), value)).collect(),
-            rules: [rules.covering.to_string(), rules.tie_break.to_string(), rules.engine.to_string()],
+            rules: RULES.each_ref().map(|rule| (rule.shown)(&self.rules)),
         }
     }
 }
@@ -61,10 +92,9 @@ impl Scenarios {
                 chosen.scenario
             )));
         }
-        let [covering, tie_break, engine] = &chosen.rules;
-        setup.rules.covering = covering.parse().map_err(crate::session::language::setting::SetError::Choice)?;
-        setup.rules.tie_break = tie_break.parse().map_err(crate::session::language::setting::SetError::Choice)?;
-        setup.rules.engine = engine.parse().map_err(crate::session::language::setting::SetError::Choice)?;
+        for (rule, choice) in RULES.iter().zip(&chosen.rules) {
+            (rule.set)(&mut setup.rules, choice).map_err(SetError::Choice)?;
+        }
         Ok(setup)
     }
 }

@@ -1,10 +1,49 @@
 //! Scripts: files of commands that `source` and `replay` run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::session::language::command::{self, Command};
+use clap::Args;
+
+use crate::session::language::command::{Action, Command};
+use crate::session::language::grammar::expects_error;
 use crate::session::{CommandError, Format, Next, Output, Session, language::tokens, load};
 use crate::view::style::Role;
+
+/// Run the commands of a script
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  source scenarios/scripts/beam.stick")]
+pub struct Source {
+    /// The script
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+}
+
+pub const SOURCE: Command = Command::of::<Source>("source");
+
+impl Action for Source {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        source(session, &self.file, io)
+    }
+}
+
+/// Print the words that follow
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  echo now with less friction")]
+pub struct Echo {
+    /// Any words
+    #[arg(value_name = "WORDS", trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<String>,
+}
+
+pub const ECHO: Command =
+    Command { verbatim: true, without_scenario: true, keeps_error: true, ..Command::of::<Echo>("echo") };
+
+impl Action for Echo {
+    fn run(&self, _: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        io.say(&self.words.join(" "))?;
+        Ok(Next::Continue)
+    }
+}
 
 /// Scripts within scripts, at most: a script that sources itself ends here.
 const DEEPEST: usize = 16;
@@ -20,14 +59,6 @@ impl Session {
         self.last_error = Some(refusal.clone());
         CommandError::Refused(refusal)
     }
-}
-
-/// Whether a command is `expect error …`: then the one before it may fail.
-pub fn expects_error(text: &str) -> bool {
-    matches!(
-        command::parse(text),
-        Ok(Some(Command::Expect { words })) if words.first().is_some_and(|word| word == "error")
-    )
 }
 
 /// How a script ended.

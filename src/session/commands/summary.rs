@@ -1,20 +1,36 @@
 //! `summary`: the answer on one screen.
 
+use clap::Args;
 use serde_json::{Value as Json, json};
 
-use crate::model::quantity::{BarPlace, Names, Over, Quantity};
+use crate::model::quantity::{BarPlace, Internal, Names, OfLoad, OfPair, Over, Quantity};
 use crate::path::quantity::{Facts, Resultant};
 use crate::view;
-use crate::view::summary::{Peak, Safety, Summary};
+use crate::view::summary::{self, Peak, Safety};
 
-use crate::session::{CommandError, Output, Session};
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session};
+
+/// Show the answer on one screen: resultants, extremes, reactions, safety of each load case
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  summary")]
+pub struct Summary;
+
+pub const SUMMARY: Command = Command { in_0_1: false, ..Command::of::<Summary>("summary") };
+
+impl Action for Summary {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.summary(io)?;
+        Ok(Next::Continue)
+    }
+}
 
 impl Session {
     /// `summary`.
     pub(in crate::session) fn summary(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_quantities()?.clone();
         let units = self.now.scenario.units.clone();
-        let summary = self.with_facts(io.watch, |facts| Summary {
+        let summary = self.with_facts(io.watch, |facts| summary::Summary {
             resultants: if answer.is_answer() { self.resultants(facts) } else { Vec::new() },
             peaks: if answer.is_answer() { peaks(facts, &self.names()) } else { Vec::new() },
             reactions: answer.reactions.clone().unwrap_or_default(),
@@ -59,14 +75,14 @@ impl Session {
 
     fn safeties(&self, facts: &Facts<'_>) -> Vec<Safety> {
         let cases = self.now.prepared.as_ref().map(|prepared| prepared.cases.iter().map(|(case, _)| case.clone()));
-        let value = |word, case: &str| facts.value(&Quantity::Load(word, case.to_owned()));
+        let value = |which, case: &str| facts.value(&Quantity::Load(which, case.to_owned()));
         cases
             .into_iter()
             .flatten()
             .filter(|_| !self.names().pairs.is_empty())
             .map(|case| {
-                let limit = value("limit", &case);
-                let safety = value("safety", &case).ok().and_then(|value| value.number());
+                let limit = value(OfLoad::Limit, &case);
+                let safety = value(OfLoad::Safety, &case).ok().and_then(|value| value.number());
                 let reason = limit.as_ref().err().map(|reason| reason.0.clone());
                 Safety { limit: limit.ok().and_then(|value| value.number()), safety, reason, case }
             })
@@ -80,22 +96,22 @@ fn resultant(resultant: &Resultant) -> Json {
 
 /// The largest of everything, with its place.
 fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
-    let largest = |what: &'static str, word: &'static str| {
+    let largest = |what: &'static str, which: OfPair| {
         let value = |id: &&str| {
-            let value = facts.value(&Quantity::Pair(word, (*id).to_owned())).ok()?.number()?;
+            let value = facts.value(&Quantity::Pair(which, (*id).to_owned())).ok()?.number()?;
             Some((value, (*id).to_owned()))
         };
         let all = names.pairs.iter().filter_map(value);
         let most = all.reduce(|best, next| if next.0.abs() > best.0.abs() { next } else { best });
-        most.map(|(value, at)| Peak { what, quantity: Quantity::Pairs(Over::Max, word, String::new()), value, at })
+        most.map(|(value, at)| Peak { what, quantity: Quantity::Pairs(Over::Max, which, String::new()), value, at })
     };
-    let bars = |what: &'static str, word: &'static str| {
+    let bars = |what: &'static str, which: Internal| {
         let value = |bar: &&str| {
-            let value = facts.value(&Quantity::Bar(word, (*bar).to_owned(), BarPlace::Extreme)).ok()?.number()?;
+            let value = facts.value(&Quantity::Bar(which, (*bar).to_owned(), BarPlace::Extreme)).ok()?.number()?;
             Some((value, (*bar).to_owned()))
         };
         let most = names.bars().iter().filter_map(value).reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a });
-        let quantity = |bar: &str| Quantity::Bar(word, bar.to_owned(), BarPlace::Extreme);
+        let quantity = |bar: &str| Quantity::Bar(which, bar.to_owned(), BarPlace::Extreme);
         most.map(|(value, at)| Peak { what, quantity: quantity(&at), value, at })
     };
     let displacement = facts.value(&Quantity::LargestDisplacement).ok().and_then(|value| value.number());
@@ -106,14 +122,14 @@ fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
         at: String::new(),
     });
     [
-        largest("compressive force", "x_n"),
-        largest("friction force", "x_t"),
-        largest("slip", "z_t"),
-        largest("opening", "z_n"),
+        largest("compressive force", OfPair::NormalForce),
+        largest("friction force", OfPair::FrictionForce),
+        largest("slip", OfPair::Slip),
+        largest("opening", OfPair::Opening),
         displacement,
-        bars("normal force", "N"),
-        bars("shear force", "Q"),
-        bars("bending moment", "M"),
+        bars("normal force", Internal::Axial),
+        bars("shear force", Internal::Shear),
+        bars("bending moment", Internal::Moment),
     ]
     .into_iter()
     .flatten()

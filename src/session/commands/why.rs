@@ -1,18 +1,55 @@
 //! `why PAIR`: its state from its numbers, and the pivots that turned it; `why z[NAME]` of a bare LCP.
 
+use clap::Args;
 use serde_json::json;
 
 use crate::answer::record::State;
+use crate::explain::margin::Margin;
 use crate::explain::plain_why::Vertex;
 use crate::solve::prepared::Geometry;
 use crate::solve::state::RunData;
 use crate::view;
 use crate::view::number::{short, with_unit};
+use crate::watch::Quiet;
 
+use crate::session::language::candidates::Candidate;
+use crate::session::language::command::{Action, Command};
 use crate::session::language::selection::{no_pair, no_such};
-use crate::session::{CommandError, Output, Session};
+use crate::session::{CommandError, Next, Output, Session};
+
+/// Say why a pair is in its state, and which pivots brought it there; of a bare LCP, why a variable has its value
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  why c6; load murty6; why z[1]; why w[2]")]
+pub struct Why {
+    /// The pair; of a bare LCP z[NAME] or w[NAME]
+    #[arg(value_name = "PAIR")]
+    pair: String,
+}
+
+pub const WHY: Command =
+    Command { complete: |asked| Candidate::plain(&asked.names.pairs), ..Command::of::<Why>("why") };
+
+impl Action for Why {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.report_why(&self.pair, io)?;
+        Ok(Next::Continue)
+    }
+
+    fn needs_pivots(&self) -> bool {
+        true
+    }
+}
 
 impl Session {
+    /// How far the final scheme holds; empty at a pivot on the way.
+    fn margins(&self, id: &str) -> Vec<Margin> {
+        let (Some(prepared), Some(solved), None) = (&self.now.prepared, &self.solved, self.position) else {
+            return Vec::new();
+        };
+        let pair = solved.answer.pairs.iter().position(|pair| pair.id == id);
+        pair.map_or_else(Vec::new, |pair| solved.margins(self.now.case(prepared, &Quiet), pair))
+    }
+
     /// `why PAIR`: its state from its numbers, and the pivots that turned it.
     pub(in crate::session) fn report_why(&self, id: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;

@@ -7,11 +7,11 @@ use thiserror::Error;
 use crate::model::expression::Expression;
 use crate::model::jet::Jet;
 use crate::model::parameter::ParameterValues;
-use crate::model::quantity::{self, Names, Quantity, STATES, WORDS};
+use crate::model::quantity::{self, Names, OfAnswer, Quantity, WORDS};
 use crate::path::quantity::{Facts, Value};
 
-use crate::session::language::command::did_you_mean;
 use crate::session::language::setting::number;
+use crate::session::language::suggestion::did_you_mean;
 
 /// Comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,9 +80,6 @@ pub struct Unmet {
     pub found: String,
 }
 
-const OUTCOMES: &[&str] = &["trivial", "normal", "answer", "ray", "pivot-limit", "breakdown", "check-failed"];
-const CLASSES: &[&str] = &["mechanism", "artefact", "fault", "no-equilibrium"];
-const VERDICTS: &[&str] = &["certified", "proved", "undecided"];
 /// Besides the quantities.
 const OTHERS: &[&str] = &["ray", "error"];
 
@@ -93,22 +90,9 @@ pub fn subjects() -> impl Iterator<Item = &'static str> {
 
 /// The words that may follow a subject, where it has a closed list.
 pub fn choices(subject: &str) -> &'static [&'static str] {
-    match subject {
-        "outcome" => OUTCOMES,
-        "ray" | "class" => CLASSES,
-        "verdict" => VERDICTS,
-        "state" => STATES,
-        _ => &[],
-    }
-}
-
-/// The subject whose words a quantity takes.
-fn subject(quantity: &Quantity) -> &'static str {
-    match quantity {
-        Quantity::Plain(word) | Quantity::Pair(word, _) => word,
-        Quantity::Stage(_, inner) | Quantity::Probe(_, inner) => subject(inner),
-        _ => "",
-    }
+    // `ray` is the older word for the class.
+    let subject = if subject == "ray" { "class" } else { subject };
+    quantity::entry(subject).map_or(&[], |entry| entry.choices)
 }
 
 /// Reads the words after `expect`; numbers may be formulas of the parameters, which have these values.
@@ -138,7 +122,6 @@ pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Re
         "error" => return Ok(Expectation::Error(rest.join(" "))),
         _ => {}
     }
-    // `ray` is the older word for the class.
     let mut words = words.to_vec();
     if let [stage, _, word, ..] = &mut words[..]
         && stage == "stage"
@@ -155,7 +138,7 @@ pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Re
         [sign, rest @ ..] if sign == "!=" => (false, rest),
         rest => (true, rest),
     };
-    let word = one_of(subject(&quantity), rest)?;
+    let word = one_of(quantity.word(), rest)?;
     Ok(Expectation::Word { quantity, word, equal })
 }
 
@@ -292,7 +275,7 @@ impl Expectation {
                 };
                 Err(Unmet { expected: format!("{quantity} {bound}"), found })
             }
-            Expectation::Ray(class) => match facts.value(&Quantity::Plain("class")) {
+            Expectation::Ray(class) => match facts.value(&Quantity::Answer(OfAnswer::Class)) {
                 Ok(Value::Word(found)) if found == *class => Ok(()),
                 Ok(Value::Word(found)) => {
                     Err(Unmet { expected: format!("ray {class}"), found: format!("ray {found}") })

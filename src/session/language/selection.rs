@@ -3,18 +3,25 @@
 use std::collections::HashMap;
 
 use crate::answer::record::PairState;
-use crate::model::quantity::fits;
+use crate::model::quantity::{Internal, displacement_words, fits, pair_words};
 
 use crate::session::CommandError;
-use crate::session::language::command::did_you_mean;
+use crate::session::language::suggestion::did_you_mean;
 
 /// Keys of `displacements … sort KEY`, by magnitude; `u` is √(u_x² + u_y²).
-pub const DISPLACEMENT_KEYS: &[&str] = &["u", "ux", "uy", "rz"];
+pub fn displacement_keys() -> Vec<&'static str> {
+    ["u"].into_iter().chain(displacement_words().map(|(word, _)| word)).collect()
+}
+
 /// Keys of `members … sort KEY`, by the largest magnitude along an element.
-pub const MEMBER_KEYS: &[&str] = &["N", "Q", "M"];
+pub fn member_keys() -> Vec<&'static str> {
+    Internal::ALL.map(Internal::symbol).to_vec()
+}
+
 /// Keys of `pairs … sort KEY`.
-pub const SORT_KEYS: &[&str] =
-    &["id", "state", "x_n", "x_t", "z_n", "z_t", "bound", "reserve", "reserve_plus", "reserve_minus", "position"];
+pub fn pair_keys() -> Vec<&'static str> {
+    ["id", "state"].into_iter().chain(pair_words().map(|(word, _)| word)).chain(["position"]).collect()
+}
 
 pub(in crate::session) fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
     CommandError::Refused(match pairs {
@@ -163,34 +170,19 @@ fn outside_brackets(word: &str) -> Vec<&str> {
     parts.filter(|part| !part.is_empty()).collect()
 }
 
-/// Sorts by a key; numbers from large to small, ids and positions upwards.
+/// Sorts by a key; numbers from large to small, ids, states and positions upwards.
 pub(in crate::session) fn sort(pairs: &mut [PairState], key: &str) {
-    let number: fn(&PairState) -> f64 = match key {
-        "id" => {
-            pairs.sort_by(|a, b| a.id.cmp(&b.id));
-            return;
-        }
-        "state" => {
-            pairs.sort_by_key(|pair| pair.state.word());
-            return;
-        }
-        "position" => {
-            pairs.sort_by(|a, b| {
-                let place = |pair: &PairState| pair.position.unwrap_or([f64::INFINITY; 2]);
-                let (a, b) = (place(a), place(b));
-                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
-            });
-            return;
-        }
-        "x_n" => |pair| pair.x_n,
-        "x_t" => |pair| pair.x_t,
-        "z_n" => |pair| pair.z_n,
-        "z_t" => |pair| pair.z_t,
-        "bound" => |pair| pair.bound,
-        "reserve_plus" => |pair| pair.reserve_plus,
-        "reserve" => |pair| pair.bound - pair.x_t.abs(),
-        // The only key of the list that is left.
-        _ => |pair| pair.reserve_minus,
-    };
-    pairs.sort_by(|a, b| number(b).total_cmp(&number(a)));
+    if let Some((_, which)) = pair_words().find(|(word, _)| *word == key) {
+        pairs.sort_by(|a, b| which.of(b).total_cmp(&which.of(a)));
+        return;
+    }
+    match key {
+        "id" => pairs.sort_by(|a, b| a.id.cmp(&b.id)),
+        "state" => pairs.sort_by_key(|pair| pair.state.word()),
+        _ => pairs.sort_by(|a, b| {
+            let place = |pair: &PairState| pair.position.unwrap_or([f64::INFINITY; 2]);
+            let (a, b) = (place(a), place(b));
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        }),
+    }
 }

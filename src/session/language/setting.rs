@@ -1,14 +1,12 @@
 //! The words after `set`: which parameter or rule, and what becomes of it.
 
-use std::str::FromStr;
-
 use thiserror::Error;
 
 use crate::model::parameter::ParameterValues;
-use crate::model::rules::{Covering, Engine, TieBreak, UnknownChoice};
+use crate::model::rules::{Rules, UnknownChoice};
 use crate::model::scenario::{Scenario, Source};
 
-use crate::session::language::command::did_you_mean;
+use crate::session::language::suggestion::did_you_mean;
 
 /// A `set` that cannot be done.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -57,17 +55,58 @@ pub enum SetError {
     CoveringOfLcp,
 }
 
+/// A choice of how to solve, named and told in words.
+#[derive(Debug)]
+pub struct Rule {
+    /// Its name behind `set`.
+    pub name: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// What it may be.
+    pub choices: &'static [&'static str],
+    /// What it is at present.
+    pub shown: fn(&Rules) -> String,
+    /// Changes it to one of the choices.
+    pub set: fn(&mut Rules, &str) -> Result<(), UnknownChoice>,
+}
+
+/// The rules that `set` changes.
+pub static RULES: [Rule; 3] = [
+    Rule {
+        name: "covering",
+        about: "covering vector",
+        choices: &["cohesive", "ones", "weight"],
+        shown: |rules| rules.covering.to_string(),
+        set: |rules, word| word.parse().map(|choice| rules.covering = choice),
+    },
+    Rule {
+        name: "tie-break",
+        about: "what decides among tied rows",
+        choices: &["lexicographic", "natural", "first-row", "random:"],
+        shown: |rules| rules.tie_break.to_string(),
+        set: |rules, word| word.parse().map(|choice| rules.tie_break = choice),
+    },
+    Rule {
+        name: "engine",
+        about: "implementation of Lemke's algorithm",
+        choices: &["scheme", "tableau", "exact"],
+        shown: |rules| rules.engine.to_string(),
+        set: |rules, word| word.parse().map(|choice| rules.engine = choice),
+    },
+];
+
+/// The rule of a name.
+pub fn rule(name: &str) -> Option<&'static Rule> {
+    RULES.iter().find(|rule| rule.name == name)
+}
+
 /// What `set` does.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Setting {
     /// A parameter and its new value.
     Parameter(String, f64),
-    /// Covering vector.
-    Covering(Covering),
-    /// Tie-break.
-    TieBreak(TieBreak),
-    /// Engine.
-    Engine(Engine),
+    /// A rule and its new choice.
+    Rule(&'static Rule, String),
     /// Whether changes are solved at once.
     Auto(bool),
 }
@@ -84,11 +123,14 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
         let word = rest.strip_prefix('=').unwrap_or(rest).trim();
         if word.is_empty() { Err(no_value()) } else { Ok(word) }
     };
+    if let Some(rule) = rule(name).filter(|rule| rule.name != "covering" || !matches!(scenario.source, Source::Lcp(_)))
+    {
+        let word = choice()?;
+        (rule.set)(&mut Rules::default(), word)?;
+        return Ok(Setting::Rule(rule, word.to_owned()));
+    }
     match name {
-        "covering" if matches!(scenario.source, Source::Lcp(_)) => Err(SetError::CoveringOfLcp),
-        "covering" => Ok(Setting::Covering(Covering::from_str(choice()?)?)),
-        "tie-break" => Ok(Setting::TieBreak(TieBreak::from_str(choice()?)?)),
-        "engine" => Ok(Setting::Engine(Engine::from_str(choice()?)?)),
+        "covering" => Err(SetError::CoveringOfLcp),
         "auto" => match choice()? {
             "on" => Ok(Setting::Auto(true)),
             "off" => Ok(Setting::Auto(false)),
@@ -114,7 +156,7 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
 /// The error for a name that is no parameter.
 pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
     let names: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
-    let rules = ["covering", "tie-break", "engine", "auto"];
+    let rules = RULES.iter().map(|rule| rule.name).chain(["auto"]);
     SetError::UnknownParameter {
         name: name.to_owned(),
         near: did_you_mean(name, names.iter().copied().chain(rules)),

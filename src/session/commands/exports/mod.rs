@@ -1,6 +1,7 @@
 //! `export`: results to files. What is written is what the commands show, in the format that the ending of the file
 //! says.
 
+mod exported;
 mod lcp;
 mod pictures;
 mod report;
@@ -11,12 +12,91 @@ mod vtu;
 use std::fs;
 use std::path::Path;
 
-use crate::session::language::export::Export;
-use crate::session::{CommandError, Output, Session};
+use clap::Args;
+
+use crate::session::commands::find;
+use crate::session::commands::plots::of_path;
+use crate::session::language::candidates::{Asked, Candidate};
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session};
+
+use exported::Exported;
+
+/// Write tables, pictures, a report, the mesh with its results, or the LCP, to a file
+///
+/// Tables go to .csv or .json: `export WHAT [OF] FILE`, where OF are the quantities of `quantities` and `envelope`, or
+/// the words that `sensitivity`, `critical`, `find`, `limit` and `check` take. A table is what the command shows, at
+/// the pivot chosen by `step`, after `stages` at the end of the history.
+///
+/// `export report FILE.html` is one file with its figures, `FILE.md` has them beside it as FILE-structure.svg and so
+/// on. It bears no date, so that the same answer gives the same file; `export report date FILE` adds it.
+///
+/// `export vtu FILE.vtu` is the state shown for ParaView: the nodes with displacement, rotation and stress, the
+/// elements with stress or N, Q, M, and a vertex for each pair with its state (0 open, 1 stick, 2 slip+, 3 slip-,
+/// 4 closed) and the vectors of force, friction and slip. `export vtu FILE.pvd` is a series, of the moments of the
+/// history after `stages`, else of the pivots: FILE-0000.vtu, FILE-0001.vtu … stand beside it.
+///
+/// Pictures go to .svg: `slip`, `force`, `gap` and `pressure` of the state shown or at pivots that are named; `moment`,
+/// `shear` and `axial` of all bars on the structure, or of the bar that is named; `path` as `plot path` draws it, with
+/// the same words.
+///
+/// `export lcp` writes M, q and the covering d, in the units of the scenario: to .json as a scenario of this program,
+/// or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a scenario reads M back with
+/// `"M": { "file": "FILE.mtx" }`.
+///
+/// `export stiffness` writes K of the elements to FILE.mtx, F of each load case to FILE.CASE.mtx, and to FILE.json the
+/// scenario that reads them back as a superelement: with the dofs of the rows, and supports, ties, springs and contacts
+/// beside it at the present values.
+///
+/// A file that is there is replaced, whole or not at all; never the scenario itself.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  export pairs pairs.csv\n  export envelope x_n c1, max u envelope.csv\n  export vtu beam.vtu\n  export structure beam.svg\n  export report beam.html\n  export path force c6 c5 path.svg\n  export result answer.json\n  export lcp beam-lcp.json\n  export find F2 0..400 where z_t c3 > 0 places.csv\n  export stiffness k.mtx"
+)]
+pub struct Export {
+    /// What to write
+    #[arg(value_name = "WHAT")]
+    what: Exported,
+    /// Its ending says the format; of what stands before it
+    #[arg(value_name = "OF FILE", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<String>,
+}
+
+pub const EXPORT: Command =
+    Command { usage: Some("WHAT [OF] FILE"), complete: words, ..Command::of::<Export>("export") };
+
+impl Action for Export {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.export(self.what, &self.words, io)?;
+        Ok(Next::Continue)
+    }
+
+    fn needs_pivots(&self) -> bool {
+        true
+    }
+}
+
+/// The file, and before it what belongs to what is written.
+fn words(asked: &Asked<'_>) -> Vec<Candidate> {
+    let (what, of) = asked.given.split_first().map_or(("", asked.given), |(what, of)| (what.as_str(), of));
+    let mut all = asked.files();
+    all.extend(match what {
+        "quantities" | "envelope" => asked.quantities(of),
+        "sensitivity" | "critical" => asked.parameters(),
+        "limit" => asked.varied(),
+        "find" => find::words(&Asked { given: of, ..*asked }),
+        "check" => Candidate::plain(["exact"]),
+        "moment" | "shear" | "axial" => Candidate::plain(&asked.names.bars),
+        "slip" | "force" | "gap" | "pressure" => Candidate::plain(["first", "last"]),
+        "path" => of_path(asked, of),
+        _ => Vec::new(),
+    });
+    all
+}
 
 impl Session {
     /// `export WHAT [OF] FILE`.
-    pub(super) fn export(&mut self, what: Export, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+    pub(super) fn export(&mut self, what: Exported, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let Some((file, of)) = words.split_last() else {
             return Err(CommandError::Refused("export: to which file?".to_owned()));
         };
@@ -39,10 +119,10 @@ impl Session {
         }
         self.spare_scenario(path)?;
         match what {
-            Export::Lcp => return self.export_lcp(path, io),
-            Export::Stiffness => return self.export_stiffness(path, io),
-            Export::Report => self.export_report(of, path, io),
-            Export::Vtu => self.export_vtu(path, ending == "pvd", io),
+            Exported::Lcp => return self.export_lcp(path, io),
+            Exported::Stiffness => return self.export_stiffness(path, io),
+            Exported::Report => self.export_report(of, path, io),
+            Exported::Vtu => self.export_vtu(path, ending == "pvd", io),
             _ if ending == "svg" => self.export_picture(what, of, path, io.watch),
             _ => self.export_table(what, of, path, ending == "csv", io),
         }?;

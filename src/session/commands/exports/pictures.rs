@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use super::exported::Exported;
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::OutcomeKind;
 use crate::export::atomic;
 use crate::session::commands::plots::Shape;
-use crate::session::language::export::Export;
 use crate::session::{CommandError, Session};
 use crate::view::members::extremes;
 use crate::view::number::{short, with_unit};
@@ -25,7 +25,7 @@ impl Session {
     /// A picture to FILE.svg.
     pub(super) fn export_picture(
         &self,
-        what: Export,
+        what: Exported,
         of: &[String],
         path: &Path,
         watch: &dyn Watch,
@@ -36,7 +36,7 @@ impl Session {
     }
 
     /// The text of a picture.
-    pub(super) fn figure(&self, what: Export, of: &[String], watch: &dyn Watch) -> Result<String, CommandError> {
+    pub(super) fn figure(&self, what: Exported, of: &[String], watch: &dyn Watch) -> Result<String, CommandError> {
         let units = &self.now.scenario.units;
         let zone = |quantity| -> Result<String, CommandError> {
             let states = self.zone_states(of)?;
@@ -44,22 +44,22 @@ impl Session {
             Ok(self.chart_figure(&zone::drawing(quantity, &borrowed, units), ""))
         };
         match what {
-            Export::Slip => zone(Quantity::Slip),
-            Export::Force => zone(Quantity::Force),
-            Export::Gap => zone(Quantity::Gap),
-            Export::Pressure => zone(Quantity::Pressure),
-            Export::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
-            Export::Path => Ok(self.chart_figure(&self.path_chart(of, watch)?.0, &self.need_path()?.end)),
-            Export::Map => {
+            Exported::Slip => zone(Quantity::Slip),
+            Exported::Force => zone(Quantity::Force),
+            Exported::Gap => zone(Quantity::Gap),
+            Exported::Pressure => zone(Quantity::Pressure),
+            Exported::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
+            Exported::Path => Ok(self.chart_figure(&self.path_chart(of, watch)?.0, &self.need_path()?.end)),
+            Exported::Map => {
                 let drawn = self.need_map()?;
                 let [a, b] = &drawn.map.axes;
                 let caption = self.caption(&format!("Working schemes over {} and {}", a.name, b.name));
                 Ok(svg::map::figure(&drawn.map, &self.map_labels(drawn), &caption))
             }
-            Export::Mode => self.shape_figure(&self.mode_shape()?),
-            Export::Moment => self.forces_figure(Internal::Moment, of),
-            Export::Shear => self.forces_figure(Internal::Shear, of),
-            Export::Axial => self.forces_figure(Internal::Axial, of),
+            Exported::Mode => self.shape_figure(&self.mode_shape()?),
+            Exported::Moment => self.forces_figure(Internal::Moment, of),
+            Exported::Shear => self.forces_figure(Internal::Shear, of),
+            Exported::Axial => self.forces_figure(Internal::Axial, of),
             // the only picture that is left
             _ => self.shape_figure(&self.shape()?),
         }

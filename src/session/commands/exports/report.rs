@@ -6,11 +6,11 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde_json::Value;
 
+use super::exported::Exported;
 use crate::answer::record::{Answer, MemberForces};
 use crate::export::atomic;
 use crate::model::scenario::Source;
 use crate::path::stages::{self, History};
-use crate::session::language::export::Export;
 use crate::session::{CommandError, Output, Session, worker};
 use crate::solve::numbers::factors;
 use crate::view;
@@ -135,14 +135,14 @@ impl Session {
         let axial = answer.members.iter().flatten().any(|member| member.start.n != 0.0 || member.end.n != 0.0);
         let structure = self.structure().is_some();
         let wanted = [
-            (Export::Structure, "structure", structure),
-            (Export::Mode, "mode", self.followed.is_none() && self.mode_shape().is_ok()),
-            (Export::Slip, "slip", has_pairs),
-            (Export::Force, "force", has_pairs),
-            (Export::Pressure, "pressure", has_pairs),
-            (Export::Moment, "moment", bends),
-            (Export::Axial, "axial", axial),
-            (Export::Path, "path", self.need_path().is_ok()),
+            (Exported::Structure, "structure", structure),
+            (Exported::Mode, "mode", self.followed.is_none() && self.mode_shape().is_ok()),
+            (Exported::Slip, "slip", has_pairs),
+            (Exported::Force, "force", has_pairs),
+            (Exported::Pressure, "pressure", has_pairs),
+            (Exported::Moment, "moment", bends),
+            (Exported::Axial, "axial", axial),
+            (Exported::Path, "path", self.need_path().is_ok()),
         ];
         if wanted.iter().any(|(.., is_there)| *is_there) {
             blocks.push(Block::Heading("Figures".into()));

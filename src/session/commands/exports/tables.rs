@@ -5,32 +5,33 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
+use super::exported::Exported;
 use crate::answer::record::Answer;
 use crate::answer::stress::StressPlace;
 use crate::export::table::{Table, unfolded};
 use crate::export::{atomic, csv, json as json_export, path as path_export};
-use crate::session::commands::dispatch::scenarios;
-use crate::session::language::export::Export;
+use crate::session::commands::load::scenarios;
+use crate::session::commands::stages::history_json;
 use crate::session::{CommandError, Format, Output, Session};
 
 impl Session {
     /// A table to a file.
     pub(super) fn export_table(
         &mut self,
-        what: Export,
+        what: Exported,
         of: &[String],
         path: &Path,
         csv: bool,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let written = match what {
-            Export::Pairs | Export::Pivots | Export::Displacements | Export::Members | Export::Reactions
+            Exported::Pairs | Exported::Pivots | Exported::Displacements | Exported::Members | Exported::Reactions
                 if csv && !self.is_solution(what) =>
             {
                 let shown = self.shown(what)?;
                 atomic::write(path, |out| records_csv(what, &shown, out))
             }
-            Export::Path if csv => {
+            Exported::Path if csv => {
                 let record = self.need_path()?;
                 atomic::write(path, |out| path_export::csv(out, record))
             }
@@ -49,8 +50,8 @@ impl Session {
     }
 
     /// The answer that the tables mean: at the pivot shown, or at the end of the history.
-    fn shown(&self, what: Export) -> Result<Answer, CommandError> {
-        if what == Export::Pivots {
+    fn shown(&self, what: Exported) -> Result<Answer, CommandError> {
+        if what == Exported::Pivots {
             return Ok(self.need_answer()?.clone());
         }
         let answer = self.need_quantities()?;
@@ -58,55 +59,55 @@ impl Session {
         shown.pairs = self.quantity_pairs();
         shown.displacements = self.quantity_displacements();
         let missing = match what {
-            Export::Displacements if shown.displacements.is_none() => "displacements",
-            Export::Members if shown.members.is_none() => "member forces",
-            Export::Reactions if shown.reactions.is_none() => "reactions",
+            Exported::Displacements if shown.displacements.is_none() => "displacements",
+            Exported::Members if shown.members.is_none() => "member forces",
+            Exported::Reactions if shown.reactions.is_none() => "reactions",
             _ => return Ok(shown),
         };
         Err(self.none(missing, answer))
     }
 
     /// Whether the pairs are z and w of a bare LCP.
-    fn is_solution(&self, what: Export) -> bool {
-        what == Export::Pairs && self.solution().is_some()
+    fn is_solution(&self, what: Exported) -> bool {
+        what == Exported::Pairs && self.solution().is_some()
     }
 
-    fn table_json(&mut self, what: Export, of: &[String], io: &mut Output<'_>) -> Result<Value, CommandError> {
+    fn table_json(&mut self, what: Exported, of: &[String], io: &mut Output<'_>) -> Result<Value, CommandError> {
         let one = |command: &str, expected: &str| match of {
             [word] => Ok(word.clone()),
             _ => Err(CommandError::Refused(format!("export {command}: {expected}, as `{command}` takes it?"))),
         };
         Ok(match what {
-            Export::Pairs if self.is_solution(what) => self.solution_rows(),
-            Export::Pairs => json_export::pairs(&self.shown(what)?),
-            Export::Pivots => json_export::pivots(&self.shown(what)?),
-            Export::Displacements => json_export::displacements(&self.shown(what)?),
-            Export::Members => json_export::members(&self.shown(what)?),
-            Export::Reactions => json_export::reactions(&self.shown(what)?),
-            Export::Path => json!(self.need_path()?),
-            Export::Map => self.map_json(self.need_map()?),
-            Export::Result => {
+            Exported::Pairs if self.is_solution(what) => self.solution_rows(),
+            Exported::Pairs => json_export::pairs(&self.shown(what)?),
+            Exported::Pivots => json_export::pivots(&self.shown(what)?),
+            Exported::Displacements => json_export::displacements(&self.shown(what)?),
+            Exported::Members => json_export::members(&self.shown(what)?),
+            Exported::Reactions => json_export::reactions(&self.shown(what)?),
+            Exported::Path => json!(self.need_path()?),
+            Exported::Map => self.map_json(self.need_map()?),
+            Exported::Result => {
                 self.need_quantities()?;
                 self.result(false).unwrap_or_default()
             }
-            Export::Stresses => Value::Array(self.stresses(io)?),
-            Export::Resultants => self.resultants_json(io)?,
-            Export::Stages => self.stages_json()?,
-            Export::Sweep => {
+            Exported::Stresses => Value::Array(self.stresses(io)?),
+            Exported::Resultants => self.resultants_json(io)?,
+            Exported::Stages => self.stages_json()?,
+            Exported::Sweep => {
                 let table = self.swept.as_ref().ok_or_else(|| {
                     CommandError::Refused("no sweep was shown yet: `sweep PARAMETER A..B`".to_owned())
                 })?;
                 let record = |row: &Vec<Value>| table.columns.iter().cloned().zip(row.iter().cloned()).collect();
                 table.rows.iter().map(record).map(Value::Object).collect()
             }
-            Export::Quantities if of.is_empty() => {
+            Exported::Quantities if of.is_empty() => {
                 return Err(CommandError::Refused("export: of which quantities? `help show` lists them".to_owned()));
             }
-            Export::Quantities | Export::Probes => report(io, |io| self.show(of, io))?,
-            Export::Ties => report(io, |io| self.report_ties(io))?,
-            Export::Tableau => report(io, |io| self.report_tableau(io))?,
-            Export::Diff => report(io, |io| self.report_difference(io))?,
-            Export::Check => match of.first().map(String::as_str) {
+            Exported::Quantities | Exported::Probes => report(io, |io| self.show(of, io))?,
+            Exported::Ties => report(io, |io| self.report_ties(io))?,
+            Exported::Tableau => report(io, |io| self.report_tableau(io))?,
+            Exported::Diff => report(io, |io| self.report_difference(io))?,
+            Exported::Check => match of.first().map(String::as_str) {
                 None => report(io, |io| self.report_check(io))?,
                 Some("exact") => report(io, |io| self.check_exactly(io))?,
                 Some(word) => {
@@ -114,8 +115,8 @@ impl Session {
                     return Err(CommandError::Refused(refusal));
                 }
             },
-            Export::Ray => report(io, |io| self.report_ray(io))?,
-            Export::Remedies => {
+            Exported::Ray => report(io, |io| self.report_ray(io))?,
+            Exported::Remedies => {
                 let mut ray = report(io, |io| self.report_ray(io))?;
                 match ray["remedies"].take() {
                     Value::Null => {
@@ -125,34 +126,34 @@ impl Session {
                     found => found,
                 }
             }
-            Export::Critical => {
+            Exported::Critical => {
                 let friction = one("critical", "of which friction parameter")?;
                 report(io, |io| self.critical(&friction, io))?
             }
-            Export::Find if of.is_empty() => {
+            Exported::Find if of.is_empty() => {
                 let refusal = "export find: what? the words that `find` takes stand before the file";
                 return Err(CommandError::Refused(refusal.to_owned()));
             }
-            Export::Find => report(io, |io| self.find(of, io))?,
-            Export::Limit => {
+            Exported::Find => report(io, |io| self.find(of, io))?,
+            Exported::Limit => {
                 let load = one("limit", "of which load")?;
                 report(io, |io| self.limit(&load, io))?
             }
-            Export::Scenarios => report(io, scenarios)?,
-            Export::Parameters => report(io, |io| self.report_parameters(io))?,
-            Export::Combinations => report(io, |io| self.combine(None, io))?,
-            Export::Envelope => report(io, |io| self.envelope(of, io))?,
-            Export::Answers => report(io, |io| self.enumerate(None, io))?,
-            Export::Compare => report(io, |io| self.compare(io))?,
-            Export::Sensitivity => report(io, |io| self.sensitivity(of.first().map(String::as_str), io))?,
-            Export::Summary => report(io, |io| self.summary(io))?,
+            Exported::Scenarios => report(io, scenarios)?,
+            Exported::Parameters => report(io, |io| self.report_parameters(io))?,
+            Exported::Combinations => report(io, |io| self.combine(None, io))?,
+            Exported::Envelope => report(io, |io| self.envelope(of, io))?,
+            Exported::Answers => report(io, |io| self.enumerate(None, io))?,
+            Exported::Compare => report(io, |io| self.compare(io))?,
+            Exported::Sensitivity => report(io, |io| self.sensitivity(of.first().map(String::as_str), io))?,
+            Exported::Summary => report(io, |io| self.summary(io))?,
             // the others have formats of their own
             _ => Value::Null,
         })
     }
 
     /// The rows of what [`Session::table_json`] gave.
-    fn table(&self, what: Export, value: &Value) -> Table {
+    fn table(&self, what: Exported, value: &Value) -> Table {
         let list = |key: &str| value[key].as_array().cloned().unwrap_or_default();
         let without = |mut records: Vec<Value>, keys: &[&str]| {
             for record in &mut records {
@@ -163,28 +164,28 @@ impl Session {
             records
         };
         match what {
-            Export::Sweep => self.swept.as_deref().cloned().unwrap_or_default(),
-            Export::Combinations => Table::of(&without(list("combinations"), &["pairs"])),
-            Export::Envelope => Table::of(&list("envelope")),
-            Export::Compare => Table::of(&list("rows")),
-            Export::Sensitivity => Table::of(&unfolded(&list("parameters"), "pairs")),
-            Export::Ties => Table::of(&[list("ties"), list("degenerate")].concat()),
-            Export::Tableau => dictionary(value),
-            Export::Ray => Table::of(&list("direction")),
-            Export::Limit => {
+            Exported::Sweep => self.swept.as_deref().cloned().unwrap_or_default(),
+            Exported::Combinations => Table::of(&without(list("combinations"), &["pairs"])),
+            Exported::Envelope => Table::of(&list("envelope")),
+            Exported::Compare => Table::of(&list("rows")),
+            Exported::Sensitivity => Table::of(&unfolded(&list("parameters"), "pairs")),
+            Exported::Ties => Table::of(&[list("ties"), list("degenerate")].concat()),
+            Exported::Tableau => dictionary(value),
+            Exported::Ray => Table::of(&list("direction")),
+            Exported::Limit => {
                 let mut row = vec![value.clone()];
                 if let Value::Object(collapse) = &mut row[0]["collapse"] {
                     collapse.remove("direction");
                 }
                 Table::of(&row)
             }
-            Export::Find if value.get("places").is_some() => {
+            Exported::Find if value.get("places").is_some() => {
                 let holds = list("holds").into_iter().map(|ends| json!({"from": ends[0], "to": ends[1]}));
                 Table::of(&holds.chain(list("places")).collect::<Vec<_>>())
             }
-            Export::Check | Export::Critical | Export::Find => Table::of(std::slice::from_ref(value)),
-            Export::Stages => Table::of(&without(list("stages"), &["changes", "pairs"])),
-            Export::Answers => {
+            Exported::Check | Exported::Critical | Exported::Find => Table::of(std::slice::from_ref(value)),
+            Exported::Stages => Table::of(&without(list("stages"), &["changes", "pairs"])),
+            Exported::Answers => {
                 let numbered = list("answers").into_iter().enumerate().map(
                     |(index, answer)| json!({"answer": index + 1, "exact": answer["exact"], "pairs": answer["pairs"]}),
                 );
@@ -235,7 +236,7 @@ impl Session {
         let Some(history) = &self.followed else {
             return Err(CommandError::Refused("no history was followed: `stages` first".to_owned()));
         };
-        let mut report = crate::session::history::history_json(history);
+        let mut report = history_json(history);
         for (index, stage) in report["stages"].as_array_mut().into_iter().flatten().enumerate() {
             let Value::Object(fields) = stage.take() else { continue };
             let mut numbered = Map::new();
@@ -271,12 +272,12 @@ pub(super) fn report(
     Ok(inner.report.take().unwrap_or_default())
 }
 
-fn records_csv(what: Export, shown: &Answer, out: &mut dyn Write) -> io::Result<()> {
+fn records_csv(what: Exported, shown: &Answer, out: &mut dyn Write) -> io::Result<()> {
     match what {
-        Export::Pairs => csv::pairs(out, shown),
-        Export::Pivots => csv::pivots(out, shown),
-        Export::Displacements => csv::displacements(out, shown),
-        Export::Members => csv::members(out, shown),
+        Exported::Pairs => csv::pairs(out, shown),
+        Exported::Pivots => csv::pivots(out, shown),
+        Exported::Displacements => csv::displacements(out, shown),
+        Exported::Members => csv::members(out, shown),
         _ => csv::reactions(out, shown),
     }
 }

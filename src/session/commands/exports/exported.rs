@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 /// What `export` writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Export {
+pub enum Exported {
     /// Contact pairs
     Pairs,
     /// Pivots
@@ -102,20 +102,23 @@ pub enum Export {
     Stiffness,
 }
 
-impl Export {
+impl Exported {
     /// Endings of the files it can be written to.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
-            Export::Result | Export::Summary => &["json"],
-            Export::Vtu => &["vtu", "pvd"],
-            Export::Report => &["html", "md"],
-            Export::Lcp | Export::Stiffness => &["json", "mtx"],
-            Export::Path => &["csv", "json", "svg"],
-            Export::Map => &["svg", "json"],
-            Export::Structure | Export::Mode | Export::Slip | Export::Force | Export::Gap | Export::Pressure => {
-                &["svg"]
-            }
-            Export::P | Export::Moment | Export::Shear | Export::Axial => &["svg"],
+            Exported::Result | Exported::Summary => &["json"],
+            Exported::Vtu => &["vtu", "pvd"],
+            Exported::Report => &["html", "md"],
+            Exported::Lcp | Exported::Stiffness => &["json", "mtx"],
+            Exported::Path => &["csv", "json", "svg"],
+            Exported::Map => &["svg", "json"],
+            Exported::Structure
+            | Exported::Mode
+            | Exported::Slip
+            | Exported::Force
+            | Exported::Gap
+            | Exported::Pressure => &["svg"],
+            Exported::P | Exported::Moment | Exported::Shear | Exported::Axial => &["svg"],
             _ => &["csv", "json"],
         }
     }
@@ -123,11 +126,11 @@ impl Export {
     /// How many words may stand between it and the file.
     pub fn most_words(self, ending: &str) -> usize {
         match self {
-            Export::Quantities | Export::Envelope | Export::Find => usize::MAX,
-            Export::Slip | Export::Force | Export::Gap | Export::Pressure => usize::MAX,
-            Export::Path if ending == "svg" => usize::MAX,
-            Export::Sensitivity | Export::Critical | Export::Limit | Export::Check | Export::Report => 1,
-            Export::Moment | Export::Shear | Export::Axial => 1,
+            Exported::Quantities | Exported::Envelope | Exported::Find => usize::MAX,
+            Exported::Slip | Exported::Force | Exported::Gap | Exported::Pressure => usize::MAX,
+            Exported::Path if ending == "svg" => usize::MAX,
+            Exported::Sensitivity | Exported::Critical | Exported::Limit | Exported::Check | Exported::Report => 1,
+            Exported::Moment | Exported::Shear | Exported::Axial => 1,
             _ => 0,
         }
     }

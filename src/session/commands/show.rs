@@ -1,15 +1,48 @@
 //! `show`: quantities of the present answer; probes and resultants as they stand in results.
 
+use clap::Args;
 use serde_json::{Map, Value as Json, json};
 
 use crate::export::{history as history_export, json as json_export};
-use crate::model::quantity::{self, Arguments, Names, Quantity, WORDS};
+use crate::model::quantity::{self, Names, Quantity};
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
-use crate::view::style::Style;
 use crate::watch::{Quiet, Watch};
 
-use crate::session::{CommandError, Output, Session};
+use crate::session::language::command::{Action, Command};
+use crate::session::language::quantities;
+use crate::session::{CommandError, Next, Output, Session};
+
+const EXAMPLE: &str = "Example:\n  show x_n c1, z_t c6\n  show sum x_n *, count stick";
+
+/// Show quantities of the answer: forces, slips, displacements, stresses, limits
+///
+/// Commas may separate several. Without a quantity the probes of the scenario are shown. The same words stand in
+/// `expect`, in probes, in `envelope`, `sweep --columns`, `trace … of` and `plot path`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = EXAMPLE,
+    after_long_help = format!("{}\n\n{EXAMPLE}", quantities::help())
+)]
+pub struct Show {
+    /// The quantities
+    #[arg(value_name = "QUANTITY", allow_negative_numbers = true)]
+    words: Vec<String>,
+}
+
+pub const SHOW: Command =
+    Command { in_0_1: false, complete: |asked| asked.quantities(asked.given), ..Command::of::<Show>("show") };
+
+impl Action for Show {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.show(&self.words, io)?;
+        Ok(Next::Continue)
+    }
+
+    fn needs_pivots(&self) -> bool {
+        self.words.iter().any(|word| word == "pivots")
+    }
+}
 
 impl Session {
     /// The names quantities may have as arguments.
@@ -23,7 +56,7 @@ impl Session {
         let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
             return read(&Facts::of_nothing(scenario, &self.now.values, watch));
         };
-        let shown = self.combination.as_ref().map_or(prepared, |combination| &combination.prepared);
+        let shown = self.combination.as_ref().unwrap_or(prepared);
         let facts = Facts::of_answer(self.now.case(shown, watch), solved);
         if let Some(history) = &self.followed {
             return read(&facts.of_history(history));
@@ -129,65 +162,5 @@ impl Session {
         if !stresses.is_empty() {
             object.insert("stresses".into(), json_export::without_signed_zeros(json!(stresses)));
         }
-    }
-}
-
-/// The table of all quantities, for `help show`.
-pub(in crate::session) fn help() -> String {
-    let style = Style { width: 79, ..Style::default() };
-    let rows = WORDS.iter().flat_map(|entry| {
-        let usage = format!("{} {}", entry.word, entry.arguments.usage());
-        style.hanging(&format!("  {:<33} ", usage.trim_end()), entry.about)
-    });
-    let rows: Vec<String> = rows.collect();
-    format!(
-        "Quantities:\n{}\n\nPATTERN is a pair, an edge contact, or has `*` for any letters:\nsum x_n joint[*]. The probes of \
-         the scenario are quantities by their names;\nquote names with blanks.",
-        rows.join("\n")
-    )
-}
-
-/// The names that may follow the words of a quantity, for completion: the next argument of the last quantity.
-pub(in crate::session) fn next_names(
-    given: &[String],
-    vocabulary: &crate::session::language::complete::Vocabulary,
-) -> Vec<String> {
-    let at = given.iter().rposition(|word| quantity::entry(word).is_some());
-    let words = || {
-        let words = WORDS.iter().map(|entry| entry.word.to_owned());
-        words.chain(vocabulary.probes.iter().map(|probe| crate::session::language::tokens::quote(probe))).collect()
-    };
-    let Some((entry, after)) = at.and_then(|at| Some((quantity::entry(&given[at])?, &given[at + 1..]))) else {
-        return words();
-    };
-    let fixed = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
-    let pairs = || {
-        let patterns = vocabulary.joints.iter().map(|joint| format!("{joint}[*]"));
-        vocabulary.pairs.iter().cloned().chain(patterns).chain(["*".to_owned()]).collect::<Vec<_>>()
-    };
-    let over = at.and_then(|at| at.checked_sub(1)).is_some_and(|before| {
-        quantity::entry(&given[before]).is_some_and(|before| before.arguments == Arguments::Over)
-    });
-    match (entry.arguments, after) {
-        (Arguments::Pair, []) if over => pairs(),
-        (Arguments::Pair, []) => vocabulary.pairs.clone(),
-        (Arguments::Node, []) => vocabulary.nodes.clone(),
-        (Arguments::NodeOrElement, []) => vocabulary.nodes.iter().chain(&vocabulary.elements).cloned().collect(),
-        (Arguments::Bar, []) => vocabulary.bars.clone(),
-        (Arguments::Bar, [_]) if !over => fixed(&["at", "start", "end"]),
-        (Arguments::Joint, []) => vocabulary.joints.clone(),
-        (Arguments::Joint, [_]) => fixed(&["N", "T", "e"]),
-        (Arguments::Case, []) => vocabulary.cases.clone(),
-        (Arguments::Parameter, []) => vocabulary.parameters.iter().map(|(name, _)| name.clone()).collect(),
-        (Arguments::Over, []) => WORDS
-            .iter()
-            .filter(|entry| matches!(entry.arguments, Arguments::Pair | Arguments::Bar) && entry.word != "state")
-            .map(|entry| entry.word.to_owned())
-            .chain(["u".to_owned()])
-            .collect(),
-        (Arguments::Count, []) => fixed(quantity::STATES),
-        (Arguments::Count, [_]) => pairs(),
-        (Arguments::Stage, [_]) => words(),
-        _ => Vec::new(),
     }
 }

@@ -1,136 +1,58 @@
-//! `combine` and `envelope`: the load combinations of the scenario, each solved with the present values.
+//! `envelope`: the least and the largest value of quantities, over combinations or ranges of parameters.
 
-use std::sync::Arc;
-
+use clap::Args;
 use serde_json::{Value as Json, json};
 
 use crate::model::quantity::Quantity;
 use crate::path::envelope::{Axis, Peak, envelope};
-use crate::path::quantity::{Facts, NoValue, Value};
-use crate::solve::numbers::factors;
-use crate::solve::{Case, Prepared, Solved};
+use crate::path::quantity::Facts;
+use crate::session::commands::combine::Combined;
+use crate::session::commands::find;
+use crate::session::language::candidates::{Asked, Candidate};
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
-use crate::view::combinations::{Extreme, Line, Row};
+use crate::view::combinations::Extreme;
 use crate::view::path::exact;
 use crate::view::status::outcome_word;
-use crate::watch::Watch;
 
-use crate::session::language::selection::no_such;
-use crate::session::{CommandError, Output, Session, commands::find, worker};
-
-/// A combination whose answer is shown in the place of the scenario's own.
-#[derive(Clone)]
-pub(in crate::session) struct Combination {
-    /// The geometry with the factors of the combination.
-    pub(in crate::session) prepared: Arc<Prepared>,
+/// Show the least and the largest value of quantities, over load combinations or ranges of parameters
+///
+/// With the combination, or the place, that governs. Where an exact path leads over a single parameter (loads,
+/// friction) the place is exact; otherwise it is that of a grid of answers, refined around its extremes, and said to
+/// be so. A range left out is that of the slider.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  envelope\n  envelope x_n c1, max u over combinations\n  envelope x_t c1 over f 0..1\n  envelope max u over F 50..150 F2 0..200"
+)]
+pub struct Envelope {
+    /// The quantities, the probes if none is named; then `over combinations` or `over PARAMETER A..B …`
+    #[arg(value_name = "QUANTITY", trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<String>,
 }
 
-/// A combination with its answer.
-struct Combined {
-    name: String,
-    prepared: Arc<Prepared>,
-    factors: Vec<f64>,
-    solved: Arc<Solved>,
+pub const ENVELOPE: Command = Command { in_0_1: false, complete: words, ..Command::of::<Envelope>("envelope") };
+
+impl Action for Envelope {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.envelope(&self.words, io)?;
+        Ok(Next::Continue)
+    }
+}
+
+/// Quantities; after `over` what they are looked at over.
+fn words(asked: &Asked<'_>) -> Vec<Candidate> {
+    let over = asked.given.iter().any(|word| word == "over");
+    let mut all = if over { asked.varied() } else { asked.quantities(asked.given) };
+    if over {
+        all.extend(Candidate::plain(["combinations"]));
+    } else if !asked.given.is_empty() {
+        all.extend(Candidate::plain(["over"]));
+    }
+    all
 }
 
 impl Session {
-    /// The combinations, all or the one named, solved.
-    fn combined(&self, name: Option<&str>, io: &mut Output<'_>) -> Result<Vec<Combined>, CommandError> {
-        let known = &self.now.scenario.combinations;
-        if known.is_empty() {
-            return Err(CommandError::Refused(
-                "the scenario has no `combinations`: { \"ULS1\": { \"weight\": 1.35, \"pull\": 1.5 } }".into(),
-            ));
-        }
-        if let Some(name) = name
-            && !known.iter().any(|(known, _)| known == name)
-        {
-            let names = known.iter().map(|(name, _)| name.as_str());
-            return Err(CommandError::Refused(no_such("combination", name, names)));
-        }
-        let ground = self.ground(io.watch)?;
-        let name = name.map(str::to_owned);
-        worker::run(io.watch, move |watch| {
-            let Case { scenario, values, .. } = ground.case(watch);
-            let own = factors(&ground.prepared, values);
-            let chosen =
-                scenario.combinations.iter().filter(|(known, _)| name.as_ref().is_none_or(|name| name == known));
-            let mut combined = Vec::new();
-            for (name, combination) in chosen {
-                let factor = |(case, own): (&(String, _), &f64)| {
-                    let named = combination.multipliers.iter().find(|(known, _)| *known == case.0);
-                    named.map_or(0.0, |(_, multiplier)| multiplier.value(values) * own)
-                };
-                let factors: Vec<f64> = ground.prepared.cases.iter().zip(&own).map(factor).collect();
-                let prepared = Arc::new(ground.prepared.with_factors(&factors));
-                let solved = Case { prepared: &prepared, ..ground.case(watch) }.solve().map_err(|error| {
-                    if error.is_interrupted() {
-                        CommandError::Interrupted
-                    } else {
-                        CommandError::Solve(format!("combination {name}: {error}"))
-                    }
-                })?;
-                combined.push(Combined { name: name.clone(), prepared, factors, solved: Arc::new(solved) });
-            }
-            Ok(combined)
-        })?
-    }
-
-    fn facts_of<'a>(&'a self, combined: &'a Combined, watch: &'a dyn Watch) -> Facts<'a> {
-        Facts::of_answer(self.now.case(&combined.prepared, watch), &combined.solved)
-    }
-
-    /// `combine [NAME]`.
-    pub(in crate::session) fn combine(&mut self, name: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let all = self.combined(name, io)?;
-        let watch = io.watch;
-        let probes = &self.now.scenario.probes;
-        let units = self.now.scenario.units.clone();
-        let rows: Vec<(Row, Json)> = all
-            .iter()
-            .map(|combined| {
-                let answer = &combined.solved.answer;
-                let facts = self.facts_of(combined, watch);
-                let values: Vec<Result<Value, NoValue>> =
-                    probes.iter().map(|(_, quantity)| facts.value(quantity)).collect();
-                let cases = combined.prepared.cases.iter().map(|(case, _)| case.clone());
-                let json = json!({
-                    "name": combined.name,
-                    "factors": cases.zip(combined.factors.iter().map(|f| json!(f))).collect::<serde_json::Map<_, _>>(),
-                    "outcome": answer.outcome,
-                    "ray": answer.ray.as_ref().map(|ray| json!(ray.class)),
-                    "pivots": answer.pivot_count,
-                    "pairs": answer.pairs,
-                    "probes": self.probe_values(&facts),
-                });
-                let line = view::status::line(answer, None, &units, &io.style);
-                let values = probes.iter().zip(values);
-                let values = values.map(|((name, quantity), value)| Line {
-                    name: name.clone(),
-                    text: view::quantities::shown(quantity, &value, &units).0,
-                });
-                (Row { name: combined.name.clone(), line, values: values.collect() }, json)
-            })
-            .collect();
-        let note = match (name, &all[..]) {
-            (Some(name), [_]) => {
-                Some(format!("the answer of combination {name} is shown until the next change or `solve`"))
-            }
-            _ => None,
-        };
-        let (rows, json): (Vec<Row>, Vec<Json>) = rows.into_iter().unzip();
-        io.report(
-            || json!({"combinations": json}),
-            |out, style| view::combinations::write(out, &rows, note.as_deref(), style),
-        )?;
-        if let (Some(_), [one]) = (name, &all[..]) {
-            let (solved, prepared) = (Arc::clone(&one.solved), Arc::clone(&one.prepared));
-            self.take_answer(Some(solved));
-            self.combination = Some(Combination { prepared });
-        }
-        Ok(())
-    }
-
     /// `envelope [QUANTITY …] [over combinations | PARAMETER A..B …]`.
     pub(in crate::session) fn envelope(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let (words, over) = match words.iter().position(|word| word == "over") {

@@ -1,0 +1,452 @@
+//! The words of a command, a probe or an option → quantities, against the names of a scenario.
+
+use super::words::{Internal, Meaning, OfStress, Over, STATES, WORDS, entry, pair_words};
+use super::{BarPlace, Names, Quantity, ResultantPart, fits};
+use crate::model::words::{did_you_mean, nearest};
+
+/// Words that are no quantity.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct QuantityError(pub String);
+
+fn error<T>(text: impl Into<String>) -> Result<T, QuantityError> {
+    Err(QuantityError(text.into()))
+}
+
+/// The known name, or "no pair `jiont[0]` (did you mean `joint[0]`?): the pairs are c1, c2".
+fn known<'n>(what: &str, word: &str, names: &[&'n str]) -> Result<&'n str, QuantityError> {
+    if let Some(found) = names.iter().find(|name| **name == word) {
+        return Ok(found);
+    }
+    // Of two letters any other two are near.
+    let near = nearest(word, names.iter().copied()).filter(|_| word.len() > 2);
+    let near = near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)"));
+    error(match names {
+        [] => format!("no {what} `{word}`: this scenario has none"),
+        [only] => format!("no {what} `{word}`{near}: the only {what} is {only}"),
+        [first, .., last] if names.len() > 8 => format!("no {what} `{word}`{near}: the {what}s are {first} … {last}"),
+        names => format!("no {what} `{word}`{near}: the {what}s are {}", names.join(", ")),
+    })
+}
+
+/// Reads one quantity from the front of `words`; what is left comes back.
+///
+/// # Errors
+/// An unknown word or name, with the one that may be meant.
+pub fn read<'w>(words: &'w [String], names: &Names<'_>) -> Result<(Quantity, &'w [String]), QuantityError> {
+    let Some((first, rest)) = words.split_first() else {
+        return error("a quantity is expected: `help show` lists them");
+    };
+    let probe = |name: &str, quantity: &Quantity| Quantity::Probe(name.to_owned(), Box::new(quantity.clone()));
+    if let Some((name, quantity)) = names.probes.iter().find(|(name, _)| name == first) {
+        return Ok((probe(name, quantity), rest));
+    }
+    if let Some(inner) = quoted(first) {
+        let (quantity, more) = read(&inner, names)?;
+        return match more.first() {
+            None => Ok((quantity, rest)),
+            Some(word) => error(format!("`{word}` after {quantity} in `{first}`: quote each quantity by itself")),
+        };
+    }
+    let found = read_words(first, rest, names);
+    if found.is_err() {
+        // Typed without quotes a name with blanks comes in words; of several the longest.
+        let typed = |name: &str| {
+            let parts: Vec<&str> = name.split_whitespace().collect();
+            let fits = words.len() >= parts.len() && parts.iter().zip(words).all(|(part, word)| part == word);
+            fits.then_some(parts.len()).filter(|count| *count > 1)
+        };
+        let named = names.probes.iter().filter_map(|(name, quantity)| Some((typed(name)?, name, quantity)));
+        if let Some((count, name, quantity)) = named.max_by_key(|(count, ..)| *count) {
+            return Ok((probe(name, quantity), &words[count..]));
+        }
+    }
+    found
+}
+
+/// The words of a quantity that was quoted as a whole: `m noz` in one word.
+fn quoted(word: &str) -> Option<Vec<String>> {
+    let words = shlex::split(word)?;
+    (words.len() > 1 && entry(&words[0]).is_some()).then_some(words)
+}
+
+/// Reads a quantity that is no probe.
+fn read_words<'w>(
+    first: &str,
+    rest: &'w [String],
+    names: &Names<'_>,
+) -> Result<(Quantity, &'w [String]), QuantityError> {
+    let Some(entry) = entry(first) else {
+        let probes = names.probes.iter().map(|(name, _)| name.as_str());
+        let near = did_you_mean(first, WORDS.iter().map(|known| known.word).chain(probes));
+        return error(format!("unknown quantity `{first}`{near}; `help show` lists them"));
+    };
+    let argument = |rest: &'w [String]| match rest.split_first() {
+        Some((argument, rest)) if !argument.is_empty() => Ok((argument.clone(), rest)),
+        _ => error(format!("`{}` of what? Write `{} {}`", entry.word, entry.word, entry.meaning.arguments())),
+    };
+    match entry.meaning {
+        Meaning::Answer(which) => Ok((Quantity::Answer(which), rest)),
+        Meaning::Pair(_) | Meaning::State => {
+            let (pair, rest) = argument(rest)?;
+            if pair.contains('*') {
+                return error(format!("`{} {pair}` is of several pairs: put sum, max or min before it", entry.word));
+            }
+            known("pair", &pair, &names.pairs)?;
+            let quantity = match entry.meaning {
+                Meaning::Pair(which) => Quantity::Pair(which, pair),
+                _ => Quantity::State(pair),
+            };
+            Ok((quantity, rest))
+        }
+        Meaning::Node(which) => {
+            let (node, rest) = argument(rest)?;
+            known_place("node", &node, names, &[])?;
+            Ok((Quantity::Node(which, node), rest))
+        }
+        Meaning::Bar(which) => bar(which, rest, names, None),
+        Meaning::Stress(which) => {
+            let (name, rest) = argument(rest)?;
+            Ok((stress(which, name, names)?, rest))
+        }
+        Meaning::Resultant => {
+            let (joint, rest) = argument(rest)?;
+            known("edge contact", &joint, &names.joints())?;
+            let part = rest.first().and_then(|word| ResultantPart::WORDS.iter().find(|(known, _)| known == word));
+            let Some((_, part)) = part else { return error(format!("`resultant {joint}` takes N, T or e")) };
+            Ok((Quantity::Resultant(joint, *part), &rest[1..]))
+        }
+        Meaning::Load(which) => {
+            let (load, rest) = argument(rest)?;
+            let loads: Vec<&str> = names.cases.iter().chain(&names.parameters).copied().collect();
+            known("load case or parameter", &load, &loads)?;
+            Ok((Quantity::Load(which, load), rest))
+        }
+        Meaning::Critical => {
+            let (parameter, rest) = argument(rest)?;
+            known("parameter", &parameter, &names.parameters)?;
+            Ok((Quantity::Critical(parameter), rest))
+        }
+        Meaning::Over(how) => over(how, rest, names),
+        Meaning::Count => {
+            let (state, rest) = argument(rest)?;
+            let state = known("state", &state, STATES)?;
+            let (pattern, rest) = pattern(rest, names)?;
+            Ok((Quantity::Count(state, pattern), rest))
+        }
+        Meaning::Stage => {
+            let (number, rest) = argument(rest)?;
+            let stage = number.parse::<usize>().ok().filter(|stage| (1..=names.stages).contains(stage));
+            let Some(stage) = stage else {
+                return error(match names.stages {
+                    0 => format!("no stage {number}: the scenario has no `stages`"),
+                    last => format!("no stage {number}: there are stages 1 to {last}"),
+                });
+            };
+            let (inner, rest) = read(rest, names)?;
+            Ok((Quantity::Stage(stage, Box::new(inner)), rest))
+        }
+    }
+}
+
+/// A stress at a node or in an element.
+fn stress(which: OfStress, name: String, names: &Names<'_>) -> Result<Quantity, QuantityError> {
+    match (names.element(&name), names.nodes.contains(name.as_str())) {
+        (true, true) => error(format!(
+            "`{} {name}`: {name} is a node and an element as well; give one of them another id",
+            Meaning::Stress(which).word()
+        )),
+        (true, false) => Ok(Quantity::ElementStress(which, name)),
+        (false, _) => {
+            let elements = names.structure.map_or(&[][..], |structure| &structure.named_elements);
+            let elements: Vec<&str> = elements.iter().map(|(id, _)| id.as_str()).collect();
+            known_place("node or element", &name, names, &elements)?;
+            Ok(Quantity::NodeStress(which, name))
+        }
+    }
+}
+
+/// Refuses what is neither a node nor one of the `others`.
+fn known_place(what: &str, name: &str, names: &Names<'_>, others: &[&str]) -> Result<(), QuantityError> {
+    if names.nodes.contains(name) {
+        return Ok(());
+    }
+    if names.nodes.is_empty() {
+        return error(format!("no {what} `{name}`: this scenario is no structure"));
+    }
+    // In order: of equally near names always the same one is told.
+    let mut all: Vec<&str> = names.nodes.iter().chain(others).copied().collect();
+    all.sort_unstable();
+    error(format!("no {what} `{name}`{}", did_you_mean(name, all)))
+}
+
+fn bar<'w>(
+    which: Internal,
+    rest: &'w [String],
+    names: &Names<'_>,
+    over: Option<Over>,
+) -> Result<(Quantity, &'w [String]), QuantityError> {
+    let Some((name, rest)) = rest.split_first() else {
+        return error(format!("`{}` of which bar?", which.symbol()));
+    };
+    known("bar", name, &names.bars)?;
+    let found = |place, rest| Ok((Quantity::Bar(which, name.clone(), place), rest));
+    if let Some(over) = over {
+        return found(BarPlace::Over(over), rest);
+    }
+    match rest {
+        [at, distance, rest @ ..] if at == "at" => match distance.parse::<f64>() {
+            Ok(distance) if distance.is_finite() => found(BarPlace::At(distance), rest),
+            _ => error(format!("`{distance}` is no distance from the start of {name}")),
+        },
+        [place, rest @ ..] if place == "start" => found(BarPlace::Start, rest),
+        [place, rest @ ..] if place == "end" => found(BarPlace::End, rest),
+        rest => found(BarPlace::Extreme, rest),
+    }
+}
+
+fn over<'w>(over: Over, rest: &'w [String], names: &Names<'_>) -> Result<(Quantity, &'w [String]), QuantityError> {
+    let word = Meaning::Over(over).word();
+    let Some((inner, after)) = rest.split_first() else {
+        return error(format!("`{word}` of what? Write e.g. `{word} x_n joint[*]`"));
+    };
+    if inner == "u" && over == Over::Max {
+        return Ok((Quantity::LargestDisplacement, after));
+    }
+    match entry(inner).map(|entry| entry.meaning) {
+        Some(Meaning::Bar(which)) if over != Over::Sum => bar(which, after, names, Some(over)),
+        Some(Meaning::Pair(which)) => {
+            let (pattern, rest) = pattern(after, names)?;
+            Ok((Quantity::Pairs(over, which, pattern), rest))
+        }
+        _ => error(format!(
+            "`{word} {inner}`{}: expected a number of pairs, like `{word} x_n joint[*]`{}",
+            did_you_mean(inner, pair_words().map(|(word, _)| word)),
+            match over {
+                Over::Sum => "",
+                Over::Max => ", of a bar, like `max M AB`, or `max u`",
+                Over::Min => ", or of a bar, like `min M AB`",
+            }
+        )),
+    }
+}
+
+/// A pattern of pairs; all of them where none is given.
+fn pattern<'w>(rest: &'w [String], names: &Names<'_>) -> Result<(String, &'w [String]), QuantityError> {
+    let starts_comparison = |word: &str| word.starts_with(['=', '<', '>', '!']);
+    match rest.split_first() {
+        Some((pattern, rest)) if !starts_comparison(pattern) && entry(pattern).is_none() => {
+            if names.pairs.iter().any(|id| fits(pattern, id)) {
+                return Ok((pattern.clone(), rest));
+            }
+            known("pair", pattern, &names.pairs)?;
+            Ok((pattern.clone(), rest))
+        }
+        _ if names.pairs.is_empty() => error("this scenario has no pairs"),
+        _ => Ok(("*".to_owned(), rest)),
+    }
+}
+
+/// Reads all quantities of `words`; commas outside brackets may separate them.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_all(words: &[String], names: &Names<'_>) -> Result<Vec<Quantity>, QuantityError> {
+    let mut quantities = Vec::new();
+    for part in listed_parts(words, names) {
+        let mut rest = &part[..];
+        while !rest.is_empty() {
+            let (quantity, after) = read(rest, names)?;
+            quantities.push(quantity);
+            rest = after;
+        }
+    }
+    Ok(quantities)
+}
+
+/// Reads quantities from a text in which quotation marks hold a name together.
+///
+/// # Errors
+/// As [`read`], and an open quotation.
+pub fn read_text(text: &str, names: &Names<'_>) -> Result<Vec<Quantity>, QuantityError> {
+    let Some(words) = shlex::split(text) else {
+        return error(format!("a quotation mark in `{text}` is left open"));
+    };
+    read_all(&words, names)
+}
+
+/// The words between the commas that stand outside brackets.
+fn listed_parts(words: &[String], names: &Names<'_>) -> Vec<Vec<String>> {
+    let mut parts = vec![Vec::new()];
+    for word in words {
+        if names.probes.iter().any(|(name, _)| name == word) {
+            parts.last_mut().into_iter().for_each(|part: &mut Vec<String>| part.push(word.clone()));
+            continue;
+        }
+        let mut depth = 0;
+        let mut piece = String::new();
+        for c in word.chars() {
+            match c {
+                '[' | '{' | '(' => depth += 1,
+                ']' | '}' | ')' => depth -= 1,
+                _ => {}
+            }
+            if c != ',' || depth > 0 {
+                piece.push(c);
+                continue;
+            }
+            let piece = std::mem::take(&mut piece);
+            parts.last_mut().into_iter().filter(|_| !piece.is_empty()).for_each(|part| part.push(piece.clone()));
+            parts.push(Vec::new());
+        }
+        parts.last_mut().into_iter().filter(|_| !piece.is_empty()).for_each(|part| part.push(piece.clone()));
+    }
+    parts.retain(|part| !part.is_empty());
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::OnceLock;
+
+    use super::*;
+    use crate::model::quantity::OfNode;
+    use crate::model::structure::{Plate, Structure};
+
+    /// Node and quad `A`, quad `q1`, a plate `lower` of 4 × 2 elements.
+    fn structure() -> &'static Structure {
+        static STRUCTURE: OnceLock<Structure> = OnceLock::new();
+        STRUCTURE.get_or_init(|| Structure {
+            plates: vec![Plate { id: "lower".into(), elements: 0..8, nodes: vec![vec![0; 5]; 3] }],
+            named_elements: vec![("q1".into(), 8), ("A".into(), 9)],
+            ..Structure::default()
+        })
+    }
+
+    fn names(probes: &[(String, Quantity)]) -> Names<'_> {
+        Names {
+            pairs: vec!["c1", "c2", "joint[0]", "joint[1]"],
+            nodes: ["A", "B", "lower[0,8]"].into_iter().collect(),
+            bars: vec!["AB"],
+            structure: Some(structure()),
+            cases: vec!["pull"],
+            parameters: vec!["f", "F2"],
+            stages: 2,
+            probes,
+        }
+    }
+
+    fn words(text: &str) -> Vec<String> {
+        shlex::split(text).unwrap()
+    }
+
+    #[test]
+    fn every_quantity_reads_and_writes_itself() {
+        let probes = [("nozzle moment".to_owned(), Quantity::Bar(Internal::Moment, "AB".into(), BarPlace::Start))];
+        let names = names(&probes);
+        for text in [
+            "outcome",
+            "pivots",
+            "x_n c1",
+            "state joint[1]",
+            "reserve c2",
+            "sum x_n joint[*]",
+            "max z_t *",
+            "count open joint",
+            "resultant joint e",
+            "ux A",
+            "rz lower[0,8]",
+            "max u",
+            "M AB",
+            "M AB at 1.5",
+            "N AB end",
+            "min M AB",
+            "fy B",
+            "sx B",
+            "mises lower{3,1}",
+            "s1 q1",
+            "limit pull",
+            "safety F2",
+            "critical f",
+            "stage 2 x_n c1",
+        ] {
+            let words = words(text);
+            let (quantity, rest) = read(&words, &names).unwrap_or_else(|error| panic!("{text}: {error}"));
+            assert!(rest.is_empty(), "{text}");
+            assert_eq!(quantity.to_string(), text);
+        }
+        assert_eq!(read(&words("\"nozzle moment\" < 20"), &names).unwrap().1, ["<", "20"]);
+        assert_eq!(read(&words("count open = 3"), &names).unwrap().1, ["=", "3"]);
+    }
+
+    /// Quoted as a whole or not, with the name of a node in quotes inside, a probe with blanks in its name.
+    #[test]
+    fn quotation_marks_hold_together_what_they_hold() {
+        let probe = |name: &str| (name.to_owned(), Quantity::Node(OfNode::M, "B".into()));
+        let probes = [probe("foot"), probe("nozzle moment"), probe("nozzle moment hot"), probe("m of B")];
+        let names = names(&probes);
+        let all = |text: &str| {
+            let all = read_text(text, &names).unwrap_or_else(|error| panic!("{text}: {error}"));
+            all.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(all("'m B'"), ["m B"]);
+        assert_eq!(
+            all("m B, 'sum x_n joint[*]' 'M AB at 1.5', foot"),
+            ["m B", "sum x_n joint[*]", "M AB at 1.5", "foot"]
+        );
+        assert_eq!(all("'m \"B\"' 'stage 2 x_n c1' stage 1 'x_n c1'"), ["m B", "stage 2 x_n c1", "stage 1 x_n c1"]);
+        assert_eq!(all("nozzle moment, foot"), ["nozzle moment", "foot"]);
+        assert_eq!(all("nozzle moment hot 'nozzle moment' m of B"), ["nozzle moment hot", "nozzle moment", "m of B"]);
+        assert_eq!(read(&words("'x_n c1' < 20"), &names).unwrap().1, ["<", "20"]);
+        assert_eq!(read(&words("nozzle moment < 20"), &names).unwrap().1, ["<", "20"]);
+        for (text, part) in [
+            ("'m B m B'", "quote each quantity by itself"),
+            ("'m D'", "no node `D`"),
+            ("'no such probe'", "unknown quantity `no such probe`"),
+            ("nozzle", "unknown quantity `nozzle`"),
+        ] {
+            let error = read(&words(text), &names).expect_err(text).to_string();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn lists_are_separated_by_commas_outside_brackets() {
+        let names = names(&[]);
+        let all = |text: &str| {
+            let all = read_text(text, &names).unwrap_or_else(|error| panic!("{text}: {error}"));
+            all.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            all("x_n c1, M AB,ux lower[0,8],mises lower{1,1}"),
+            ["x_n c1", "M AB", "ux lower[0,8]", "mises lower{1,1}"]
+        );
+        assert_eq!(all("x_n c1 x_t c2"), ["x_n c1", "x_t c2"]);
+    }
+
+    #[test]
+    fn unknown_words_and_names_are_told() {
+        let names = names(&[]);
+        for (text, part) in [
+            ("xn c1", "unknown quantity `xn`: did you mean \"x_n\"?"),
+            ("x_n c9", "no pair `c9`"),
+            ("x_n joint[*]", "put sum, max or min before it"),
+            ("x_n", "`x_n` of what? Write `x_n PAIR`"),
+            ("M CD", "no bar `CD`"),
+            ("M AB at x", "`x` is no distance"),
+            ("sum M AB", "expected a number of pairs"),
+            ("sum x_n d*", "no pair `d*`"),
+            ("count opne", "no state `opne` (did you mean `open`?)"),
+            ("resultant c1 N", "no edge contact `c1`"),
+            ("resultant joint M", "takes N, T or e"),
+            ("mises lower{4,0}", "no node or element `lower{4,0}`"),
+            ("mises A", "A is a node and an element as well"),
+            ("mises q2", "no node or element `q2`"),
+            ("stage 3 x_n c1", "there are stages 1 to 2"),
+            ("limit puls", "did you mean `pull`?"),
+        ] {
+            let found = read(&words(text), &names).unwrap_err().to_string();
+            assert!(found.contains(part), "{text}: {found}");
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! Of the answer as a whole.
+
+use super::facts::Facts;
+use super::value::{NoValue, Value, none, written};
+use crate::answer::record::Ray;
+use crate::model::quantity::OfAnswer;
+
+impl Facts<'_> {
+    pub(super) fn of_the_answer(&self, which: OfAnswer) -> Result<Value, NoValue> {
+        let count = |count: usize| Ok(Value::Number(count as f64));
+        let size = |size: Option<usize>| size.map_or_else(|| none("the scenario is no structure"), count);
+        match which {
+            OfAnswer::Outcome => Ok(Value::Word(written(&self.answer()?.outcome))),
+            OfAnswer::Class => Ok(Value::Word(written(&self.ray()?.class))),
+            OfAnswer::Verdict => match self.ray()?.verdict {
+                Some(verdict) => Ok(Value::Word(written(&verdict))),
+                None => none("no verdict"),
+            },
+            OfAnswer::P => Value::finite(self.p.ok_or_else(|| self.missing())?),
+            OfAnswer::Pivots => count(self.answer()?.pivot_count),
+            OfAnswer::Lcp => count(self.answer()?.size.lcp),
+            OfAnswer::Unknowns => size(self.answer()?.size.unknowns),
+            OfAnswer::Free => size(self.answer()?.size.free),
+            OfAnswer::Answers => {
+                let prepared = self.prepared.ok_or_else(|| self.missing())?;
+                let all = prepared.all_answers(self.values, self.watch).map_err(|error| NoValue(error.to_string()))?;
+                let proved = all.undecided == 0 && all.exact.iter().all(|exact| *exact);
+                if !proved || all.continuum.iter().any(|continuum| *continuum) {
+                    return none(format!("{} answers found, but their number is not proved", all.answers.len()));
+                }
+                count(all.answers.len())
+            }
+            OfAnswer::Energy => {
+                let (_, main) = self.structure()?;
+                Value::finite(main.strain_energy(self.displacements()?))
+            }
+            OfAnswer::Dissipated => Value::finite(self.history()?.stages.iter().map(|stage| stage.dissipated).sum()),
+        }
+    }
+
+    fn ray(&self) -> Result<&Ray, NoValue> {
+        let answer = self.answer()?;
+        answer.ray.as_ref().ok_or_else(|| NoValue(format!("outcome {}", written(&answer.outcome))))
+    }
+}

@@ -1,0 +1,69 @@
+//! Resultants of edge contacts.
+
+use super::facts::Facts;
+use super::value::NoValue;
+use crate::answer::record::PairState;
+use crate::answer::rounding::balance;
+use crate::model::quantity::ResultantPart;
+
+/// Resultant of the forces of an edge contact.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Resultant {
+    /// Id of the contact.
+    pub joint: String,
+    /// Σ x_n.
+    #[serde(rename = "N")]
+    pub normal: f64,
+    /// Σ x_t.
+    #[serde(rename = "T")]
+    pub tangential: f64,
+    /// Distance of N from the middle, > 0 towards later nodes; `None` where N = 0.
+    #[serde(rename = "e")]
+    pub eccentricity: Option<f64>,
+}
+
+impl Facts<'_> {
+    pub(super) fn of_joint(&self, joint: &str, part: ResultantPart) -> Result<f64, NoValue> {
+        let found = self.resultant(joint).ok_or_else(|| self.missing())?;
+        match part {
+            ResultantPart::Normal => Ok(found.normal),
+            ResultantPart::Tangential => Ok(found.tangential),
+            ResultantPart::Eccentricity => {
+                found.eccentricity.ok_or_else(|| NoValue("no eccentricity where N = 0".to_owned()))
+            }
+        }
+    }
+
+    /// Of an edge contact.
+    pub fn resultant(&self, joint: &str) -> Option<Resultant> {
+        let head = format!("{joint}[");
+        let pairs: Vec<&PairState> = self.pairs.iter().filter(|pair| pair.id.starts_with(&head)).collect();
+        let normal = balance(pairs.iter().map(|pair| pair.x_n));
+        let tangential = balance(pairs.iter().map(|pair| pair.x_t));
+        let places = self.places(joint, &pairs);
+        let moment: Option<f64> = pairs.iter().zip(&places).map(|(pair, s)| Some(pair.x_n * (*s)?)).sum();
+        let eccentricity = moment.map(|moment| moment / normal).filter(|e| normal != 0.0 && e.is_finite());
+        (!pairs.is_empty()).then(|| Resultant { joint: joint.to_owned(), normal, tangential, eccentricity })
+    }
+
+    /// Places of pairs of a joint along it, from its middle: along the nodes of its edge, or by the positions of a given
+    /// contact system.
+    fn places(&self, joint: &str, pairs: &[&PairState]) -> Vec<Option<f64>> {
+        if let Ok((structure, _)) = self.structure()
+            && let Some(edge) = structure.edge_contacts.iter().find(|edge| edge.id == joint)
+        {
+            let at = |node: usize| structure.nodes[node].position;
+            let mut lengths = vec![0.0];
+            for ends in edge.nodes.windows(2) {
+                let (a, b) = (at(ends[0]), at(ends[1]));
+                lengths.push(lengths[lengths.len() - 1] + (b[0] - a[0]).hypot(b[1] - a[1]));
+            }
+            let middle = 0.5 * lengths[lengths.len() - 1];
+            let index = |id: &str| id.strip_prefix(joint)?.strip_prefix('[')?.strip_suffix(']')?.parse::<usize>().ok();
+            return pairs.iter().map(|pair| Some(lengths.get(index(&pair.id)?)? - middle)).collect();
+        }
+        let place = |pair: &&PairState| pair.position.map(|at| at[0]);
+        let ends = pairs.first().and_then(place).zip(pairs.last().and_then(place));
+        pairs.iter().map(|pair| Some(place(pair)? - ends.map(|(a, b)| 0.5 * (a + b))?)).collect()
+    }
+}

@@ -1,0 +1,85 @@
+//! The values of quantities: of an answer, of a pivot, of a place on a path. One file a family of the words of
+//! [`crate::model::quantity`]; each match is exhaustive, so that a new word is refused until it has its reader.
+
+mod answer;
+mod facts;
+mod joint;
+mod member;
+mod node;
+mod pair;
+mod path;
+mod stress;
+mod value;
+
+use crate::model::quantity::Quantity;
+
+pub use facts::Facts;
+pub use joint::Resultant;
+pub use stress::Field;
+pub(super) use value::written;
+pub use value::{NoValue, OnPath, Value};
+
+impl Facts<'_> {
+    /// The value of a quantity; a reason where it has none.
+    ///
+    /// # Errors
+    /// See [`NoValue`].
+    pub fn value(&self, quantity: &Quantity) -> Result<Value, NoValue> {
+        let number = match quantity {
+            Quantity::Answer(which) => return self.of_the_answer(*which),
+            Quantity::State(id) => return Ok(Value::Word(self.pair(id)?.state.word().to_owned())),
+            Quantity::Stage(stage, inner) => return self.of_stage(*stage, inner),
+            Quantity::Probe(_, inner) => return self.value(inner),
+            Quantity::Pair(which, id) => which.of(self.pair(id)?),
+            Quantity::Pairs(over, which, pattern) => self.of_pairs(*over, *which, pattern)?,
+            Quantity::Count(state, pattern) => self.count(state, pattern)?,
+            Quantity::Resultant(joint, part) => self.of_joint(joint, *part)?,
+            Quantity::Node(which, node) => self.of_node(*which, node)?,
+            Quantity::LargestDisplacement => self.largest_displacement()?,
+            Quantity::Bar(which, bar, place) => self.of_bar(*which, bar, *place)?,
+            Quantity::NodeStress(which, node) => self.at_node(*which, node)?,
+            Quantity::ElementStress(which, name) => self.in_element(*which, name)?,
+            Quantity::Load(which, name) => self.of_load(*which, name)?,
+            Quantity::Critical(parameter) => self.critical(parameter)?,
+        };
+        Value::finite(number)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Serialize;
+
+    use crate::answer::record::{OutcomeKind, RayClass, State, Verdict};
+    use crate::model::quantity::{WORDS, entry};
+
+    /// The words of a line in the table, but for `besides`, are those of results.
+    fn same_words(word: &str, besides: &[&str], all: &[impl Serialize]) {
+        let mut known: Vec<&str> = entry(word).unwrap().choices.to_vec();
+        known.retain(|choice| !besides.contains(choice));
+        let mut written: Vec<String> = all.iter().map(super::written).collect();
+        known.sort_unstable();
+        written.sort_unstable();
+        assert_eq!(known, written, "{word}");
+    }
+
+    #[test]
+    fn words_of_the_table_are_those_of_results() {
+        use OutcomeKind::{Breakdown, CheckFailed, Normal, PivotLimit, Ray, Trivial};
+        same_words("outcome", &["answer"], &[Trivial, Normal, Ray, PivotLimit, Breakdown, CheckFailed]);
+        use RayClass::{Artefact, Fault, Mechanism, NoEquilibrium};
+        same_words("class", &[], &[Mechanism, Artefact, Fault, NoEquilibrium]);
+        same_words("verdict", &[], &[Verdict::Certified, Verdict::Proved, Verdict::Undecided]);
+        let states = [State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Closed];
+        same_words("state", &[], &states);
+    }
+
+    #[test]
+    fn each_word_has_one_meaning_and_each_meaning_one_word() {
+        for line in WORDS {
+            assert_eq!(entry(line.word).map(|entry| entry.meaning), Some(line.meaning));
+            assert_eq!(line.meaning.word(), line.word);
+            assert_eq!(line.choices.is_empty(), !matches!(line.word, "outcome" | "class" | "verdict" | "state"));
+        }
+    }
+}

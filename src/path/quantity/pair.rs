@@ -1,0 +1,44 @@
+//! Numbers of pairs, and of all pairs that fit a pattern.
+
+use super::facts::Facts;
+use super::value::NoValue;
+use crate::answer::record::PairState;
+use crate::answer::rounding::balance;
+use crate::model::quantity::{OfPair, Over, fits};
+
+impl OfPair {
+    /// Of a pair.
+    pub fn of(self, pair: &PairState) -> f64 {
+        match self {
+            OfPair::NormalForce => pair.x_n,
+            OfPair::FrictionForce => pair.x_t,
+            OfPair::Opening => pair.z_n,
+            OfPair::Slip => pair.z_t,
+            OfPair::Bound => pair.bound,
+            OfPair::ReservePlus => pair.reserve_plus,
+            OfPair::ReserveMinus => pair.reserve_minus,
+            OfPair::Reserve => pair.bound - pair.x_t.abs(),
+        }
+    }
+}
+
+impl<'a> Facts<'a> {
+    fn chosen(&self, pattern: &str) -> Result<Vec<&'a PairState>, NoValue> {
+        let chosen: Vec<&PairState> = self.pairs.iter().filter(|pair| fits(pattern, &pair.id)).collect();
+        if chosen.is_empty() { Err(self.missing()) } else { Ok(chosen) }
+    }
+
+    pub(super) fn of_pairs(&self, over: Over, which: OfPair, pattern: &str) -> Result<f64, NoValue> {
+        let chosen = self.chosen(pattern)?.into_iter().map(|pair| which.of(pair));
+        Ok(match over {
+            Over::Sum => balance(chosen),
+            Over::Max => chosen.fold(f64::NEG_INFINITY, f64::max),
+            Over::Min => chosen.fold(f64::INFINITY, f64::min),
+        })
+    }
+
+    /// How many pairs are in a state.
+    pub(super) fn count(&self, state: &str, pattern: &str) -> Result<f64, NoValue> {
+        Ok(self.chosen(pattern)?.into_iter().filter(|pair| pair.state.word() == state).count() as f64)
+    }
+}

@@ -1,0 +1,44 @@
+//! What takes a path or a search of its own: limits, critical friction, the stages of a history.
+
+use super::facts::Facts;
+use super::value::{NoValue, Value, none};
+use crate::model::quantity::{OfAnswer, OfLoad, Quantity};
+use crate::path::limit;
+use crate::path::stages::History;
+
+impl<'a> Facts<'a> {
+    pub(super) fn of_load(&self, which: OfLoad, name: &str) -> Result<f64, NoValue> {
+        let prepared = self.prepared.ok_or_else(|| self.missing())?;
+        let case = prepared.case(self.scenario, self.values).watched(self.watch);
+        let found = limit::limit(case, self.solved, name).map_err(|error| NoValue(error.to_string()))?;
+        let value = match which {
+            OfLoad::Limit => found.factor,
+            OfLoad::Safety => found.safety,
+        };
+        value.ok_or_else(|| NoValue(format!("no limit: {}", found.end_sentence())))
+    }
+
+    pub(super) fn critical(&self, parameter: &str) -> Result<f64, NoValue> {
+        let prepared = self.prepared.ok_or_else(|| self.missing())?;
+        let found = prepared
+            .critical_friction(self.values, parameter, self.watch)
+            .map_err(|error| NoValue(error.to_string()))?;
+        found.value.ok_or_else(|| NoValue("no friction was found at which several answers are possible".into()))
+    }
+
+    pub(super) fn history(&self) -> Result<&'a History, NoValue> {
+        self.history.ok_or_else(|| NoValue("of which history? `stages` follows that of the scenario first".to_owned()))
+    }
+
+    pub(super) fn of_stage(&self, stage: usize, inner: &Quantity) -> Result<Value, NoValue> {
+        let history = self.history()?;
+        // Stages count from 1.
+        let Some(found) = history.stages.get(stage - 1) else {
+            return none(format!("stage {stage} was not reached: {}", history.end_sentence()));
+        };
+        match inner {
+            Quantity::Answer(OfAnswer::Dissipated) => Value::finite(found.dissipated),
+            inner => self.at_stage(history, stage - 1).value(inner),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Stresses of membranes, and the state over the whole structure.
+
+use super::facts::Facts;
+use super::value::NoValue;
+use crate::answer::record::{MemberForces, PairState};
+use crate::answer::stress::{Stress, StressPlace};
+use crate::fem::{MembraneStress, NodeStress};
+use crate::model::quantity::OfStress;
+use crate::model::structure::Structure;
+
+impl OfStress {
+    /// Of a stress.
+    pub fn of(self, stress: &Stress) -> f64 {
+        match self {
+            OfStress::X => stress.sx,
+            OfStress::Y => stress.sy,
+            OfStress::Xy => stress.sxy,
+            OfStress::Larger => stress.s1,
+            OfStress::Smaller => stress.s2,
+            OfStress::Mises => stress.mises,
+        }
+    }
+}
+
+/// A state over the whole structure: at every node, in every element and pair.
+pub struct Field<'a> {
+    /// The structure.
+    pub structure: &'a Structure,
+    /// (u_x, u_y, rotation) of every node.
+    pub displacements: &'a [[f64; 3]],
+    /// At the nodes of membranes.
+    pub node_stresses: Vec<NodeStress>,
+    /// At the centres of membranes.
+    pub element_stresses: Vec<MembraneStress>,
+    /// Of the bars, element by element.
+    pub members: &'a [MemberForces],
+    /// The pairs, in the order of the structure.
+    pub pairs: &'a [PairState],
+}
+
+impl Facts<'_> {
+    pub(super) fn at_node(&self, which: OfStress, node: &str) -> Result<f64, NoValue> {
+        let at = self.node(node)?;
+        let found = self.node_stresses()?.into_iter().find(|stress| stress.node == at);
+        let found = found.ok_or_else(|| NoValue(format!("no plate, quad or triangle at node {node}")))?;
+        Ok(which.of(&Stress::new(StressPlace::Node(node.to_owned()), found.stress)))
+    }
+
+    pub(super) fn in_element(&self, which: OfStress, name: &str) -> Result<f64, NoValue> {
+        let element = self.structure()?.0.element_named(name);
+        let element = element.ok_or_else(|| NoValue(format!("no element {name}")))?;
+        let found = self.element_stresses()?.into_iter().find(|stress| stress.element == element);
+        let found = found.ok_or_else(|| self.missing())?;
+        Ok(which.of(&Stress::new(StressPlace::Element(name.to_owned()), found.stress)))
+    }
+
+    fn node_stresses(&self) -> Result<Vec<NodeStress>, NoValue> {
+        let (structure, main) = self.structure()?;
+        Ok(main.node_stresses(structure, self.displacements()?, &self.factors))
+    }
+
+    fn element_stresses(&self) -> Result<Vec<MembraneStress>, NoValue> {
+        let (structure, main) = self.structure()?;
+        Ok(main.element_stresses(structure, self.displacements()?, &self.factors))
+    }
+
+    /// The stresses at the nodes of plates, quads and triangles, then those in the elements; empty where there are none.
+    pub fn stresses(&self) -> Vec<Stress> {
+        let (Ok((structure, _)), Ok(nodes), Ok(elements)) =
+            (self.structure(), self.node_stresses(), self.element_stresses())
+        else {
+            return Vec::new();
+        };
+        let at_nodes = nodes.into_iter().map(|at| (StressPlace::Node(structure.nodes[at.node].id.clone()), at.stress));
+        let inside = elements
+            .into_iter()
+            .filter_map(|at| Some((StressPlace::Element(structure.element_name(at.element)?), at.stress)));
+        at_nodes.chain(inside).map(|(place, stress)| Stress::new(place, stress)).collect()
+    }
+
+    /// The state over the whole structure.
+    ///
+    /// # Errors
+    /// No structure, or no displacements.
+    pub fn field(&self) -> Result<Field<'_>, NoValue> {
+        let ((structure, main), u) = (self.structure()?, self.displacements()?);
+        Ok(Field {
+            structure,
+            displacements: &u.0,
+            node_stresses: main.node_stresses(structure, u, &self.factors),
+            element_stresses: main.element_stresses(structure, u, &self.factors),
+            members: self.members()?,
+            pairs: self.pairs,
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! The values of quantities at the places of a path: `trace … of`, `plot path QUANTITY`.
+
+use serde_json::{Value, json};
+
+use crate::model::quantity::Quantity;
+use crate::path::quantity::{Facts, NoValue, OnPath};
+use crate::path::record::{Followed, PathPlace, PathRecord};
+use crate::session::{CommandError, Session};
+use crate::solve::Prepared;
+use crate::solve::numbers::factors;
+use crate::watch::Watch;
+
+impl Session {
+    /// What quantities are read from at a place of a path.
+    ///
+    /// # Errors
+    /// Values under which there is no model.
+    pub(in crate::session) fn with_place<T>(
+        &self,
+        prepared: &Prepared,
+        path: &PathRecord,
+        place: &PathPlace,
+        watch: &dyn Watch,
+        read: impl FnOnce(&Facts<'_>) -> T,
+    ) -> Result<T, NoValue> {
+        let mut values = self.now.values.clone();
+        if path.followed != Followed::Stages && values.contains_key(&path.name) {
+            values.insert(path.name.clone(), place.value);
+        }
+        // Where the parameter stands in the loads themselves, each place has load vectors of its own.
+        let renewed =
+            prepared.renewed(&self.now.scenario, &values, watch).map_err(|error| NoValue(error.to_string()))?;
+        let prepared = renewed.as_ref().map_or(prepared, |(there, _)| there);
+        let factors = if place.factors.is_empty() { factors(prepared, &values) } else { place.factors.clone() };
+        let case = prepared.case(&self.now.scenario, &values).watched(watch);
+        Ok(read(&Facts::of_state(case, factors, &place.pairs)))
+    }
+
+    /// The values of a quantity at the places of a path; `None` where it has none.
+    fn along(
+        &self,
+        prepared: &Prepared,
+        path: &PathRecord,
+        quantity: &Quantity,
+        watch: &dyn Watch,
+    ) -> Vec<Option<f64>> {
+        let number = |facts: &Facts<'_>| facts.value(quantity).ok()?.number();
+        path.places.iter().map(|place| self.with_place(prepared, path, place, watch, number).ok().flatten()).collect()
+    }
+
+    /// The table of `trace … of`: as JSON and as rows.
+    pub(in crate::session) fn report_along(
+        &self,
+        prepared: &Prepared,
+        path: &PathRecord,
+        quantities: &[Quantity],
+        watch: &dyn Watch,
+    ) -> Result<Vec<OnPath>, CommandError> {
+        let all = quantities.iter().map(|quantity| (quantity.clone(), self.along(prepared, path, quantity, watch)));
+        let all: Vec<_> = all.collect();
+        match all.iter().find(|(_, values)| values.iter().all(Option::is_none)) {
+            Some((quantity, _)) => Err(CommandError::Refused(format!("{quantity} has no value on this path"))),
+            None => Ok(all),
+        }
+    }
+}
+
+/// The values of quantities on a path.
+pub(in crate::session) fn along_json(path: &PathRecord, along: &[OnPath]) -> Value {
+    json!({
+        "values": path.abscissas(None),
+        "quantities": along.iter().map(|(quantity, values)| json!({
+            "quantity": quantity.to_string(), "values": values,
+        })).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,60 @@
+//! `critical`: the friction above which several answers are possible.
+
+use clap::Args;
+use serde_json::json;
+
+use crate::contact::schemes::critical::Coverage;
+use crate::model::uses::Region;
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session};
+use crate::view;
+
+/// Find the friction above which more than one answer is possible
+///
+/// Exact up to 8 pairs; beyond, a search among drawn working schemes, reported as such.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  load klarbring; critical f")]
+pub struct Critical {
+    /// The friction parameter
+    #[arg(value_name = "PARAMETER")]
+    friction: String,
+}
+
+pub const CRITICAL: Command = Command { complete: |asked| asked.parameters(), ..Command::of::<Critical>("critical") };
+
+impl Action for Critical {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.critical(&self.friction, io)?;
+        Ok(Next::Continue)
+    }
+}
+
+impl Session {
+    pub(in crate::session) fn critical(&self, friction: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let values = self.now.values.clone();
+        let name = friction.to_owned();
+        if self.now.scenario.uses.place(&name, Region::Geometry).is_some() {
+            return Err(CommandError::Refused(format!(
+                "{name} stands in the geometry or stiffness as well: `critical` varies friction alone"
+            )));
+        }
+        let found = self.ask(io, move |prepared, _, watch| prepared.critical_friction(&values, &name, watch))?;
+        let pairs = self.pairs();
+        let ids: Vec<&str> = pairs.iter().map(|pair| pair.id.as_str()).collect();
+        io.report(
+            || {
+                let scheme = found.scheme.as_ref().map(|scheme| view::critical::scheme_words(&ids, scheme));
+                json!({
+                    "parameter": friction,
+                    "value": found.value,
+                    "scheme": scheme,
+                    "exact": found.coverage == Coverage::Exact,
+                    "examined": found.examined,
+                    "singular": found.singular,
+                })
+            },
+            |out, style| view::critical::write(out, friction, &found, &ids, style),
+        )?;
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! `enumerate`: every answer.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Session, worker};
+use crate::solve::all_answers::{AllAnswers, Continuum, Moving};
+use crate::view;
+
+/// How long the answers of a stopped search are waited for.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// List every answer; with a number, show that one
+///
+/// Goes through all working schemes in exact arithmetic, cutting what cannot be completed. Where answers lie side by
+/// side it tells the corners of the continuum and the directions in which it has no end. Ctrl-C shows what was found
+/// so far. `enumerate 2` makes the second answer the one that `pairs`, `plot` and the others show; `solve` goes back
+/// to Lemke's.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  load klarbring; enumerate; enumerate 2; pairs")]
+pub struct Enumerate {
+    /// Number of the answer to show
+    #[arg(value_name = "ANSWER")]
+    answer: Option<usize>,
+}
+
+pub const ENUMERATE: Command = Command::of::<Enumerate>("enumerate");
+
+impl Action for Enumerate {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.enumerate(self.answer, io)?;
+        Ok(Next::Continue)
+    }
+
+    fn needs_pivots(&self) -> bool {
+        true
+    }
+}
+
+/// A set of answers: its corners, numbered from 1 as the answers are, and the directions in which it has no end.
+fn continuum(all: &AllAnswers, piece: &Continuum) -> Value {
+    let z = |corner: &usize| all.answers[*corner].answer.solution.as_ref().map(|solution| &solution.z);
+    let directions: Vec<Value> = piece
+        .directions
+        .iter()
+        .map(|direction| match direction {
+            Moving::Pairs(pairs) => json!(pairs),
+            Moving::Plain(z) => json!(z),
+        })
+        .collect();
+    json!({
+        "answers": piece.corners.iter().map(|corner| corner + 1).collect::<Vec<_>>(),
+        "corners": piece.corners.iter().map(z).collect::<Option<Vec<_>>>(),
+        "directions": directions,
+    })
+}
+
+impl Session {
+    pub(in crate::session) fn enumerate(
+        &mut self,
+        answer: Option<usize>,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let values = self.now.values.clone();
+        // Stopped, it shows what was found so far.
+        let (prepared, _) = self.both()?;
+        let mut all: AllAnswers =
+            worker::run_patiently(io.watch, PATIENCE, move |watch| prepared.all_answers(&values, watch))??;
+        if let Some(number) = answer {
+            let count = all.answers.len();
+            if number == 0 || number > count {
+                return Err(CommandError::Refused(match count {
+                    0 => "enumerate: there is no answer to show".to_owned(),
+                    1 => format!("enumerate: there is no answer {number}; expected 1"),
+                    _ => format!("enumerate: there is no answer {number}; expected 1 … {count}"),
+                }));
+            }
+            let chosen = all.answers.swap_remove(number - 1);
+            self.take_answer(Some(Arc::new(chosen)));
+            return self.report_pairs(&[], io);
+        }
+        io.report(
+            || {
+                let answers: Vec<Value> = all
+                    .answers
+                    .iter()
+                    .zip(all.exact.iter().zip(&all.continuum))
+                    .map(|(solved, (exact, continuum))| {
+                        json!({
+                            "pairs": solved.answer.pairs,
+                            "solution": solved.answer.solution,
+                            "exact": exact,
+                            "continuum": continuum,
+                        })
+                    })
+                    .collect();
+                let continua: Vec<Value> = all.continua.iter().map(|piece| continuum(&all, piece)).collect();
+                json!({
+                    "answers": answers,
+                    "continua": continua,
+                    "complete": all.complete,
+                    "visited": all.visited,
+                    "cut": all.cut,
+                    "total": all.total,
+                    "undecided": all.undecided,
+                })
+            },
+            |out, style| view::enumerate::write(out, &all, style),
+        )?;
+        Ok(())
+    }
+}

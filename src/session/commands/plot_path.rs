@@ -1,0 +1,106 @@
+//! `plot path`: what was followed last.
+
+use serde_json::json;
+
+use crate::path::quantity::OnPath;
+use crate::path::record::{Followed, PathRecord};
+use crate::session::commands::along::along_json;
+use crate::session::language::selection::no_such;
+use crate::session::language::suggestion::did_you_mean;
+use crate::session::{CommandError, Output, Session};
+use crate::view;
+use crate::view::plot::chart::Chart;
+use crate::view::plot::zone::Quantity as Zone;
+use crate::watch::Watch;
+
+impl Session {
+    /// `plot path [QUANTITY] [PAIRS] [over CASE]`, `plot path QUANTITY [over CASE]`.
+    pub(in crate::session) fn plot_path(
+        &self,
+        of: &[String],
+        height: usize,
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let (chart, along) = self.path_chart(of, io.watch)?;
+        let path = self.need_path()?;
+        let report = || along.map_or_else(|| json!(path), |along| along_json(path, &along));
+        io.report(report, |out, style| Chart { height, ..chart }.write(out, style))?;
+        Ok(())
+    }
+
+    /// The chart of what was followed last; the quantities in it, where it is not of the numbers of pairs.
+    pub(in crate::session) fn path_chart(
+        &self,
+        of: &[String],
+        watch: &dyn Watch,
+    ) -> Result<(Chart, Option<Vec<OnPath>>), CommandError> {
+        let path = self.need_path()?;
+        let units = &self.now.scenario.units;
+        let (of, over) = match of {
+            [of @ .., word, name] if word == "over" => (of, Some(abscissa(path, name)?)),
+            of => (of, None),
+        };
+        let (quantity, names) = match of.split_first() {
+            Some((word, rest)) if word == "slip" => (Zone::Slip, rest),
+            Some((word, rest)) if word == "force" => (Zone::Force, rest),
+            Some((word, rest)) if word == "gap" => (Zone::Gap, rest),
+            Some((word, rest)) if word == "pressure" => (Zone::Pressure, rest),
+            Some((word, _)) if !path.places.iter().any(|place| place.pairs.iter().any(|pair| pair.id == *word)) => {
+                let quantities = self.quantities(of)?;
+                let Some(prepared) = &self.now.prepared else {
+                    return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
+                };
+                let along = self.report_along(prepared, path, &quantities, watch)?;
+                return Ok((view::plot::path::drawing_along(path, &along, over, units), Some(along)));
+            }
+            _ => (Zone::Slip, of),
+        };
+        let ids: Vec<&str> = path
+            .places
+            .first()
+            .map(|place| place.pairs.iter().map(|pair| pair.id.as_str()).collect())
+            .unwrap_or_default();
+        let mut pairs = Vec::new();
+        for name in names {
+            let pair = ids.iter().position(|id| id == name).ok_or_else(|| {
+                CommandError::Refused(format!("plot: no pair {name}{}", did_you_mean(name, ids.iter().copied())))
+            })?;
+            pairs.push(pair);
+        }
+        if pairs.is_empty() {
+            pairs = busiest(path, &ids);
+        }
+        Ok((view::plot::path::drawing(path, quantity, &pairs, over, units), None))
+    }
+
+    pub(in crate::session) fn need_path(&self) -> Result<&PathRecord, CommandError> {
+        self.path.as_deref().ok_or_else(|| {
+            CommandError::Refused(
+                "no path was followed yet: `trace CASE`, `trace FRICTION`, `limit CASE` or `stages`".into(),
+            )
+        })
+    }
+}
+
+/// The load case whose factor a plot of a history goes over.
+fn abscissa(path: &PathRecord, name: &str) -> Result<usize, CommandError> {
+    let refusal = match path.followed {
+        Followed::Stages => match path.cases.iter().position(|case| case == name) {
+            Some(case) => return Ok(case),
+            None => no_such("load case", name, path.cases.iter().map(String::as_str)),
+        },
+        _ => format!("plot: `over` chooses a load case of a history; this path goes over {}", path.name),
+    };
+    Err(CommandError::Refused(refusal))
+}
+
+/// The pairs that slip most on a path, at most four: what a plot shows if none is named.
+fn busiest(path: &PathRecord, ids: &[&str]) -> Vec<usize> {
+    let most = |pair: usize| {
+        view::number::largest(path.places.iter().filter_map(|place| place.pairs.get(pair).map(|pair| pair.z_t)))
+    };
+    let mut pairs: Vec<usize> = (0..ids.len()).collect();
+    pairs.sort_by(|&a, &b| most(b).total_cmp(&most(a)).then(a.cmp(&b)));
+    pairs.truncate(4);
+    pairs
+}

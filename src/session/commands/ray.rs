@@ -1,0 +1,87 @@
+//! `ray`: what it is, the work of the loads on it, its proof, and what would stop it.
+
+use std::sync::Arc;
+
+use clap::Args;
+use serde_json::json;
+
+use crate::session::language::command::{Action, Command};
+use crate::session::{CommandError, Next, Output, Remedies, Session, worker};
+use crate::view;
+use crate::watch::Watch;
+
+/// Show the ray: its class, its motion and what it means
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  load beam-ray; ray")]
+pub struct Ray;
+
+pub const RAY: Command = Command::of::<Ray>("ray");
+
+impl Action for Ray {
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.report_ray(io)?;
+        Ok(Next::Continue)
+    }
+
+    fn needs_pivots(&self) -> bool {
+        true
+    }
+}
+
+impl Session {
+    /// Looks for what would stop the collapse shown, where there is one and it was not looked for yet.
+    ///
+    /// # Errors
+    /// An interruption.
+    pub fn ensure_remedies(&mut self, watch: &dyn Watch) -> Result<(), CommandError> {
+        if self.remedies().is_some() {
+            return Ok(());
+        }
+        let (prepared, solved) = self.both()?;
+        let asked = Arc::clone(&solved);
+        if let Some(found) = worker::run(watch, move |watch| prepared.remedies(&asked, watch))? {
+            self.remedies = Some((solved, Arc::new(found)));
+        }
+        Ok(())
+    }
+
+    /// What would stop the collapse shown, if it was looked for.
+    pub fn remedies(&self) -> Option<Arc<Remedies>> {
+        let (of, found) = self.remedies.as_ref()?;
+        self.solved.as_ref().filter(|solved| Arc::ptr_eq(solved, of)).map(|_| Arc::clone(found))
+    }
+
+    /// `ray`: what it is, the work of the loads on it, its proof, and what would stop it.
+    pub(in crate::session) fn report_ray(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        if self.need_answer()?.ray.is_some() {
+            self.ensure_remedies(io.watch)?;
+        }
+        let answer = self.need_answer()?;
+        let ray = answer.ray.as_ref().ok_or_else(|| {
+            CommandError::Refused(format!("no ray: the run ended {}", view::status::outcome_word(answer.outcome)))
+        })?;
+        let (prepared, solved) = self.both()?;
+        let remedies = self.remedies();
+        io.report(
+            || {
+                let mut value = json!(ray);
+                if let Some(found) = &remedies {
+                    value["remedies"] = json!(found.remedies);
+                    value["remedies_complete"] = json!(found.complete);
+                }
+                value
+            },
+            |out, style| {
+                view::ray::write(out, ray, &self.now.scenario.units, style)?;
+                if let (Some(report), Some(system)) = (&solved.ray, prepared.system()) {
+                    view::ray::write_details(out, report, system, style)?;
+                }
+                match &remedies {
+                    Some(found) => view::ray::write_remedies(out, found, style),
+                    None => Ok(()),
+                }
+            },
+        )?;
+        Ok(())
+    }
+}

@@ -1,0 +1,64 @@
+//! Quantities in the language: the table of `help show`, and what may follow their words.
+
+use crate::model::quantity::{self, Meaning, STATES, WORDS, Word};
+use crate::session::language::candidates::{Asked, Candidate};
+use crate::session::language::tokens;
+use crate::view::style::Style;
+
+/// The table of all quantities, for `help show`.
+pub fn help() -> String {
+    let style = Style { width: 79, ..Style::default() };
+    let rows = WORDS.iter().flat_map(|entry| {
+        let usage = format!("{} {}", entry.word, entry.meaning.arguments());
+        style.hanging(&format!("  {:<33} ", usage.trim_end()), entry.about)
+    });
+    let rows: Vec<String> = rows.collect();
+    format!(
+        "Quantities:\n{}\n\nPATTERN is a pair, an edge contact, or has `*` for any letters:\nsum x_n joint[*]. The probes of \
+         the scenario are quantities by their names;\nquote names with blanks.",
+        rows.join("\n")
+    )
+}
+
+impl Asked<'_> {
+    /// What may follow `given`, the words of quantities: the next argument of the last one, or another.
+    pub fn quantities(&self, given: &[String]) -> Vec<Candidate> {
+        let names = self.names;
+        let words = || {
+            let mut all: Vec<Candidate> = WORDS.iter().map(|entry| Candidate::new(entry.word, "")).collect();
+            all.extend(Candidate::plain(names.probes.iter().map(|probe| tokens::quote(probe))));
+            all
+        };
+        let at = given.iter().rposition(|word| quantity::entry(word).is_some());
+        let Some((entry, after)) = at.and_then(|at| Some((quantity::entry(&given[at])?, &given[at + 1..]))) else {
+            return words();
+        };
+        let pairs = || {
+            let patterns = names.joints.iter().map(|joint| format!("{joint}[*]"));
+            Candidate::plain(names.pairs.iter().cloned().chain(patterns).chain(["*".to_owned()]))
+        };
+        let over = at.and_then(|at| at.checked_sub(1)).is_some_and(|before| {
+            quantity::entry(&given[before]).is_some_and(|before| matches!(before.meaning, Meaning::Over(_)))
+        });
+        match (entry.meaning, after) {
+            (Meaning::Pair(_), []) if over => pairs(),
+            (Meaning::Pair(_) | Meaning::State, []) => Candidate::plain(&names.pairs),
+            (Meaning::Node(_), []) => Candidate::plain(&names.nodes),
+            (Meaning::Stress(_), []) => Candidate::plain(names.nodes.iter().chain(&names.elements)),
+            (Meaning::Bar(_), []) => Candidate::plain(&names.bars),
+            (Meaning::Bar(_), [_]) if !over => Candidate::plain(["at", "start", "end"]),
+            (Meaning::Resultant, []) => Candidate::plain(&names.joints),
+            (Meaning::Resultant, [_]) => Candidate::plain(["N", "T", "e"]),
+            (Meaning::Load(_), []) => Candidate::plain(&names.cases),
+            (Meaning::Critical, []) => Candidate::plain(names.parameters.iter().map(|(name, _)| name)),
+            (Meaning::Over(_), []) => {
+                let summed = |entry: &&Word| matches!(entry.meaning, Meaning::Pair(_) | Meaning::Bar(_));
+                Candidate::plain(WORDS.iter().filter(summed).map(|entry| entry.word).chain(["u"]))
+            }
+            (Meaning::Count, []) => Candidate::plain(STATES),
+            (Meaning::Count, [_]) => pairs(),
+            (Meaning::Stage, [_]) => words(),
+            _ => Vec::new(),
+        }
+    }
+}
