@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use stickslip::answer::attempt::{AttemptCovering, PlainCovering};
 use stickslip::answer::record::{OutcomeKind, Verdict};
 use stickslip::explain::plain_ray::PlainRay;
-use stickslip::lcp::basis_solution::Basis;
+use stickslip::lcp::basis::Basis;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::mirrored::MirroredLcp;

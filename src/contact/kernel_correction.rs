@@ -9,7 +9,8 @@ use nalgebra::DVector;
 use crate::contact::lcp::{ContactLcp, RowKind, load_with_gaps};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::lcp::basis_solution::{Basis, corrected};
+use crate::lcp::basis::Basis;
+use crate::lcp::basis_solution::corrected;
 use crate::lcp::outcome::Point;
 
 /// w of all rows at a point, dimensionless, from forces whose kernel part is exact.

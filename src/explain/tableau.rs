@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::vertex::{Naming, basics, value};
-use crate::lcp::basis_solution::{Basis, direction, vertex};
+use crate::lcp::basis::Basis;
+use crate::lcp::basis_solution::{direction, vertex};
 use crate::lcp::outcome::Point;
 use crate::lcp::pivot::PivotLog;
 use crate::lcp::variable::Variable;

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::vertex::{Naming, zero_basics};
-use crate::lcp::basis_solution::{Basis, vertex};
+use crate::lcp::basis::Basis;
+use crate::lcp::basis_solution::vertex;
 use crate::lcp::outcome::Point;
 use crate::lcp::pivot::{Pivot, PivotLog};
 use crate::lcp::variable::Variable;

@@ -2,7 +2,7 @@
 
 use crate::contact::lcp::ContactLcp;
 use crate::contact::system::ContactSystem;
-use crate::lcp::basis_solution::Basis;
+use crate::lcp::basis::Basis;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::variable::Variable;

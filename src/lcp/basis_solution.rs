@@ -1,52 +1,12 @@
-//! A vertex of a run rebuilt from its pivots: which variables are basic, and their values from the data.
+//! A vertex, or a direction, of a basis, computed from the data.
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::lcp::basis::Basis;
 use crate::lcp::dense::Factor;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Point, RayDirection};
-use crate::lcp::pivot::Pivot;
 use crate::lcp::variable::Variable;
-
-/// The basis after some pivots.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Basis {
-    /// Rows whose z is basic, ascending.
-    pub z: Vec<usize>,
-    /// Rows whose w is nonbasic, ascending. Differs from `z` while p is basic.
-    pub active: Vec<usize>,
-    /// Whether p is basic.
-    pub p: bool,
-}
-
-impl Basis {
-    /// The basis after the given pivots of a run that started from z = 0.
-    pub fn after(pivots: &[Pivot]) -> Basis {
-        use std::collections::BTreeSet;
-        let (mut z, mut active, mut p) = (BTreeSet::new(), BTreeSet::new(), false);
-        for pivot in pivots {
-            match pivot.leaving {
-                Variable::W(i) => {
-                    active.insert(i);
-                }
-                Variable::Z(i) => {
-                    z.remove(&i);
-                }
-                Variable::P => p = false,
-            }
-            match pivot.entering {
-                Variable::W(i) => {
-                    active.remove(&i);
-                }
-                Variable::Z(i) => {
-                    z.insert(i);
-                }
-                Variable::P => p = true,
-            }
-        }
-        Basis { z: z.into_iter().collect(), active: active.into_iter().collect(), p }
-    }
-}
 
 /// Rows and columns of the whole LCP read from the mirrored one.
 struct Whole<'a> {

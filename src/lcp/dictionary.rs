@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::dense::Factor;
 use super::mirrored::MirroredLcp;
 use super::updated_matrix::{Combination, UpdatedMatrix};
-use crate::lcp::basis_solution::Basis;
+use crate::lcp::basis::Basis;
 
 /// A variable of the dictionary. `W(i)` and `Z(i)` of a mirrored row stand for the member of the couple that
 /// its orientation selects; the other w is known from [`Dictionary::hidden`], the other z is zero.

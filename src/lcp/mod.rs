@@ -19,6 +19,7 @@
 //!
 //! [`tableau`] is generic over its numbers and obviously right; [`lemke`] is the fast engine on [`mirrored`] rows.
 
+pub mod basis;
 pub mod basis_solution;
 mod dense;
 mod dictionary;

@@ -22,7 +22,8 @@ use super::mirrored::MirroredLcp;
 use super::outcome::{Point, RayDirection};
 use super::ratio_test::{TieRule, choose};
 use super::variable::Variable;
-use crate::lcp::basis_solution::{Basis, direction, vertex};
+use crate::lcp::basis::Basis;
+use crate::lcp::basis_solution::{direction, vertex};
 use crate::lcp::pivot_state::{Candidate, NOISE, PivotState, SUSPICIOUS, Sizes};
 
 /// A load increment counts as a multiple of another up to this, relative to the load.

@@ -1,8 +1,8 @@
 //! The record of a run: one entry per pivot, no copies of states, bounded in memory.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 
-use crate::lcp::basis_solution::Basis;
+use crate::lcp::basis::{Basis, ChangingBasis};
 use crate::lcp::variable::Variable;
 
 /// Pivots of a run that are recorded one by one; the later ones are only counted.
@@ -31,6 +31,15 @@ pub struct Pivot {
     pub ties: Vec<Variable>,
 }
 
+impl Basis {
+    /// The basis after the given pivots of a run that started from z = 0.
+    pub fn after(pivots: &[Pivot]) -> Basis {
+        let mut basis = ChangingBasis::default();
+        pivots.iter().for_each(|pivot| basis.pivot(pivot.entering, pivot.leaving));
+        basis.now()
+    }
+}
+
 /// A basis that came back with the same variable to enter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cycle {
@@ -49,9 +58,7 @@ pub struct PivotLog {
     ties: usize,
     count: usize,
     last: Option<Pivot>,
-    z: BTreeSet<usize>,
-    active: BTreeSet<usize>,
-    p: bool,
+    basis: ChangingBasis,
     /// Hash of the basis: the tokens of its variables combined, so that a pivot changes it by two of them.
     hash: u128,
     /// Bases met (with what entered next) and the pivot after which each stood first.
@@ -64,24 +71,7 @@ pub struct PivotLog {
 impl PivotLog {
     /// Adds the next pivot; its `step` is [`PivotLog::count`].
     pub fn push(&mut self, pivot: Pivot) {
-        match pivot.leaving {
-            Variable::W(i) => {
-                self.active.insert(i);
-            }
-            Variable::Z(i) => {
-                self.z.remove(&i);
-            }
-            Variable::P => self.p = false,
-        }
-        match pivot.entering {
-            Variable::W(i) => {
-                self.active.remove(&i);
-            }
-            Variable::Z(i) => {
-                self.z.insert(i);
-            }
-            Variable::P => self.p = true,
-        }
+        self.basis.pivot(pivot.entering, pivot.leaving);
         self.hash ^= token(pivot.entering) ^ token(pivot.leaving);
         // What enters next is the complement of what left.
         let met = self.hash ^ token(pivot.leaving).rotate_left(1);
@@ -129,7 +119,7 @@ impl PivotLog {
 
     /// The basis after the last pivot.
     pub fn basis(&self) -> Basis {
-        Basis { z: self.z.iter().copied().collect(), active: self.active.iter().copied().collect(), p: self.p }
+        self.basis.now()
     }
 
     /// The last return to a basis, where there were more than `allowed`.
@@ -147,8 +137,7 @@ impl PivotLog {
         PivotLog {
             recorded: self.recorded.clone(),
             last: self.last.clone(),
-            z: self.z.clone(),
-            active: self.active.clone(),
+            basis: self.basis.clone(),
             met: HashMap::new(),
             ..*self
         }

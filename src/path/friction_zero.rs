@@ -4,7 +4,7 @@
 use super::friction::{Follower, FrictionPath, Place, STEPS, ZERO};
 use super::start::PathError;
 use crate::explain::words::short;
-use crate::lcp::basis_solution::Basis;
+use crate::lcp::basis::Basis;
 
 /// Relative difference between cubic and function up to which the cubic stands for it.
 const FAITHFUL: f64 = 1e-3;

@@ -9,7 +9,7 @@ use crate::contact::lcp::contact_lcp_like;
 use crate::contact::load_path::{order, path_lcp};
 use crate::contact::numbers::ContactNumbers;
 use crate::contact::system::ContactSystem;
-use crate::lcp::basis_solution::Basis;
+use crate::lcp::basis::Basis;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
 use crate::model::rules::Rules;

@@ -5,7 +5,8 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use crate::answer::check_plain::{ROUNDING, check_plain, row};
-use crate::lcp::basis_solution::{Basis, corrected};
+use crate::lcp::basis::Basis;
+use crate::lcp::basis_solution::corrected;
 use crate::lcp::exact::rational_solve::{Quotients, RationalSolution, clear_denominators, solve};
 use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
 use crate::lcp::mirrored::MirroredLcp;

@@ -12,7 +12,7 @@ use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::load_path::{order, path_lcp};
 use stickslip::contact::numbers::ContactNumbers;
 use stickslip::contact::system::ContactSystem;
-use stickslip::lcp::basis_solution::Basis;
+use stickslip::lcp::basis::Basis;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::outcome::Outcome;

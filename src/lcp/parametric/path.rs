@@ -2,7 +2,7 @@
 
 use super::super::outcome::{Point, RayDirection};
 use super::super::variable::Variable;
-use crate::lcp::basis_solution::Basis;
+use crate::lcp::basis::Basis;
 
 /// How far a path goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
