@@ -3,6 +3,7 @@
 
 mod damaged;
 mod faulty;
+mod mortar_sides;
 mod program;
 mod write;
 
