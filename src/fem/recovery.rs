@@ -65,6 +65,28 @@ pub struct Reaction {
     pub moment: f64,
 }
 
+/// Takes out pieces of no length: where a load ends at a node but for the rounding of the distances (few ε of the
+/// distance from the start of the bar). Their neighbours meet.
+fn take_out_slivers(pieces: &mut Vec<Piece>) {
+    let is_sliver = |piece: &Piece| piece.range[1] - piece.range[0] <= 8.0 * f64::EPSILON * piece.range[1].abs();
+    let mut kept: Vec<Piece> = Vec::with_capacity(pieces.len());
+    let mut from = None;
+    for mut piece in pieces.drain(..) {
+        if is_sliver(&piece) {
+            match kept.last_mut() {
+                Some(before) => before.range[1] = piece.range[1],
+                None => from = from.or(Some(piece.range[0])),
+            }
+            continue;
+        }
+        if let Some(from) = from.take() {
+            piece.range[0] = from;
+        }
+        kept.push(piece);
+    }
+    *pieces = kept;
+}
+
 impl MainSystem {
     /// N, Q, M of every bar element under Σ factor·F and the displacements `u`: at both ends and in between.
     pub fn member_forces(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberForces> {
@@ -80,6 +102,7 @@ impl MainSystem {
                 for piece in &mut forces.pieces {
                     piece.range = piece.range.map(|s| from + s);
                 }
+                take_out_slivers(&mut forces.pieces);
                 from += forces.length;
                 let [start, end] = forces.ends.map(|[normal, shear, moment]| EndForces { normal, shear, moment });
                 members.push(MemberForces { bar, element: position, start, end, pieces: forces.pieces });
@@ -214,4 +237,21 @@ pub(super) fn own_displacements(structure: &Structure, index: usize, u: &Displac
         (value - moved).to_f64()
     });
     own.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_without_length_are_taken_out_and_leave_no_gap() {
+        let piece = |a: f64, b: f64| Piece { range: [a, b], start: [1.0, 2.0, 3.0], q: [[0.0, -1.0]; 2] };
+        let beside = |x: f64| x * (1.0 + 2.0 * f64::EPSILON);
+        let mut pieces = vec![piece(1.7, 1.7), piece(1.7, 2.0), piece(2.0, beside(2.0)), piece(beside(2.0), 2.5)];
+        take_out_slivers(&mut pieces);
+        assert_eq!(pieces.iter().map(|p| p.range).collect::<Vec<_>>(), [[1.7, beside(2.0)], [beside(2.0), 2.5]]);
+        let mut pieces = vec![piece(0.0, 1e-9), piece(1e-9, 1.0), piece(1.0, 1.0)];
+        take_out_slivers(&mut pieces);
+        assert_eq!(pieces.iter().map(|p| p.range).collect::<Vec<_>>(), [[0.0, 1e-9], [1e-9, 1.0]]);
+    }
 }
