@@ -208,6 +208,25 @@ fn a_free_body_slides_at_its_limit() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
+/// What only contact holds is told of the superelement as of a body.
+#[test]
+fn a_free_superelement_is_told_as_one_body() {
+    let folder = folder("loose");
+    let places = [[0.0, 0.0], [4.0, 0.0]];
+    std::fs::write(folder.join("k.mtx"), sparse(&chain(&places))).unwrap();
+    let mut scenario = given(
+        &places,
+        &json!({"contacts": [{"id": "a", "node": "n0", "against": "ground", "normal": [0, 1]},
+                             {"id": "b", "node": "n1", "against": "ground", "normal": [0, 1]}]}),
+    );
+    scenario["format"] = "stickslip/1".into();
+    scenario["title"] = "test".into();
+    let scenario = load_text("test", &scenario.to_string(), Some(&folder.join("test.json"))).expect("a scenario");
+    let said = prepare(&scenario, &Quiet).expect("sound").loose_sentences().join("\n");
+    assert!(said.contains("the superelement can") && said.contains("slide along x"), "{said}");
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
 /// A condensation K_bb − K_bi K_ii⁻¹ K_ib leaves rounding in the rigid motions: they are taken as free and it is said.
 #[test]
 fn the_rounding_of_a_condensation_is_no_stiffness() {

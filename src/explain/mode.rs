@@ -92,6 +92,13 @@ fn members(structure: &Structure) -> Vec<Member> {
         };
         all.push(Member { id, nodes: element.nodes.clone() });
     }
+    if let Some(element) = &structure.superelement {
+        let id = |nodes: &[usize]| match element.parts.len() {
+            1 => "the superelement".to_owned(),
+            _ => format!("the part of the superelement at `{}`", structure.nodes[nodes[0]].id),
+        };
+        all.extend(element.parts.iter().map(|part| Member { id: id(&part.nodes), nodes: part.nodes.clone() }));
+    }
     all
 }
 

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::in_full;
+use super::number::{in_full, short};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::parameter::{Parameter, ParameterValues};
@@ -31,14 +31,16 @@ pub fn table(scenario: &Scenario, values: &ParameterValues) -> Table {
     for (name, parameter) in &scenario.parameters {
         let value = values.get(name).copied().unwrap_or(parameter.value);
         let is_changed = changed(name, parameter);
+        let shown = |value: f64| if parameter.formula.is_some() { short(value) } else { in_full(value) };
         let role = if is_changed { Role::Accent } else { Role::Plain };
         let mut cells = vec![
             Cell::from(name.as_str()),
-            Cell::new(in_full(value), role),
+            // What a formula gives has the digits of its rounding; what was set is told as it was.
+            Cell::new(shown(value), role),
             Cell::new(parameter.unit.clone().unwrap_or_default(), Role::Muted),
         ];
         if any {
-            let file = if is_changed { format!("was {}", in_full(parameter.value)) } else { String::new() };
+            let file = if is_changed { format!("was {}", shown(parameter.value)) } else { String::new() };
             cells.push(Cell::new(file, Role::Accent));
         }
         cells.push(Cell::new(range(parameter), Role::Muted));

@@ -77,7 +77,7 @@ pub fn factor(structure: &Structure, u: &[[f64; 3]], magnification: Magnificatio
 }
 
 /// Lines of the structure in the plane, displaced by `factor` × u: bars (bent as the element bends), plate outlines,
-/// single quads, hulls of rigid bodies; plate grids apart, because they are drawn only where there is room.
+/// single quads, hulls of rigid bodies and of the parts of a superelement (those along a line as it); plate grids apart, because they are drawn only where there is room.
 #[derive(Clone, Debug)]
 pub struct Lines {
     /// Bars, outlines, quads.
@@ -151,7 +151,38 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
         faces.push(ring[..ring.len() - 1].to_vec());
         outline.push(ring);
     }
+    for part in structure.superelement.iter().flat_map(|element| &element.parts) {
+        let places: Vec<[f64; 2]> = part.nodes.iter().map(|&node| structure.nodes[node].position).collect();
+        match straight_order(&places) {
+            Some(order) => outline.push(order.into_iter().map(|k| at(part.nodes[k])).collect()),
+            None => {
+                let ring = hull(part.nodes.iter().map(|&node| at(node)).collect());
+                faces.push(ring[..ring.len() - 1].to_vec());
+                outline.push(ring);
+            }
+        }
+    }
     Lines { outline, grid, faces }
+}
+
+/// The order of places along the line on which they all lie; `None` if they do not.
+fn straight_order(places: &[[f64; 2]]) -> Option<Vec<usize>> {
+    let far = |from: [f64; 2]| {
+        let distance = |place: &[f64; 2]| (place[0] - from[0]).hypot(place[1] - from[1]);
+        places.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    let first = far(places.first().copied()?)?;
+    let last = far(first)?;
+    let (dx, dy) = (last[0] - first[0], last[1] - first[1]);
+    let size = dx.hypot(dy);
+    let off = |place: &[f64; 2]| ((place[0] - first[0]) * dy - (place[1] - first[1]) * dx).abs();
+    if places.iter().any(|place| off(place) > 1e-9 * size * size) {
+        return None;
+    }
+    let along = |k: usize| (places[k][0] - first[0]) * dx + (places[k][1] - first[1]) * dy;
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    order.sort_by(|a, b| along(*a).total_cmp(&along(*b)));
+    Some(order)
 }
 
 /// Convex hull as a closed line (Andrew's monotone chain).
