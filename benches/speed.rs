@@ -34,9 +34,8 @@ fn is_large() -> bool {
 
 /// The LCP of plates for the given friction.
 fn lcp(ready: &Ready, friction: f64) -> ContactLcp {
-    let system = ready.prepared.system().expect("contact is condensed");
-    let numbers = ready.numbers(&ready.values(&[("f", friction)]));
-    contact_lcp(system, &numbers, ready.scenario.rules.covering).expect("cohesive covers all")
+    let problem = ready.problem(&ready.values(&[("f", friction)]));
+    contact_lcp(&problem, ready.scenario.rules.covering).expect("cohesive covers all")
 }
 
 /// From R, RF and f to the vertex: what the yardsticks of `against.py` do from M and q.

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, dvector};
 use stickslip::contact::law::PairLaw;
 use stickslip::contact::lcp::contact_lcp;
-use stickslip::contact::numbers::ContactNumbers;
+use stickslip::contact::problem::ContactProblem;
 use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
@@ -21,7 +21,6 @@ use stickslip::model::parameter::Number;
 use stickslip::model::rules::{Covering, TieBreak};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let load = JointLoad::exactly("load".to_owned(), dvector![1.0, -2.0]);
     let friction = 0.5;
     let system = ContactSystem {
         pairs: vec![ContactPair {
@@ -35,18 +34,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             tangential: Some(1),
         }],
         stiffness: DMatrix::from_row_slice(2, 2, &[2.0, 1.5, 1.5, 2.0]),
-        loads: vec![load.clone()],
+        loads: vec![JointLoad::exactly("load".to_owned(), dvector![1.0, -2.0])],
         rounded: false,
         kernel: DMatrix::zeros(2, 0),
         corrected: None,
         force_form: None,
         file: None,
     };
-    let numbers = ContactNumbers::exactly(vec![PairLaw::rubbing(friction, 0.0, 0.0)], load.vector);
-    let lcp = contact_lcp(&system, &numbers, Covering::Cohesive)?;
+    let problem = ContactProblem::new(&Arc::new(system), vec![PairLaw::rubbing(friction, 0.0, 0.0)], &[1.0]);
+    let lcp = contact_lcp(&problem, Covering::Cohesive)?;
     let mut engine = SchemeEngine::new(Arc::clone(&lcp.lcp), lcp.tie_rule(TieBreak::Lexicographic));
     let run = run(&mut engine, 100, &mut |pivot| {
-        println!("{} enters, {} leaves", lcp.name(pivot.entering, &system), lcp.name(pivot.leaving, &system));
+        println!(
+            "{} enters, {} leaves",
+            lcp.name(pivot.entering, &problem.system),
+            lcp.name(pivot.leaving, &problem.system)
+        );
         ControlFlow::Continue(())
     });
     let point = lcp.in_units(&run.point);
@@ -54,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{:?}: z = {:?}, joints displaced by {}",
         run.outcome,
         point.z,
-        lcp.joint_displacements(&system, &point.z)
+        lcp.joint_displacements(&problem.system, &point.z)
     );
     Ok(())
 }

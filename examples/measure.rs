@@ -23,7 +23,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use serde_json::{Value, json};
 
 use common::{Plates, Pull, Ready};
-use stickslip::contact::full_lcp::{WholeInput, full_lcp};
+use stickslip::contact::full_lcp::full_lcp;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::export::lcp::matrix_market;
 use stickslip::fem::MainSystem;
@@ -73,9 +73,9 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
     });
     let system = ready.prepared.system().ok_or("no contact system")?;
     let covering = ready.scenario.rules.covering;
-    let numbers = ready.numbers(&ready.values(&[]));
+    let problem = ready.problem(&ready.values(&[]));
     if let Some(folder) = arguments.get(4) {
-        let whole = full_lcp::<f64>(&WholeInput { system, numbers: &numbers, covering });
+        let whole = full_lcp::<f64>(&problem, covering);
         let column = |entries: &[f64]| entries.iter().map(|entry| vec![*entry]).collect::<Vec<_>>();
         let folder = Path::new(folder);
         for (name, rows) in [("M", &whole.matrix), ("q", &column(&whole.q)), ("d", &column(&whole.covering))] {
@@ -88,7 +88,7 @@ fn engine(arguments: &[String]) -> Result<(), Failure> {
     writeln!(out, "{}", json!({ "pairs": system.pairs.len() }))?;
     for line in std::io::stdin().lock().lines() {
         line?;
-        let (form, contact) = timed(|| contact_lcp(system, &numbers, covering));
+        let (form, contact) = timed(|| contact_lcp(&problem, covering));
         let contact = contact?;
         let rule = contact.tie_rule(TieBreak::Lexicographic);
         let (pivoting, (engine, mut result)) = timed(|| {

@@ -3,12 +3,14 @@
 
 use std::ops::ControlFlow;
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::contact::given::orthonormal;
 use stickslip::contact::law::PairLaw;
-use stickslip::contact::numbers::ContactNumbers;
+use stickslip::contact::problem::ContactProblem;
 use stickslip::contact::schemes::enumerate::enumerate;
 use stickslip::contact::system::{ContactPair, ContactSystem, JointLoad};
 use stickslip::explain::balance::is_balanced;
@@ -19,7 +21,7 @@ use stickslip::model::parameter::{Number, ParameterValues};
 
 /// Pairs of all laws; a kernel of one to four motions in small whole numbers, so that pairs are often confined from both
 /// sides or at rest; loads in small whole numbers too, so that they are often exactly at a limit.
-fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> (ContactSystem, ContactNumbers) {
+fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> ContactProblem {
     let number = |value: f64| Number::Value(value);
     let (mut pairs, mut next) = (Vec::new(), m);
     for i in 0..m {
@@ -55,12 +57,10 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> (ContactSystem, ContactNumber
     let values = ParameterValues::default();
     let laws = pairs.iter().map(|pair| PairLaw::of(&pair.law, &|number| number.value(&values))).collect();
     let load = DVector::from_fn(k, |i, _| f64::from(rng.random_range(if i < m { -1..=3 } else { -2..=2 })));
-    let numbers = ContactNumbers::exactly(laws, load);
-    let loads = vec![JointLoad::exactly("load".into(), numbers.load.clone())];
-    (
-        ContactSystem { pairs, stiffness, loads, rounded: true, kernel, corrected: None, force_form: None, file: None },
-        numbers,
-    )
+    let loads = vec![JointLoad::exactly("load".into(), load)];
+    let system =
+        ContactSystem { pairs, stiffness, loads, rounded: true, kernel, corrected: None, force_form: None, file: None };
+    ContactProblem::new(&Arc::new(system), laws, &[1.0])
 }
 
 #[test]
@@ -68,18 +68,18 @@ fn a_certificate_and_balanced_forces_exclude_each_other() {
     let mut rng = ChaCha8Rng::seed_from_u64(31);
     let (mut certified, mut exact, mut balanced, mut neither) = (0, 0, 0, 0);
     for k in 0..900 {
-        let (system, numbers) = random_loose(&mut rng, 1 + k % 6);
-        let motions = FreeMotions::new(&system, None);
-        let search = certify(&system, &numbers, &motions);
+        let problem = random_loose(&mut rng, 1 + k % 6);
+        let motions = FreeMotions::new(&problem.system, None);
+        let search = certify(&problem, &motions);
         assert!(!search.out_of_time, "problem {k}");
-        let forces = is_balanced(&system, &numbers, &motions, 10.0).expect("decided");
+        let forces = is_balanced(&problem, &motions, 10.0).expect("decided");
         match (&search.certificate, forces) {
             (Some(found), false) => {
                 certified += 1;
                 exact += usize::from(found.exact);
                 assert!(found.power > found.dissipation);
-                if system.pairs.len() <= 3 {
-                    let all = enumerate(&system, &numbers, &mut |_| ControlFlow::Continue(()));
+                if problem.system.pairs.len() <= 3 {
+                    let all = enumerate(&problem, &mut |_| ControlFlow::Continue(()));
                     assert!(all.answers.is_empty(), "problem {k}: certified, but there is an answer");
                 }
             }

@@ -7,10 +7,9 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stickslip::contact::full_lcp::{WholeInput, full_lcp};
+use stickslip::contact::full_lcp::full_lcp;
 use stickslip::contact::lcp::contact_lcp;
-use stickslip::contact::numbers::ContactNumbers;
-use stickslip::contact::system::ContactSystem;
+use stickslip::contact::problem::ContactProblem;
 use stickslip::lcp::basis::Basis;
 use stickslip::lcp::basis_solution::vertex;
 use stickslip::lcp::driver::{Engine, Step, run};
@@ -32,7 +31,7 @@ use common::systems;
 use plates::{Plates, Pull, Ready};
 
 /// Coulomb pairs with a random positive definite R; `whole`: small integers, so that ties are everywhere.
-fn random_system(m: usize, f: f64, whole: bool, seed: u64) -> (ContactSystem, ContactNumbers) {
+fn random_system(m: usize, f: f64, whole: bool, seed: u64) -> ContactProblem {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let n = 2 * m;
     let mut number = |low: i32, high: i32| {
@@ -45,12 +44,12 @@ fn random_system(m: usize, f: f64, whole: bool, seed: u64) -> (ContactSystem, Co
 }
 
 /// Worst violation of the laws, forces relative to the largest load, displacements to the largest of them.
-fn violation(numbers: &ContactNumbers, z: &DVector<f64>, force: &DVector<f64>) -> f64 {
-    let m = numbers.laws.len();
-    let (force, z) = (force / numbers.load.amax(), z / z.amax());
+fn violation(problem: &ContactProblem, z: &DVector<f64>, force: &DVector<f64>) -> f64 {
+    let m = problem.laws.len();
+    let (force, z) = (force / problem.load.amax(), z / z.amax());
     let of_pair = |i: usize| {
         let (x_n, x_t, z_n, z_t) = (force[i], force[m + i], z[i], z[m + i]);
-        let bound = numbers.laws[i].friction() * x_n;
+        let bound = problem.laws[i].friction() * x_n;
         // Slip + goes with x_τ = −bound.
         [
             -x_n,
@@ -70,21 +69,21 @@ fn finished<E: Engine>(engine: &mut E) -> Run<E::Number> {
 
 /// Both engines on one problem; the answers agree to 1e-9 of the largest. Returns the number of pivots and whether
 /// they were the same ones.
-fn agree(system: &ContactSystem, numbers: &ContactNumbers, what: &str) -> (usize, bool) {
+fn agree(problem: &ContactProblem, what: &str) -> (usize, bool) {
     let covering = Covering::default();
-    let contact = contact_lcp(system, numbers, covering).expect("cohesive covers everything");
+    let contact = contact_lcp(problem, covering).expect("cohesive covers everything");
     let rule = contact.tie_rule(TieBreak::Lexicographic);
     let fast = finished(&mut SchemeEngine::new(Arc::clone(&contact.lcp), rule.clone()));
-    let whole = full_lcp::<f64>(&WholeInput { system, numbers, covering });
+    let whole = full_lcp::<f64>(problem, covering);
     let judge = finished(&mut Tableau::new(&whole, rule));
     let normal = Outcome::Normal { marginal: false };
     assert_eq!((&fast.outcome, &judge.outcome), (&normal, &normal), "{what}");
     // As the product does, each answer is computed afresh from the data at the end.
     let answer = |run: &Run| {
         let point = vertex(&contact.lcp, &run.pivots.basis()).expect("regular");
-        let z = contact.joint_displacements(system, &point.z) * contact.length_unit;
-        let force = &system.stiffness * &z + &numbers.load;
-        let violation = violation(numbers, &z, &force);
+        let z = contact.joint_displacements(&problem.system, &point.z) * contact.length_unit;
+        let force = &problem.system.stiffness * &z + &problem.load;
+        let violation = violation(problem, &z, &force);
         assert!(violation < 1e-9, "{what}: violation {violation:e}");
         (z, force)
     };
@@ -93,7 +92,7 @@ fn agree(system: &ContactSystem, numbers: &ContactNumbers, what: &str) -> (usize
     let z_error = (fast_z - &judge_z).amax() / judge_z.amax();
     let x_error = (fast_x - &judge_x).amax() / judge_x.amax();
     assert!(z_error < 1e-9 && x_error < 1e-9, "{what}: z {z_error:e}, x {x_error:e}");
-    let raw = contact.joint_displacements(system, &fast.point.z) * contact.length_unit;
+    let raw = contact.joint_displacements(&problem.system, &fast.point.z) * contact.length_unit;
     let z_drift = (raw - &judge_z).amax() / judge_z.amax();
     assert!(z_drift < 1e-9, "{what}: drift {z_drift:e}");
     let names = |run: &Run| -> Vec<_> {
@@ -120,8 +119,8 @@ fn agree(system: &ContactSystem, numbers: &ContactNumbers, what: &str) -> (usize
 fn agree_on_all(m: usize) {
     for f in [0.1, 0.5, 2.0] {
         for (whole, name) in [(false, "random"), (true, "random with ties")] {
-            let (system, numbers) = random_system(m, f, whole, 7 + m as u64);
-            let (_, same) = agree(&system, &numbers, &format!("{name}, m = {m}, f = {f}"));
+            let problem = random_system(m, f, whole, 7 + m as u64);
+            let (_, same) = agree(&problem, &format!("{name}, m = {m}, f = {f}"));
             assert!(same, "{name}, m = {m}, f = {f}: other pivots");
         }
         // Pulled from both sides the plates stick longer: the more friction, the stronger the pull.
@@ -129,10 +128,9 @@ fn agree_on_all(m: usize) {
             [(Pull::OneSided, 60.0, "plates"), (Pull::Symmetric, 600.0 * f, "plates with ties")]
         {
             let ready = Ready::new(&Plates { pull, traction, ..Plates::with_pairs(m, f) });
-            let numbers = ready.numbers(&ready.values(&[]));
-            let system = ready.prepared.system().expect("condensed");
+            let problem = ready.problem(&ready.values(&[]));
             // Mirror images tie up to the rounding of their condensation: the order may differ, the answer not.
-            let (pivots, _) = agree(system, &numbers, &format!("{name}, m = {m}, f = {f}"));
+            let (pivots, _) = agree(&problem, &format!("{name}, m = {m}, f = {f}"));
             assert!(pivots > m / 4, "{name}, m = {m}, f = {f}: {pivots} pivots");
         }
     }

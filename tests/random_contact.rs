@@ -7,8 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::contact::lcp::contact_lcp;
-use stickslip::contact::numbers::ContactNumbers;
-use stickslip::contact::system::ContactSystem;
+use stickslip::contact::problem::ContactProblem;
 use stickslip::lcp::basis_solution::vertex;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
@@ -17,7 +16,7 @@ use stickslip::model::pair::Law;
 use stickslip::model::rules::{Covering, TieBreak};
 
 /// R = A Aᵀ / n + shift·I; with `ties` the entries of A and the loads are small integers.
-pub fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
+pub fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> ContactProblem {
     let n = 2 * m;
     let a =
         DMatrix::from_fn(
@@ -40,14 +39,14 @@ pub fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSyst
 }
 
 /// Worst violation of the laws at joint displacements z, relative to the largest force.
-fn violation(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> f64 {
-    let m = system.pairs.len();
-    let force = &system.stiffness * z + &numbers.load;
-    let scale = numbers.load.amax().max(1e-300);
+fn violation(problem: &ContactProblem, z: &DVector<f64>) -> f64 {
+    let m = problem.system.pairs.len();
+    let force = &problem.system.stiffness * z + &problem.load;
+    let scale = problem.load.amax().max(1e-300);
     let mut worst = 0f64;
     for i in 0..m {
         let (x_n, x_t, z_n, z_t) = (force[i], force[m + i], z[i], z[m + i]);
-        let bound = numbers.laws[i].friction() * x_n;
+        let bound = problem.laws[i].friction() * x_n;
         worst = worst.max(-x_n / scale).max(-z_n).max((x_n * z_n).abs() / scale);
         worst = worst.max((x_t.abs() - bound) / scale);
         // slip + goes with x_τ = −bound
@@ -64,21 +63,21 @@ fn default_rules_always_answer_where_r_is_positive_definite() {
     let mut pivots = 0;
     for k in 0..2000 {
         let m = 1 + k % 20;
-        let (system, numbers) = random_system(&mut rng, m, k % 3 == 0);
-        let contact = contact_lcp(&system, &numbers, Covering::Cohesive).unwrap();
+        let problem = random_system(&mut rng, m, k % 3 == 0);
+        let contact = contact_lcp(&problem, Covering::Cohesive).unwrap();
         let mut engine = SchemeEngine::new(contact.lcp.clone(), contact.tie_rule(TieBreak::Lexicographic));
         let run = run(&mut engine, 20_000, &mut |_| ControlFlow::Continue(()));
         assert!(
             matches!(run.outcome, Outcome::Trivial | Outcome::Normal { marginal: false }),
             "problem {k}: m = {m}, f = {}: {:?}",
-            numbers.laws[0].friction(),
+            problem.laws[0].friction(),
             run.outcome
         );
         pivots += run.pivots.count();
         let rebuilt = vertex(&contact.lcp, &run.pivots.basis()).expect("regular");
         for point in [&run.point, &rebuilt] {
-            let z = contact.joint_displacements(&system, &point.z) * contact.length_unit;
-            let error = violation(&system, &numbers, &z);
+            let z = contact.joint_displacements(&problem.system, &point.z) * contact.length_unit;
+            let error = violation(&problem, &z);
             worst = worst.max(error);
             assert!(error < 1e-9, "problem {k}: violation {error:e}");
         }

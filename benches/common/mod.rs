@@ -1,10 +1,10 @@
 //! Contact problems for measurements, generated: two plates on one another, the lower one fixed along its base.
 
-use stickslip::contact::numbers::ContactNumbers;
+use stickslip::contact::problem::ContactProblem;
 use stickslip::model::load::load_text;
 use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::Scenario;
-use stickslip::solve::numbers::{contact_numbers, factors};
+use stickslip::solve::problem::{contact_problem, factors};
 use stickslip::solve::{Prepared, prepare};
 use stickslip::watch::Quiet;
 
@@ -128,9 +128,9 @@ impl Ready {
         values
     }
 
-    /// The numbers of the contact laws and the load.
-    pub fn numbers(&self, values: &ParameterValues) -> ContactNumbers {
+    /// The contact problem.
+    pub fn problem(&self, values: &ParameterValues) -> ContactProblem {
         let system = self.prepared.system().expect("contact is condensed");
-        contact_numbers(system, &factors(&self.prepared, values), values)
+        contact_problem(system, &factors(&self.prepared, values), values)
     }
 }

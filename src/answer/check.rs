@@ -2,9 +2,8 @@
 
 use super::pairs::JointState;
 use super::record::Check;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::sums::{Sum, displacement_share, pair_sums};
-use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
 
 /// Largest relative violation that an answer may have where sizes are those of a whole problem.
@@ -15,12 +14,8 @@ pub const ROUNDING: f64 = 4.0 * NOISE;
 /// Checks an answer over the joints, row by row: forces and reserves as shares of the terms they are summed from (loads,
 /// gaps closed by force, R z), displacements as the share of those forces that hangs on them, of a couple the smaller of the two shares.
 /// `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
-pub fn check_contact(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    state: &JointState,
-    equilibrium: Option<f64>,
-) -> Check {
+pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: Option<f64>) -> Check {
+    let system = &*problem.system;
     let forces: Vec<Sum> = (0..system.joint_count()).map(|joint| state.sum(joint)).collect();
     let mut check = Check { equilibrium, ..Check::default() };
     let (unknowns, responses) = state.in_forms(system);
@@ -36,7 +31,7 @@ pub fn check_contact(
         check.complementarity = check.complementarity.max(smaller);
     };
     for (i, pair) in system.pairs.iter().enumerate() {
-        let sums = pair_sums(system, numbers, &forces, (i, state.z[i] > 0.0));
+        let sums = pair_sums(problem, &forces, (i, state.z[i] > 0.0));
         match sums.normal {
             Some(normal) => couple(normal, state.z[i], share(i)),
             // Held both ways: what it repeats must leave it at rest.

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::record::{PairState, State};
 use crate::contact::force_form::unknowns;
 use crate::contact::lcp::ContactLcp;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::least_norm;
 use crate::contact::sums::{StateForces, Sum, is_still, state_forces};
 use crate::contact::system::ContactSystem;
@@ -45,13 +45,14 @@ fn known_to(system: &ContactSystem, responses: &[Sum], joint: usize) -> f64 {
 
 impl JointState {
     /// The state of displacements z, those that are rounding set to 0. For joints in force form forces stand in `z`.
-    pub fn at(system: &ContactSystem, numbers: &ContactNumbers, mut z: DVector<f64>, p: f64) -> JointState {
-        let mut forces = state_forces(system, numbers, &z);
+    pub fn at(problem: &ContactProblem, mut z: DVector<f64>, p: f64) -> JointState {
+        let system = &*problem.system;
+        let mut forces = state_forces(problem, &z);
         let still: Vec<usize> =
             (0..z.len()).filter(|&joint| z[joint] != 0.0 && is_still(system, &z, &forces.joints, joint)).collect();
         if !still.is_empty() {
             still.iter().for_each(|&joint| z[joint] = 0.0);
-            forces = state_forces(system, numbers, &z);
+            forces = state_forces(problem, &z);
         }
         let StateForces { joints, left, slips } = forces;
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(joints.len(), joints.iter().map(pick));
@@ -63,14 +64,15 @@ impl JointState {
                 (z[joint], known_to(system, &joints, joint).max(z[joint].abs()), terms[joint]);
         }
         forced.into_iter().for_each(|joint| z[joint] = joints[joint].cleaned());
-        JointState { z, force, terms, z_terms, left, slips, p, free: Vec::new() }.against_file(system, numbers)
+        JointState { z, force, terms, z_terms, left, slips, p, free: Vec::new() }.against_file(problem)
     }
 
     /// With what the compliance of a file leaves over, where joints are in force form.
-    fn against_file(mut self, system: &ContactSystem, numbers: &ContactNumbers) -> JointState {
-        if let (Some(_), Some(file), Some(load)) = (&system.force_form, &system.file, &numbers.file_load) {
-            let moved = numbers.dislocation(&self.z);
-            let sizes = numbers.dislocation_sizes(self.z.abs() + &self.z_terms);
+    fn against_file(mut self, problem: &ContactProblem) -> JointState {
+        let system = &*problem.system;
+        if let (Some(_), Some(file), Some(load)) = (&system.force_form, &system.file, &problem.file_load) {
+            let moved = problem.dislocation(&self.z);
+            let sizes = problem.dislocation_sizes(self.z.abs() + &self.z_terms);
             let forces: Vec<Sum> = (0..self.z.len()).map(|joint| self.sum(joint)).collect();
             self.left = file.left_by(&forces, &moved, &sizes, load);
         }
@@ -78,16 +80,16 @@ impl JointState {
     }
 
     /// The state with the forces of least norm among those of its motion.
-    fn with_least_norm(mut self, system: &ContactSystem, numbers: &ContactNumbers) -> JointState {
+    fn with_least_norm(mut self, problem: &ContactProblem) -> JointState {
         let mut forces: Vec<Sum> = (0..self.z.len()).map(|joint| self.sum(joint)).collect();
-        self.free = least_norm(system, numbers, &self.z, &mut forces);
+        self.free = least_norm(problem, &self.z, &mut forces);
         if self.free.is_empty() {
             return self;
         }
         for (joint, force) in forces.iter().enumerate() {
             (self.force[joint], self.terms[joint]) = (force.value, force.magnitude);
         }
-        self.against_file(system, numbers)
+        self.against_file(problem)
     }
 
     /// The unknowns and what answers to them, in the forms that the joints have.
@@ -111,33 +113,25 @@ impl JointState {
 }
 
 /// The vertex over the joints: z with noise set to zero, λ afresh from R and RF.
-pub fn joint_state(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    point: &Point,
-) -> JointState {
+pub fn joint_state(problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> JointState {
+    let system = &*problem.system;
     let z = match system.force_form {
-        Some(_) => unknowns(system, Some(numbers), contact, &point.z),
+        Some(_) => unknowns(system, Some(problem), contact, &point.z),
         None => contact.joint_displacements(system, &point.z) * contact.length_unit,
     };
-    let state = JointState::at(system, numbers, z, point.p * contact.force_unit);
-    if point.p == 0.0 { state.with_least_norm(system, numbers) } else { state }
+    let state = JointState::at(problem, z, point.p * contact.force_unit);
+    if point.p == 0.0 { state.with_least_norm(problem) } else { state }
 }
 
 /// The pairs at a vertex. With p > 0 the forces include the covering (method §4): x_n = λ_n + d_n p, bound =
 /// f x_n + c + (d_τ − f d_n) p. z_τ of frictionless pairs is left 0: it is read from the displacements.
-pub fn pair_states(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    state: &JointState,
-) -> Vec<PairState> {
+pub fn pair_states(problem: &ContactProblem, contact: &ContactLcp, state: &JointState) -> Vec<PairState> {
+    let system = &*problem.system;
     let pairs = system.pairs.iter().enumerate();
     pairs
         .map(|(i, pair)| {
             let cover = Cover { force: contact.covering_of(i), distance: contact.covered_distance(i, state.p) };
-            pair_state(system, numbers, cover, state, (i, pair.tangential))
+            pair_state(problem, cover, state, (i, pair.tangential))
         })
         .collect()
 }
@@ -152,15 +146,15 @@ struct Cover {
 
 /// One pair; `joints` are its normal and its tangential joint.
 fn pair_state(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     Cover { force: (d_n, d_t), distance }: Cover,
     state: &JointState,
     joints: (usize, Option<usize>),
 ) -> PairState {
+    let system = &*problem.system;
     let (i, tangential) = joints;
     let pair = &system.pairs[i];
-    let law = &numbers.laws[i];
+    let law = &problem.laws[i];
     let z_n =
         if law.is_bilateral() { 0.0 } else { Sum::exactly(state.z[i]).plus(1.0, Sum::exactly(distance)).cleaned() };
     let z_t = tangential.map_or(0.0, |joint| state.z[joint]);

@@ -25,12 +25,12 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::given::orthonormal;
-use super::law::PairLaw;
-use super::numbers::ContactNumbers;
+use super::problem::ContactProblem;
 use super::sums::{Sum, joint_forces};
 use super::system::{ContactSystem, JointLoad};
-use crate::contact::full_lcp::rows;
-use crate::contact::lcp::{ContactLcp, CoveringError, RowId, RowKind, load_with_gaps, power_of_two};
+use crate::contact::lcp::{ContactLcp, CoveringError, power_of_two};
+use crate::contact::rows::rows;
+use crate::contact::rows::{RowId, RowKind};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::{Lcp, Scale};
 use crate::model::rules::Covering;
@@ -126,7 +126,7 @@ pub fn with_repeated(system: ContactSystem, dependence: &Dependence<'_>) -> Cont
 /// The joint forces and displacements of a state or of a direction, from the unknowns of the LCP.
 pub fn unknowns(
     system: &ContactSystem,
-    numbers: Option<&ContactNumbers>,
+    problem: Option<&ContactProblem>,
     contact: &ContactLcp,
     z: &[f64],
 ) -> DVector<f64> {
@@ -147,17 +147,17 @@ pub fn unknowns(
     if slipping.is_empty() {
         return unknowns;
     }
-    let response = responses(system, numbers, &unknowns);
+    let response = responses(system, problem, &unknowns);
     for (pair, joint, plus) in slipping {
         let f = contact.friction[pair];
         let pressed = if system.is_forced(pair) {
             unknowns[pair]
-        } else if unknowns[pair] > 0.0 && numbers.is_some() {
+        } else if unknowns[pair] > 0.0 && problem.is_some() {
             0.0
         } else {
             response[pair]
         };
-        let fixed = numbers.map_or(0.0, |numbers| numbers.laws[pair].fixed_bound());
+        let fixed = problem.map_or(0.0, |problem| problem.laws[pair].fixed_bound());
         let force = Sum::exactly(plus).plus(-f, Sum::exactly(pressed)).plus(-1.0, Sum::exactly(fixed));
         // What x⁺ and the bound leave of each other by rounding would come out as a displacement with no larger terms.
         unknowns[joint] = force.cleaned();
@@ -165,11 +165,11 @@ pub fn unknowns(
     unknowns
 }
 
-/// Forces of the joints in displacement form and displacements of the others; of a direction without numbers.
-fn responses(system: &ContactSystem, numbers: Option<&ContactNumbers>, unknowns: &DVector<f64>) -> DVector<f64> {
+/// Forces of the joints in displacement form and displacements of the others; of a direction without a problem.
+fn responses(system: &ContactSystem, problem: Option<&ContactProblem>, unknowns: &DVector<f64>) -> DVector<f64> {
     let linear = &system.stiffness * unknowns;
-    match numbers {
-        Some(numbers) => linear + load_with_gaps(system, numbers),
+    match problem {
+        Some(problem) => linear + problem.joint_constants(),
         None => linear,
     }
 }
@@ -360,12 +360,9 @@ fn dimensionless(system: &ContactSystem, joints: &DVector<f64>, force_unit: f64,
 ///
 /// # Errors
 /// Where the covering cannot cover q.
-pub fn contact_lcp(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    covering: Covering,
-) -> Result<ContactLcp, CoveringError> {
-    let contact = written_lcp(system, numbers, covering);
+pub fn contact_lcp(problem: &ContactProblem, covering: Covering) -> Result<ContactLcp, CoveringError> {
+    let system = &*problem.system;
+    let contact = written_lcp(problem, covering);
     let MirroredLcp { q, covering, .. } = &*contact.lcp;
     match (0..q.len()).find(|&row| covering[row] == 0.0 && q[row] < 0.0) {
         Some(row) => {
@@ -377,17 +374,18 @@ pub fn contact_lcp(
 }
 
 /// The same whatever the covering covers.
-pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: Covering) -> ContactLcp {
+pub fn written_lcp(problem: &ContactProblem, covering: Covering) -> ContactLcp {
+    let system = &*problem.system;
     let rows = rows(system);
-    let frictions = numbers.frictions();
+    let frictions = problem.frictions();
     let stiffness_unit = stiffness_unit(system);
     let writer = Writer { system, rows: &rows, friction: &frictions, stiffness_unit };
-    let load = joint_forces(system, numbers, &DVector::zeros(system.joint_count()));
+    let load = joint_forces(problem, &DVector::zeros(system.joint_count()));
     // What cancels to rounding is no load.
     let load = DVector::from_iterator(load.len(), load.iter().map(|sum| sum.cleaned()));
     // Forces as they are, displacements as the forces that a stiffness of one unit makes of them.
     let unscaled = dimensionless(system, &load, 1.0, 1.0 / stiffness_unit);
-    let fixed: Vec<f64> = numbers.laws.iter().map(PairLaw::fixed_bound).collect();
+    let fixed = problem.fixed_bounds();
     let constants = Constants { joints: &unscaled, fixed: &fixed };
     let written = writer.written(&writer.forms(&constants, true), &constants);
     let n = rows.len();
@@ -397,7 +395,7 @@ pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: C
     let swapped: Vec<bool> = rows.iter().map(|row| is_swapped(system, *row)).collect();
     let q: Vec<f64> = (0..n).map(|i| written[(i, n)] / force_unit).collect();
     let cover: Vec<f64> =
-        rows.iter().zip(&swapped).map(|(row, swapped)| cover(system, numbers, *row, *swapped, covering)).collect();
+        rows.iter().zip(&swapped).map(|(row, swapped)| cover(problem, *row, *swapped, covering)).collect();
     let of = |couple: RowKind| (0..system.pairs.len()).map(|pair| writer.row_of(pair, couple)).collect::<Vec<_>>();
     let scale = Scale::plain(&matrix);
     let lcp = MirroredLcp::plain(&Lcp { matrix, q, covering: cover, scale });
@@ -417,11 +415,12 @@ pub fn written_lcp(system: &ContactSystem, numbers: &ContactNumbers, covering: C
 
 /// Entry of the covering vector: as everywhere for forces and reserves; 1 for displacements; and for the second reserve of
 /// a couple in force form what both have together.
-fn cover(system: &ContactSystem, numbers: &ContactNumbers, row: RowId, swapped: bool, covering: Covering) -> f64 {
+fn cover(problem: &ContactProblem, row: RowId, swapped: bool, covering: Covering) -> f64 {
+    let system = &*problem.system;
     if row.couple == RowKind::Normal || swapped {
         return 1.0;
     }
-    let own = numbers.laws[row.pair].covering(covering);
+    let own = problem.laws[row.pair].covering(covering);
     let forced = system.pairs[row.pair].tangential.is_some_and(|joint| system.is_forced(joint));
     if forced { 2.0 * own } else { own }
 }

@@ -1,12 +1,14 @@
 //! Known answers, the limit load of the bar, the exact engine on contact problems.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 
 use super::*;
 use crate::contact::law::PairLaw;
+use crate::contact::system::{ContactPair, ContactSystem};
 use crate::lcp::driver::run;
 use crate::lcp::exact::lemke::Exact;
 use crate::lcp::exact::tableau::Tableau;
@@ -40,9 +42,9 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
 }
 
 /// The same f everywhere, no cohesion, no gap.
-pub(crate) fn plain(f: f64, load: &[f64]) -> ContactNumbers {
-    let m = load.len() / 2;
-    ContactNumbers::exactly(vec![PairLaw::rubbing(f, 0.0, 0.0); m], DVector::from_row_slice(load))
+pub(crate) fn plain(system: &ContactSystem, f: f64, load: &[f64]) -> ContactProblem {
+    let laws = vec![PairLaw::rubbing(f, 0.0, 0.0); system.pair_count()];
+    ContactProblem::exactly(&Arc::new(system.clone()), laws, DVector::from_row_slice(load))
 }
 
 /// Normals last: the default rule.
@@ -69,38 +71,36 @@ pub(crate) fn beam() -> ContactSystem {
 }
 
 /// Weight 100, f = 0.3, pull at the first pair. The load on a joint is −(external force along t).
-pub(crate) fn beam_numbers(pull: f64) -> ContactNumbers {
+pub(crate) fn beam_problem(pull: f64) -> ContactProblem {
     let mut load = [0.0; 12];
     load[..6].fill(100.0);
     load[6] = -pull;
-    plain(0.3, &load)
+    plain(&beam(), 0.3, &load)
 }
 
 #[test]
 fn bar_on_six_supports_in_both_number_types() {
-    let system = beam();
     for (pull, expected) in [
         (100.0, Some([120.0, 50.0, 10.0, 0.0, 0.0, 0.0])),
         (150.0, Some([300.0, 180.0, 90.0, 30.0, 0.0, 0.0])),
         (181.0, None),
     ] {
-        let numbers = beam_numbers(pull);
+        let problem = beam_problem(pull);
         for covering in Covering::ALL {
-            let input = WholeInput { system: &system, numbers: &numbers, covering };
             let d_t = match covering {
                 Covering::Cohesive => 1.3,
                 Covering::Ones => 1.0,
                 Covering::Weight => 0.3,
             };
-            check::<f64>(&input, expected, d_t);
-            check::<BigRational>(&input, expected, d_t);
+            check::<f64>(&problem, covering, expected, d_t);
+            check::<BigRational>(&problem, covering, expected, d_t);
         }
     }
 }
 
-fn check<T: Scalar>(input: &WholeInput, expected: Option<[f64; 6]>, d_t: f64) {
-    let lcp = full_lcp::<T>(input);
-    let rule = tangential_first(input.system);
+fn check<T: Scalar>(problem: &ContactProblem, covering: Covering, expected: Option<[f64; 6]>, d_t: f64) {
+    let lcp = full_lcp::<T>(problem, covering);
+    let rule = tangential_first(&problem.system);
     let run = run(&mut Tableau::new(&lcp, rule), 100, &mut |_| ControlFlow::Continue(()));
     match expected {
         Some(slip) => {
@@ -129,13 +129,14 @@ fn laws_mix() {
         pair("c", Law::Coulomb { friction: zero.clone(), cohesion: zero.clone(), gap: zero }, Some(4)),
     ];
     let laws = vec![PairLaw::smooth(1.0), PairLaw::bilateral(3.0), PairLaw::rubbing(0.5, 0.25, 0.0)];
-    let numbers = ContactNumbers::exactly(laws, DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]));
-    let lcp = full_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
+    let problem =
+        ContactProblem::exactly(&Arc::new(system.clone()), laws, DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]));
+    let lcp = full_lcp::<f64>(&problem, Covering::Cohesive);
     let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();
     use RowKind::*;
     assert_eq!(kinds, [(0, Normal), (2, Normal), (1, Plus), (2, Plus), (1, Minus), (2, Minus)]);
     let r = |i: usize, j: usize| system.stiffness[(i, j)];
-    let v = |i: usize| numbers.load[i] - r(i, 0);
+    let v = |i: usize| problem.load[i] - r(i, 0);
     let expected = [v(0), v(2), 3.0 + v(3), 0.25 + 0.5 * v(2) + v(4), 3.0 - v(3), 0.25 + 0.5 * v(2) - v(4)];
     for (q, e) in lcp.q.iter().zip(expected) {
         assert!((q - e).abs() < 1e-14);
@@ -175,9 +176,9 @@ fn p_at_the_limit_of_the_bar() {
                 let mut load = vec![0.0; k];
                 load[..n].fill(100.0);
                 load[n] = -pull;
-                let numbers = plain(0.3, &load);
+                let problem = plain(&system, 0.3, &load);
                 for (covering, d_t) in Covering::ALL.into_iter().zip([1.3, 1.0, 0.3]) {
-                    let lcp = full_lcp::<f64>(&WholeInput { system: &system, numbers: &numbers, covering });
+                    let lcp = full_lcp::<f64>(&problem, covering);
                     let got =
                         run(
                             &mut Tableau::new(&lcp, tangential_first(&system)),
@@ -192,12 +193,11 @@ fn p_at_the_limit_of_the_bar() {
                         got.point.p
                     );
                 }
-                let below = ContactNumbers {
-                    load: DVector::from_fn(k, |i, _| if i == n { -limit * (1.0 - excess) } else { numbers.load[i] }),
-                    ..numbers
+                let below = ContactProblem {
+                    load: DVector::from_fn(k, |i, _| if i == n { -limit * (1.0 - excess) } else { problem.load[i] }),
+                    ..problem
                 };
-                let lcp =
-                    full_lcp::<f64>(&WholeInput { system: &system, numbers: &below, covering: Covering::Cohesive });
+                let lcp = full_lcp::<f64>(&below, Covering::Cohesive);
                 let got =
                     run(&mut Tableau::new(&lcp, tangential_first(&system)), 200, &mut |_| ControlFlow::Continue(()));
                 assert!(matches!(got.outcome, Outcome::Normal { marginal: false }), "{:?}", got.outcome);
@@ -216,9 +216,9 @@ fn random_contact(random: &mut rand_chacha::ChaCha8Rng, m: usize, contrast: f64)
     coulomb((&r + r.transpose()) * 0.5)
 }
 
-fn run_exact(input: &WholeInput) -> crate::lcp::outcome::Run<BigRational> {
-    let lcp = full_lcp::<BigRational>(input);
-    let mut engine = Exact::new(lcp, tangential_first(input.system), &Quiet);
+fn run_exact(problem: &ContactProblem, covering: Covering) -> crate::lcp::outcome::Run<BigRational> {
+    let lcp = full_lcp::<BigRational>(problem, covering);
+    let mut engine = Exact::new(lcp, tangential_first(&problem.system), &Quiet);
     run(&mut engine, 5000, &mut |_| ControlFlow::Continue(()))
 }
 
@@ -230,8 +230,8 @@ fn exact_engine_solves_stiffness_contrasts() {
         let m = 1 + case % 6;
         let system = random_contact(&mut random, m, 1e9);
         let load: Vec<f64> = (0..2 * m).map(|_| random.random_range(-1.0..1.0)).collect();
-        let numbers = plain([0.3, 1.0, 4.0][case % 3], &load);
-        let got = run_exact(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
+        let problem = plain(&system, [0.3, 1.0, 4.0][case % 3], &load);
+        let got = run_exact(&problem, Covering::Cohesive);
         assert!(
             matches!(got.outcome, Outcome::Trivial | Outcome::Normal { marginal: false }),
             "case {case}: {:?}",
@@ -258,18 +258,18 @@ fn engines_agree(problems: usize, most_pairs: usize) {
         let a = DMatrix::from_fn(k, k, |_, _| number(2));
         let system = coulomb(&a * a.transpose() + DMatrix::identity(k, k));
         let load: Vec<f64> = (0..k).map(|_| number(4)).collect();
-        let mut numbers = plain([0.25, 0.5, 1.0, 2.0, 5.0][random.random_range(0..5)], &load);
-        for law in &mut numbers.laws {
+        let mut problem = plain(&system, [0.25, 0.5, 1.0, 2.0, 5.0][random.random_range(0..5)], &load);
+        for law in &mut problem.laws {
             *law = law.with_fixed_bound(f64::from(random.random_range(0..2)));
             *law = law.with_gap(0.25 * f64::from(random.random_range(0..2)));
         }
         for covering in Covering::ALL {
-            let input = WholeInput { system: &system, numbers: &numbers, covering };
-            let rounded =
-                run(&mut Tableau::new(&full_lcp::<f64>(&input), tangential_first(&system)), 5000, &mut |_| {
-                    ControlFlow::Continue(())
-                });
-            let exact = run_exact(&input);
+            let rounded = run(
+                &mut Tableau::new(&full_lcp::<f64>(&problem, covering), tangential_first(&system)),
+                5000,
+                &mut |_| ControlFlow::Continue(()),
+            );
+            let exact = run_exact(&problem, covering);
             let kind = |ray: bool, answer: bool| (ray, answer);
             let rounded_kind = kind(
                 matches!(rounded.outcome, Outcome::Ray(_)),
@@ -311,9 +311,9 @@ fn exact_engine_with_sixty_pairs() {
         let m = 60;
         let system = random_contact(&mut random, m, contrast);
         let load: Vec<f64> = (0..2 * m).map(|_| random.random_range(-1.0..1.0)).collect();
-        let numbers = plain(f, &load);
+        let problem = plain(&system, f, &load);
         let start = std::time::Instant::now();
-        let got = run_exact(&WholeInput { system: &system, numbers: &numbers, covering: Covering::Cohesive });
+        let got = run_exact(&problem, Covering::Cohesive);
         let outcome = format!("{:?}", got.outcome);
         std::io::Write::write_all(
             &mut std::io::stderr(),

@@ -6,20 +6,21 @@
 
 use nalgebra::DVector;
 
-use crate::contact::lcp::{ContactLcp, RowKind, load_with_gaps};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::lcp::ContactLcp;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::RowKind;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::corrected;
 use crate::lcp::outcome::Point;
 
 /// w of all rows at a point, dimensionless, from forces whose kernel part is exact.
-fn balanced_rows(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: &Point) -> Vec<f64> {
+fn balanced_rows(problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> Vec<f64> {
+    let system = &*problem.system;
     let z: DVector<f64> = contact.joint_displacements(system, &point.z) * contact.length_unit;
-    let mut force = system.pivot_stiffness() * z + load_with_gaps(system, numbers);
+    let mut force = system.pivot_stiffness() * z + problem.joint_constants();
     // Twice: the first step leaves rounding of the size it removed.
     for _ in 0..2 {
-        let missing = system.kernel.transpose() * (&numbers.load - &force);
+        let missing = system.kernel.transpose() * (&problem.load - &force);
         force += &system.kernel * missing;
     }
     contact
@@ -29,7 +30,7 @@ fn balanced_rows(system: &ContactSystem, numbers: &ContactNumbers, contact: &Con
             let i = row.pair;
             let (d_n, d_t) = contact.covering_of(i);
             let tangential = system.pairs[i].tangential.map_or(0.0, |joint| force[joint]);
-            let bound = numbers.laws[i].friction() * force[i] + numbers.laws[i].fixed_bound();
+            let bound = problem.laws[i].friction() * force[i] + problem.laws[i].fixed_bound();
             match row.couple {
                 RowKind::Normal => force[i] / contact.force_unit + d_n * point.p,
                 RowKind::Plus => (bound + tangential) / contact.force_unit + d_t * point.p,
@@ -41,17 +42,12 @@ fn balanced_rows(system: &ContactSystem, numbers: &ContactNumbers, contact: &Con
 
 /// The vertex of `basis` with its equations solved once more from forces whose kernel part is exact; the point as it
 /// is where there is no kernel or the equations are singular.
-pub fn sharpen(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    basis: &Basis,
-    point: Point,
-) -> Point {
+pub fn sharpen(problem: &ContactProblem, contact: &ContactLcp, basis: &Basis, point: Point) -> Point {
+    let system = &*problem.system;
     if system.kernel.ncols() == 0 || system.force_form.is_some() {
         return point;
     }
-    let rows = balanced_rows(system, numbers, contact, &point);
+    let rows = balanced_rows(problem, contact, &point);
     let Some(mut found) = corrected(&contact.lcp, basis, &point, &rows) else {
         return point;
     };

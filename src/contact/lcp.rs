@@ -11,8 +11,9 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use crate::contact::force_form;
-use crate::contact::full_lcp::{joint_constants, rows};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::law::PairLaw;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::{Quantity, RowId, RowKind, rows, rows_of};
 use crate::contact::sums::joint_forces;
 use crate::contact::system::ContactSystem;
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
@@ -21,47 +22,6 @@ use crate::lcp::problem::{NOISE, Scale};
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::variable::Variable;
 use crate::model::rules::{Covering, TieBreak};
-
-/// What a row of the whole LCP stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum RowKind {
-    /// (x_n, z_n).
-    Normal,
-    /// (x⁺, z⁺).
-    Plus,
-    /// (x⁻, z⁻).
-    Minus,
-}
-
-/// What a variable is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// A contact force or a reserve.
-    Force,
-    /// A mutual displacement.
-    Displacement,
-}
-
-/// A row of the whole LCP: which pair, which couple.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct RowId {
-    /// Index of the pair.
-    pub pair: usize,
-    /// Which couple of it.
-    pub couple: RowKind,
-}
-
-impl RowId {
-    /// Name of the force (`letter` x) or displacement (z) of this row: `x_n[c1]`, `z+[c1]`.
-    pub fn name(self, letter: char, system: &ContactSystem) -> String {
-        let index = match self.couple {
-            RowKind::Normal => "_n",
-            RowKind::Plus => "+",
-            RowKind::Minus => "-",
-        };
-        format!("{letter}{index}[{}]", system.pairs[self.pair].id)
-    }
-}
 
 /// A covering that cannot be used with these numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -105,11 +65,6 @@ pub fn power_of_two(value: f64) -> f64 {
     if value > 0.0 && value.is_finite() { 2f64.powi(value.log2().floor() as i32) } else { 1.0 }
 }
 
-/// RF − R·(g, 0): the forces in the joints of the main system, gaps closed by force.
-pub fn load_with_gaps(system: &ContactSystem, numbers: &ContactNumbers) -> DVector<f64> {
-    DVector::from_vec(joint_constants(system, numbers))
-}
-
 /// √R_ii of every joint, R in the given unit. A joint without stiffness responds to nothing: any size will do for it,
 /// but not zero.
 fn joint_scales(system: &ContactSystem, stiffness_unit: f64) -> Vec<f64> {
@@ -119,16 +74,12 @@ fn joint_scales(system: &ContactSystem, stiffness_unit: f64) -> Vec<f64> {
     scales.iter().map(|scale| scale.max(floor)).collect()
 }
 
-/// Writes the LCP of the system under the given numbers.
+/// Writes the LCP of a problem.
 ///
 /// # Errors
 /// Where the covering cannot cover q.
-pub fn contact_lcp(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    covering: Covering,
-) -> Result<ContactLcp, CoveringError> {
-    contact_lcp_like(None, system, numbers, covering)
+pub fn contact_lcp(problem: &ContactProblem, covering: Covering) -> Result<ContactLcp, CoveringError> {
+    contact_lcp_like(None, problem, covering)
 }
 
 /// As [`contact_lcp`], sharing the stiffness of an earlier LCP of the same system.
@@ -137,130 +88,149 @@ pub fn contact_lcp(
 /// Where the covering cannot cover q.
 pub fn contact_lcp_like(
     earlier: Option<&ContactLcp>,
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     covering: Covering,
 ) -> Result<ContactLcp, CoveringError> {
+    let system = &*problem.system;
     if system.force_form.is_some() {
-        return force_form::contact_lcp(system, numbers, covering);
+        return force_form::contact_lcp(problem, covering);
     }
-    let constants = joint_forces(system, numbers, &DVector::zeros(system.joint_count()));
-    // What cancels to rounding is no load.
-    let load: Vec<f64> = constants.iter().map(|sum| sum.cleaned()).collect();
-    let pairs = &system.pairs;
-    let normals: Vec<usize> = (0..pairs.len()).filter(|&i| !pairs[i].law.is_bilateral()).collect();
-    let tangentials: Vec<(usize, usize)> =
-        pairs.iter().enumerate().filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint))).collect();
-
-    let stiffness_unit = earlier.map_or_else(
-        || power_of_two(system.stiffness.diagonal().amax()),
-        |earlier| earlier.force_unit / earlier.length_unit,
-    );
-    let laws = &numbers.laws;
-    // Largest |q| of all rows, and of their loads alone.
-    let mut largest = 0f64;
-    let mut largest_load = 0f64;
-    for &i in &normals {
-        largest = largest.max(load[i].abs());
-        largest_load = largest_load.max(load[i].abs());
-    }
-    for &(i, joint) in &tangentials {
-        let bound = laws[i].friction() * load[i] + laws[i].fixed_bound();
-        largest = largest.max((bound + load[joint]).abs()).max((bound - load[joint]).abs());
-        largest_load = largest_load.max((laws[i].friction() * load[i]).abs()).max(load[joint].abs());
-    }
-    let force_unit = power_of_two(largest);
-    let length_unit = force_unit / stiffness_unit;
-
-    let count = normals.len() + tangentials.len();
-    let joint_of = |row: usize| {
-        if row < normals.len() { normals[row] } else { tangentials[row - normals.len()].1 }
-    };
-    let column_scale = match earlier {
+    let rows = earlier.map_or_else(|| rows(system), |earlier| earlier.rows.clone());
+    let [normal_row, plus_row, minus_row] =
+        [RowKind::Normal, RowKind::Plus, RowKind::Minus].map(|couple| rows_of(&rows, system.pair_count(), couple));
+    // x⁻ is not stored: its rows are the last ones.
+    let stored = &rows[..rows.len() - minus_row.iter().flatten().count()];
+    let joints: Vec<usize> = stored.iter().map(|row| row.joint(system)).collect();
+    let written = Written::of(earlier, problem, stored);
+    let joint_scale = match earlier {
         Some(earlier) => {
             let mut scale = vec![0.0; system.joint_count()];
-            for (row, own) in earlier.lcp.scale.column.iter().enumerate() {
-                scale[joint_of(row)] = *own;
-            }
+            joints.iter().zip(&earlier.lcp.scale.column).for_each(|(&joint, own)| scale[joint] = *own);
             scale
         }
-        None => joint_scales(system, stiffness_unit),
+        None => joint_scales(system, written.stiffness_unit),
     };
-    let base = earlier.map_or_else(
-        || {
-            let joints: Vec<usize> = (0..count).map(joint_of).collect();
-            let stiffness = system.pivot_stiffness();
-            let mut entries = Vec::with_capacity(count * count);
-            for &joint in &joints {
-                let column = stiffness.column(joint);
-                entries.extend(joints.iter().map(|&row| column[row] / stiffness_unit));
-            }
-            Arc::new(DMatrix::from_vec(count, count, entries))
-        },
-        |earlier| Arc::clone(&earlier.lcp.base),
-    );
-    let mut q = DVector::zeros(count);
-    let mut d = DVector::zeros(count);
-    let mut row_scale = vec![0.0; count];
-    let mut mirrors: Vec<Option<Mirror>> = vec![None; count];
-    let rows = earlier.map_or_else(|| rows(system), |earlier| earlier.rows.clone());
-    let (mut normal_row, mut plus_row, mut minus_row) =
-        (vec![None; pairs.len()], vec![None; pairs.len()], vec![None; pairs.len()]);
-    for (row, &i) in normals.iter().enumerate() {
-        q[row] = load[i] / force_unit;
-        d[row] = 1.0;
-        row_scale[row] = column_scale[i];
-        normal_row[i] = Some(row);
-    }
-    for (k, &(i, joint)) in tangentials.iter().enumerate() {
-        let row = normals.len() + k;
-        let law = &laws[i];
-        let f = law.friction();
-        let constant = law.fixed_bound() / force_unit;
-        let terms = [load[joint] / force_unit, f * (load[i] / force_unit), constant];
-        let sum: f64 = terms.iter().sum();
-        let noise = NOISE * terms.iter().map(|term| term.abs()).sum::<f64>();
-        q[row] = if sum.abs() <= noise { 0.0 } else { sum };
-        d[row] = law.covering(covering);
-        let minus = f * load[i] + law.fixed_bound() - load[joint].abs();
-        if d[row] == 0.0 && minus < 0.0 {
-            return Err(CoveringError::WeightWithoutFriction { pair: pairs[i].id.clone() });
-        }
-        row_scale[row] = column_scale[joint] + f * column_scale[i];
-        mirrors[row] = Some(Mirror {
-            whole: count + k,
-            normal: normal_row[i],
-            friction: f,
-            constant: 2.0 * constant,
-            covering: law.covering_of_both(covering),
-        });
-        plus_row[i] = Some(row);
-        minus_row[i] = Some(count + k);
-    }
-    let lcp = MirroredLcp {
+    let base = match earlier {
+        Some(earlier) => Arc::clone(&earlier.lcp.base),
+        None => Arc::new(stiffness_of(system, &joints, written.stiffness_unit)),
+    };
+    let mut lcp = MirroredLcp {
         base,
-        q,
-        covering: d,
-        whole: (0..count).collect(),
-        mirrors,
+        q: DVector::zeros(stored.len()),
+        covering: DVector::from_element(stored.len(), 1.0),
+        whole: (0..stored.len()).collect(),
+        mirrors: vec![None; stored.len()],
         scale: Scale {
-            row: row_scale,
-            column: (0..count).map(|row| column_scale[joint_of(row)]).collect(),
-            load: Some(if largest_load > 0.0 { largest_load } else { largest } / force_unit),
+            row: joints.iter().map(|&joint| joint_scale[joint]).collect(),
+            column: joints.iter().map(|&joint| joint_scale[joint]).collect(),
+            load: Some(written.load_size()),
         },
         full_size: rows.len(),
     };
+    for (row, id) in stored.iter().enumerate() {
+        let (i, law) = (id.pair, &problem.laws[id.pair]);
+        if id.couple == RowKind::Normal {
+            lcp.q[row] = written.load[i] / written.force_unit;
+            continue;
+        }
+        lcp.q[row] = written.reserve(law, i, joints[row]);
+        lcp.covering[row] = law.covering(covering);
+        if lcp.covering[row] == 0.0 && written.least_reserve(law, i, joints[row]) < 0.0 {
+            return Err(CoveringError::WeightWithoutFriction { pair: system.pairs[i].id.clone() });
+        }
+        lcp.scale.row[row] += law.friction() * joint_scale[i];
+        lcp.mirrors[row] = minus_row[i].map(|minus| Mirror {
+            whole: minus,
+            normal: normal_row[i],
+            friction: law.friction(),
+            constant: 2.0 * (law.fixed_bound() / written.force_unit),
+            covering: law.covering_of_both(covering),
+        });
+    }
     Ok(ContactLcp {
         lcp: Arc::new(lcp),
-        friction: numbers.frictions(),
+        friction: problem.frictions(),
         swapped: vec![false; rows.len()],
+        force_unit: written.force_unit,
+        length_unit: written.length_unit(),
         rows,
-        force_unit,
-        length_unit,
         normal_row,
         plus_row,
         minus_row,
     })
+}
+
+/// R over some joints, dimensionless.
+fn stiffness_of(system: &ContactSystem, joints: &[usize], unit: f64) -> DMatrix<f64> {
+    let stiffness = system.pivot_stiffness();
+    let mut entries = Vec::with_capacity(joints.len() * joints.len());
+    for &joint in joints {
+        let column = stiffness.column(joint);
+        entries.extend(joints.iter().map(|&row| column[row] / unit));
+    }
+    DMatrix::from_vec(joints.len(), joints.len(), entries)
+}
+
+/// The constants of an LCP and its units.
+struct Written {
+    /// RF − R·(g, 0) of the joints, what cancels to rounding left out.
+    load: Vec<f64>,
+    /// Largest |q| of all rows, and of their loads alone; forces.
+    largest: f64,
+    largest_load: f64,
+    force_unit: f64,
+    stiffness_unit: f64,
+}
+
+impl Written {
+    fn of(earlier: Option<&ContactLcp>, problem: &ContactProblem, stored: &[RowId]) -> Written {
+        let system = &*problem.system;
+        let constants = joint_forces(problem, &DVector::zeros(system.joint_count()));
+        let load: Vec<f64> = constants.iter().map(|sum| sum.cleaned()).collect();
+        let (mut largest, mut largest_load) = (0f64, 0f64);
+        for row in stored {
+            let (normal, own, law) = (load[row.pair], load[row.joint(system)], &problem.laws[row.pair]);
+            if row.couple == RowKind::Normal {
+                largest = largest.max(normal.abs());
+                largest_load = largest_load.max(normal.abs());
+            } else {
+                let bound = law.friction() * normal + law.fixed_bound();
+                largest = largest.max((bound + own).abs()).max((bound - own).abs());
+                largest_load = largest_load.max((law.friction() * normal).abs()).max(own.abs());
+            }
+        }
+        let stiffness_unit = earlier.map_or_else(
+            || power_of_two(system.stiffness.diagonal().amax()),
+            |earlier| earlier.force_unit / earlier.length_unit,
+        );
+        Written { load, largest, largest_load, force_unit: power_of_two(largest), stiffness_unit }
+    }
+
+    fn length_unit(&self) -> f64 {
+        self.force_unit / self.stiffness_unit
+    }
+
+    /// Size of the load, dimensionless.
+    fn load_size(&self) -> f64 {
+        (if self.largest_load > 0.0 { self.largest_load } else { self.largest }) / self.force_unit
+    }
+
+    /// q of x⁺, dimensionless; 0 where it is rounding.
+    fn reserve(&self, law: &PairLaw, pair: usize, joint: usize) -> f64 {
+        let terms = [
+            self.load[joint] / self.force_unit,
+            law.friction() * (self.load[pair] / self.force_unit),
+            law.fixed_bound() / self.force_unit,
+        ];
+        let sum: f64 = terms.iter().sum();
+        let noise = NOISE * terms.iter().map(|term| term.abs()).sum::<f64>();
+        if sum.abs() <= noise { 0.0 } else { sum }
+    }
+
+    /// The smaller reserve in the main system, a force.
+    fn least_reserve(&self, law: &PairLaw, pair: usize, joint: usize) -> f64 {
+        law.friction() * self.load[pair] + law.fixed_bound() - self.load[joint].abs()
+    }
 }
 
 impl ContactLcp {

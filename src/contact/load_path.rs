@@ -5,10 +5,8 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::force_form::constants;
-use super::law::PairLaw;
-use super::numbers::ContactNumbers;
-use super::system::ContactSystem;
-use crate::contact::lcp::{ContactLcp, contact_lcp, load_with_gaps};
+use super::problem::ContactProblem;
+use crate::contact::lcp::{ContactLcp, contact_lcp};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::MirroredLcp;
@@ -25,28 +23,29 @@ pub fn is_answer(lcp: &MirroredLcp, basis: &Basis) -> bool {
     point.w.iter().all(|w| *w >= -1e-11 * force) && point.z.iter().all(|z| *z >= -1e-11 * length)
 }
 
-/// The dimensionless LCP of base + t · increment: q is that of `numbers`, the covering that of the increment of the
+/// The dimensionless LCP of base + t · increment: q is that of `problem`, the covering that of the increment of the
 /// load (t in the user's units of the increment's factor).
-pub fn path_lcp(system: &ContactSystem, numbers: &ContactNumbers, increment: &DVector<f64>) -> ContactLcp {
-    let mut reference = numbers.clone();
-    if load_with_gaps(system, numbers).amax() == 0.0 {
+pub fn path_lcp(problem: &ContactProblem, increment: &DVector<f64>) -> ContactLcp {
+    let system = &*problem.system;
+    let mut reference = problem.clone();
+    if problem.joint_constants().amax() == 0.0 {
         reference.set_load(increment.clone());
     }
     // `ones` covers everything; only the matrix, the units and the rows are taken from it.
-    let mut contact = match contact_lcp(system, &reference, Covering::Ones) {
+    let mut contact = match contact_lcp(&reference, Covering::Ones) {
         Ok(contact) => contact,
         Err(_) => unreachable!("covering ones fits all numbers"),
     };
     if system.force_form.is_some() {
-        let fixed: Vec<f64> = numbers.laws.iter().map(PairLaw::fixed_bound).collect();
+        let fixed = problem.fixed_bounds();
         let mut lcp = MirroredLcp::clone(&contact.lcp);
-        lcp.q = constants(system, &contact, &load_with_gaps(system, numbers), &fixed);
+        lcp.q = constants(system, &contact, &problem.joint_constants(), &fixed);
         lcp.covering = constants(system, &contact, increment, &vec![0.0; fixed.len()]);
         contact.lcp = Arc::new(lcp);
         return contact;
     }
     let unit = contact.force_unit;
-    let load = load_with_gaps(system, numbers);
+    let load = problem.joint_constants();
     let mut lcp = MirroredLcp::clone(&contact.lcp);
     for (i, pair) in system.pairs.iter().enumerate() {
         if let Some(row) = contact.normal_row[i] {
@@ -54,8 +53,8 @@ pub fn path_lcp(system: &ContactSystem, numbers: &ContactNumbers, increment: &DV
             lcp.covering[row] = increment[i] / unit;
         }
         if let (Some(row), Some(joint)) = (contact.plus_row[i], pair.tangential) {
-            let f = numbers.laws[i].friction();
-            lcp.q[row] = load[joint] / unit + f * (load[i] / unit) + numbers.laws[i].fixed_bound() / unit;
+            let f = problem.laws[i].friction();
+            lcp.q[row] = load[joint] / unit + f * (load[i] / unit) + problem.laws[i].fixed_bound() / unit;
             lcp.covering[row] = increment[joint] / unit + f * (increment[i] / unit);
             if let Some(mirror) = &mut lcp.mirrors[row] {
                 mirror.covering = 0.0;

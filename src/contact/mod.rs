@@ -3,14 +3,14 @@
 //! ```
 //! use stickslip::contact::lcp::contact_lcp;
 //! use stickslip::model::{embedded, rules::Covering};
-//! use stickslip::{solve::{numbers::{contact_numbers, factors}, prepare}, watch::Quiet};
+//! use stickslip::{solve::{prepare, problem::{contact_problem, factors}}, watch::Quiet};
 //!
 //! let scenario = embedded::load("klarbring")?;
 //! let prepared = prepare(&scenario, &Quiet)?;
 //! let system = prepared.system().expect("it has contact pairs");
 //! let values = scenario.parameter_values();
-//! let numbers = contact_numbers(system, &factors(&prepared, &values), &values);
-//! let lcp = contact_lcp(system, &numbers, Covering::Cohesive)?;
+//! let problem = contact_problem(system, &factors(&prepared, &values), &values);
+//! let lcp = contact_lcp(&problem, Covering::Cohesive)?;
 //! // One Coulomb pair: x_n, x⁺ and x⁻, of which two rows carry the third.
 //! assert_eq!((lcp.lcp.full_size, lcp.lcp.size()), (3, 2));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -24,9 +24,10 @@ pub mod kernel_correction;
 pub mod law;
 pub mod lcp;
 pub mod load_path;
-pub mod numbers;
 pub mod pivoted;
+pub mod problem;
 pub mod refine;
+pub mod rows;
 pub mod schemes;
 pub mod self_stress;
 pub mod sums;

@@ -7,10 +7,11 @@
 
 use nalgebra::DVector;
 
-use super::numbers::ContactNumbers;
+use super::problem::ContactProblem;
 use super::sums::{Sum, joint_forces, pair_sums};
 use super::system::ContactSystem;
-use crate::contact::lcp::{ContactLcp, RowId, RowKind};
+use crate::contact::lcp::ContactLcp;
+use crate::contact::rows::{RowId, RowKind};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::corrected;
 use crate::lcp::doubled::dot;
@@ -23,23 +24,24 @@ const ROUNDS: usize = 4;
 const GOOD: f64 = NOISE / 8.0;
 
 /// The point with the rows of its released joints put right; as it is where they are, or where no step helps.
-pub fn refined(system: &ContactSystem, numbers: &ContactNumbers, contact: &ContactLcp, point: Point) -> Point {
+pub fn refined(problem: &ContactProblem, contact: &ContactLcp, point: Point) -> Point {
+    let system = &*problem.system;
     if system.force_form.is_some() {
         return point;
     }
     let mut best = point;
-    let mut left = worst(&rows(system, numbers, contact, &best, false), &released(&best));
+    let mut left = worst(&rows(problem, contact, &best, false), &released(&best));
     for _ in 0..ROUNDS {
         if left <= GOOD {
             break;
         }
-        let sums = rows(system, numbers, contact, &best, true);
-        let w = equations(numbers, contact, &best, &sums);
+        let sums = rows(problem, contact, &best, true);
+        let w = equations(problem, contact, &best, &sums);
         let Some(mut next) = corrected(&contact.lcp, &released(&best), &best, &w) else {
             break;
         };
-        settle_signs(numbers, contact, &mut next);
-        let now = worst(&rows(system, numbers, contact, &next, true), &released(&next));
+        settle_signs(problem, contact, &mut next);
+        let now = worst(&rows(problem, contact, &next, true), &released(&next));
         if now.is_nan() || now >= left {
             break;
         }
@@ -55,7 +57,7 @@ fn released(point: &Point) -> Basis {
 }
 
 /// An open pair that nothing holds slides either way: z⁺ < 0 is z⁻. Elsewhere what is below zero is rounding.
-fn settle_signs(numbers: &ContactNumbers, contact: &ContactLcp, point: &mut Point) {
+fn settle_signs(problem: &ContactProblem, contact: &ContactLcp, point: &mut Point) {
     for (row, meaning) in contact.rows.iter().enumerate() {
         if point.z[row] >= 0.0 {
             continue;
@@ -68,19 +70,19 @@ fn settle_signs(numbers: &ContactNumbers, contact: &ContactLcp, point: &mut Poin
             RowKind::Minus => contact.plus_row[i],
         };
         let moved = std::mem::take(&mut point.z[row]);
-        if let Some(other) = other.filter(|_| is_open && numbers.laws[i].fixed_bound() == 0.0) {
+        if let Some(other) = other.filter(|_| is_open && problem.laws[i].fixed_bound() == 0.0) {
             point.z[other] -= moved;
         }
     }
 }
 
 /// w of every row as the LCP has it, dimensionless: the reserves of an open pair contain f x_n, which the matrix sees.
-fn equations(numbers: &ContactNumbers, contact: &ContactLcp, point: &Point, sums: &[Sum]) -> Vec<f64> {
+fn equations(problem: &ContactProblem, contact: &ContactLcp, point: &Point, sums: &[Sum]) -> Vec<f64> {
     let row_of = |(row, sum): (&RowId, &Sum)| {
         let normal = contact.normal_row[row.pair].filter(|&normal| point.z[normal] > 0.0);
         let coupled = match (row.couple, normal) {
             (RowKind::Normal, _) | (_, None) => 0.0,
-            (_, Some(normal)) => numbers.laws[row.pair].friction() * sums[normal].value,
+            (_, Some(normal)) => problem.laws[row.pair].friction() * sums[normal].value,
         };
         (sum.value + coupled) / contact.force_unit
     };
@@ -93,24 +95,19 @@ fn worst(sums: &[Sum], basis: &Basis) -> f64 {
 }
 
 /// w of every row in the user's units, `doubled` in twice the precision.
-fn rows(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    point: &Point,
-    doubled: bool,
-) -> Vec<Sum> {
+fn rows(problem: &ContactProblem, contact: &ContactLcp, point: &Point, doubled: bool) -> Vec<Sum> {
+    let system = &*problem.system;
     let z = contact.joint_displacements(system, &point.z) * contact.length_unit;
-    let mut forces = joint_forces(system, numbers, &z);
+    let mut forces = joint_forces(problem, &z);
     let mut unpressed: Vec<bool> = z.iter().take(system.pair_count()).map(|z| *z > 0.0).collect();
     if doubled && system.file.is_none() {
-        add_doubled(system, &numbers.load, &numbers.dislocation(&z), &mut forces);
+        add_doubled(system, &problem.load, &problem.dislocation(&z), &mut forces);
     }
     // A pressure that is rounding bounds no friction: the slip is then as exact as its own row.
     unpressed.iter_mut().zip(&forces).for_each(|(unpressed, force)| *unpressed |= force.is_zero());
     (contact.rows.iter())
         .map(|row| {
-            let sums = pair_sums(system, numbers, &forces, (row.pair, unpressed[row.pair]));
+            let sums = pair_sums(problem, &forces, (row.pair, unpressed[row.pair]));
             let reserve = |side: usize| sums.reserves.map(|reserves| reserves[side]);
             let sum = match row.couple {
                 RowKind::Normal => sums.normal,
@@ -146,14 +143,14 @@ mod tests {
         let mut r = DMatrix::identity(4, 4);
         (r[(0, 1)], r[(1, 0)]) = (1.0 - delta, 1.0 - delta);
         let system = coulomb(r);
-        let numbers = plain(0.3, &[-1.0, -1.0, 0.0, 0.0]);
-        let contact = contact_lcp(&system, &numbers, Covering::Cohesive).expect("covered");
+        let problem = plain(&system, 0.3, &[-1.0, -1.0, 0.0, 0.0]);
+        let contact = contact_lcp(&problem, Covering::Cohesive).expect("covered");
         // R_nn (1, 1) = 2 − δ: z_n = 1 / (2 − δ) each.
         let exact = 1.0 / (2.0 - delta);
         let mut point = Point { z: vec![0.0; 6], w: vec![0.0; 6], p: 0.0 };
         point.z[0] = (exact + 1e-9) / contact.length_unit;
         point.z[1] = (exact - 2e-9) / contact.length_unit;
-        let found = refined(&system, &numbers, &contact, point);
+        let found = refined(&problem, &contact, point);
         let z = DVector::from_fn(2, |i, _| found.z[i] * contact.length_unit);
         let left = DVector::from_fn(2, |i, _| r_row(delta, i, &z) - 1.0);
         assert!(left.amax() <= 4.0 * f64::EPSILON, "{z} {left}");

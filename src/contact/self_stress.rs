@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::numbers::ContactNumbers;
+use super::problem::ContactProblem;
 use super::sums::Sum;
 use super::system::ContactSystem;
 use crate::lcp::basis_solution::vertex;
@@ -33,18 +33,14 @@ const PIVOTS: usize = 10_000;
 
 /// Puts the forces of least norm in the place of `forces`, with the magnitudes of their terms; z as in the state, exact
 /// zeros where nothing moves. Returns the pairs whose forces are not determined by the motion.
-pub fn least_norm(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    z: &DVector<f64>,
-    forces: &mut [Sum],
-) -> Vec<usize> {
+pub fn least_norm(problem: &ContactProblem, z: &DVector<f64>, forces: &mut [Sum]) -> Vec<usize> {
+    let system = &*problem.system;
     let Some(form) = &system.force_form else {
         return Vec::new();
     };
     let mut free = Vec::new();
     for pairs in clusters(system, &form.self_stress) {
-        let cluster = Cluster { system, numbers, z, pairs };
+        let cluster = Cluster { problem, z, pairs };
         free.extend(cluster.settle(&form.self_stress, forces));
     }
     free.sort_unstable();
@@ -53,7 +49,8 @@ pub fn least_norm(
 
 /// Pairs with closed self-stress in a cluster with friction: their bounds change with the normal forces, so that another
 /// self-stress than the one found may hold another motion. Without friction the motion does not depend on the self-stress.
-pub fn may_hold_otherwise(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<usize> {
+pub fn may_hold_otherwise(problem: &ContactProblem, z: &DVector<f64>) -> Vec<usize> {
+    let system = &*problem.system;
     let Some(form) = &system.force_form else {
         return Vec::new();
     };
@@ -61,8 +58,8 @@ pub fn may_hold_otherwise(system: &ContactSystem, numbers: &ContactNumbers, z: &
     let mut sticking = z.clone();
     system.pairs.iter().filter_map(|pair| pair.tangential).for_each(|joint| sticking[joint] = 0.0);
     let mut pairs: Vec<usize> = (clusters(system, &form.self_stress).into_iter())
-        .map(|pairs| Cluster { system, numbers, z: &sticking, pairs })
-        .filter(|cluster| cluster.pairs.iter().any(|&pair| numbers.laws[pair].friction() > 0.0))
+        .map(|pairs| Cluster { problem, z: &sticking, pairs })
+        .filter(|cluster| cluster.pairs.iter().any(|&pair| problem.laws[pair].friction() > 0.0))
         .flat_map(|cluster| cluster.undetermined(&form.self_stress))
         .collect();
     pairs.sort_unstable();
@@ -93,8 +90,7 @@ fn clusters(system: &ContactSystem, self_stress: &DMatrix<f64>) -> Vec<Vec<usize
 
 /// Pairs that self-stress connects, in a state.
 struct Cluster<'a> {
-    system: &'a ContactSystem,
-    numbers: &'a ContactNumbers,
+    problem: &'a ContactProblem,
     z: &'a DVector<f64>,
     pairs: Vec<usize>,
 }
@@ -123,7 +119,7 @@ impl Cluster<'_> {
     fn laws(&self) -> (Vec<Combination>, Vec<Combination>) {
         let (mut zero, mut positive) = (Vec::new(), Vec::new());
         for &i in &self.pairs {
-            let pair = &self.system.pairs[i];
+            let pair = &self.problem.system.pairs[i];
             let open = !pair.law.is_bilateral() && self.z[i] > 0.0;
             let normal = || Combination { terms: vec![(i, 1.0)], constant: 0.0 };
             if open {
@@ -132,8 +128,8 @@ impl Cluster<'_> {
                 positive.push(normal());
             }
             let Some(joint) = pair.tangential else { continue };
-            let f = if open { 0.0 } else { self.numbers.laws[i].friction() };
-            let constant = self.numbers.laws[i].fixed_bound();
+            let f = if open { 0.0 } else { self.problem.laws[i].friction() };
+            let constant = self.problem.laws[i].fixed_bound();
             let reserve = |side: f64| {
                 let mut terms = vec![(joint, side)];
                 terms.extend((f > 0.0).then_some((i, f)));
@@ -155,7 +151,7 @@ impl Cluster<'_> {
 
     /// The self-stress that what must be zero leaves.
     fn freedom(&self, self_stress: &DMatrix<f64>, zero: &[Combination]) -> Option<Freedom> {
-        let joints: Vec<usize> = self.pairs.iter().flat_map(|&pair| joints_of(self.system, pair)).collect();
+        let joints: Vec<usize> = self.pairs.iter().flat_map(|&pair| joints_of(&self.problem.system, pair)).collect();
         let columns: Vec<usize> = (0..self_stress.ncols())
             .filter(|&column| joints.iter().any(|&joint| self_stress[(joint, column)] != 0.0))
             .collect();
@@ -169,7 +165,9 @@ impl Cluster<'_> {
     fn moved(&self, Freedom { joints, stress, free }: &Freedom) -> Vec<usize> {
         let place = |joint: usize| joints.iter().position(|own| *own == joint);
         let moved = |&pair: &usize| {
-            joints_of(self.system, pair).filter_map(place).any(|a| free.row(a).amax() > NOISE * stress.row(a).amax())
+            joints_of(&self.problem.system, pair)
+                .filter_map(place)
+                .any(|a| free.row(a).amax() > NOISE * stress.row(a).amax())
         };
         self.pairs.iter().copied().filter(moved).collect()
     }
@@ -295,7 +293,7 @@ mod tests {
 
     fn settled(f: f64, z: [f64; 4], forces: [f64; 4]) -> ([f64; 4], Vec<usize>) {
         let mut sums = forces.map(Sum::exactly);
-        let free = least_norm(&guide(), &plain(f, &[0.0; 4]), &DVector::from_row_slice(&z), &mut sums);
+        let free = least_norm(&plain(&guide(), f, &[0.0; 4]), &DVector::from_row_slice(&z), &mut sums);
         (sums.map(|sum| sum.value), free)
     }
 

@@ -7,7 +7,7 @@
 use nalgebra::DVector;
 
 use super::law::PairLaw;
-use super::numbers::ContactNumbers;
+use super::problem::ContactProblem;
 use super::system::ContactSystem;
 use crate::lcp::problem::NOISE;
 
@@ -55,8 +55,8 @@ fn root(system: &ContactSystem, joint: usize) -> f64 {
 
 /// λ = R (z − (g, 0)) + RF over the joints; of joints in force form z is λ and λ is z. Where R is [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik|
 /// in the magnitudes.
-pub fn joint_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<Sum> {
-    state_forces(system, numbers, z).joints
+pub fn joint_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
+    state_forces(problem, z).joints
 }
 
 /// The forces of a state of the joints, from the file where there is one.
@@ -71,13 +71,14 @@ pub struct StateForces {
 }
 
 /// [`joint_forces`] with what else a file says.
-pub fn state_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> StateForces {
-    let mut forces = StateForces { joints: condensed_forces(system, numbers, z), left: Vec::new(), slips: None };
+pub fn state_forces(problem: &ContactProblem, z: &DVector<f64>) -> StateForces {
+    let system = &*problem.system;
+    let mut forces = StateForces { joints: condensed_forces(problem, z), left: Vec::new(), slips: None };
     if system.force_form.is_some() {
         return forces;
     }
-    if let (Some(file), Some(load)) = (&system.file, &numbers.file_load) {
-        let given = file.forces(&numbers.dislocation(z), &numbers.dislocation_sizes(z.abs()), load);
+    if let (Some(file), Some(load)) = (&system.file, &problem.file_load) {
+        let given = file.forces(&problem.dislocation(z), &problem.dislocation_sizes(z.abs()), load);
         for (force, given) in forces.joints.iter_mut().zip(given.joints) {
             // Forces solved for from a compliance have no terms of their own.
             let magnitude = if file.compliance { force.magnitude.max(given.magnitude) } else { given.magnitude };
@@ -88,14 +89,15 @@ pub fn state_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVecto
     forces
 }
 
-fn condensed_forces(system: &ContactSystem, numbers: &ContactNumbers, z: &DVector<f64>) -> Vec<Sum> {
-    let mut forces: Vec<Sum> = (numbers.load.iter())
-        .zip(&numbers.load_terms)
+fn condensed_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
+    let system = &*problem.system;
+    let mut forces: Vec<Sum> = (problem.load.iter())
+        .zip(&problem.load_terms)
         .map(|(value, magnitude)| Sum { value: *value, magnitude: *magnitude })
         .collect();
     let mut scaled = 0.0;
     for k in 0..system.joint_count() {
-        let mut gap = numbers.laws.get(k).map_or(0.0, PairLaw::gap);
+        let mut gap = problem.laws.get(k).map_or(0.0, PairLaw::gap);
         if system.is_forced(k) {
             // The displacement is what comes out.
             forces[k] = forces[k].plus(1.0, Sum::exactly(gap));
@@ -140,16 +142,12 @@ pub struct PairSums {
 
 /// x_n and the reserves of a pair under joint forces. An open pair has x_n = 0, not the rounding of a stiff joint's λ, in
 /// its bound.
-pub fn pair_sums(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    forces: &[Sum],
-    (pair, is_open): (usize, bool),
-) -> PairSums {
+pub fn pair_sums(problem: &ContactProblem, forces: &[Sum], (pair, is_open): (usize, bool)) -> PairSums {
+    let system = &*problem.system;
     let normal = (!system.pairs[pair].law.is_bilateral()).then(|| forces[pair]);
     let reserves = system.pairs[pair].tangential.map(|joint| {
-        let fixed = Sum::exactly(numbers.laws[pair].fixed_bound());
-        let bound = if is_open { fixed } else { fixed.plus(numbers.laws[pair].friction(), forces[pair]) };
+        let fixed = Sum::exactly(problem.laws[pair].fixed_bound());
+        let bound = if is_open { fixed } else { fixed.plus(problem.laws[pair].friction(), forces[pair]) };
         [bound.plus(1.0, forces[joint]), bound.plus(-1.0, forces[joint])]
     });
     PairSums { normal, reserves }

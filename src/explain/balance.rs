@@ -6,8 +6,7 @@ use nalgebra::DVector;
 
 use super::motions::FreeMotions;
 use crate::contact::law::FACETS;
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::problem::ContactProblem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 
 /// Multiples beyond this are infinite.
@@ -39,7 +38,8 @@ struct Forces {
 }
 
 /// Forces divided by `size`.
-fn forces(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotions, size: f64) -> Forces {
+fn forces(problem: &ContactProblem, motions: &FreeMotions, size: f64) -> Forces {
+    let system = &*problem.system;
     let mut program = LinearProgram::default();
     let mut balance = vec![Vec::new(); motions.count()];
     let mut put = |variable: usize, joint: usize| {
@@ -47,7 +47,7 @@ fn forces(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotion
             balance[entry.motion].push((variable, entry.value));
         }
     };
-    for (pair, law) in numbers.laws.iter().enumerate() {
+    for (pair, law) in problem.laws.iter().enumerate() {
         let tangential = system.pairs[pair].tangential;
         let touched = |joint: usize| !motions.row(joint).is_empty();
         if !touched(pair) && !tangential.is_some_and(touched) {
@@ -71,19 +71,19 @@ fn forces(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotion
 
 /// The multiples α for which there are balanced forces under `fixed` + α · `varied`.
 pub fn balanced_multiples(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     motions: &FreeMotions,
     fixed: &DVector<f64>,
     varied: &DVector<f64>,
     seconds: f64,
 ) -> Multiples {
+    let system = &*problem.system;
     let (fixed, varied) = (&system.forces_of(fixed), &system.forces_of(varied));
     let size = fixed.amax().max(varied.amax());
     if motions.count() == 0 || size == 0.0 {
         return Multiples::Between([f64::NEG_INFINITY, f64::INFINITY]);
     }
-    let Forces { mut program, balance } = forces(system, numbers, motions, size);
+    let Forces { mut program, balance } = forces(problem, motions, size);
     let multiple = program.variable(0.0);
     let (right, left) = (motions.work(fixed, fixed), motions.work(varied, varied));
     for ((mut row, right), left) in balance.into_iter().zip(right).zip(left) {
@@ -110,20 +110,16 @@ pub fn balanced_multiples(
 
 /// Whether there are balanced forces under the load of `numbers`, as far as f64 can tell; `None` where that could not
 /// be decided in the time.
-pub fn is_balanced(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    motions: &FreeMotions,
-    seconds: f64,
-) -> Option<bool> {
-    let (load, terms) = (system.forces_of(&numbers.load), system.forces_of(&numbers.load_terms));
+pub fn is_balanced(problem: &ContactProblem, motions: &FreeMotions, seconds: f64) -> Option<bool> {
+    let system = &*problem.system;
+    let (load, terms) = (system.forces_of(&problem.load), system.forces_of(&problem.load_terms));
     let size = load.amax();
     if motions.count() == 0 || size == 0.0 {
         return Some(true);
     }
     // The least work that is left over on all motions together: a program that always has an optimum, unlike the
     // question itself, which next to a limit has no room for an answer.
-    let Forces { mut program, balance } = forces(system, numbers, motions, size);
+    let Forces { mut program, balance } = forces(problem, motions, size);
     let mut left_over = Vec::new();
     for (mut row, work) in balance.into_iter().zip(motions.work(&load, &terms)) {
         for sign in [1.0, -1.0] {

@@ -23,9 +23,8 @@ use num_traits::Zero;
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved, exact, nearest};
 use super::motions::{Entry, FreeMotions, Rounded};
-use crate::contact::law::{FACETS, PairLaw};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::law::FACETS;
+use crate::contact::problem::ContactProblem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 
 /// Time for all that is tried.
@@ -54,7 +53,7 @@ pub struct Certificate {
 
 /// What a search for a certificate found.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Search {
+pub struct CertificateSearch {
     /// The proof, if there is one.
     pub certificate: Option<Certificate>,
     /// Whether the time was up before everything was tried.
@@ -62,20 +61,20 @@ pub struct Search {
 }
 
 /// Looks for a certificate.
-pub fn certify(system: &ContactSystem, numbers: &ContactNumbers, motions: &FreeMotions) -> Search {
-    let work = motions.work(&system.forces_of(&numbers.load), &system.forces_of(&numbers.load_terms));
+pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSearch {
+    let system = &*problem.system;
+    let work = motions.work(&system.forces_of(&problem.load), &system.forces_of(&problem.load_terms));
     let scale = work.iter().fold(0.0, |a: f64, work| a.max(work.value.abs()));
     if scale == 0.0 {
-        return Search::default();
+        return CertificateSearch::default();
     }
-    let laws = &numbers.laws;
-    let mut problem = Problem { system, motions, laws, work, scale, end: Instant::now() + BUDGET, out_of_time: false };
-    let certificate = problem.with_room().or_else(|| problem.confined());
+    let mut program = MotionProgram { problem, motions, work, scale, end: Instant::now() + BUDGET, out_of_time: false };
+    let certificate = program.with_room().or_else(|| program.confined());
     if certificate.is_some() {
-        return Search { certificate, out_of_time: false };
+        return CertificateSearch { certificate, out_of_time: false };
     }
-    let exactly = certify_exactly(system, numbers, problem.end);
-    Search { out_of_time: problem.out_of_time || exactly.out_of_time, ..exactly }
+    let exactly = certify_exactly(problem, program.end);
+    CertificateSearch { out_of_time: program.out_of_time || exactly.out_of_time, ..exactly }
 }
 
 /// ζ_n − side · f ζ_τ ≥ 0 of a pair.
@@ -85,10 +84,9 @@ struct Slack {
     terms: Vec<(usize, f64)>,
 }
 
-struct Problem<'a> {
-    system: &'a ContactSystem,
+struct MotionProgram<'a> {
+    problem: &'a ContactProblem,
     motions: &'a FreeMotions,
-    laws: &'a [PairLaw],
     /// Work of the loads per unit of each motion.
     work: Vec<Rounded>,
     /// Largest work of a motion.
@@ -111,15 +109,15 @@ fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Vec<(usize, f64)> {
     terms
 }
 
-impl Problem<'_> {
+impl MotionProgram<'_> {
     fn tangential(&self, pair: usize) -> &[Entry] {
-        self.system.pairs[pair].tangential.map_or(&[], |joint| self.motions.row(joint))
+        self.problem.system.pairs[pair].tangential.map_or(&[], |joint| self.motions.row(joint))
     }
 
     /// Every inequality that some motion touches.
     fn slacks(&self) -> Vec<Slack> {
         let mut slacks = Vec::new();
-        for (pair, law) in self.laws.iter().enumerate().filter(|(_, law)| !law.is_bilateral()) {
+        for (pair, law) in self.problem.laws.iter().enumerate().filter(|(_, law)| !law.is_bilateral()) {
             let normal = self.motions.row(pair);
             let f = law.friction();
             let sides: &[f64] = if f > 0.0 { &FACETS } else { &[0.0] };
@@ -135,7 +133,7 @@ impl Problem<'_> {
 
     /// The joints that no motion of a proof may move: bilateral normals.
     fn held(&self) -> impl Iterator<Item = usize> {
-        (0..self.laws.len()).filter(|&i| self.laws[i].is_bilateral())
+        (0..self.problem.laws.len()).filter(|&i| self.problem.laws[i].is_bilateral())
     }
 
     /// The amounts of the motions within ±1, bilateral pairs held, and the terms of
@@ -155,7 +153,7 @@ impl Problem<'_> {
         }
         let mut surplus: Vec<(usize, f64)> =
             self.work.iter().enumerate().map(|(k, work)| (k, work.value / self.scale)).collect();
-        for (pair, law) in self.laws.iter().enumerate() {
+        for (pair, law) in self.problem.laws.iter().enumerate() {
             let c = law.fixed_bound();
             let slip = combined(self.tangential(pair), 0.0, &[]);
             if c > 0.0 && !slip.is_empty() {
@@ -273,7 +271,7 @@ impl Problem<'_> {
 
     /// Terms of ζ_n − side · f ζ_τ as the data have them.
     fn exact_terms(&self, pair: usize, side: f64) -> Vec<(usize, BigRational)> {
-        let f = exact(side * self.laws[pair].friction());
+        let f = exact(side * self.problem.laws[pair].friction());
         let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, exact(entry.value)));
         let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -exact(entry.value) * &f));
         normal.chain(tangential).collect()
@@ -287,9 +285,9 @@ impl Problem<'_> {
         };
         let mut taken = Rounded::default();
         let mut needed_exact = false;
-        for (pair, law) in self.laws.iter().enumerate() {
+        for (pair, law) in self.problem.laws.iter().enumerate() {
             let normal = self.motions.displacement(pair, amounts);
-            let slip = self.system.pairs[pair]
+            let slip = self.problem.system.pairs[pair]
                 .tangential
                 .map_or(Rounded::default(), |joint| self.motions.displacement(joint, amounts));
             let (f, c) = (law.friction(), law.fixed_bound());

@@ -13,11 +13,10 @@ use nalgebra::DVector;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
-use super::certificate::{Certificate, Search};
+use super::certificate::{Certificate, CertificateSearch};
 use crate::contact::law::{FACETS, PairLaw};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::exact_system::ExactSystem;
-use crate::contact::system::ContactSystem;
 use crate::lcp::exact::dyadic::{WholeRows, nearest, rational};
 use crate::lcp::exact::polyhedron::{Polyhedron, State};
 use crate::lcp::exact::rational_solve::null_space;
@@ -27,25 +26,26 @@ use crate::watch::until;
 const MOST_PAIRS: usize = 60;
 
 /// Looks for a certificate until `end`.
-pub(super) fn certify_exactly(system: &ContactSystem, numbers: &ContactNumbers, end: Instant) -> Search {
+pub(super) fn certify_exactly(problem: &ContactProblem, end: Instant) -> CertificateSearch {
+    let system = &*problem.system;
     if system.file.is_none() || system.pair_count() > MOST_PAIRS || system.kernel.ncols() == 0 {
-        return Search::default();
+        return CertificateSearch::default();
     }
-    let exact = ExactSystem::new(system, numbers);
+    let exact = ExactSystem::new(problem);
     let mut whole = WholeRows::default();
     exact.stiffness.iter().for_each(|row| whole.push_rational(row));
     let Some(motions) = null_space(&whole.rows, &mut |_| until(end)) else {
-        return Search { certificate: None, out_of_time: true };
+        return CertificateSearch { certificate: None, out_of_time: true };
     };
-    let laws = &numbers.laws;
+    let laws = &problem.laws;
     let rows = program(&exact, laws, &motions);
     let free: Vec<usize> = (0..motions.len()).collect();
     let columns = motions.len() + laws.iter().filter(|law| law.fixed_bound() > 0.0).count();
     let mut polyhedron = Polyhedron::new(columns, rows, &free);
     match polyhedron.restore(&mut || until(end).is_continue()) {
         State::Feasible => {}
-        State::Empty => return Search::default(),
-        State::Stopped => return Search { certificate: None, out_of_time: true },
+        State::Empty => return CertificateSearch::default(),
+        State::Stopped => return CertificateSearch { certificate: None, out_of_time: true },
     }
     let direction: Vec<BigRational> = (0..system.joint_count())
         .map(|joint| (0..motions.len()).map(|k| polyhedron.value(k) * &motions[k][joint]).sum())
@@ -61,7 +61,7 @@ pub(super) fn certify_exactly(system: &ContactSystem, numbers: &ContactNumbers, 
         dissipation: dissipation / largest,
         exact: true,
     };
-    Search { certificate: Some(certificate), out_of_time: false }
+    CertificateSearch { certificate: Some(certificate), out_of_time: false }
 }
 
 /// The inequalities over y, one v for every pair with cohesion or a known bound, and the constant.
@@ -80,7 +80,7 @@ fn program(exact: &ExactSystem<'_>, laws: &[PairLaw], motions: &[Vec<BigRational
         let mut row = vec![BigRational::zero(); width];
         for (entry, motion) in row.iter_mut().zip(motions) {
             let tangential =
-                exact.system.pairs[pair].tangential.map_or(BigRational::zero(), |joint| motion[joint].clone());
+                exact.problem.system.pairs[pair].tangential.map_or(BigRational::zero(), |joint| motion[joint].clone());
             *entry = &by_n * &motion[pair] + &by_t * tangential;
         }
         if let Some(v) = v {

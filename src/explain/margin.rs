@@ -6,9 +6,9 @@
 use serde::Serialize;
 
 use super::vertex::value;
-use crate::contact::lcp::{ContactLcp, CoveringError, Quantity, RowKind, contact_lcp};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::lcp::{ContactLcp, CoveringError, contact_lcp};
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::{Quantity, RowKind};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::outcome::Point;
@@ -55,12 +55,10 @@ pub struct Margin {
 /// A final scheme: all that its margins need.
 #[derive(Clone, Copy)]
 pub struct FinalScheme<'a> {
-    /// Pairs and R.
-    pub system: &'a ContactSystem,
     /// Its LCP.
     pub contact: &'a ContactLcp,
-    /// Present numbers.
-    pub numbers: &'a ContactNumbers,
+    /// The problem.
+    pub problem: &'a ContactProblem,
     /// The basis, p not in it.
     pub basis: &'a Basis,
     /// The vertex, dimensionless.
@@ -69,7 +67,7 @@ pub struct FinalScheme<'a> {
 
 /// Basic variables that may not become negative: not the reserves and slips of open pairs without cohesion.
 fn watched(scheme: &FinalScheme) -> Vec<Variable> {
-    let FinalScheme { contact, numbers, basis, .. } = scheme;
+    let FinalScheme { contact, problem, basis, .. } = scheme;
     super::vertex::basics(&contact.lcp, basis)
         .into_iter()
         .filter(|variable| {
@@ -79,7 +77,7 @@ fn watched(scheme: &FinalScheme) -> Vec<Variable> {
             let meaning = contact.rows[*row];
             let open = contact.normal_row[meaning.pair]
                 .is_some_and(|row| basis.z.binary_search(&row).is_ok() != contact.swapped[row]);
-            let loose = open && numbers.laws[meaning.pair].fixed_bound() == 0.0;
+            let loose = open && problem.laws[meaning.pair].fixed_bound() == 0.0;
             !loose || meaning.couple == RowKind::Normal
         })
         .collect()
@@ -103,7 +101,7 @@ fn what(scheme: &FinalScheme, variable: Variable) -> (usize, &'static str) {
 
 fn turn(scheme: &FinalScheme, at: f64, variable: Variable) -> Turn {
     let (pair, what) = what(scheme, variable);
-    Turn { at, pair: scheme.system.pairs[pair].id.clone(), what: what.to_owned() }
+    Turn { at, pair: scheme.problem.system.pairs[pair].id.clone(), what: what.to_owned() }
 }
 
 /// Largest force and displacement of a point in the user's units.
@@ -128,10 +126,10 @@ pub fn load_margin(
     present: f64,
     unit: &nalgebra::DVector<f64>,
 ) -> Option<Margin> {
-    let unmoved = scheme.numbers.laws.iter().map(|law| law.with_gap(0.0).with_fixed_bound(0.0)).collect();
-    let rate = ContactNumbers::exactly(unmoved, unit.clone());
+    let unmoved = scheme.problem.laws.iter().map(|law| law.with_gap(0.0).with_fixed_bound(0.0)).collect();
+    let rate = ContactProblem::exactly(&scheme.problem.system, unmoved, unit.clone());
     // Only M and q of this LCP are used: any covering that can be written will do.
-    let change = contact_lcp(scheme.system, &rate, Covering::Ones).ok()?;
+    let change = contact_lcp(&rate, Covering::Ones).ok()?;
     let rates = change.in_units(&vertex(&change.lcp, scheme.basis)?);
     let values = scheme.contact.in_units(scheme.point);
     let (force, length) = sizes(scheme.contact, &values);
@@ -181,14 +179,14 @@ pub fn load_margin(
     Some(margin)
 }
 
-/// Margins in a friction parameter; `at` gives the numbers for a value of it, `end` is the largest value looked at.
+/// Margins in a friction parameter; `at` gives the problem for a value of it, `end` is the largest value looked at.
 pub fn friction_margin(
     scheme: &FinalScheme,
     pair: usize,
     name: &str,
     present: f64,
     end: f64,
-    at: &dyn Fn(f64) -> ContactNumbers,
+    at: &dyn Fn(f64) -> ContactProblem,
 ) -> Option<Margin> {
     if scheme.basis.z.len() > MOST_RELEASED {
         return None;
@@ -198,7 +196,7 @@ pub fn friction_margin(
     let now = scheme.contact.in_units(scheme.point);
     let (force, length) = sizes(scheme.contact, &now);
     let worst = |parameter: f64, own: bool| -> Option<(f64, Variable)> {
-        let lcp: Result<ContactLcp, CoveringError> = contact_lcp(scheme.system, &at(parameter), Covering::Ones);
+        let lcp: Result<ContactLcp, CoveringError> = contact_lcp(&at(parameter), Covering::Ones);
         let lcp = lcp.ok()?;
         let point = lcp.in_units(&vertex(&lcp.lcp, scheme.basis)?);
         watched

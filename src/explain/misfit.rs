@@ -13,8 +13,7 @@ use num_traits::{Signed, Zero};
 
 use super::certificate::BUDGET;
 use super::exact_equations::{Equations, Solved, exact, nearest};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::problem::ContactProblem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::lcp::problem::NOISE;
 
@@ -31,14 +30,15 @@ pub struct Misfit {
 }
 
 /// What s times gaps and common displacements of the joints sums, per unit of each μ, and its terms.
-fn rooms(system: &ContactSystem, numbers: &ContactNumbers, stress: &nalgebra::DMatrix<f64>) -> Vec<(f64, f64)> {
-    let given = system.file.as_ref().zip(numbers.file_load.as_ref());
+fn rooms(problem: &ContactProblem, stress: &nalgebra::DMatrix<f64>) -> Vec<(f64, f64)> {
+    let system = &*problem.system;
+    let given = system.file.as_ref().zip(problem.file_load.as_ref());
     let offset = |joint: usize| match given {
         Some((file, load)) => load.vector[file.kept[joint]],
-        None if system.is_forced(joint) => numbers.load[joint],
+        None if system.is_forced(joint) => problem.load[joint],
         None => 0.0,
     };
-    let gap = |joint: usize| numbers.laws.get(joint).map_or(0.0, |law| law.gap());
+    let gap = |joint: usize| problem.laws.get(joint).map_or(0.0, |law| law.gap());
     (stress.column_iter())
         .map(|s| {
             s.iter().enumerate().fold((0.0, 0.0), |(sum, size), (joint, s)| {
@@ -50,9 +50,10 @@ fn rooms(system: &ContactSystem, numbers: &ContactNumbers, stress: &nalgebra::DM
 }
 
 /// Looks for a proof that the parts do not fit.
-pub fn misfit(system: &ContactSystem, numbers: &ContactNumbers) -> Option<Misfit> {
+pub fn misfit(problem: &ContactProblem) -> Option<Misfit> {
+    let system = &*problem.system;
     let stress = &system.force_form.as_ref()?.self_stress;
-    let rooms = rooms(system, numbers, stress);
+    let rooms = rooms(problem, stress);
     if rooms.iter().all(|(room, _)| *room == 0.0) {
         return None;
     }

@@ -15,7 +15,7 @@ use super::remedy::digits;
 use super::words::{list, short};
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::lcp::ContactLcp;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::enumerate::{Enumeration, enumerate};
 use crate::contact::system::ContactSystem;
 use crate::fem::MainSystem;
@@ -76,33 +76,16 @@ pub struct RayReport {
     pub balanced: bool,
 }
 
-/// What is looked at: a contact problem and, where it has one, its structure.
-#[derive(Clone, Copy)]
-pub struct Subject<'a> {
-    /// Pairs, R, RF.
-    pub system: &'a ContactSystem,
-    /// Numbers of the laws and the load.
-    pub numbers: &'a ContactNumbers,
-    /// Name and factor of each load case.
-    pub cases: &'a [(String, f64)],
-    /// The structure and its main system.
-    pub structure: Option<(&'a Structure, &'a MainSystem)>,
-}
-
-impl Subject<'_> {
-    /// Its motions that cost no energy.
-    pub fn motions(&self) -> FreeMotions {
-        FreeMotions::new(self.system, self.structure)
-    }
-}
+/// The structure behind a contact problem and its main system, where it has one.
+pub type Built<'a> = Option<(&'a Structure, &'a MainSystem)>;
 
 /// z̄ over the joints, scaled to largest 1; the class; the pair of an artefact.
 pub fn classify(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     contact: &ContactLcp,
     ray: &RayDirection,
 ) -> (DVector<f64>, RayClass, Option<usize>) {
+    let system = &*problem.system;
     let joints = contact.joint_displacements(system, &ray.z);
     let largest_z = ray.z.iter().fold(0.0, |a: f64, b| a.max(*b));
     let largest_w = ray.w.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -134,7 +117,7 @@ pub fn classify(
     }
     let inside = &kernel * (kernel.transpose() * &direction);
     let costs_nothing = direction.amax() > 0.0 && (&inside - &direction).norm() <= NO_ENERGY * direction.norm();
-    let (power, terms) = power(&system.forces_of(&numbers.load), &inside);
+    let (power, terms) = power(&system.forces_of(&problem.load), &inside);
     let class = if costs_nothing && power > NO_POWER * terms { RayClass::Mechanism } else { RayClass::NoEquilibrium };
     (direction, class, None)
 }
@@ -145,20 +128,20 @@ fn power(load: &DVector<f64>, z: &DVector<f64>) -> (f64, f64) {
 }
 
 /// Class, direction and power; nothing proved, nothing put into words of the structure yet.
-pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64) -> RayReport {
-    let Subject { system, numbers, cases, .. } = *subject;
-    let (direction, class, artefact) = classify(system, numbers, contact, ray);
+pub fn look(problem: &ContactProblem, contact: &ContactLcp, ray: &RayDirection, p: f64) -> RayReport {
+    let system = &*problem.system;
+    let (direction, class, artefact) = classify(problem, contact, ray);
     let moves = matches!(class, RayClass::Mechanism | RayClass::NoEquilibrium);
     let powers = if moves {
         system
             .loads
             .iter()
-            .zip(cases)
-            .map(|(load, (case, factor))| {
+            .zip(&problem.factors)
+            .map(|(load, factor)| {
                 let forces = system.forces_of(&load.vector);
                 let (power, _) = power(&forces, &direction);
                 let noise = power.abs() <= 1e-12 * forces.amax();
-                CasePower { case: case.clone(), factor: *factor, power: if noise { 0.0 } else { factor * power } }
+                CasePower { case: load.name.clone(), factor: *factor, power: if noise { 0.0 } else { factor * power } }
             })
             .collect()
     } else {
@@ -182,15 +165,15 @@ pub fn look(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64)
 }
 
 /// Looks for a certificate; true if it proves that there is no answer.
-pub fn certify_ray(report: &mut RayReport, subject: &Subject) -> bool {
+pub fn certify_ray(report: &mut RayReport, problem: &ContactProblem, built: Built<'_>) -> bool {
     if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
         return false;
     }
-    let search = certify(subject.system, subject.numbers, &subject.motions());
+    let search = certify(problem, &FreeMotions::new(&problem.system, built));
     report.certificate = search.certificate;
     report.out_of_time = search.out_of_time;
     if report.certificate.is_none() {
-        report.misfit = misfit(subject.system, subject.numbers);
+        report.misfit = misfit(problem);
     }
     let certified = report.certificate.is_some() || report.misfit.is_some();
     report.verdict = Some(if certified { Verdict::Certified } else { Verdict::Undecided });
@@ -198,49 +181,37 @@ pub fn certify_ray(report: &mut RayReport, subject: &Subject) -> bool {
 }
 
 /// Adds what the words need: the motions of the structure, and whether balanced forces exist where nothing is proved.
-pub fn explain(report: &mut RayReport, subject: &Subject) {
+pub fn explain(report: &mut RayReport, problem: &ContactProblem, built: Built<'_>) {
     if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
         return;
     }
-    let of_structure =
-        |direction: &DVector<f64>| subject.structure.and_then(|(structure, main)| mode(structure, main, direction));
+    let of_structure = |direction: &DVector<f64>| built.and_then(|(structure, main)| mode(structure, main, direction));
     report.mode = of_structure(&report.direction);
     report.certificate_mode = report.certificate.as_ref().and_then(|found| of_structure(&found.direction));
     if report.verdict == Some(Verdict::Undecided) {
-        let found = is_balanced(subject.system, subject.numbers, &subject.motions(), BUDGET.as_secs_f64());
+        let found = is_balanced(problem, &FreeMotions::new(&problem.system, built), BUDGET.as_secs_f64());
         report.balanced = found == Some(true);
     }
 }
 
-/// A ray of a path, where the structure behind it is not at hand: explained by pairs.
-pub fn report(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    ray: &RayDirection,
-    p: f64,
-) -> Ray {
-    full_report(&Subject { system, numbers, cases: &[], structure: None }, contact, ray, p)
-}
-
-/// A ray of a path: class and mode, certified where there is a certificate.
-pub fn full_report(subject: &Subject, contact: &ContactLcp, ray: &RayDirection, p: f64) -> Ray {
-    let mut report = look(subject, contact, ray, p);
-    certify_ray(&mut report, subject);
-    explain(&mut report, subject);
-    report.record(subject.system, Covering::default())
+/// A ray of a path: class and mode, certified where there is a certificate; without a structure explained by pairs.
+pub fn report(problem: &ContactProblem, built: Built<'_>, contact: &ContactLcp, ray: &RayDirection, p: f64) -> Ray {
+    let mut report = look(problem, contact, ray, p);
+    certify_ray(&mut report, problem, built);
+    explain(&mut report, problem, built);
+    report.record(&problem.system, Covering::default())
 }
 
 /// Goes through all working schemes; `None` where that takes too many steps or the search was stopped.
-pub fn all_answers(subject: &Subject, watch: &dyn Watch) -> Option<Enumeration> {
-    let Subject { system, numbers, .. } = *subject;
+pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumeration> {
+    let system = &*problem.system;
     let pairs = system.pairs.len();
     if pairs > MOST_PAIRS || system.force_form.is_some() {
         return None;
     }
     let most = MOST_STEPS / (2 * pairs as u64).pow(3).max(1);
     let mut steps = 0;
-    let found = enumerate(system, numbers, &mut |_| {
+    let found = enumerate(problem, &mut |_| {
         steps += 1;
         if steps > most || watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

@@ -8,9 +8,8 @@ use serde::Serialize;
 use super::balance::{Multiples, balanced_multiples, is_balanced};
 use super::mode::{PartMotion, RigidMotion, direction_word};
 use super::motions::FreeMotions;
-use super::ray::Subject;
 use super::words::short;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::watch::{Budget, Watch};
 
 /// Friction (or its multiplier) up to which is looked.
@@ -65,11 +64,17 @@ pub struct Remedies {
     pub complete: bool,
 }
 
-/// Solves under other numbers (and, if given, with another factor of one load case); whether an answer was found.
-pub type Try<'a> = &'a dyn Fn(&ContactNumbers, Option<(usize, f64)>) -> bool;
+/// Solves a changed problem; whether an answer was found.
+pub type Try<'a> = &'a dyn Fn(&ContactProblem) -> bool;
 
 /// Looks for what would stop the motion of these parts.
-pub fn remedies(subject: &Subject, parts: &[PartMotion], solves: Try, budget: &Budget) -> Remedies {
+pub fn remedies(
+    problem: &ContactProblem,
+    motions: &FreeMotions,
+    parts: &[PartMotion],
+    solves: Try,
+    budget: &Budget,
+) -> Remedies {
     let mut found: Vec<Remedy> = parts
         .iter()
         .map(|part| Remedy::Restraint {
@@ -84,51 +89,51 @@ pub fn remedies(subject: &Subject, parts: &[PartMotion], solves: Try, budget: &B
             },
         })
         .collect();
-    let motions = subject.motions();
-    let search = Search { subject, motions: &motions, solves, budget };
+    let search = RemedySearch { problem, motions, solves, budget };
     let mut complete = true;
     let mut note = |result: Option<Option<Remedy>>| match result {
         Some(remedy) => found.extend(remedy),
         None => complete = false,
     };
     note(search.friction());
-    for (k, (case, factor)) in subject.cases.iter().enumerate() {
-        note(search.load(k, case, *factor));
+    for (k, factor) in problem.factors.iter().enumerate() {
+        note(search.load(k, *factor));
     }
     Remedies { remedies: found, complete }
 }
 
 /// The searches; each gives `None` when the time is up or nothing could be decided, `Some(None)` where there is no such
 /// remedy.
-struct Search<'a> {
-    subject: &'a Subject<'a>,
+struct RemedySearch<'a> {
+    problem: &'a ContactProblem,
     motions: &'a FreeMotions,
     solves: Try<'a>,
     budget: &'a Budget<'a>,
 }
 
-impl Search<'_> {
+impl RemedySearch<'_> {
     fn seconds(&self) -> f64 {
         self.budget.left().as_secs_f64()
     }
 
-    fn is_balanced(&self, numbers: &ContactNumbers) -> Option<bool> {
+    fn is_balanced(&self, problem: &ContactProblem) -> Option<bool> {
         if self.budget.stop() {
             return None;
         }
-        is_balanced(self.subject.system, numbers, self.motions, self.seconds())
+        is_balanced(problem, self.motions, self.seconds())
     }
 
     fn friction(&self) -> Option<Option<Remedy>> {
-        let Subject { system, numbers, .. } = *self.subject;
-        let rubbing = system.pairs.iter().zip(&numbers.laws).filter(|(pair, _)| pair.law.friction().is_some());
+        let system = &*self.problem.system;
+        let problem = self.problem;
+        let rubbing = system.pairs.iter().zip(&problem.laws).filter(|(pair, _)| pair.law.friction().is_some());
         let frictions: Vec<f64> = rubbing.map(|(_, law)| law.friction()).collect();
         let Some(&first) = frictions.first() else { return Some(None) };
         let equal = frictions.iter().all(|f| *f == first);
         let largest = frictions.iter().copied().fold(0.0, f64::max);
         let multiplier = !equal && largest > 0.0;
         let with = |value: f64| {
-            let mut changed = numbers.clone();
+            let mut changed = problem.clone();
             for law in &mut changed.laws {
                 *law = law.with_friction(if multiplier { value * law.friction() } else { value });
             }
@@ -158,12 +163,13 @@ impl Search<'_> {
         if high - present <= FOUND_TO * high {
             return Some(None);
         }
-        let tried = (self.solves)(&with(high * (1.0 + INSIDE)), None);
+        let tried = (self.solves)(&with(high * (1.0 + INSIDE)));
         Some(Some(Remedy::Friction { present, needed: Some(high), multiplier, tried }))
     }
 
-    fn load(&self, case: usize, name: &str, present: f64) -> Option<Option<Remedy>> {
-        let Subject { system, numbers, .. } = *self.subject;
+    fn load(&self, case: usize, present: f64) -> Option<Option<Remedy>> {
+        let system = &*self.problem.system;
+        let problem = self.problem;
         // A load that does not act is no remedy, nor is one that has to be reversed or left out.
         let Some(unit) = system.loads.get(case).map(|load| &load.vector).filter(|unit| unit.amax() > 0.0) else {
             return Some(None);
@@ -174,8 +180,8 @@ impl Search<'_> {
         if self.budget.stop() {
             return None;
         }
-        let fixed = &numbers.load - present * unit;
-        let between = match balanced_multiples(system, numbers, self.motions, &fixed, unit, self.seconds()) {
+        let fixed = &problem.load - present * unit;
+        let between = match balanced_multiples(problem, self.motions, &fixed, unit, self.seconds()) {
             Multiples::Between(between) => between,
             Multiples::None => return Some(None),
             Multiples::Unknown => return None,
@@ -196,10 +202,11 @@ impl Search<'_> {
         }
         let width = (needed - other).abs().min(needed.abs());
         let inside = needed + (other - needed).signum() * INSIDE * width;
-        let mut changed = numbers.clone();
+        let mut changed = problem.clone();
         changed.add_load(inside - present, unit, &system.loads[case].terms);
-        let tried = (self.solves)(&changed, Some((case, inside))).then_some(inside);
-        Some(Some(Remedy::Load { case: name.to_owned(), present, needed, tried }))
+        changed.factors[case] = inside;
+        let tried = (self.solves)(&changed).then_some(inside);
+        Some(Some(Remedy::Load { case: system.loads[case].name.clone(), present, needed, tried }))
     }
 }
 

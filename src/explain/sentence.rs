@@ -3,7 +3,8 @@
 use super::remedy::told_apart;
 use super::words::{list, short};
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
-use crate::contact::lcp::{ContactLcp, Quantity, RowKind};
+use crate::contact::lcp::ContactLcp;
+use crate::contact::rows::{Quantity, RowKind};
 use crate::contact::system::ContactSystem;
 use crate::lcp::pivot::Pivot;
 use crate::lcp::variable::Variable;

@@ -11,13 +11,14 @@ use std::sync::Arc;
 
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
-use super::rate::{number_rates, place_beside_laws, rate, rate_lcp};
+use super::rate::{place_beside_laws, problem_rates, rate, rate_lcp};
 use super::start::{PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
-use crate::contact::lcp::{ContactLcp, RowKind, contact_lcp};
+use crate::contact::lcp::{ContactLcp, contact_lcp};
 use crate::contact::load_path::order;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::RowKind;
 use crate::contact::system::ContactSystem;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
@@ -27,7 +28,7 @@ use crate::model::jet::Dependence;
 use crate::model::pair::Law;
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::rules::Covering;
-use crate::solve::numbers::{contact_numbers, factors};
+use crate::solve::problem::{contact_problem, factors};
 use crate::solve::{Case, Prepared, Solved};
 
 /// A variable below minus this multiple of the largest of its kind has gone through zero.
@@ -82,12 +83,12 @@ impl FrictionPath {
     pub fn pairs_within(&self, prepared: &Prepared, values: &ParameterValues, scheme: usize) -> Option<Vec<PairState>> {
         let system = prepared.system()?;
         let factors = factors(prepared, values);
-        let numbers = contact_numbers(system, &factors, values);
-        let contact = contact_lcp(system, &numbers, Covering::Ones).ok()?;
+        let problem = contact_problem(system, &factors, values);
+        let contact = contact_lcp(&problem, Covering::Ones).ok()?;
         let point = vertex(&contact.lcp, &self.schemes.get(scheme)?.basis)?;
-        let state = state_of(system, &numbers, &contact, &point);
-        let mut pairs = pair_states(system, &numbers, &contact, &state);
-        prepared.add_released_slips(&mut pairs, &numbers, &factors, &state.z);
+        let state = state_of(&problem, &contact, &point);
+        let mut pairs = pair_states(&problem, &contact, &state);
+        prepared.add_released_slips(&mut pairs, &problem, &state.z);
         Some(pairs)
     }
 
@@ -110,7 +111,7 @@ pub fn is_friction(Case { prepared, values, .. }: Case<'_>, name: &str) -> bool 
 
 pub(super) struct Follower<'a> {
     pub(super) case: Case<'a>,
-    system: &'a ContactSystem,
+    system: &'a Arc<ContactSystem>,
     pub(super) name: &'a str,
     factors: Vec<f64>,
     /// +1 upwards, −1 downwards.
@@ -120,7 +121,7 @@ pub(super) struct Follower<'a> {
 /// The answer of a scheme at one value, with its slopes along the path.
 pub(super) struct Place {
     pub(super) value: f64,
-    numbers: ContactNumbers,
+    problem: ContactProblem,
     contact: ContactLcp,
     point: Point,
     /// Signed distances from the limits, each relative to the largest of its kind; and their slopes per unit of
@@ -176,7 +177,7 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f64) -> Re
     let basis = match solved.and_then(final_basis) {
         Some(basis) => basis,
         None => {
-            let found = cold(system, &follower.numbers(start), case.watch)?;
+            let found = cold(&follower.problem_at(start), case.watch)?;
             let how = found.how().to_owned();
             found.basis.ok_or(PathError::NoStart { name: name.to_owned(), at: start, how })?
         }
@@ -192,22 +193,22 @@ impl Follower<'_> {
         values
     }
 
-    fn numbers(&self, value: f64) -> ContactNumbers {
-        contact_numbers(self.system, &self.factors, &self.values(value))
+    fn problem_at(&self, value: f64) -> ContactProblem {
+        contact_problem(self.system, &self.factors, &self.values(value))
     }
 
     /// d(numbers)/dθ at a value: an expression has another rate everywhere.
-    fn rates(&self, value: f64) -> ContactNumbers {
-        number_rates(self.case.prepared, self.system, &self.values(value), self.name, &[]).0
+    fn rates(&self, value: f64) -> ContactProblem {
+        problem_rates(self.case.prepared, self.system, &self.values(value), self.name, &[])
     }
 
     pub(super) fn place(&self, value: f64, basis: &Basis) -> Option<Place> {
-        let numbers = self.numbers(value);
-        let contact = contact_lcp(self.system, &numbers, Covering::Ones).ok()?;
+        let problem = self.problem_at(value);
+        let contact = contact_lcp(&problem, Covering::Ones).ok()?;
         let point = vertex(&contact.lcp, basis)?;
-        let lcp = rate_lcp(self.system, &numbers, &contact, &point, &self.rates(value), self.sign);
+        let lcp = rate_lcp(&problem, &contact, &point, &self.rates(value), self.sign);
         let slope = rate(&lcp, basis)?;
-        let mut place = Place { value, margins: Vec::new(), slopes: Vec::new(), numbers, contact, point };
+        let mut place = Place { value, margins: Vec::new(), slopes: Vec::new(), problem, contact, point };
         let largest = |values: &[f64]| {
             let size = values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             if size > 0.0 { size } else { 1.0 }
@@ -217,7 +218,7 @@ impl Follower<'_> {
             let is_active = basis.active.binary_search(&row).is_ok();
             // In an open pair without cohesion both reserves stay zero and the slip is free in sign.
             let free = meaning.couple != RowKind::Normal
-                && place.numbers.laws[meaning.pair].fixed_bound() == 0.0
+                && place.problem.laws[meaning.pair].fixed_bound() == 0.0
                 && place.contact.normal_row[meaning.pair]
                     .is_some_and(|normal| basis.active.binary_search(&normal).is_ok() != place.contact.swapped[normal]);
             let (margin, slope) = match (free, is_active) {
@@ -232,9 +233,9 @@ impl Follower<'_> {
     }
 
     pub(super) fn pairs(&self, place: &Place) -> Vec<PairState> {
-        let state = state_of(self.system, &place.numbers, &place.contact, &place.point);
-        let mut pairs = pair_states(self.system, &place.numbers, &place.contact, &state);
-        self.case.prepared.add_released_slips(&mut pairs, &place.numbers, &self.factors, &state.z);
+        let state = state_of(&place.problem, &place.contact, &place.point);
+        let mut pairs = pair_states(&place.problem, &place.contact, &state);
+        self.case.prepared.add_released_slips(&mut pairs, &place.problem, &state.z);
         pairs
     }
 
@@ -320,7 +321,7 @@ impl Follower<'_> {
             let place = self.place(end.value, &next).ok_or_else(|| self.singular(end.value))?;
             return Ok(Some(Onward { basis: next, place, jump: false }));
         }
-        let found = cold(self.system, &self.numbers(beside), self.case.watch)?;
+        let found = cold(&self.problem_at(beside), self.case.watch)?;
         let Some(next) = found.basis else { return Ok(None) };
         let place = self.place(beside, &next).ok_or_else(|| self.singular(beside))?;
         let jump = self.differs(end, &place);
@@ -336,7 +337,7 @@ impl Follower<'_> {
     }
 
     fn differs(&self, a: &Place, b: &Place) -> bool {
-        let z = |place: &Place| state_of(self.system, &place.numbers, &place.contact, &place.point).z;
+        let z = |place: &Place| state_of(&place.problem, &place.contact, &place.point).z;
         let (a, b) = (z(a), z(b));
         (&a - &b).amax() > 1e-6 * a.amax().max(b.amax())
     }
@@ -344,7 +345,7 @@ impl Follower<'_> {
     /// The scheme just beyond a place, from the LCP of the rates there.
     fn scheme_beyond(&self, place: &Place, basis: &Basis) -> Result<Basis, ()> {
         let rates = self.rates(place.value);
-        let lcp = rate_lcp(self.system, &place.numbers, &place.contact, &place.point, &rates, self.sign);
+        let lcp = rate_lcp(&place.problem, &place.contact, &place.point, &rates, self.sign);
         let order = order(&place.contact);
         let mut engine = Parametric::new(Arc::new(lcp), basis, order).ok_or(())?;
         let reach = Reach {

@@ -1,12 +1,15 @@
 //! The limit load of a case: factor, safety, how the structure collapses, and what has been proved of it.
 
+use std::sync::Arc;
+
 use super::end::PathEnd;
 use super::load::{LoadPath, LoadReach, trace};
 use super::start::PathError;
 use crate::answer::record::Ray;
+use crate::contact::problem::ContactProblem;
 use crate::explain::ray;
 use crate::model::rules::{Covering, Rules};
-use crate::solve::numbers::factors;
+use crate::solve::problem::factors;
 use crate::solve::{Case, Prepared, Solved};
 
 /// The limit is confirmed by independent runs at (1 ± this) of it.
@@ -102,15 +105,13 @@ pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limi
         let (there, _) = beside(&limit.path, case, factor - outwards)?;
         limit.confirmed = solve(&there)?.answer.is_answer();
     }
-    let numbers = limit.path.numbers(over);
-    let cases = there.named_factors(&factors);
-    let subject = there.subject(system, &numbers, &cases);
-    let mut collapse = ray::look(&subject, limit.path.contact(), direction, 0.0);
+    let problem = ContactProblem { system: Arc::clone(system), factors, ..limit.path.problem_at(over) };
+    let mut collapse = ray::look(&problem, limit.path.contact(), direction, 0.0);
     if let Some(found) = &above.ray {
         collapse.class = found.class;
     }
-    ray::certify_ray(&mut collapse, &subject);
-    ray::explain(&mut collapse, &subject);
+    ray::certify_ray(&mut collapse, &problem, there.built());
+    ray::explain(&mut collapse, &problem, there.built());
     let mut collapse = collapse.record(system, Covering::default());
     collapse.p = 0.0;
     collapse.explanation = format!(

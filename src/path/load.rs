@@ -13,15 +13,14 @@ use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::lcp::ContactLcp;
 use crate::contact::load_path::{is_answer, order, path_lcp};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::problem::ContactProblem;
 use crate::explain::words::short;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Path, Reach};
-use crate::solve::numbers::{contact_numbers, factors};
+use crate::solve::problem::{contact_problem, factors};
 use crate::solve::{Case, Prepared, Solved};
 
 /// A followed load path. Between two knots everything is affine in the factor.
@@ -48,7 +47,7 @@ pub struct LoadPath {
     /// The geometry with the cases that loads grow by, where the parameter stands in the loads themselves.
     grown: Option<Arc<Prepared>>,
     contact: ContactLcp,
-    start_numbers: ContactNumbers,
+    start_problem: ContactProblem,
     all_factors: Vec<f64>,
     direction: DVector<f64>,
     sign: f64,
@@ -91,16 +90,16 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
     if from_zero {
         parameter.drive(&mut all_factors, start);
     }
-    let numbers = contact_numbers(system, &all_factors, values);
+    let problem = contact_problem(system, &all_factors, values);
     let sign = match reach.to {
         Some(to) if to < start => -1.0,
         _ => 1.0,
     };
-    let contact = path_lcp(system, &numbers, &(sign * &direction));
+    let contact = path_lcp(&problem, &(sign * &direction));
     let (mut engine, from_zero) = match engine(&contact, present.as_ref()) {
         Some(engine) => (engine, from_zero),
         None => {
-            let found = cold(system, &numbers, watch)?;
+            let found = cold(&problem, watch)?;
             let engine = engine_of(&contact, found.basis.as_ref());
             let engine = engine.ok_or_else(|| PathError::NoStart {
                 name: name.to_owned(),
@@ -147,7 +146,7 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
         path,
         grown: grown.clone(),
         contact,
-        start_numbers: numbers,
+        start_problem: problem,
         all_factors,
         direction,
         sign,
@@ -157,7 +156,7 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
     {
         *last = to;
     }
-    followed.describe(prepared, system);
+    followed.describe(prepared);
     Ok(followed)
 }
 
@@ -182,11 +181,12 @@ fn between(a: &Point, b: &Point, s: f64) -> Point {
 }
 
 impl LoadPath {
-    /// The numbers of the laws and the load at a factor.
-    pub fn numbers(&self, factor: f64) -> ContactNumbers {
-        let mut numbers = self.start_numbers.clone();
-        numbers.add_load(factor - self.start, &self.direction, &self.direction.abs());
-        numbers
+    /// The problem at a factor.
+    pub fn problem_at(&self, factor: f64) -> ContactProblem {
+        let mut problem = self.start_problem.clone();
+        problem.add_load(factor - self.start, &self.direction, &self.direction.abs());
+        problem.factors = self.case_factors(factor);
+        problem
     }
 
     /// The factors of all cases at a factor of the followed one; behind them those of what loads grow by.
@@ -209,12 +209,12 @@ impl LoadPath {
         &self.contact
     }
 
-    fn pairs_of(&self, prepared: &Prepared, system: &ContactSystem, point: &Point) -> Vec<PairState> {
+    fn pairs_of(&self, prepared: &Prepared, point: &Point) -> Vec<PairState> {
         let factor = self.start + self.sign * point.p;
-        let numbers = self.numbers(factor);
-        let state = state_of(system, &numbers, &self.contact, point);
-        let mut pairs = pair_states(system, &numbers, &self.contact, &state);
-        prepared.add_released_slips(&mut pairs, &numbers, &self.case_factors(factor), &state.z);
+        let problem = self.problem_at(factor);
+        let state = state_of(&problem, &self.contact, point);
+        let mut pairs = pair_states(&problem, &self.contact, &state);
+        prepared.add_released_slips(&mut pairs, &problem, &state.z);
         pairs
     }
 
@@ -231,7 +231,7 @@ impl LoadPath {
         let t = self.sign * (factor - self.start);
         let length = ends[1].t - ends[0].t;
         let s = if length == 0.0 { 0.0 } else { ((t - ends[0].t) / length).clamp(0.0, 1.0) };
-        Some(self.pairs_of(ground, ground.system()?, &between(&ends[0].point, &ends[1].point, s)))
+        Some(self.pairs_of(ground, &between(&ends[0].point, &ends[1].point, s)))
     }
 
     /// Whether the parameter stands in the loads themselves: other values of it need other load vectors.
@@ -242,13 +242,12 @@ impl LoadPath {
     /// The pairs at a factor, where the path passes it first; `None` where it does not.
     pub fn pairs_at(&self, prepared: &Prepared, factor: f64) -> Option<Vec<PairState>> {
         let prepared = self.ground(prepared);
-        let system = prepared.system()?;
         let t = self.sign * (factor - self.start);
         let knots = &self.path.knots;
         let beyond = knots.last().is_some_and(|last| t > last.t);
         if beyond && self.end == PathEnd::Unbounded {
             let point = self.beyond(t)?;
-            return Some(self.pairs_of(prepared, system, &point));
+            return Some(self.pairs_of(prepared, &point));
         }
         let segment = knots.windows(2).find(|ends| {
             let (low, high) = (ends[0].t.min(ends[1].t), ends[0].t.max(ends[1].t));
@@ -262,7 +261,7 @@ impl LoadPath {
             }
             _ => knots.first().filter(|only| only.t == t)?.point.clone(),
         };
-        Some(self.pairs_of(prepared, system, &point))
+        Some(self.pairs_of(prepared, &point))
     }
 
     /// The answer of the last scheme at t beyond the last knot.
@@ -296,17 +295,17 @@ impl LoadPath {
     }
 
     /// Pairs and breakpoints from the knots.
-    fn describe(&mut self, prepared: &Prepared, system: &ContactSystem) {
+    fn describe(&mut self, prepared: &Prepared) {
         let knots = &self.path.knots;
-        self.pairs = knots.iter().map(|knot| self.pairs_of(prepared, system, &knot.point)).collect();
+        self.pairs = knots.iter().map(|knot| self.pairs_of(prepared, &knot.point)).collect();
         let mut halfway: Vec<Vec<PairState>> = knots
             .windows(2)
             .map(|ends| {
                 let point = between(&ends[0].point, &ends[1].point, 0.5);
-                self.pairs_of(prepared, system, &point)
+                self.pairs_of(prepared, &point)
             })
             .collect();
-        halfway.extend(self.after_last().map(|point| self.pairs_of(prepared, system, &point)));
+        halfway.extend(self.after_last().map(|point| self.pairs_of(prepared, &point)));
         for (k, after) in halfway.iter().enumerate() {
             let before = match k {
                 0 => &self.pairs[0],

@@ -1,9 +1,10 @@
 //! Rates of the answer within its scheme: what one more unit of a parameter does, from one extra solve.
 
+use std::sync::Arc;
+
 use crate::contact::force_form::constants;
-use crate::contact::law::PairLaw;
-use crate::contact::lcp::{ContactLcp, load_with_gaps};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::lcp::ContactLcp;
+use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::direction;
@@ -14,24 +15,24 @@ use crate::model::parameter::{Number, ParameterValues};
 use crate::model::scenario::Scenario;
 use crate::model::uses::Region;
 use crate::solve::Prepared;
-use crate::solve::numbers::numbers_by;
+use crate::solve::problem::problem_by;
 
-/// d(numbers)/dθ and d(factors)/dθ at these values for a parameter θ, with R and RF as they are; `growing`: of the last
+/// d(problem)/dθ, factors of the load cases included, at these values for a parameter θ, with R and RF as they are; `growing`: of the last
 /// cases, which are what earlier ones grow by per unit of θ ([`LoadRates`](crate::solve::load_rates::LoadRates)), those.
-pub(crate) fn number_rates(
+pub(crate) fn problem_rates(
     prepared: &Prepared,
-    system: &ContactSystem,
+    system: &Arc<ContactSystem>,
     values: &ParameterValues,
     name: &str,
     growing: &[usize],
-) -> (ContactNumbers, Vec<f64>) {
+) -> ContactProblem {
     let along = values.along(name);
     let rate = |number: &Number| number.along(&along).rate;
     let own = &prepared.cases[..prepared.cases.len() - growing.len()];
     // (factor F)′ = factor′ F + factor F′.
     let grown = growing.iter().map(|&case| own[case].1.value(values));
     let factors: Vec<f64> = own.iter().map(|(_, factor)| rate(factor)).chain(grown).collect();
-    (numbers_by(system, &factors, &rate), factors)
+    problem_by(system, &factors, &rate)
 }
 
 /// Where a parameter stands apart from laws, factors and amounts of loads, in words: those places cannot be followed.
@@ -54,21 +55,20 @@ fn in_loads(path: &str, name: &str) -> Option<String> {
 
 /// The LCP at `point` with d = dM/dθ z + dq/dθ as covering: to first order w = M z + q + (θ − θ₀) d.
 pub(crate) fn rate_lcp(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     contact: &ContactLcp,
     point: &Point,
-    rates: &ContactNumbers,
+    rates: &ContactProblem,
     sign: f64,
 ) -> MirroredLcp {
+    let system = &*problem.system;
     let mut lcp = MirroredLcp::clone(&contact.lcp);
     if system.force_form.is_some() {
-        let rates = with_friction_as_cohesion(system, contact, point, rates);
-        let fixed: Vec<f64> = rates.laws.iter().map(PairLaw::fixed_bound).collect();
-        lcp.covering = sign * constants(system, contact, &load_with_gaps(system, &rates), &fixed);
+        let rates = with_friction_as_cohesion(contact, point, rates);
+        lcp.covering = sign * constants(system, contact, &rates.joint_constants(), &rates.fixed_bounds());
         return lcp;
     }
-    let load = load_with_gaps(system, rates) * (sign / contact.force_unit);
+    let load = rates.joint_constants() * (sign / contact.force_unit);
     for (i, pair) in system.pairs.iter().enumerate() {
         let x_n = contact.normal_row[i].map_or(0.0, |row| point.w[row]);
         if let Some(row) = contact.normal_row[i] {
@@ -79,7 +79,7 @@ pub(crate) fn rate_lcp(
         };
         let rate = &rates.laws[i];
         let bound = sign * (rate.friction() * x_n + rate.fixed_bound() / contact.force_unit);
-        lcp.covering[row] = load[joint] + numbers.laws[i].friction() * load[i] + bound;
+        lcp.covering[row] = load[joint] + problem.laws[i].friction() * load[i] + bound;
         if let Some(mirror) = &mut lcp.mirrors[row] {
             mirror.covering = 2.0 * bound;
         }
@@ -88,14 +88,9 @@ pub(crate) fn rate_lcp(
 }
 
 /// The rates with what a friction that moves adds to the bound, f′ x_n, as a rate of the cohesion.
-pub(crate) fn with_friction_as_cohesion(
-    system: &ContactSystem,
-    contact: &ContactLcp,
-    point: &Point,
-    rates: &ContactNumbers,
-) -> ContactNumbers {
+pub(crate) fn with_friction_as_cohesion(contact: &ContactLcp, point: &Point, rates: &ContactProblem) -> ContactProblem {
     let mut rates = rates.clone();
-    for pair in 0..system.pairs.len() {
+    for pair in 0..rates.laws.len() {
         if let Some(row) = contact.normal_row[pair] {
             let pressed = if contact.swapped[row] { point.z[row] } else { point.w[row] };
             let rate = &mut rates.laws[pair];

@@ -15,7 +15,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
 use crate::solve::case::There;
-use crate::solve::numbers::factors;
+use crate::solve::problem::factors;
 
 /// A path from a start, with the scenario made ready there.
 struct Leg {

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::rate::{fixed_place, number_rates, rate, rate_lcp, with_friction_as_cohesion};
+use super::rate::{fixed_place, problem_rates, rate, rate_lcp, with_friction_as_cohesion};
 use super::start::{PathError, final_basis, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::PairState;
@@ -60,14 +60,14 @@ pub struct Sensitivity {
 pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathError> {
     let Case { scenario, prepared, values, .. } = case;
     let system = prepared.system().ok_or(PathError::Plain("sensitivity"))?;
-    let (RunData::Contact { contact, numbers, .. }, Some(basis)) = (&solved.run, final_basis(solved)) else {
+    let (RunData::Contact { contact, problem, .. }, Some(basis)) = (&solved.run, final_basis(solved)) else {
         return Err(PathError::Missing("there is no answer whose derivatives could be taken".to_owned()));
     };
     let singular =
         || PathError::Missing("the equations of the final scheme are singular: there are no derivatives".to_owned());
     // Afresh, forces included: a warm answer keeps only its displacements.
     let point = vertex(&contact.lcp, &basis).ok_or_else(singular)?;
-    if system.force_form.is_some() && !state_of(system, numbers, contact, &point).free.is_empty() {
+    if system.force_form.is_some() && !state_of(problem, contact, &point).free.is_empty() {
         let refusal = system.refusal("sensitivity").unwrap_or_default();
         return Err(PathError::Missing(format!("{refusal}: how they share their forces has no derivative of its own")));
     }
@@ -86,15 +86,15 @@ pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathE
         let (prepared, growing) =
             grown.as_ref().map_or((prepared, &[][..]), |grown| (&*grown.prepared, &grown.growing[..]));
         let loaded = prepared.system().unwrap_or(system);
-        let (rates, factor_rates) = number_rates(prepared, loaded, values, name, growing);
-        let lcp = rate_lcp(system, numbers, contact, &point, &rates, 1.0);
+        let rates = problem_rates(prepared, loaded, values, name, growing);
+        let lcp = rate_lcp(problem, contact, &point, &rates, 1.0);
         let direction = rate(&lcp, &basis).ok_or_else(singular)?;
         if system.force_form.is_some() {
-            let rates = with_friction_as_cohesion(system, contact, &point, &rates);
+            let rates = with_friction_as_cohesion(contact, &point, &rates);
             let unknowns = unknowns(system, Some(&rates), contact, &direction.z);
-            let state = JointState::at(system, &rates, unknowns, 0.0);
+            let state = JointState::at(&rates, unknowns, 0.0);
             let mut shown = solved.answer.pairs.clone();
-            prepared.add_released_slips(&mut shown, &rates, &factor_rates, &state.z);
+            prepared.add_released_slips(&mut shown, &rates, &state.z);
             let value = values.get(name).copied().unwrap_or_default();
             let pairs = rates_of_state(system, &state, &shown);
             parameters.push(ParameterRate { parameter: name.clone(), value, pairs });
@@ -102,11 +102,11 @@ pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathE
         }
         let z = contact.joint_displacements(system, &direction.z) * contact.length_unit;
         // A rate below the rounding of its terms is 0.
-        let forces = joint_forces(system, &rates, &z);
+        let forces = joint_forces(&rates, &z);
         let z = DVector::from_fn(z.len(), |k, _| if is_still(system, &z, &forces, k) { 0.0 } else { z[k] });
         // The released slips are linear in all of this, so their rates follow from the rates.
         let mut shown = solved.answer.pairs.clone();
-        prepared.add_released_slips(&mut shown, &rates, &factor_rates, &z);
+        prepared.add_released_slips(&mut shown, &rates, &z);
         let pairs = system
             .pairs
             .iter()

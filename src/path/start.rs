@@ -3,8 +3,7 @@
 use crate::answer::pairs::{JointState, joint_state};
 use crate::contact::lcp::{ContactLcp, contact_lcp};
 use crate::contact::load_path::is_answer;
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::problem::ContactProblem;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::outcome::{Outcome, Point, RayDirection};
@@ -119,10 +118,9 @@ impl Cold {
 }
 
 /// Solves under the default rules.
-pub(crate) fn cold(system: &ContactSystem, numbers: &ContactNumbers, watch: &dyn Watch) -> Result<Cold, PathError> {
+pub(crate) fn cold(problem: &ContactProblem, watch: &dyn Watch) -> Result<Cold, PathError> {
     // The default covering fits all numbers.
-    let contact =
-        contact_lcp(system, numbers, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
+    let contact = contact_lcp(problem, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
     let run = run_scheme(&contact.lcp, contact.tie_rule(TieBreak::Lexicographic), watch);
     let basis = match run.outcome {
         Outcome::Interrupted => return Err(PathError::Interrupted),
@@ -158,12 +156,7 @@ fn is_at(contact: &ContactLcp, basis: &Basis, point: &Point) -> bool {
 }
 
 /// A point of a path over the joints: t is no covering, so nothing of it is added to the forces.
-pub(crate) fn state_of(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    contact: &ContactLcp,
-    point: &Point,
-) -> JointState {
+pub(crate) fn state_of(problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> JointState {
     let point = Point { p: 0.0, ..point.clone() };
-    joint_state(system, numbers, contact, &point)
+    joint_state(problem, contact, &point)
 }

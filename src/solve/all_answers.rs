@@ -5,18 +5,19 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::error::{QuestionError, SolveError};
-use super::numbers::{contact_numbers, factors};
 use super::plain::plain_answer;
 use super::plain_answers::{Effort, search_plain_answers};
 use super::prepared::{Geometry, Prepared};
+use super::problem::{contact_problem, factors};
 use super::state::Solved;
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
 use crate::answer::record::PairDirection;
-use crate::contact::lcp::{RowKind, contact_lcp};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::lcp::contact_lcp;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::RowKind;
 use crate::contact::schemes::enumerate::{Continuum as ContactContinuum, EnumeratedAnswer, enumerate};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
-use crate::contact::system::{ContactPair, ContactSystem};
+use crate::contact::system::ContactPair;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::model::parameter::ParameterValues;
@@ -93,10 +94,9 @@ impl Prepared {
             return Err(QuestionError::Refused(refusal));
         }
         too_many("contact pairs", system.pair_count(), MOST_PAIRS)?;
-        let factors = factors(self, values);
-        let numbers = contact_numbers(system, &factors, values);
+        let problem = contact_problem(system, &factors(self, values), values);
         let mut steps = 0u64;
-        let found = enumerate(system, &numbers, &mut |progress| {
+        let found = enumerate(&problem, &mut |progress| {
             steps += 1;
             if steps.is_multiple_of(64) {
                 watch.progress(&format!("{} schemes, {} answers", progress.nodes, progress.found), progress.share);
@@ -105,7 +105,7 @@ impl Prepared {
         });
         if found.no_answer() {
             // At a limit on paper the numbers as stored may be just beyond it.
-            let near = self.attempt_contact(system, &numbers, &factors, Rules::default(), watch)?;
+            let near = self.attempt_contact(&problem, Rules::default(), watch)?;
             if near.answer.is_answer() {
                 return Ok(AllAnswers {
                     answers: vec![near],
@@ -123,7 +123,7 @@ impl Prepared {
         let answers = found
             .answers
             .iter()
-            .map(|candidate| self.enumerated_answer(system, &numbers, &factors, candidate))
+            .map(|candidate| self.enumerated_answer(&problem, candidate))
             .collect::<Result<Vec<_>, _>>()?;
         let count = answers.len();
         let pairs = |direction: &DVector<f64>| {
@@ -154,12 +154,11 @@ impl Prepared {
     /// An enumerated answer as a solved state, freshly checked.
     pub(super) fn enumerated_answer(
         &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
+        problem: &ContactProblem,
         candidate: &EnumeratedAnswer,
     ) -> Result<Solved, SolveError> {
-        let contact = contact_lcp(system, numbers, Covering::default())?;
+        let system = &*problem.system;
+        let contact = contact_lcp(problem, Covering::default())?;
         let mut z = vec![0.0; contact.rows.len()];
         for (value, row) in z.iter_mut().zip(&contact.rows) {
             let tangential = system.pairs[row.pair].tangential;
@@ -185,7 +184,7 @@ impl Prepared {
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };
         let rules = AttemptRules::from(Rules::default()).by(AttemptEngine::Enumeration);
-        Ok(self.answer_at(system, numbers, factors, contact, point, rules))
+        Ok(self.answer_at(problem, contact, point, rules))
     }
 }
 

@@ -15,9 +15,8 @@ use crate::answer::pairs::{joint_state, pair_states};
 use crate::answer::record::{AttemptRules, OutcomeKind};
 use crate::contact::kernel_correction::sharpen;
 use crate::contact::lcp::{ContactLcp, contact_lcp};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::refine::refined;
-use crate::contact::system::ContactSystem;
 use crate::explain::{ray, sentence};
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::parametric::Parametric;
@@ -86,53 +85,50 @@ impl Prepared {
     /// the run ends in the ray that it is.
     pub(super) fn attempt_contact(
         &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
+        problem: &ContactProblem,
         rules: Rules,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        let contact = contact_lcp(system, numbers, rules.covering)?;
-        let solved = self.run_contact(system, numbers, factors, contact.clone(), rules, watch)?;
+        let contact = contact_lcp(problem, rules.covering)?;
+        let solved = self.run_contact(problem, contact.clone(), rules, watch)?;
         if !solved.answer.marginal || solved.answer.check.passed {
             return Ok(solved);
         }
         let mut strict = contact;
         Arc::make_mut(&mut strict.lcp).scale.load = Some(0.0);
-        self.run_contact(system, numbers, factors, strict, rules, watch)
+        self.run_contact(problem, strict, rules, watch)
     }
 
     fn run_contact(
         &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
+        problem: &ContactProblem,
         contact: ContactLcp,
         rules: Rules,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
+        let system = &*problem.system;
         let start = Instant::now();
-        let (mut run, engine) = run_engine(system, numbers, &contact, rules, watch)?;
+        let (mut run, engine) = run_engine(problem, &contact, rules, watch)?;
         let basis = run.pivots.basis();
         match &run.outcome {
             Outcome::Ray(_) if rules.engine != Engine::Exact => {
-                run.point = sharpen(system, numbers, &contact, &basis, run.point);
+                run.point = sharpen(problem, &contact, &basis, run.point);
             }
             Outcome::Normal { .. } => {
-                run.point = refined(system, numbers, &contact, run.point);
+                run.point = refined(problem, &contact, run.point);
                 // An answer stands without the covering: that is how it is checked.
                 run.point.p = 0.0;
             }
             _ => {}
         }
         let seconds = start.elapsed().as_secs_f64();
-        let mut solved = self.state_of(system, numbers, factors, contact, run, rules.into());
+        let mut solved = self.state_of(problem, contact, run, rules.into());
         solved.answer.timings.lemke = seconds;
         solved.answer.ray = solved.ray.as_ref().map(|report| report.record(system, rules.covering));
         if let RunData::Contact { contact, pivots, .. } = &solved.run {
             solved.answer.pivots = sentence::pivot_records(pivots.recorded(), contact, system);
             if let Some(engine) = engine.filter(|_| solved.answer.is_answer()) {
-                let warm = WarmStart::new(engine, contact.clone(), numbers.clone());
+                let warm = WarmStart::new(engine, contact.clone(), problem.clone());
                 solved.warm = Some(Arc::new(Mutex::new(Some(warm))));
             }
         }
@@ -145,49 +141,33 @@ impl Prepared {
     /// The state at a point found other than by pivots from z = 0, freshly checked.
     pub(super) fn answer_at(
         &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
+        problem: &ContactProblem,
         contact: ContactLcp,
         point: Point,
         rules: AttemptRules,
     ) -> Solved {
-        let point = refined(system, numbers, &contact, point);
+        let point = refined(problem, &contact, point);
         let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
-        self.state_of(system, numbers, factors, contact, run, rules)
+        self.state_of(problem, contact, run, rules)
     }
 
     /// What a run ended in: the pairs, of an answer all the rest with its check, of a ray its class.
-    fn state_of(
-        &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
-        contact: ContactLcp,
-        run: Run,
-        rules: AttemptRules,
-    ) -> Solved {
-        let state = joint_state(system, numbers, &contact, &run.point);
+    fn state_of(&self, problem: &ContactProblem, contact: ContactLcp, run: Run, rules: AttemptRules) -> Solved {
+        let system = &*problem.system;
+        let state = joint_state(problem, &contact, &run.point);
         let mut answer = empty_answer(&run, contact.force_unit, rules, self.size(system, &contact));
-        answer.pairs = pair_states(system, numbers, &contact, &state);
-        self.add_released_slips(&mut answer.pairs, numbers, factors, &state.z);
+        answer.pairs = pair_states(problem, &contact, &state);
+        self.add_released_slips(&mut answer.pairs, problem, &state.z);
         let mut ray = None;
         if let Outcome::Ray(direction) = &run.outcome {
-            let cases = self.named_factors(factors);
-            ray = Some(Box::new(ray::look(&self.subject(system, numbers, &cases), &contact, direction, answer.p)));
+            ray = Some(Box::new(ray::look(problem, &contact, direction, answer.p)));
         }
         if answer.is_answer() {
-            self.complete(&mut answer, system, numbers, factors, &state);
+            self.complete(&mut answer, problem, &state);
         }
         Solved {
             cycled: matches!(run.outcome, Outcome::Cycle(_)),
-            run: RunData::Contact {
-                contact,
-                numbers: numbers.clone(),
-                factors: factors.to_vec(),
-                pivots: run.pivots,
-                last: run.point,
-            },
+            run: RunData::Contact { contact, problem: problem.clone(), pivots: run.pivots, last: run.point },
             answer,
             ray,
             plain_ray: None,
@@ -199,12 +179,12 @@ impl Prepared {
 
 /// Runs the engine that the rules name; of the working-scheme engine the dictionary it ends with comes back too.
 fn run_engine(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     contact: &ContactLcp,
     rules: Rules,
     watch: &dyn Watch,
 ) -> Result<(Run, Option<Parametric>), SolveError> {
+    let system = &*problem.system;
     let tie_rule = contact.tie_rule(rules.tie_break);
     let (run, dictionary) = match rules.engine {
         Engine::Scheme => keep_scheme(&contact.lcp, tie_rule, watch),
@@ -217,7 +197,7 @@ fn run_engine(
             if found > EXACT_PAIRS {
                 return Err(SolveError::TooLargeForExact { what: "contact pairs", found, most: EXACT_PAIRS });
             }
-            (run_exact_contact(system, numbers, contact, rules.covering, tie_rule, watch), None)
+            (run_exact_contact(problem, contact, rules.covering, tie_rule, watch), None)
         }
     };
     if run.outcome == Outcome::Interrupted { Err(SolveError::Interrupted) } else { Ok((run, dictionary)) }

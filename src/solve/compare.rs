@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::error::SolveError;
-use super::numbers::{contact_numbers, factors};
 use super::plain::{PlainProblem, attempt_plain};
 use super::prepared::{Geometry, Prepared};
+use super::problem::{contact_problem, factors};
 use super::state::Solved;
 use crate::answer::attempt::AttemptRules;
 use crate::answer::record::{Answer, OutcomeKind, RayClass};
@@ -104,8 +104,8 @@ impl Prepared {
                 attempt_plain(&problem, problem.rules(rules), watch)
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                let numbers = contact_numbers(system, factors, values);
-                self.attempt_contact(system, &numbers, factors, rules, watch)
+                let problem = contact_problem(system, factors, values);
+                self.attempt_contact(&problem, rules, watch)
             }
         }
     }

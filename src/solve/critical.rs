@@ -1,8 +1,8 @@
 //! Critical friction of a scenario: above it more than one answer is possible for some load.
 
 use super::error::QuestionError;
-use super::numbers::{contact_numbers, factors};
 use super::prepared::Prepared;
+use super::problem::{contact_problem, factors};
 use crate::contact::schemes::critical::{CriticalFriction, critical_friction};
 use crate::model::jet::Dependence;
 use crate::model::parameter::ParameterValues;
@@ -53,7 +53,7 @@ impl Prepared {
         let friction = |value: f64| {
             let mut values = values.clone();
             values.insert(parameter.to_owned(), value);
-            contact_numbers(system, &factors, &values).frictions()
+            contact_problem(system, &factors, &values).frictions()
         };
         if friction(0.0).iter().any(|f| *f < 0.0) {
             return refused(format!("at {parameter} = 0 a friction is negative: `critical` goes up from 0"));

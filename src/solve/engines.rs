@@ -8,9 +8,9 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 use crate::answer::record::OutcomeKind;
-use crate::contact::full_lcp::{WholeInput, full_lcp_of};
+use crate::contact::full_lcp::full_lcp_of;
 use crate::contact::lcp::ContactLcp;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::explain::kernel::clean;
 use crate::lcp::basis_solution::{direction, vertex};
@@ -180,20 +180,18 @@ pub fn run_exact_plain(lcp: &MirroredLcp, rule: TieRule, watch: &dyn Watch) -> R
 /// Runs the tableau of a contact problem in exact rationals; M is formed in rationals from R, RF, f, c, g, and R is
 /// first freed of its rounded kernel, so that a motion that costs nothing costs exactly nothing.
 pub fn run_exact_contact(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     contact: &ContactLcp,
     covering: Covering,
     rule: TieRule,
     watch: &dyn Watch,
 ) -> Run {
-    let input = WholeInput { system, numbers, covering };
-    let Some(stiffness) = exact_stiffness(system, watch) else {
+    let Some(stiffness) = exact_stiffness(&problem.system, watch) else {
         return Run { outcome: Outcome::Interrupted, pivots: PivotLog::default(), point: Point::default() };
     };
-    let mut problem = full_lcp_of(&input, &stiffness);
-    problem.scale.load = contact.lcp.scale.load.map(|load| load * contact.force_unit);
-    rounded(run_exact(problem, rule, watch), contact.force_unit, contact.length_unit)
+    let mut lcp = full_lcp_of(problem, covering, &stiffness);
+    lcp.scale.load = contact.lcp.scale.load.map(|load| load * contact.force_unit);
+    rounded(run_exact(lcp, rule, watch), contact.force_unit, contact.length_unit)
 }
 
 fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run<BigRational> {

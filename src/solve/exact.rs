@@ -10,7 +10,7 @@ use crate::answer::attempt::AttemptEngine;
 use crate::answer::check::TOLERANCE;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{OutcomeKind, State};
-use crate::contact::lcp::RowKind;
+use crate::contact::rows::RowKind;
 use crate::contact::schemes::exact_check::{ExactCheck, Finding, exact_check};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::watch::{Budget, Watch};
@@ -50,19 +50,19 @@ impl Prepared {
             }
             return;
         };
-        let (RunData::Contact { contact, numbers, factors, .. }, Some(system)) = (&solved.run, self.system()) else {
+        let RunData::Contact { contact, problem, .. } = &solved.run else {
             return;
         };
-        let state = JointState::at(system, numbers, z, 0.0);
+        let state = JointState::at(problem, z, 0.0);
         let answer = &mut solved.answer;
         answer.outcome = OutcomeKind::Normal;
         answer.failure = None;
         if let Some(last) = answer.attempts.last_mut() {
             last.outcome = OutcomeKind::Normal;
         }
-        answer.pairs = pair_states(system, numbers, contact, &state);
-        self.add_released_slips(&mut answer.pairs, numbers, factors, &state.z);
-        self.complete(answer, system, numbers, factors, &state);
+        answer.pairs = pair_states(problem, contact, &state);
+        self.add_released_slips(&mut answer.pairs, problem, &state.z);
+        self.complete(answer, problem, &state);
         if answer.is_answer() {
             answer.notes.push(
                 "the displacements were computed in exact arithmetic: elimination in f64 loses them under great stiffness \
@@ -99,12 +99,12 @@ impl Prepared {
                     ))
                 })
             }
-            (RunData::Contact { numbers, .. }, Some(system)) => {
+            (RunData::Contact { problem, .. }, Some(system)) => {
                 if let Some(refusal) = system.refusal("check exact") {
                     return Err(QuestionError::Refused(refusal));
                 }
                 let scheme = final_scheme(solved);
-                let check = exact_check(system, numbers, &scheme, &mut |share| {
+                let check = exact_check(problem, &scheme, &mut |share| {
                     watch.progress("exact check", share);
                     watch.go_on()
                 });
@@ -141,7 +141,7 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
             (State::Stick | State::Closed, _) => PairScheme::STICK,
         })
         .collect();
-    let RunData::Contact { contact, numbers, pivots, .. } = &solved.run else {
+    let RunData::Contact { contact, problem, pivots, .. } = &solved.run else {
         return schemes;
     };
     if pivots.is_empty() {
@@ -158,7 +158,7 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
         }
     }
     for (i, scheme) in schemes.iter_mut().enumerate() {
-        if scheme.open && numbers.laws[i].fixed_bound() == 0.0 {
+        if scheme.open && problem.laws[i].fixed_bound() == 0.0 {
             *scheme = PairScheme::OPEN;
         }
     }

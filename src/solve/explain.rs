@@ -4,14 +4,15 @@
 use std::time::Duration;
 
 use super::case::Case;
-use super::numbers::contact_numbers;
 use super::prepared::{Geometry, Prepared};
+use super::problem::contact_problem;
 use super::state::{RunData, Solved};
 use crate::answer::attempt::AttemptEngine;
 use crate::answer::record::RayClass;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::explain::loose::{LoosePart, loose_pairs, loose_parts};
 use crate::explain::margin::{FinalScheme, Margin, friction_margin, load_margin};
+use crate::explain::motions::FreeMotions;
 use crate::explain::remedy::{Remedies, remedies};
 use crate::explain::tableau::{Dictionary, NoDictionary, dictionary};
 use crate::explain::ties::{TieReport, ties};
@@ -59,9 +60,7 @@ impl Solved {
     /// How far the final scheme holds, in every load factor and friction parameter; empty without an answer that came
     /// from pivots.
     pub fn margins(&self, Case { scenario, prepared, values, .. }: Case<'_>, pair: usize) -> Vec<Margin> {
-        let (RunData::Contact { contact, numbers, factors, pivots, last }, Some(system)) =
-            (&self.run, prepared.system())
-        else {
+        let (RunData::Contact { contact, problem, pivots, last }, Some(system)) = (&self.run, prepared.system()) else {
             return Vec::new();
         };
         let basis = pivots.basis();
@@ -76,11 +75,11 @@ impl Solved {
         };
         // A trivial answer has no vertex of its own in the trace.
         let point = if pivots.is_empty() { &fresh } else { last };
-        let scheme = FinalScheme { system, contact, numbers, basis: &basis, point };
+        let scheme = FinalScheme { contact, problem, basis: &basis, point };
         let mut margins: Vec<Margin> = prepared
             .cases
             .iter()
-            .zip(factors)
+            .zip(&problem.factors)
             .zip(&system.loads)
             .filter_map(|(((name, _), factor), load)| load_margin(&scheme, pair, name, *factor, &load.vector))
             .collect();
@@ -99,7 +98,7 @@ impl Solved {
             let at = |value: f64| {
                 let mut values = values.clone();
                 values.insert(name.to_owned(), value);
-                contact_numbers(system, factors, &values)
+                contact_problem(system, &problem.factors, &values)
             };
             margins.extend(friction_margin(&scheme, pair, name, present, end, &at));
         }
@@ -111,23 +110,17 @@ impl Prepared {
     /// What would stop a collapse; `None` where there is none. Takes at most [`REMEDY_TIME`] and says whether all
     /// was looked for.
     pub fn remedies(&self, solved: &Solved, watch: &dyn Watch) -> Option<Remedies> {
-        let (RunData::Contact { numbers, factors, .. }, Some(system)) = (&solved.run, self.system()) else {
+        let RunData::Contact { problem, .. } = &solved.run else {
             return None;
         };
         let report = solved.ray.as_ref().filter(|report| report.class == RayClass::Mechanism)?;
-        let cases = self.named_factors(factors);
-        let subject = self.subject(system, numbers, &cases);
         let budget = Budget::new(watch, REMEDY_TIME);
-        let solves = |numbers: &ContactNumbers, changed: Option<(usize, f64)>| {
-            let mut factors = factors.clone();
-            if let Some((case, factor)) = changed {
-                factors[case] = factor;
-            }
+        let solves = |changed: &ContactProblem| {
             let rules = Rules { engine: Engine::Scheme, ..Rules::default() };
-            self.attempt_contact(system, numbers, &factors, rules, &budget).is_ok_and(|found| found.answer.is_answer())
+            self.attempt_contact(changed, rules, &budget).is_ok_and(|found| found.answer.is_answer())
         };
         let parts = report.mode.as_ref().map_or(&[][..], |mode| mode.parts.as_slice());
-        Some(remedies(&subject, parts, &solves, &budget))
+        Some(remedies(problem, &FreeMotions::new(&problem.system, self.built()), parts, &solves, &budget))
     }
 
     /// What is allowed in the scenario and hardly meant, in the order of the file, under the values of the file.

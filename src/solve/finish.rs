@@ -11,7 +11,7 @@ use crate::answer::record::{
     Size, Start, Timings,
 };
 use crate::contact::lcp::ContactLcp;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::may_hold_otherwise;
 use crate::contact::system::ContactSystem;
 use crate::explain::words::{list, short};
@@ -29,15 +29,9 @@ const SLIP_ZERO: f64 = 16.0 * f64::EPSILON;
 
 impl Prepared {
     /// Displacements, members, reactions and the fresh check of an answer.
-    pub(super) fn complete(
-        &self,
-        answer: &mut Answer,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
-        state: &JointState,
-    ) {
-        let otherwise = may_hold_otherwise(system, numbers, &state.z);
+    pub(super) fn complete(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) {
+        let system = &*problem.system;
+        let otherwise = may_hold_otherwise(problem, &state.z);
         let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
         let kinds = [
             (
@@ -58,25 +52,20 @@ impl Prepared {
             }
             answer.notes.push(format!("joints of {} repeat one another: {words}", list(&ids)));
         }
-        let equilibrium = self.recover(answer, numbers, factors, state);
-        judge(answer, check_contact(system, numbers, state, equilibrium));
+        let equilibrium = self.recover(answer, problem, state);
+        judge(answer, check_contact(problem, state, equilibrium));
     }
 
     /// Displacements, members and reactions of a state; the residual of its equilibrium, where there is a K.
-    pub(super) fn recover(
-        &self,
-        answer: &mut Answer,
-        numbers: &ContactNumbers,
-        factors: &[f64],
-        state: &JointState,
-    ) -> Option<f64> {
+    pub(super) fn recover(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) -> Option<f64> {
         let mut equilibrium = None;
         if let Geometry::Structure { main, structure, .. } = &*self.geometry {
-            let u = main.displacements(factors, &numbers.dislocation(&state.z));
-            let compatibility = main.compatibility_residual(&u, &numbers.dislocation(&state.z));
-            equilibrium = Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, factors));
-            answer.members = self.members(&u, factors);
-            answer.reactions = self.reactions(&u, &state.force, factors);
+            let u = main.displacements(&problem.factors, &problem.dislocation(&state.z));
+            let compatibility = main.compatibility_residual(&u, &problem.dislocation(&state.z));
+            equilibrium =
+                Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, &problem.factors));
+            answer.members = self.members(&u, &problem.factors);
+            answer.reactions = self.reactions(&u, &state.force, &problem.factors);
             answer.displacements = Some(named(structure, &u));
         }
         equilibrium
@@ -113,19 +102,13 @@ impl Prepared {
 
     /// z_τ of the frictionless pairs, which have no tangential joint: from B u, or from the released joints of a
     /// given contact system.
-    pub(crate) fn add_released_slips(
-        &self,
-        pairs: &mut [PairState],
-        numbers: &ContactNumbers,
-        factors: &[f64],
-        z: &DVector<f64>,
-    ) {
+    pub(crate) fn add_released_slips(&self, pairs: &mut [PairState], problem: &ContactProblem, z: &DVector<f64>) {
         match &*self.geometry {
             Geometry::Structure { main, structure, .. } => {
                 if !structure.pairs.iter().any(|pair| !pair.law.has_tangential_joint()) {
                     return;
                 }
-                let u = main.displacements(factors, &numbers.dislocation(z));
+                let u = main.displacements(&problem.factors, &problem.dislocation(z));
                 for (pair, shown) in structure.pairs.iter().zip(pairs) {
                     if !pair.law.has_tangential_joint() {
                         let t = pair.tangent();
@@ -153,14 +136,14 @@ impl Prepared {
                         forces[i] = shown.x_n;
                         pair.tangential.into_iter().for_each(|joint| forces[joint] = shown.x_t);
                     }
-                    let slips = file.slips_under(&forces, &file.load(factors));
+                    let slips = file.slips_under(&forces, &file.load(&problem.factors));
                     for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
                         pairs[pair].z_t = *slip;
                     }
                     return;
                 }
-                let moved = numbers.dislocation(z);
-                let slips = file.forces(&moved, &moved.abs(), &file.load(factors)).slips;
+                let moved = problem.dislocation(z);
+                let slips = file.forces(&moved, &moved.abs(), &file.load(&problem.factors)).slips;
                 for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
                     pairs[pair].z_t = *slip;
                 }

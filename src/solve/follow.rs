@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use crate::answer::record::{Answer, PairState, Start};
 use crate::contact::lcp::contact_lcp_like;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::lcp::outcome::Point;
 use crate::model::rules::{Engine, Rules};
 use crate::solve::case::Case;
 use crate::solve::error::SolveError;
-use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::Prepared;
+use crate::solve::problem::{contact_problem, factors};
 use crate::solve::state::Solved;
 use crate::solve::warm::WarmStart;
 use crate::watch::Watch;
@@ -52,15 +52,14 @@ impl Case<'_> {
         // Taken out, so that nothing half-way stays behind where the path fails.
         let mut kept = guard.take()?;
         let start = Instant::now();
-        let factors = factors(prepared, values);
-        let numbers = contact_numbers(system, &factors, values);
-        let numbers_seconds = start.elapsed().as_secs_f64();
-        let (mut solved, mut seconds) = prepared.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
+        let problem = contact_problem(system, &factors(prepared, values), values);
+        let problem_seconds = start.elapsed().as_secs_f64();
+        let (mut solved, mut seconds) = prepared.follow_kept(&mut kept, &problem, rules, watch)?;
         if !solved.answer.is_answer() {
             // The way is made; only its end was not sharp enough.
             let way = solved.answer.start;
             kept.refine();
-            let (refined, more) = prepared.follow_kept(&mut kept, &numbers, &factors, rules, watch)?;
+            let (refined, more) = prepared.follow_kept(&mut kept, &problem, rules, watch)?;
             solved = refined;
             solved.answer.start = way;
             seconds += more;
@@ -73,7 +72,7 @@ impl Case<'_> {
         drop(guard);
         answer.timings.factor = prepared.factor_seconds;
         answer.timings.condense = prepared.condense_seconds;
-        answer.timings.lemke = numbers_seconds + seconds;
+        answer.timings.lemke = problem_seconds + seconds;
         answer.timings.total = prepared.seconds + start.elapsed().as_secs_f64();
         solved.warm = Some(Arc::clone(slot));
         Some(solved)
@@ -85,20 +84,18 @@ impl Prepared {
     fn follow_kept(
         &self,
         kept: &mut WarmStart,
-        numbers: &ContactNumbers,
-        factors: &[f64],
+        problem: &ContactProblem,
         rules: Rules,
         watch: &dyn Watch,
     ) -> Option<(Solved, f64)> {
-        let system = self.system()?;
         let start = Instant::now();
-        let found = kept.follow(system, numbers, watch)?;
-        let contact = contact_lcp_like(Some(kept.contact()), system, numbers, rules.covering).ok()?;
+        let found = kept.follow(problem, watch)?;
+        let contact = contact_lcp_like(Some(kept.contact()), problem, rules.covering).ok()?;
         let length = found.length_unit / contact.length_unit;
         let point =
             Point { z: found.point.z.iter().map(|z| z * length).collect(), w: vec![0.0; contact.rows.len()], p: 0.0 };
         let seconds = start.elapsed().as_secs_f64();
-        let mut solved = self.answer_at(system, numbers, factors, contact, point, rules.into());
+        let mut solved = self.answer_at(problem, contact, point, rules.into());
         solved.answer.start = Start::Warm { changes: found.pivots };
         Some((solved, seconds))
     }

@@ -7,8 +7,7 @@ use crate::answer::attempt::{Attempt, AttemptEngine, AttemptRules};
 use crate::answer::record::OutcomeKind;
 use crate::contact::lcp::contact_lcp_like;
 use crate::contact::load_path::{order, path_lcp};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::problem::ContactProblem;
 use crate::lcp::basis::Basis;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
@@ -36,21 +35,16 @@ impl Prepared {
     ///
     /// # Errors
     /// Where the default covering does not fit the numbers.
-    pub(super) fn along_load(
-        &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
-        watch: &dyn Watch,
-    ) -> Result<AlongLoad, SolveError> {
+    pub(super) fn along_load(&self, problem: &ContactProblem, watch: &dyn Watch) -> Result<AlongLoad, SolveError> {
+        let system = &*problem.system;
         // Joints in force form start from gaps that fit, so none may be forced either.
         let forced = system.force_form.is_some();
-        if numbers.gaps().any(|gap| gap > 0.0 || forced && gap != 0.0) {
+        if problem.gaps().any(|gap| gap > 0.0 || forced && gap != 0.0) {
             return Ok(AlongLoad::NotTried);
         }
-        let mut rest = numbers.clone();
+        let mut rest = problem.clone();
         rest.set_load(DVector::zeros(system.joint_count()));
-        let path = path_lcp(system, &rest, &numbers.load);
+        let path = path_lcp(&rest, &problem.load);
         let nothing = Basis { z: Vec::new(), active: Vec::new(), p: false };
         let Some(mut engine) = Parametric::new(path.lcp.clone(), &nothing, order(&path)) else {
             return Ok(AlongLoad::NotTried);
@@ -76,14 +70,14 @@ impl Prepared {
             let attempt = Attempt { rules, outcome, pivots: Some(pivots), why: Some(why) };
             return Ok(AlongLoad::Ended(attempt));
         }
-        let contact = contact_lcp_like(Some(&path), system, numbers, Rules::default().covering)?;
+        let contact = contact_lcp_like(Some(&path), problem, Rules::default().covering)?;
         let length = path.length_unit / contact.length_unit;
         let point = Point {
             z: engine.point().z.iter().map(|z| (z * length).max(0.0)).collect(),
             w: vec![0.0; contact.rows.len()],
             p: 0.0,
         };
-        let mut solved = self.answer_at(system, numbers, factors, contact, point, rules);
+        let mut solved = self.answer_at(problem, contact, point, rules);
         solved.answer.attempts.iter_mut().for_each(|attempt| attempt.pivots = Some(pivots));
         Ok(AlongLoad::Answer(Box::new(solved)))
     }
@@ -94,8 +88,8 @@ mod tests {
     use super::AlongLoad;
     use crate::model::embedded;
     use crate::solve::follow::same_answer;
-    use crate::solve::numbers::{contact_numbers, factors};
     use crate::solve::prepare;
+    use crate::solve::problem::{contact_problem, factors};
     use crate::watch::Quiet;
 
     #[test]
@@ -108,9 +102,8 @@ mod tests {
             assert!(cold.answer.is_answer(), "{name}");
             let system = prepared.system().expect("a contact problem");
             let factors = factors(&prepared, &values);
-            let numbers = contact_numbers(system, &factors, &values);
-            let AlongLoad::Answer(found) = prepared.along_load(system, &numbers, &factors, &Quiet).expect("covered")
-            else {
+            let problem = contact_problem(system, &factors, &values);
+            let AlongLoad::Answer(found) = prepared.along_load(&problem, &Quiet).expect("covered") else {
                 panic!("{name}: no way")
             };
             assert!(found.answer.check.passed, "{name}");

@@ -7,27 +7,25 @@ use super::prepared::{Geometry, Prepared};
 use crate::answer::check::check_contact;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{Answer, PairState, Size};
-use crate::contact::full_lcp::rows;
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::rows;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::pivot::PivotLog;
 use crate::model::rules::Rules;
 
 impl Prepared {
-    /// The answer at a moment of a history: `pairs` and `state` have total displacements, `numbers` the load there.
+    /// The answer at a moment of a history: `pairs` and `state` have total displacements, `problem` the load there.
     ///
     /// The laws of contact tie the forces to the slip just before, `last_slip` over the joints, and not to the total
     /// one: the check takes that.
     pub(crate) fn history_answer(
         &self,
-        system: &ContactSystem,
-        numbers: &ContactNumbers,
-        factors: &[f64],
+        problem: &ContactProblem,
         state: &JointState,
         last_slip: &DVector<f64>,
         pairs: Vec<PairState>,
     ) -> Answer {
+        let system = &*problem.system;
         let run =
             Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point: Point::default() };
         let mut size = Size { pairs: system.pairs.len(), lcp: rows(system).len(), ..Size::default() };
@@ -36,13 +34,13 @@ impl Prepared {
         }
         let mut answer = empty_answer(&run, 1.0, Rules::default().into(), size);
         answer.pairs = pairs;
-        let equilibrium = self.recover(&mut answer, numbers, factors, state);
+        let equilibrium = self.recover(&mut answer, problem, state);
         // λ afresh: the history keeps exact values where the laws give them.
-        let mut moved = JointState::at(system, numbers, state.in_forms(system).0, 0.0);
+        let mut moved = JointState::at(problem, state.in_forms(system).0, 0.0);
         for joint in system.pairs.iter().filter_map(|pair| pair.tangential) {
             moved.z[joint] = last_slip[joint];
         }
-        judge(&mut answer, check_contact(system, numbers, &moved, equilibrium));
+        judge(&mut answer, check_contact(problem, &moved, equilibrium));
         answer
     }
 }

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::contact::force_form::{Dependence, Repeats, with_repeated};
 use crate::contact::given::{GivenError, given_system, with_loads};
 use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
+use crate::explain::ray::Built;
 use crate::fem::{MainSystem, MainSystemError};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
@@ -28,7 +29,7 @@ pub enum Geometry {
     /// A structure with its main system.
     Structure {
         /// Condensed to its joints.
-        system: ContactSystem,
+        system: Arc<ContactSystem>,
         /// For displacements, members, reactions and the check of equilibrium.
         main: Box<MainSystem>,
         /// The structure itself.
@@ -37,7 +38,7 @@ pub enum Geometry {
     /// A contact system read from a file.
     Contact {
         /// Condensed to its joints.
-        system: ContactSystem,
+        system: Arc<ContactSystem>,
         /// What the user should know of the matrix of the file.
         remarks: Vec<String>,
     },
@@ -124,7 +125,7 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
         Source::ContactSystem(given) => {
             let (system, remarks) = given_system(given).map_err(|error| given_problem(scenario, error))?;
             Prepared {
-                geometry: Arc::new(Geometry::Contact { system, remarks }),
+                geometry: Arc::new(Geometry::Contact { system: Arc::new(system), remarks }),
                 values: ParameterValues::new(),
                 cases: given.loads.iter().map(|load| (load.name.clone(), load.factor.clone())).collect(),
                 factor_seconds: 0.0,
@@ -268,7 +269,11 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     }
     let seconds = main.timings();
     Ok(Prepared {
-        geometry: Arc::new(Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }),
+        geometry: Arc::new(Geometry::Structure {
+            system: Arc::new(system),
+            main: Box::new(main),
+            structure: structure.clone(),
+        }),
         values: ParameterValues::new(),
         cases: structure.load_cases.iter().map(|case| (case.name.clone(), case.factor.clone())).collect(),
         factor_seconds: seconds.factor,
@@ -314,11 +319,11 @@ impl Prepared {
                 let main =
                     main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
                 let loads = dependence(&main).loads(joint_loads(structure, &main));
-                let system = ContactSystem { loads, ..system.clone() };
+                let system = Arc::new(ContactSystem { loads, ..ContactSystem::clone(system) });
                 Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }
             }
             (Geometry::Contact { system, remarks }, Source::ContactSystem(given)) => {
-                let system = with_loads(system, given).map_err(|error| given_problem(scenario, error))?;
+                let system = Arc::new(with_loads(system, given).map_err(|error| given_problem(scenario, error))?);
                 Geometry::Contact { system, remarks: remarks.clone() }
             }
             _ => return Ok(None),
@@ -354,8 +359,16 @@ impl Prepared {
         }
     }
 
+    /// The structure and its main system, where there is one.
+    pub(crate) fn built(&self) -> Built<'_> {
+        match &*self.geometry {
+            Geometry::Structure { main, structure, .. } => Some((structure, main)),
+            Geometry::Contact { .. } | Geometry::Plain { .. } => None,
+        }
+    }
+
     /// The contact system, unless this is a bare LCP.
-    pub fn system(&self) -> Option<&ContactSystem> {
+    pub fn system(&self) -> Option<&Arc<ContactSystem>> {
         match &*self.geometry {
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => Some(system),
             Geometry::Plain { .. } => None,

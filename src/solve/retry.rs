@@ -5,21 +5,22 @@
 //! an answer like any other: it passes the same fresh check. Rules that the user chose are run as chosen; the default
 //! rules are then run silently, to name them if they succeed.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::engines::EXACT_PAIRS;
 use super::error::SolveError;
 use super::from_zero_load::AlongLoad;
 use super::ladder::{EXACT_BUDGET, Ladder, others};
-use super::numbers::{contact_numbers, factors};
-use super::prepared::{Geometry, Prepared};
+use super::prepared::Prepared;
+use super::problem::{contact_problem, factors};
 use super::state::Solved;
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules};
 use crate::answer::record::{RayClass, Verdict};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::enumerate::Enumeration;
 use crate::contact::system::ContactSystem;
-use crate::explain::ray::{Subject, all_answers, certify_ray, explain};
+use crate::explain::ray::{all_answers, certify_ray, explain};
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 use crate::watch::{Budget, Watch};
@@ -50,52 +51,28 @@ pub fn retries(exact: bool) -> Vec<Rules> {
 }
 
 impl Prepared {
-    pub(crate) fn named_factors(&self, factors: &[f64]) -> Vec<(String, f64)> {
-        self.cases.iter().map(|(name, _)| name.clone()).zip(factors.iter().copied()).collect()
-    }
-
-    pub(crate) fn subject<'a>(
-        &'a self,
-        system: &'a ContactSystem,
-        numbers: &'a ContactNumbers,
-        cases: &'a [(String, f64)],
-    ) -> Subject<'a> {
-        Subject {
-            system,
-            numbers,
-            cases,
-            structure: match &*self.geometry {
-                Geometry::Structure { main, structure, .. } => Some((structure, main)),
-                _ => None,
-            },
-        }
-    }
-
     pub(super) fn solve_contact_judged(
         &self,
-        system: &ContactSystem,
+        system: &Arc<ContactSystem>,
         values: &ParameterValues,
         rules: Rules,
         brief: bool,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        let factors = factors(self, values);
-        let numbers = contact_numbers(system, &factors, values);
-        let job = Job { prepared: self, system, numbers: &numbers, factors: &factors, rules, watch };
+        let problem = contact_problem(system, &factors(self, values), values);
+        let job = Job { prepared: self, problem: &problem, rules, watch };
         let mut solved = job.attempt(rules)?;
         if solved.answer.is_answer() {
             return Ok(solved);
         }
-        let cases = self.named_factors(&factors);
-        let subject = self.subject(system, &numbers, &cases);
-        let certified = solved.ray.as_mut().is_some_and(|report| certify_ray(report, &subject));
+        let certified = solved.ray.as_mut().is_some_and(|report| certify_ray(report, &problem, self.built()));
         if !certified && rules.are_default() {
-            solved = job.retry(solved, &subject)?;
+            solved = job.retry(solved)?;
         } else if !certified {
-            job.compare_with_default(&mut solved, &subject)?;
+            job.compare_with_default(&mut solved)?;
         }
         if let Some(report) = solved.ray.as_mut().filter(|_| !brief) {
-            explain(report, &subject);
+            explain(report, &problem, self.built());
             if watch.stop() {
                 return Err(SolveError::Interrupted);
             }
@@ -113,9 +90,7 @@ impl Prepared {
 
 struct Job<'a> {
     prepared: &'a Prepared,
-    system: &'a ContactSystem,
-    numbers: &'a ContactNumbers,
-    factors: &'a [f64],
+    problem: &'a ContactProblem,
     rules: Rules,
     watch: &'a dyn Watch,
 }
@@ -126,17 +101,17 @@ impl Job<'_> {
     }
 
     fn attempt_watched(&self, rules: Rules, watch: &dyn Watch) -> Result<Solved, SolveError> {
-        self.prepared.attempt_contact(self.system, self.numbers, self.factors, rules, watch)
+        self.prepared.attempt_contact(self.problem, rules, watch)
     }
 
     /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run
     /// under the default rules is what is shown, with what was proved.
-    fn retry(&self, mut first: Solved, subject: &Subject) -> Result<Solved, SolveError> {
-        let m = self.system.pairs.len();
+    fn retry(&self, mut first: Solved) -> Result<Solved, SolveError> {
+        let m = self.problem.system.pairs.len();
         let class = first.ray.as_ref().map(|report| report.class);
         // A proof that there is none saves all further attempts.
         let budget = Budget::new(self.watch, EXACT_BUDGET);
-        let found = all_answers(subject, &budget);
+        let found = all_answers(self.problem, &budget);
         let too_long = found.is_none() && budget.ran_out();
         let none = found.as_ref().is_some_and(Enumeration::no_answer);
         if none && mark_proved(&mut first) {
@@ -147,17 +122,19 @@ impl Job<'_> {
             ladder.gave_up(AttemptRules::from(Rules::default()).by(AttemptEngine::Enumeration), EXACT_BUDGET);
         }
         if class != Some(RayClass::Mechanism) || m <= FEW_PAIRS {
-            let exact = m <= EXACT_PAIRS && self.rules.engine != Engine::Exact && self.system.force_form.is_none();
+            let exact =
+                m <= EXACT_PAIRS && self.rules.engine != Engine::Exact && self.problem.system.force_form.is_none();
             let budget = if class == Some(RayClass::Mechanism) { MECHANISM_BUDGET } else { EXACT_BUDGET };
             let attempt = |rules: Rules, watch: &dyn Watch| self.attempt_watched(rules, watch);
             let proved = |again: &mut Solved| {
-                let certified = again.ray.as_mut().is_some_and(|report| certify_ray(report, subject));
+                let certified =
+                    again.ray.as_mut().is_some_and(|report| certify_ray(report, self.problem, self.prepared.built()));
                 certified || (none && mark_proved(again))
             };
             if let Some(solved) = ladder.climb(&retries(exact), budget, self.watch, &attempt, &proved)? {
                 return Ok(solved);
             }
-            match self.prepared.along_load(self.system, self.numbers, self.factors, self.watch)? {
+            match self.prepared.along_load(self.problem, self.watch)? {
                 AlongLoad::Answer(again) => {
                     if let Ok(answer) = ladder.add(*again) {
                         return Ok(answer);
@@ -168,7 +145,7 @@ impl Job<'_> {
             }
         }
         if let Some(found) = found {
-            let state = |candidate| self.prepared.enumerated_answer(self.system, self.numbers, self.factors, candidate);
+            let state = |candidate| self.prepared.enumerated_answer(self.problem, candidate);
             let note = others(found.answers.len(), !found.continua.is_empty(), true);
             if let Some(answer) = ladder.first_answer(found.answers.iter().map(state), note)? {
                 return Ok(answer);
@@ -178,7 +155,7 @@ impl Job<'_> {
     }
 
     /// Rules that the user chose have failed: says whether the default ones do better.
-    fn compare_with_default(&self, solved: &mut Solved, subject: &Subject) -> Result<(), SolveError> {
+    fn compare_with_default(&self, solved: &mut Solved) -> Result<(), SolveError> {
         let default = Rules::default();
         let other = self.attempt(default)?;
         let words = format!("covering {}, tie-break {}", default.covering, default.tie_break);
@@ -186,7 +163,7 @@ impl Job<'_> {
             format!(" The default rules ({words}) find an answer in {} pivots.", other.pivot_count())
         } else {
             let budget = Budget::new(self.watch, EXACT_BUDGET);
-            match all_answers(subject, &budget) {
+            match all_answers(self.problem, &budget) {
                 None if budget.ran_out() => format!(
                     " The default rules ({words}) find no answer either; going through all working schemes was given up \
                      after {} s.",

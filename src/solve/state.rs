@@ -8,7 +8,7 @@ use super::warm::WarmSlot;
 use crate::answer::pairs::{JointState, joint_state, pair_states};
 use crate::answer::record::{Answer, NodeDisplacement, PairState, PlainSolution};
 use crate::contact::lcp::ContactLcp;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::ray::RayReport;
 use crate::lcp::basis::Basis;
@@ -25,10 +25,8 @@ pub enum RunData {
     Contact {
         /// The LCP.
         contact: ContactLcp,
-        /// Its numbers.
-        numbers: ContactNumbers,
-        /// Factor of each load case.
-        factors: Vec<f64>,
+        /// The problem.
+        problem: ContactProblem,
         /// The pivots.
         pivots: PivotLog,
         /// The last vertex, dimensionless.
@@ -80,39 +78,38 @@ impl Solved {
     }
 
     /// The vertex after pivot `step` over the joints; `None` beyond the last and for a bare LCP.
-    fn state_at(&self, prepared: &Prepared, step: usize) -> Option<JointState> {
-        let RunData::Contact { contact, numbers, pivots, last, .. } = &self.run else {
+    fn state_at(&self, step: usize) -> Option<JointState> {
+        let RunData::Contact { contact, problem, pivots, last, .. } = &self.run else {
             return None;
         };
-        let system = prepared.system()?;
         let point = if step + 1 == pivots.count() {
             last.clone()
         } else {
             vertex(&contact.lcp, &Basis::after(pivots.recorded().get(..=step)?))?
         };
-        Some(joint_state(system, numbers, contact, &point))
+        Some(joint_state(problem, contact, &point))
     }
 
     /// The pairs after pivot `step`: the working scheme on the way, under its p.
     pub fn pairs_at(&self, prepared: &Prepared, step: usize) -> Option<Vec<PairState>> {
-        let RunData::Contact { contact, numbers, factors, .. } = &self.run else {
+        let RunData::Contact { contact, problem, .. } = &self.run else {
             return None;
         };
-        let state = self.state_at(prepared, step)?;
-        let mut pairs = pair_states(prepared.system()?, numbers, contact, &state);
-        prepared.add_released_slips(&mut pairs, numbers, factors, &state.z);
+        let state = self.state_at(step)?;
+        let mut pairs = pair_states(problem, contact, &state);
+        prepared.add_released_slips(&mut pairs, problem, &state.z);
         Some(pairs)
     }
 
     /// The displacements after pivot `step`; structures only.
     pub fn displacements_at(&self, prepared: &Prepared, step: usize) -> Option<Vec<NodeDisplacement>> {
-        let (RunData::Contact { numbers, factors, .. }, Geometry::Structure { main, structure, .. }) =
+        let (RunData::Contact { problem, .. }, Geometry::Structure { main, structure, .. }) =
             (&self.run, &*prepared.geometry)
         else {
             return None;
         };
-        let state = self.state_at(prepared, step)?;
-        Some(named(structure, &main.displacements(factors, &numbers.dislocation(&state.z))))
+        let state = self.state_at(step)?;
+        Some(named(structure, &main.displacements(&problem.factors, &problem.dislocation(&state.z))))
     }
 
     /// z and w of a bare LCP after pivot `step`.

@@ -6,9 +6,8 @@
 
 use std::sync::{Arc, Mutex};
 
-use crate::contact::lcp::{ContactLcp, load_with_gaps};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::lcp::ContactLcp;
+use crate::contact::problem::ContactProblem;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
@@ -28,7 +27,7 @@ pub struct WarmStart {
     /// The LCP the dictionary was built for: matrix, units, rows.
     contact: ContactLcp,
     /// Where it stands now: load, gap, cohesion, bound; its friction is that of the matrix.
-    numbers: ContactNumbers,
+    problem: ContactProblem,
     /// Extra cohesion per pair that stands in for a change of friction.
     extra: Vec<f64>,
 }
@@ -49,9 +48,9 @@ pub struct WarmPoint {
 
 impl WarmStart {
     /// Keeps the dictionary of an answer just found.
-    pub fn new(engine: Parametric, contact: ContactLcp, numbers: ContactNumbers) -> WarmStart {
-        let extra = vec![0.0; numbers.laws.len()];
-        WarmStart { engine, contact, numbers, extra }
+    pub fn new(engine: Parametric, contact: ContactLcp, problem: ContactProblem) -> WarmStart {
+        let extra = vec![0.0; problem.laws.len()];
+        WarmStart { engine, contact, problem, extra }
     }
 
     /// Refines what is kept from the data, where its answer was not good enough; then [`WarmStart::follow`] again.
@@ -65,8 +64,9 @@ impl WarmStart {
     }
 
     /// q per primary row and b per mirrored row for the given numbers, with the friction of the matrix.
-    fn right_side(&self, system: &ContactSystem, numbers: &ContactNumbers, extra: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let load = load_with_gaps(system, numbers);
+    fn right_side(&self, problem: &ContactProblem, extra: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let system = &*problem.system;
+        let load = problem.joint_constants();
         let unit = self.contact.force_unit;
         let size = self.contact.lcp.size();
         let (mut q, mut constants) = (vec![0.0; size], vec![0.0; size]);
@@ -75,7 +75,7 @@ impl WarmStart {
                 q[row] = load[i] / unit;
             }
             if let (Some(row), Some(joint)) = (self.contact.plus_row[i], pair.tangential) {
-                let constant = (numbers.laws[i].fixed_bound() + extra[i]) / unit;
+                let constant = (problem.laws[i].fixed_bound() + extra[i]) / unit;
                 q[row] = load[joint] / unit + self.contact.friction[i] * (load[i] / unit) + constant;
                 constants[row] = 2.0 * constant;
             }
@@ -84,11 +84,11 @@ impl WarmStart {
     }
 
     /// Follows the answer to other numbers and extra cohesions; `None` where the path does not get there.
-    fn walk(&mut self, system: &ContactSystem, to: &ContactNumbers, extra: &[f64], watch: &dyn Watch) -> Option<usize> {
-        let (from_q, from_b) = self.right_side(system, &self.numbers, &self.extra);
-        let (to_q, to_b) = self.right_side(system, to, extra);
+    fn walk(&mut self, to: &ContactProblem, extra: &[f64], watch: &dyn Watch) -> Option<usize> {
+        let (from_q, from_b) = self.right_side(&self.problem, &self.extra);
+        let (to_q, to_b) = self.right_side(to, extra);
         if from_q == to_q && from_b == to_b {
-            self.numbers = to.clone();
+            self.problem = to.clone();
             return Some(0);
         }
         let mut lcp = MirroredLcp::clone(&self.contact.lcp);
@@ -108,7 +108,7 @@ impl WarmStart {
         if end != End::Target {
             return None;
         }
-        self.numbers = to.clone();
+        self.problem = to.clone();
         self.extra = extra.to_vec();
         Some(pivots)
     }
@@ -127,8 +127,8 @@ impl WarmStart {
     /// The answer for other numbers of the same system. `None`: solve cold (friction moved too far, the path turns or
     /// ends before the target, no scheme held, or `watch` asked to stop); what was kept is of no use then. The caller
     /// runs the fresh check on what it makes of the answer.
-    pub fn follow(&mut self, system: &ContactSystem, to: &ContactNumbers, watch: &dyn Watch) -> Option<WarmPoint> {
-        if system.force_form.is_some() {
+    pub fn follow(&mut self, to: &ContactProblem, watch: &dyn Watch) -> Option<WarmPoint> {
+        if to.system.force_form.is_some() {
             return None;
         }
         let length_unit = self.contact.length_unit;
@@ -139,14 +139,14 @@ impl WarmStart {
         }
         if change.iter().all(|change| *change == 0.0) {
             let none = vec![0.0; change.len()];
-            let pivots = self.walk(system, to, &none, watch)?;
+            let pivots = self.walk(to, &none, watch)?;
             return Some(WarmPoint { point: self.engine.point(), length_unit, pivots });
         }
         let change_rows = self.per_row(&change, 1.0);
         let mut extra = self.extra.clone();
         let mut pivots = 0;
         for _ in 0..ROUNDS {
-            pivots += self.walk(system, to, &extra, watch)?;
+            pivots += self.walk(to, &extra, watch)?;
             let unit = self.contact.force_unit;
             let extra_rows = self.per_row(&extra, unit);
             if let Some(point) = self.engine.at_friction(&change_rows, &extra_rows) {

@@ -1,16 +1,16 @@
 //! The LCP of a scenario with every row written out, for other programs.
 
 use crate::contact::force_form;
-use crate::contact::full_lcp::{WholeInput, full_lcp, rows};
-use crate::contact::numbers::ContactNumbers;
-use crate::contact::system::ContactSystem;
+use crate::contact::full_lcp::full_lcp;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::rows;
 use crate::lcp::problem::Lcp;
 use crate::lcp::variable::Variable;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Covering;
 use crate::solve::engines::written_out;
-use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::{Geometry, Prepared};
+use crate::solve::problem::{contact_problem, factors};
 
 impl Prepared {
     /// The LCP in the scenario's units (forces w, q; displacements z) and the names of its rows. The covering of a bare
@@ -18,11 +18,11 @@ impl Prepared {
     pub fn written_lcp(&self, values: &ParameterValues, covering: Covering) -> (Lcp<f64>, Vec<String>) {
         match &*self.geometry {
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                let numbers = contact_numbers(system, &factors(self, values), values);
+                let problem = contact_problem(system, &factors(self, values), values);
                 if system.force_form.is_some() {
-                    return written_in_force_form(system, &numbers, covering);
+                    return written_in_force_form(&problem, covering);
                 }
-                let lcp = full_lcp(&WholeInput { system, numbers: &numbers, covering });
+                let lcp = full_lcp(&problem, covering);
                 let names = rows(system).iter().map(|row| row.name('x', system)).collect();
                 (lcp, names)
             }
@@ -36,12 +36,9 @@ impl Prepared {
 }
 
 /// Where joints are in force form: forces and displacements have changed places in some rows, as their names say.
-fn written_in_force_form(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    covering: Covering,
-) -> (Lcp<f64>, Vec<String>) {
-    let contact = force_form::written_lcp(system, numbers, covering);
+fn written_in_force_form(problem: &ContactProblem, covering: Covering) -> (Lcp<f64>, Vec<String>) {
+    let system = &*problem.system;
+    let contact = force_form::written_lcp(problem, covering);
     let mut lcp = written_out(&contact.lcp);
     let unit = |variable: Variable| contact.unit(variable);
     for (i, row) in lcp.matrix.iter_mut().enumerate() {
@@ -56,7 +53,7 @@ fn written_in_force_form(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::lcp::RowKind;
+    use crate::contact::rows::RowKind;
     use crate::export::lcp::scenario;
     use crate::model::embedded;
     use crate::model::load::load_text;

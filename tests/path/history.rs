@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use stickslip::answer::record::{PairState, Verdict};
 use stickslip::model::load::load_text;
 use stickslip::path::stages::{History, HistoryEnd, Moment, StageResult, follow};
-use stickslip::solve::numbers::contact_numbers;
+use stickslip::solve::problem::contact_problem;
 use stickslip::solve::{Prepared, prepare};
 use stickslip::watch::Quiet;
 
@@ -33,13 +33,13 @@ struct Data {
 impl Data {
     fn of(prepared: &Prepared, values: &stickslip::model::parameter::ParameterValues) -> Data {
         let system = prepared.system().expect("pairs");
-        let numbers = contact_numbers(system, &vec![0.0; system.loads.len()], values);
+        let problem = contact_problem(system, &vec![0.0; system.loads.len()], values);
         let pairs = system.pairs.iter().enumerate().map(|(i, pair)| Pair {
             normal: i,
             tangential: pair.tangential,
-            friction: numbers.laws[i].friction(),
-            constant: numbers.laws[i].fixed_bound(),
-            gap: numbers.laws[i].gap(),
+            friction: problem.laws[i].friction(),
+            constant: problem.laws[i].fixed_bound(),
+            gap: problem.laws[i].gap(),
             opens: !pair.law.is_bilateral(),
         });
         Data {

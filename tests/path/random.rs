@@ -10,8 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use stickslip::contact::law::PairLaw;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::load_path::{order, path_lcp};
-use stickslip::contact::numbers::ContactNumbers;
-use stickslip::contact::system::ContactSystem;
+use stickslip::contact::problem::ContactProblem;
 use stickslip::lcp::basis::Basis;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
@@ -24,7 +23,7 @@ use stickslip::watch::Quiet;
 use crate::common::systems::coulomb;
 
 /// R = A Aᵀ / n + I; with `ties` the entries of A and the loads are small integers.
-fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
+fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> ContactProblem {
     let n = 2 * m;
     let number = |rng: &mut ChaCha8Rng, ties: bool| {
         if ties { f64::from(rng.random_range(-1..=1)) } else { rng.random_range(-1.0..1.0) }
@@ -33,23 +32,23 @@ fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, 
     let stiffness = &a * a.transpose() / n as f64 + DMatrix::identity(n, n);
     let load = DVector::from_fn(n, |_, _| number(rng, ties));
     let friction = if ties { 0.25 } else { rng.random_range(0.0..0.4) };
-    let (system, mut numbers) = coulomb(stiffness, load, friction);
+    let mut problem = coulomb(stiffness, load, friction);
     let cohesion = if rng.random_bool(0.3) { 0.1 } else { 0.0 };
     let gap = if rng.random_bool(0.3) { 0.1 } else { 0.0 };
-    numbers.laws = vec![PairLaw::rubbing(friction, cohesion, gap); m];
-    (system, numbers)
+    problem.laws = vec![PairLaw::rubbing(friction, cohesion, gap); m];
+    problem
 }
 
-fn cold(system: &ContactSystem, numbers: &ContactNumbers) -> (Basis, DVector<f64>, WarmStart) {
-    let contact = contact_lcp(system, numbers, Covering::Cohesive).expect("covers all");
+fn cold(problem: &ContactProblem) -> (Basis, DVector<f64>, WarmStart) {
+    let contact = contact_lcp(problem, Covering::Cohesive).expect("covers all");
     let rule = contact.tie_rule(TieBreak::Lexicographic);
     let mut engine = SchemeEngine::new(Arc::clone(&contact.lcp), rule);
     let run = run(&mut engine, 20_000, &mut |_| ControlFlow::Continue(()));
     assert!(matches!(run.outcome, Outcome::Trivial | Outcome::Normal { .. }));
-    let z = contact.joint_displacements(system, &run.point.z) * contact.length_unit;
+    let z = contact.joint_displacements(&problem.system, &run.point.z) * contact.length_unit;
     let basis = run.pivots.basis();
     let engine = engine.into_parametric().expect("stands on an answer");
-    (basis, z, WarmStart::new(engine, contact, numbers.clone()))
+    (basis, z, WarmStart::new(engine, contact, problem.clone()))
 }
 
 #[test]
@@ -58,38 +57,38 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
     for k in 0..400 {
         let m = 1 + k % 14;
         let ties = k % 3 == 0;
-        let (system, mut numbers) = random_system(&mut rng, m, ties);
+        let mut problem = random_system(&mut rng, m, ties);
         if k % 5 == 0 {
             // Start from nothing: everything degenerate where there are no gaps.
-            numbers.load.fill(0.0);
+            problem.load.fill(0.0);
         }
-        let (mut basis, _, mut kept) = cold(&system, &numbers);
+        let (mut basis, _, mut kept) = cold(&problem);
         for step in 0..4 {
-            let mut next = numbers.clone();
+            let mut next = problem.clone();
             next.load = DVector::from_fn(2 * m, |_, _| {
                 if ties { f64::from(rng.random_range(-2..=2)) } else { rng.random_range(-1.0..1.0) }
             });
-            let increment = &next.load - &numbers.load;
-            let contact = path_lcp(&system, &numbers, &increment);
+            let increment = &next.load - &problem.load;
+            let contact = path_lcp(&problem, &increment);
             let mut engine = Parametric::new(Arc::clone(&contact.lcp), &basis, order(&contact)).expect("regular");
             let reach = Reach { target: 1.0, through: false, pivots: 10_000 };
             let path = engine.follow(reach, &mut |_| ControlFlow::Continue(()));
             assert_eq!(path.end, End::Target, "problem {k}.{step}, m = {m}");
-            let z_of = |z: &[f64]| contact.joint_displacements(&system, z) * contact.length_unit;
+            let z_of = |z: &[f64]| contact.joint_displacements(&problem.system, z) * contact.length_unit;
             for knot in path.knots.iter().skip(1) {
-                let mut there = numbers.clone();
+                let mut there = problem.clone();
                 there.load += knot.t * &increment;
-                let (_, z, _) = cold(&system, &there);
+                let (_, z, _) = cold(&there);
                 let error = (z_of(&knot.point.z) - &z).amax();
                 // z_τ of pairs that just touch without force may be anything.
                 assert!(error <= 1e-9, "problem {k}.{step} at t = {}: {error:e}", knot.t);
             }
-            let warm = kept.follow(&system, &next, &Quiet).expect("a way");
-            let (_, z, _) = cold(&system, &next);
-            let found = contact.joint_displacements(&system, &warm.point.z) * warm.length_unit;
+            let warm = kept.follow(&next, &Quiet).expect("a way");
+            let (_, z, _) = cold(&next);
+            let found = contact.joint_displacements(&problem.system, &warm.point.z) * warm.length_unit;
             assert!((&found - &z).amax() <= 1e-11, "problem {k}.{step}");
             basis = engine.basis();
-            numbers = next;
+            problem = next;
         }
     }
 }
@@ -101,25 +100,25 @@ fn warm_starts_follow_friction_to_the_answers_of_cold_runs() {
     let (mut followed, mut all) = (0, 0);
     for k in 0..400 {
         let m = 1 + k % 14;
-        let (system, mut numbers) = random_system(&mut rng, m, k % 3 == 0);
-        let (_, _, mut kept) = cold(&system, &numbers);
+        let mut problem = random_system(&mut rng, m, k % 3 == 0);
+        let (_, _, mut kept) = cold(&problem);
         for step in 0..6 {
             let factor = rng.random_range(0.97..1.03);
-            for law in &mut numbers.laws {
+            for law in &mut problem.laws {
                 *law = law.with_friction(law.friction() * factor);
             }
             if step % 2 == 1 {
-                for load in numbers.load.iter_mut() {
+                for load in problem.load.iter_mut() {
                     *load += rng.random_range(-0.05..0.05);
                 }
             }
-            let (_, z, fresh) = cold(&system, &numbers);
+            let (_, z, fresh) = cold(&problem);
             all += 1;
-            match kept.follow(&system, &numbers, &Quiet) {
+            match kept.follow(&problem, &Quiet) {
                 Some(warm) => {
                     followed += 1;
                     let contact = fresh.contact();
-                    let found = contact.joint_displacements(&system, &warm.point.z) * warm.length_unit;
+                    let found = contact.joint_displacements(&problem.system, &warm.point.z) * warm.length_unit;
                     assert!((&found - &z).amax() <= 1e-10, "problem {k}.{step}");
                 }
                 None => kept = fresh,

@@ -14,12 +14,11 @@ use nalgebra::DVector;
 use num_rational::BigRational;
 
 use crate::contact::law::{PairLaw, TangentialJoint};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::ball::{Ball, Row, size, solved};
 use crate::contact::schemes::bounding_box::ellipsoid;
 use crate::contact::schemes::exact_system::{ExactSystem, PairVariables};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
-use crate::contact::system::ContactSystem;
 use crate::lcp::exact::all_solutions::Solutions;
 use crate::lcp::exact::corners::corners;
 use crate::lcp::exact::dyadic::{nearest, rational};
@@ -111,12 +110,9 @@ fn choices(law: &PairLaw) -> Vec<PairScheme> {
 
 /// Finds every answer. `observer` hears of the progress before every step and may stop the search; what was found until
 /// then is returned as incomplete.
-pub fn enumerate(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
-    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Enumeration {
-    let mut search = Search::new(system, numbers, observer);
+pub fn enumerate(problem: &ContactProblem, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Enumeration {
+    let system = &*problem.system;
+    let mut search = Search::new(problem, observer);
     let mut scheme = Vec::with_capacity(system.pair_count());
     let root = search.root.clone();
     let ended = search.descend(Some(&root), None, &mut scheme, 1.0);
@@ -152,11 +148,8 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(
-        system: &'a ContactSystem,
-        numbers: &'a ContactNumbers,
-        observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Self {
+    fn new(problem: &'a ContactProblem, observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>) -> Self {
+        let system = &*problem.system;
         let m = system.pair_count();
         let mut joints = Vec::new();
         let mut offsets = vec![0];
@@ -165,7 +158,7 @@ impl<'a> Search<'a> {
             joints.extend(system.pairs[pair].tangential);
             offsets.push(joints.len());
         }
-        let exact = ExactSystem::new(system, numbers);
+        let exact = ExactSystem::new(problem);
         let ball = |value: &BigRational| {
             let near = nearest(value);
             if rational(near) == *value { Ball::exactly(near) } else { Ball::rounded(near) }
@@ -193,7 +186,7 @@ impl<'a> Search<'a> {
             joints,
             bounds,
             worth,
-            choices: numbers.laws.iter().map(choices).collect(),
+            choices: problem.laws.iter().map(choices).collect(),
             root: Level { first: 0, rows },
             solutions: Solutions::default(),
             schemes: Vec::new(),
@@ -275,7 +268,7 @@ impl<'a> Search<'a> {
         };
         for (pair, chosen) in scheme.iter().enumerate().skip(decided) {
             if state == State::Feasible {
-                let holds = self.exact.numbers.laws[pair].fixed_bound() > 0.0;
+                let holds = self.exact.problem.laws[pair].fixed_bound() > 0.0;
                 state = self.variables[pair].impose(&mut polyhedron, *chosen, holds, &mut go_on);
             }
         }
@@ -288,13 +281,13 @@ impl<'a> Search<'a> {
 
     /// The dictionary with this pair decided; `None` when a pivot may be zero.
     fn decide(&self, level: &Level, pair: usize, choice: PairScheme) -> Option<Level> {
-        let numbers = self.exact.numbers;
+        let problem = self.exact.problem;
         let k = self.joints.len();
         let width = k + 1 - level.first;
         let n = self.offsets[pair];
         let next = self.offsets[pair + 1];
         let row = |i: usize| &level.rows[i * width..(i + 1) * width];
-        let f = Ball::exactly(numbers.laws[pair].friction());
+        let f = Ball::exactly(problem.laws[pair].friction());
 
         // Equations to be solved for the displacement of a joint.
         let mut equations: Vec<(usize, Row)> = Vec::new();
@@ -307,7 +300,7 @@ impl<'a> Search<'a> {
             let f = if choice.open { Ball::ZERO } else { f };
             let sign = |ball: Ball| if slip > 0.0 { ball } else { ball.negative() };
             let mut equation: Row = row(n + 1).iter().zip(row(n)).map(|(t, n)| t.plus(sign(f.times(*n)))).collect();
-            let bound = Ball::exactly(numbers.laws[pair].fixed_bound());
+            let bound = Ball::exactly(problem.laws[pair].fixed_bound());
             equation[width - 1] = equation[width - 1].plus(sign(bound));
             equations.push((n + 1, equation));
         }
@@ -369,7 +362,7 @@ impl<'a> Search<'a> {
 
     /// Whether some sign of the decided pairs fails for all displacements of the others.
     fn hopeless(&self, level: &Level, scheme: &[PairScheme]) -> bool {
-        let (system, numbers) = (self.exact.system, self.exact.numbers);
+        let (system, laws) = (&self.exact.problem.system, &self.exact.problem.laws);
         let width = self.joints.len() + 1 - level.first;
         let row = |i: usize| &level.rows[i * width..(i + 1) * width];
         let bounds = &self.bounds[level.first..];
@@ -393,7 +386,7 @@ impl<'a> Search<'a> {
         scheme.iter().enumerate().any(|(pair, state)| {
             let n = self.offsets[pair];
             let bilateral = system.pairs[pair].law.is_bilateral();
-            let fixed = numbers.laws[pair].fixed_bound();
+            let fixed = laws[pair].fixed_bound();
             // z_n where open, x_n where closed.
             if !bilateral && fails(&[(n, 1.0)], 0.0) {
                 return true;
@@ -405,7 +398,7 @@ impl<'a> Search<'a> {
                 // An open pair without cohesion slips freely.
                 _ if state.open && fixed == 0.0 => false,
                 Tangential::Stick => [1.0, -1.0].into_iter().any(|side| {
-                    let f = if state.open { 0.0 } else { numbers.laws[pair].friction() };
+                    let f = if state.open { 0.0 } else { laws[pair].friction() };
                     fails(&[(n, f), (n + 1, side)], fixed)
                 }),
                 Tangential::SlipPlus => fails(&[(n + 1, 1.0)], 0.0),
@@ -416,7 +409,7 @@ impl<'a> Search<'a> {
 
     /// All answers of a complete scheme.
     fn leaf(&mut self, polyhedron: &Polyhedron, scheme: &[PairScheme]) -> ControlFlow<()> {
-        let joints: Vec<usize> = (0..self.exact.system.joint_count()).collect();
+        let joints: Vec<usize> = (0..self.exact.problem.system.joint_count()).collect();
         let mut stopped = false;
         let mut go_on = || {
             stopped |= (self.observer)(self.progress).is_break();
@@ -471,8 +464,8 @@ impl<'a> Search<'a> {
         let mut scheme = scheme.to_vec();
         for (pair, chosen) in scheme.iter_mut().enumerate() {
             if *chosen == PairScheme::OPEN
-                && self.exact.numbers.laws[pair].fixed_bound() == 0.0
-                && self.exact.system.pairs[pair].tangential.is_some_and(|joint| state.z[joint] < 0.0)
+                && self.exact.problem.laws[pair].fixed_bound() == 0.0
+                && self.exact.problem.system.pairs[pair].tangential.is_some_and(|joint| state.z[joint] < 0.0)
             {
                 chosen.tangential = Tangential::SlipMinus;
             }

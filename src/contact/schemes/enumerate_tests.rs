@@ -1,13 +1,15 @@
 //! Known answers, and agreement with the tableau on random problems.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::contact::full_lcp::tests::{beam, beam_numbers, coulomb, plain, tangential_first};
-use crate::contact::full_lcp::{WholeInput, full_lcp, rows};
-use crate::contact::lcp::RowKind;
+use crate::contact::full_lcp::full_lcp;
+use crate::contact::full_lcp::tests::{beam, beam_problem, coulomb, plain, tangential_first};
+use crate::contact::rows::{RowKind, rows};
 use crate::contact::schemes::critical::tests::unit_square;
 use crate::lcp::driver::run;
 use crate::lcp::exact::scalar::Scalar;
@@ -16,20 +18,20 @@ use crate::lcp::outcome::Outcome;
 use crate::model::pair::Law;
 use crate::model::rules::Covering;
 
-fn all(system: &ContactSystem, numbers: &ContactNumbers) -> Enumeration {
-    enumerate(system, numbers, &mut |_| ControlFlow::Continue(()))
+fn all(problem: &ContactProblem) -> Enumeration {
+    enumerate(problem, &mut |_| ControlFlow::Continue(()))
 }
 
 #[test]
 fn without_pairs_there_is_the_one_answer_of_the_main_system() {
-    let got = all(&coulomb(DMatrix::zeros(0, 0)), &plain(0.5, &[]));
+    let got = all(&plain(&coulomb(DMatrix::zeros(0, 0)), 0.5, &[]));
     assert_eq!((got.answers.len(), got.total, got.complete), (1, 1, true));
 }
 
 #[test]
 fn klarbring_has_three_answers() {
     let system = coulomb(DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.5]));
-    let got = all(&system, &plain(2.0, &[0.6, -1.0]));
+    let got = all(&plain(&system, 2.0, &[0.6, -1.0]));
     assert_eq!(got.total, 4);
     let expected = [
         (PairScheme::STICK, [0.0, 0.0], [0.6, -1.0]),
@@ -42,7 +44,7 @@ fn klarbring_has_three_answers() {
         assert!((&answer.state.z - DVector::from_row_slice(&z)).amax() < 1e-14);
         assert!((&answer.state.force - DVector::from_row_slice(&x)).amax() < 1e-14);
     }
-    let below = all(&system, &plain(1.4, &[0.6, -1.0]));
+    let below = all(&plain(&system, 1.4, &[0.6, -1.0]));
     assert_eq!(below.answers.len(), 1);
 }
 
@@ -50,7 +52,7 @@ fn klarbring_has_three_answers() {
 fn unit_square_has_three_answers_above_its_critical_friction() {
     let system = unit_square();
     let load = [0.1, 0.1, 0.5, -0.5];
-    let got = all(&system, &plain(1.1, &load));
+    let got = all(&plain(&system, 1.1, &load));
     assert_eq!(got.answers.len(), 3, "{got:?}");
     let slip = got
         .answers
@@ -61,27 +63,27 @@ fn unit_square_has_three_answers_above_its_critical_friction() {
         assert!((slip.state.z[2 + i].abs() - 0.52).abs() < 1e-12);
         assert!((slip.state.force[i] - 0.1).abs() < 1e-12);
     }
-    assert_eq!(all(&system, &plain(0.9, &load)).answers.len(), 1);
+    assert_eq!(all(&plain(&system, 0.9, &load)).answers.len(), 1);
 }
 
 #[test]
 fn beam_beyond_its_limit_has_no_answer() {
     let system = beam();
-    let got = all(&system, &beam_numbers(181.0));
+    let got = all(&beam_problem(181.0));
     assert!(got.no_answer(), "{got:?}");
     // f = ¼ is exact in f64: 125 = 5 · 25, the fifth pair is on its limit and does not move, so two schemes meet in one
     // answer; z_1 = 25 · (1 + 2 + 3 + 4).
     let mut load = [0.0; 12];
     load[..6].fill(100.0);
     load[6] = -125.0;
-    let got = all(&system, &plain(0.25, &load));
+    let got = all(&plain(&system, 0.25, &load));
     assert_eq!(got.answers.len(), 1);
     assert_eq!(got.answers[0].schemes.len(), 2);
     assert_eq!(got.answers[0].state.z[6], 250.0);
-    let got = all(&system, &beam_numbers(150.0));
+    let got = all(&beam_problem(150.0));
     assert_eq!(got.answers.len(), 1);
     assert!((got.answers[0].state.z[6] - 300.0).abs() < 1e-9);
-    let got = all(&system, &beam_numbers(100.0));
+    let got = all(&beam_problem(100.0));
     assert_eq!(got.answers.len(), 1);
 }
 
@@ -92,7 +94,7 @@ fn at_the_limit_there_is_a_continuum() {
     let mut load = [0.0; 12];
     load[..6].fill(1.0);
     load[6] = -3.0;
-    let got = all(&system, &plain(0.5, &load));
+    let got = all(&plain(&system, 0.5, &load));
     assert!(!got.answers.is_empty());
     assert!(got.answers.iter().any(|a| a.continuum), "{got:?}");
 }
@@ -100,14 +102,15 @@ fn at_the_limit_there_is_a_continuum() {
 #[test]
 fn stops_when_told() {
     let system = coulomb(DMatrix::identity(20, 20));
-    let numbers = plain(0.5, &[0.0; 20]);
-    let got = enumerate(&system, &numbers, &mut |_| ControlFlow::Break(()));
+    let problem = plain(&system, 0.5, &[0.0; 20]);
+    let got = enumerate(&problem, &mut |_| ControlFlow::Break(()));
     assert!(!got.complete && !got.no_answer());
 }
 
 /// Lemke's answer by the tableau, in f64.
-fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64>> {
-    let lcp = full_lcp::<f64>(&WholeInput { system, numbers, covering: Covering::Cohesive });
+fn lemke(problem: &ContactProblem) -> Option<DVector<f64>> {
+    let system = &*problem.system;
+    let lcp = full_lcp::<f64>(problem, Covering::Cohesive);
     let run = run(&mut Tableau::new(&lcp, tangential_first(system)), 2000, &mut |_| ControlFlow::Continue(()));
     if !matches!(run.outcome, Outcome::Normal { .. } | Outcome::Trivial) {
         assert!(matches!(run.outcome, Outcome::Ray(_)), "{:?}", run.outcome);
@@ -118,15 +121,15 @@ fn lemke(system: &ContactSystem, numbers: &ContactNumbers) -> Option<DVector<f64
         let value = value.to_f64();
         match row.couple {
             RowKind::Normal => z[row.pair] += value,
-            RowKind::Plus => z[crate::contact::full_lcp::tangential_joint(system, row.pair)] += value,
-            RowKind::Minus => z[crate::contact::full_lcp::tangential_joint(system, row.pair)] -= value,
+            RowKind::Plus => z[row.joint(system)] += value,
+            RowKind::Minus => z[row.joint(system)] -= value,
         }
     }
     Some(z)
 }
 
 /// Random R = AᵀA (integers with ties, or reals), `loose` rows fewer than needed.
-fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> (ContactSystem, ContactNumbers) {
+fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> ContactProblem {
     let k = 2 * m;
     let mut number = |range: i32| {
         if ties {
@@ -142,14 +145,14 @@ fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -
     }
     let load: Vec<f64> = (0..k).map(|_| number(4)).collect();
     let f = [0.25, 0.5, 1.0, 3.0][random.random_range(0..4)];
-    let mut numbers = plain(f, &load);
+    let mut problem = plain(&coulomb(r), f, &load);
     if random.random_bool(0.3) {
-        numbers.laws[0] = numbers.laws[0].with_fixed_bound(1.0);
+        problem.laws[0] = problem.laws[0].with_fixed_bound(1.0);
     }
     if random.random_bool(0.3) {
-        numbers.laws[m - 1] = numbers.laws[m - 1].with_gap(0.5);
+        problem.laws[m - 1] = problem.laws[m - 1].with_gap(0.5);
     }
-    (coulomb(r), numbers)
+    problem
 }
 
 #[test]
@@ -157,9 +160,9 @@ fn finds_the_answer_of_the_tableau() {
     let mut random = ChaCha8Rng::seed_from_u64(11);
     for case in 0..240 {
         let m = 1 + case % 4;
-        let (system, numbers) = random_problem(&mut random, m, case % 2 == 0, 0);
-        let z = lemke(&system, &numbers).expect("positive definite: an answer exists");
-        let got = all(&system, &numbers);
+        let problem = random_problem(&mut random, m, case % 2 == 0, 0);
+        let z = lemke(&problem).expect("positive definite: an answer exists");
+        let got = all(&problem);
         assert!(got.complete && got.undecided == 0, "case {case}");
         let size = z.amax().max(1.0);
         assert!(got.answers.iter().any(|a| (&a.state.z - &z).amax() < 1e-6 * size), "case {case}: {z} {got:?}");
@@ -175,10 +178,10 @@ fn loose_parts_never_contradict_the_tableau() {
     let mut none = 0;
     for case in 0..160 {
         let m = 1 + case % 3;
-        let (system, numbers) = random_problem(&mut random, m, case % 2 == 0, 2);
-        let got = all(&system, &numbers);
+        let problem = random_problem(&mut random, m, case % 2 == 0, 2);
+        let got = all(&problem);
         assert!(got.complete);
-        if lemke(&system, &numbers).is_some() {
+        if lemke(&problem).is_some() {
             assert!(!got.no_answer(), "case {case}");
         }
         none += usize::from(got.no_answer());
@@ -187,8 +190,9 @@ fn loose_parts_never_contradict_the_tableau() {
 }
 
 /// Pairs of all laws; R without the tangential joints of frictionless pairs.
-fn random_mixture(random: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSystem, ContactNumbers) {
-    let (mut system, mut numbers) = random_problem(random, m, ties, 0);
+fn random_mixture(random: &mut ChaCha8Rng, m: usize, ties: bool) -> ContactProblem {
+    let mut problem = random_problem(random, m, ties, 0);
+    let system = Arc::make_mut(&mut problem.system);
     let zero = crate::model::parameter::Number::Value(0.0);
     let mut keep: Vec<usize> = (0..m).collect();
     for pair in 0..m {
@@ -197,23 +201,23 @@ fn random_mixture(random: &mut ChaCha8Rng, m: usize, ties: bool) -> (ContactSyst
             0 => {
                 system.pairs[pair].law = Law::Frictionless { gap: zero.clone() };
                 system.pairs[pair].tangential = None;
-                numbers.laws[pair] = PairLaw::smooth(numbers.laws[pair].gap());
+                problem.laws[pair] = PairLaw::smooth(problem.laws[pair].gap());
                 continue;
             }
             1 => {
                 system.pairs[pair].law = Law::Bound { bound: zero.clone() };
-                numbers.laws[pair] = PairLaw::bilateral(f64::from(random.random_range(0..3)));
+                problem.laws[pair] = PairLaw::bilateral(f64::from(random.random_range(0..3)));
             }
             _ => {
                 let cohesion = f64::from(random.random_range(0..2));
-                numbers.laws[pair] = numbers.laws[pair].with_fixed_bound(cohesion);
+                problem.laws[pair] = problem.laws[pair].with_fixed_bound(cohesion);
             }
         }
         keep.push(m + pair);
     }
     system.stiffness = system.stiffness.select_rows(&keep).select_columns(&keep);
-    numbers.set_load(numbers.load.select_rows(&keep));
-    (system, numbers)
+    problem.set_load(problem.load.select_rows(&keep));
+    problem
 }
 
 #[test]
@@ -221,9 +225,9 @@ fn finds_the_answer_of_the_tableau_for_mixed_laws() {
     let mut random = ChaCha8Rng::seed_from_u64(14);
     for case in 0..300 {
         let m = 1 + case % 4;
-        let (system, numbers) = random_mixture(&mut random, m, case % 2 == 0);
-        let z = lemke(&system, &numbers).expect("positive definite: an answer exists");
-        let got = all(&system, &numbers);
+        let problem = random_mixture(&mut random, m, case % 2 == 0);
+        let z = lemke(&problem).expect("positive definite: an answer exists");
+        let got = all(&problem);
         assert!(got.complete && got.undecided == 0, "case {case}");
         let size = z.amax().max(1.0);
         assert!(got.answers.iter().any(|a| (&a.state.z - &z).amax() < 1e-6 * size), "case {case}: {z} {got:?}");
@@ -236,9 +240,9 @@ fn a_bound_of_1e9_hides_nothing() {
     // being 1e9. Nothing else is an answer, whatever is small beside the bound.
     let mut system = coulomb(DMatrix::identity(4, 4));
     system.pairs[1].law = Law::Bound { bound: crate::model::parameter::Number::Value(1e9) };
-    let mut numbers = plain(0.3, &[-1.0, 1.0, 0.5, 0.25]);
-    numbers.laws[1] = PairLaw::bilateral(1e9);
-    let got = all(&system, &numbers);
+    let mut problem = plain(&system, 0.3, &[-1.0, 1.0, 0.5, 0.25]);
+    problem.laws[1] = PairLaw::bilateral(1e9);
+    let got = all(&problem);
     assert_eq!(got.answers.len(), 1, "{got:?}");
     assert_eq!(got.answers[0].state.z, DVector::from_row_slice(&[1.0, 0.0, -0.5, 0.0]));
     assert!(got.complete && got.undecided == 0 && got.continua.is_empty());
@@ -260,12 +264,13 @@ fn bounds_gaps_and_stiffnesses_of_any_size_leave_one_answer_in_a_diagonal_system
         }
         bounds.iter_mut().for_each(|bound| *bound = scale() * scale());
         let mut system = coulomb(r.clone());
-        let mut numbers = plain(0.25, &load);
+        let mut laws = vec![PairLaw::rubbing(0.25, 0.0, 0.0); m];
         for pair in (0..m).filter(|pair| pair % 2 == 1) {
             system.pairs[pair].law = Law::Bound { bound: crate::model::parameter::Number::Value(bounds[pair]) };
-            numbers.laws[pair] = PairLaw::bilateral(bounds[pair]);
+            laws[pair] = PairLaw::bilateral(bounds[pair]);
         }
-        let got = all(&system, &numbers);
+        let problem = ContactProblem::exactly(&Arc::new(system), laws, DVector::from_row_slice(&load));
+        let got = all(&problem);
         assert_eq!(got.answers.len(), 1, "case {case}: {got:?}");
         for pair in 0..m {
             let (n, t) = (load[pair], load[m + pair]);
@@ -286,7 +291,7 @@ fn a_continuum_tells_its_direction() {
     // One frictionless pair without stiffness, at its limit: it opens without end.
     let mut system = coulomb(DMatrix::zeros(2, 2));
     system.kernel = DMatrix::identity(2, 2);
-    let got = all(&system, &plain(0.5, &[0.0, 0.0]));
+    let got = all(&plain(&system, 0.5, &[0.0, 0.0]));
     assert!(got.complete);
     assert!(!got.continua.is_empty(), "{got:?}");
     let upwards = got.continua.iter().flat_map(|piece| &piece.directions).any(|z| z[0] == 1.0);
@@ -299,12 +304,12 @@ fn a_continuum_tells_its_direction() {
 fn ten_pairs() {
     let mut random = ChaCha8Rng::seed_from_u64(13);
     for (loose, cohesive) in [(0, false), (0, true), (3, false)] {
-        let (system, mut numbers) = random_problem(&mut random, 10, false, loose);
+        let mut problem = random_problem(&mut random, 10, false, loose);
         if cohesive {
-            numbers.laws.iter_mut().for_each(|law| *law = law.with_fixed_bound(0.5));
+            problem.laws.iter_mut().for_each(|law| *law = law.with_fixed_bound(0.5));
         }
         let start = std::time::Instant::now();
-        let got = all(&system, &numbers);
+        let got = all(&problem);
         std::io::Write::write_all(
             &mut std::io::stderr(),
             format!(

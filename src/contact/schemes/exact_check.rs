@@ -12,8 +12,8 @@ use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use crate::contact::full_lcp::tangential_joint;
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::tangential_joint;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
 use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution, clear_denominators};
@@ -112,8 +112,7 @@ struct Form {
 }
 
 struct Forms<'a> {
-    system: &'a ContactSystem,
-    numbers: &'a ContactNumbers,
+    problem: &'a ContactProblem,
     data: Data<'a>,
     /// Columns of the matrix whose displacement is unknown.
     unknown: Vec<usize>,
@@ -131,18 +130,19 @@ struct Data<'a> {
 }
 
 impl<'a> Data<'a> {
-    fn of(system: &'a ContactSystem, numbers: &'a ContactNumbers) -> Data<'a> {
-        match (&system.file, &numbers.file_load) {
+    fn of(problem: &'a ContactProblem) -> Data<'a> {
+        let system = &*problem.system;
+        match (&system.file, &problem.file_load) {
             (Some(file), Some(load)) if !file.compliance => Data {
                 matrix: &file.matrix,
-                constants: constants(&file.matrix, &load.vector, numbers),
+                constants: constants(&file.matrix, &load.vector, problem),
                 row: file.kept.clone(),
                 // Those that follow from others stay at rest: nothing tells where they are.
                 released: file.factor.independent().iter().map(|&row| file.released[row]).collect(),
             },
             _ => Data {
                 matrix: &system.stiffness,
-                constants: constants(&system.stiffness, &numbers.load, numbers),
+                constants: constants(&system.stiffness, &problem.load, problem),
                 row: (0..system.joint_count()).collect(),
                 released: Vec::new(),
             },
@@ -151,10 +151,10 @@ impl<'a> Data<'a> {
 }
 
 /// load − matrix · (g, 0); the normal joint of pair i is row i.
-fn constants(matrix: &DMatrix<f64>, load: &DVector<f64>, numbers: &ContactNumbers) -> Vec<BigRational> {
+fn constants(matrix: &DMatrix<f64>, load: &DVector<f64>, problem: &ContactProblem) -> Vec<BigRational> {
     let exact = <BigRational as Scalar>::from_f64;
     let gaps: Vec<(usize, BigRational)> =
-        numbers.gaps().enumerate().filter(|(_, gap)| *gap != 0.0).map(|(k, gap)| (k, exact(gap))).collect();
+        problem.gaps().enumerate().filter(|(_, gap)| *gap != 0.0).map(|(k, gap)| (k, exact(gap))).collect();
     (0..matrix.nrows())
         .map(|i| gaps.iter().fold(exact(load[i]), |sum, (k, gap)| sum - exact(matrix[(i, *k)]) * gap))
         .collect()
@@ -185,30 +185,30 @@ impl Forms<'_> {
 
     /// x⁺ (side 1) or x⁻ (side −1).
     fn reserve(&self, pair: usize, side: f64) -> Form {
-        let f = self.numbers.laws[pair].friction();
-        let tangential = self.data.row[tangential_joint(self.system, pair)];
-        self.form(&[(tangential, side), (self.data.row[pair], f)], self.numbers.laws[pair].fixed_bound())
+        let f = self.problem.laws[pair].friction();
+        let tangential = self.data.row[tangential_joint(&self.problem.system, pair)];
+        self.form(&[(tangential, side), (self.data.row[pair], f)], self.problem.laws[pair].fixed_bound())
     }
 }
 
 /// Solves `scheme` (one entry per pair) exactly and tells every sign. `progress` hears the share of the work done,
 /// 0 … 1, and may stop it.
 pub fn exact_check(
-    system: &ContactSystem,
-    numbers: &ContactNumbers,
+    problem: &ContactProblem,
     scheme: &[PairScheme],
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ExactCheck {
+    let system = &*problem.system;
     let opens = |pair: usize| scheme[pair].open && !system.pairs[pair].law.is_bilateral();
     let slip = |pair: usize| system.pairs[pair].tangential.map_or(0.0, |_| scheme[pair].tangential.sign());
     let m = system.pair_count();
     let normals = (0..m).filter(|pair| opens(*pair));
     let tangentials = (0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| tangential_joint(system, pair));
-    let data = Data::of(system, numbers);
+    let data = Data::of(problem);
     let unknown: Vec<usize> = normals.chain(tangentials).map(|joint| data.row[joint]).collect();
     let released = unknown.len();
     let unknown = unknown.into_iter().chain(data.released.iter().copied()).collect();
-    let forms = Forms { system, numbers, data, unknown };
+    let forms = Forms { problem, data, unknown };
     let equations: Vec<Form> = (0..m)
         .filter(|pair| opens(*pair))
         .map(|pair| forms.normal(pair))

@@ -3,36 +3,35 @@
 use nalgebra::DMatrix;
 
 use super::*;
-use crate::contact::full_lcp::tests::{beam, beam_numbers, coulomb, plain};
+use crate::contact::full_lcp::tests::{beam_problem, coulomb, plain};
 
-fn check(system: &ContactSystem, numbers: &ContactNumbers, scheme: &[PairScheme]) -> ExactCheck {
-    exact_check(system, numbers, scheme, &mut |_| ControlFlow::Continue(()))
+fn check(problem: &ContactProblem, scheme: &[PairScheme]) -> ExactCheck {
+    exact_check(problem, scheme, &mut |_| ControlFlow::Continue(()))
 }
 
 #[test]
 fn three_answers_of_one_pair_are_proved_and_the_fourth_scheme_refuted() {
     let system = coulomb(DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.5]));
-    let numbers = plain(2.0, &[0.6, -1.0]);
+    let problem = plain(&system, 2.0, &[0.6, -1.0]);
     for scheme in [PairScheme::OPEN, PairScheme::STICK, PairScheme::SLIP_PLUS] {
-        let got = check(&system, &numbers, &[scheme]);
+        let got = check(&problem, &[scheme]);
         assert!(matches!(got.finding, Finding::Proved { .. }), "{got:?}");
     }
-    let got = check(&system, &numbers, &[PairScheme::SLIP_MINUS]);
+    let got = check(&problem, &[PairScheme::SLIP_MINUS]);
     let Finding::Refuted { violations } = got.finding else { panic!() };
     assert!(violations.iter().any(|v| v.id == "c1" && v.value < 0.0));
 }
 
 #[test]
 fn sliding_beam_is_singular_and_inconsistent() {
-    let system = beam();
-    let got = check(&system, &beam_numbers(181.0), &[PairScheme::SLIP_PLUS; 6]);
+    let got = check(&beam_problem(181.0), &[PairScheme::SLIP_PLUS; 6]);
     assert_eq!(got.finding, Finding::Singular { rank: 5, consistent: false });
     let mut scheme = [PairScheme::STICK; 6];
     scheme[..3].fill(PairScheme::SLIP_PLUS);
-    let got = check(&system, &beam_numbers(100.0), &scheme);
+    let got = check(&beam_problem(100.0), &scheme);
     assert!(matches!(got.finding, Finding::Proved { .. }));
     scheme[2] = PairScheme::STICK;
-    let got = check(&system, &beam_numbers(100.0), &scheme);
+    let got = check(&beam_problem(100.0), &scheme);
     let Finding::Refuted { violations } = got.finding else { panic!() };
     assert_eq!(violations[0].id, "c3");
     assert_eq!(violations[0].quantity, Quantity::XPlus);
@@ -41,9 +40,8 @@ fn sliding_beam_is_singular_and_inconsistent() {
 
 #[test]
 fn stops_when_told() {
-    let system = beam();
-    let numbers = beam_numbers(100.0);
-    let got = exact_check(&system, &numbers, &[PairScheme::OPEN; 6], &mut |_| ControlFlow::Break(()));
+    let problem = beam_problem(100.0);
+    let got = exact_check(&problem, &[PairScheme::OPEN; 6], &mut |_| ControlFlow::Break(()));
     assert_eq!(got.finding, Finding::Interrupted);
 }
 
@@ -57,9 +55,9 @@ fn sixty_pairs() {
     let a = DMatrix::from_fn(k, k, |_, _| random.random_range(-1.0..1.0));
     let system = coulomb(&a * a.transpose());
     let load: Vec<f64> = (0..k).map(|_| random.random_range(-1.0..1.0)).collect();
-    let numbers = plain(0.3, &load);
+    let problem = plain(&system, 0.3, &load);
     let start = std::time::Instant::now();
-    let got = check(&system, &numbers, &[PairScheme::OPEN; 60]);
+    let got = check(&problem, &[PairScheme::OPEN; 60]);
     assert!(matches!(got.finding, Finding::Refuted { .. }));
     std::io::Write::write_all(
         &mut std::io::stderr(),

@@ -9,7 +9,7 @@ use crate::lcp::exact::dyadic::{WholeRows, rational};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
 use crate::lcp::exact::rational_solve::rank_modulo_prime;
 
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
 
@@ -18,8 +18,7 @@ const WHOLE: f64 = 64.0 * f64::EPSILON;
 
 /// λ = R z + constants, exactly.
 pub(crate) struct ExactSystem<'a> {
-    pub system: &'a ContactSystem,
-    pub numbers: &'a ContactNumbers,
+    pub problem: &'a ContactProblem,
     /// R, its kernel exact.
     pub stiffness: Vec<Vec<BigRational>>,
     /// RF − R·(g, 0).
@@ -37,24 +36,26 @@ pub(crate) struct PairVariables {
 }
 
 impl<'a> ExactSystem<'a> {
-    pub fn new(system: &'a ContactSystem, numbers: &'a ContactNumbers) -> Self {
-        let (stored, mut constants) = stored(system, numbers);
+    pub fn new(problem: &'a ContactProblem) -> Self {
+        let system = &*problem.system;
+        let (stored, mut constants) = stored(problem);
         let stiffness = with_exact_kernel(system, stored);
-        for (k, gap) in numbers.gaps().enumerate().filter(|(_, gap)| *gap != 0.0) {
+        for (k, gap) in problem.gaps().enumerate().filter(|(_, gap)| *gap != 0.0) {
             let gap = rational(gap);
             constants.iter_mut().zip(&stiffness).for_each(|(constant, row)| *constant -= &row[k] * &gap);
         }
-        Self { system, numbers, stiffness, constants }
+        Self { problem, stiffness, constants }
     }
 
     /// Variables: z of all joints, then x_n, x⁺, x⁻ pair by pair.
     pub fn variables(&self) -> Vec<PairVariables> {
-        let mut next = self.system.joint_count();
+        let mut next = self.problem.system.joint_count();
         let mut take = || {
             next += 1;
             next - 1
         };
-        self.system
+        self.problem
+            .system
             .pairs
             .iter()
             .enumerate()
@@ -69,13 +70,13 @@ impl<'a> ExactSystem<'a> {
     /// What every answer obeys whatever its scheme: all signs but those of the slips, and the `sides` (joint, lowest and
     /// highest displacement) of a box that holds it.
     pub fn polyhedron(&self, sides: &[(usize, f64, f64)], go_on: &mut GoOn) -> (Polyhedron, State) {
-        let k = self.system.joint_count();
+        let k = self.problem.system.joint_count();
         let mut rows = WholeRows::default();
-        for i in 0..self.system.pair_count() {
-            if !self.system.pairs[i].law.is_bilateral() {
+        for i in 0..self.problem.system.pair_count() {
+            if !self.problem.system.pairs[i].law.is_bilateral() {
                 rows.push_rational(&self.form(i, None));
             }
-            if self.system.pairs[i].tangential.is_some() {
+            if self.problem.system.pairs[i].tangential.is_some() {
                 rows.push_rational(&self.form(i, Some(true)));
                 rows.push_rational(&self.form(i, Some(false)));
             }
@@ -85,16 +86,16 @@ impl<'a> ExactSystem<'a> {
             for (sign, end) in [(1.0, -low), (-1.0, high)] {
                 (row[joint], row[k]) = (sign, end);
                 // A normal is ≥ 0 as it is.
-                if end.is_finite() && (joint >= self.system.pair_count() || sign < 0.0) {
+                if end.is_finite() && (joint >= self.problem.system.pair_count() || sign < 0.0) {
                     rows.push(&row);
                 }
             }
         }
-        let slips: Vec<usize> = self.system.pairs.iter().filter_map(|pair| pair.tangential).collect();
+        let slips: Vec<usize> = self.problem.system.pairs.iter().filter_map(|pair| pair.tangential).collect();
         let mut made = Polyhedron::new(k, rows, &slips);
         let mut state = made.restore(go_on);
-        for i in 0..self.system.pair_count() {
-            if self.system.pairs[i].law.is_bilateral() && state == State::Feasible {
+        for i in 0..self.problem.system.pair_count() {
+            if self.problem.system.pairs[i].law.is_bilateral() && state == State::Feasible {
                 state = made.fix(i, go_on);
             }
         }
@@ -104,10 +105,10 @@ impl<'a> ExactSystem<'a> {
     /// x_n of a pair, or its x⁺ or x⁻: coefficients over z, the constant last.
     fn form(&self, pair: usize, reserve: Option<bool>) -> Vec<BigRational> {
         let whole = |joint: usize| self.stiffness[joint].iter().chain([&self.constants[joint]]);
-        let Some((plus, joint)) = reserve.zip(self.system.pairs[pair].tangential) else {
+        let Some((plus, joint)) = reserve.zip(self.problem.system.pairs[pair].tangential) else {
             return whole(pair).cloned().collect();
         };
-        let f = rational(self.numbers.laws[pair].friction());
+        let f = rational(self.problem.laws[pair].friction());
         let mut row: Vec<BigRational> = whole(joint)
             .zip(whole(pair))
             .map(|(t, n)| {
@@ -116,7 +117,7 @@ impl<'a> ExactSystem<'a> {
             })
             .collect();
         if let Some(constant) = row.last_mut() {
-            *constant += rational(self.numbers.laws[pair].fixed_bound());
+            *constant += rational(self.problem.laws[pair].fixed_bound());
         }
         row
     }
@@ -173,15 +174,16 @@ impl PairVariables {
 
 /// R and RF as they are stored; of a file with frictionless pairs from its own entries, the released tangential joints
 /// condensed out exactly.
-fn stored(system: &ContactSystem, numbers: &ContactNumbers) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
+fn stored(problem: &ContactProblem) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
+    let system = &*problem.system;
     let all = |matrix: &DMatrix<f64>| -> Vec<Vec<BigRational>> {
         matrix.row_iter().map(|row| row.iter().map(|entry| rational(*entry)).collect()).collect()
     };
-    let (Some(file), Some(load)) = (&system.file, &numbers.file_load) else {
-        return (all(&system.stiffness), numbers.load.iter().map(|entry| rational(*entry)).collect());
+    let (Some(file), Some(load)) = (&system.file, &problem.file_load) else {
+        return (all(&system.stiffness), problem.load.iter().map(|entry| rational(*entry)).collect());
     };
     if file.compliance {
-        return (all(&system.stiffness), numbers.load.iter().map(|entry| rational(*entry)).collect());
+        return (all(&system.stiffness), problem.load.iter().map(|entry| rational(*entry)).collect());
     }
     let mut rows = all(&file.matrix);
     rows.iter_mut().zip(load.vector.iter()).for_each(|(row, load)| row.push(rational(*load)));

@@ -11,8 +11,8 @@ use crate::model::parameter::ParameterValues;
 use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
 use crate::path::stages::History;
-use crate::solve::numbers::{contact_numbers, factors};
 use crate::solve::prepared::Geometry;
+use crate::solve::problem::{contact_problem, factors};
 use crate::solve::{Case, Prepared, Solved};
 use crate::watch::Watch;
 
@@ -132,8 +132,8 @@ impl<'a> Facts<'a> {
         let found = self.displacements.get_or_init(|| {
             let (prepared, (_, main)) = (self.prepared?, self.structure().ok()?);
             let system = prepared.system()?;
-            let numbers = contact_numbers(system, &self.factors, self.values);
-            Some(main.displacements(&self.factors, &numbers.dislocation(&self.joints(|pair| [pair.z_n, pair.z_t]))))
+            let problem = contact_problem(system, &self.factors, self.values);
+            Some(main.displacements(&self.factors, &problem.dislocation(&self.joints(|pair| [pair.z_n, pair.z_t]))))
         });
         found.as_ref().ok_or_else(|| self.missing())
     }

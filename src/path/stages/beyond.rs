@@ -7,7 +7,8 @@ use super::follower::{Follower, Way};
 use super::walk::Walk;
 use crate::answer::pairs::pair_states;
 use crate::answer::record::{Ray, State, Verdict};
-use crate::contact::lcp::{RowKind, contact_lcp};
+use crate::contact::lcp::contact_lcp;
+use crate::contact::rows::RowKind;
 use crate::explain::ray;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::variable::Variable;
@@ -58,13 +59,13 @@ impl Walk<'_> {
 
     /// The motion as a ray, its class, and whether the equilibrium LP just beyond proves it.
     fn collapse(&self, course: &Course, t: f64, motion: &DVector<f64>, p: f64) -> Result<Ray, PathError> {
-        let system = self.place.laws.system;
-        let numbers = {
+        let system = &*self.place.laws.problem.system;
+        let problem = {
             let at = t + CERTIFIED_AT;
-            self.numbers_at(&course.factors_at(at), &course.gaps_at(at))
+            self.problem_at(&course.factors_at(at), &course.gaps_at(at))
         };
         let contact =
-            contact_lcp(system, &numbers, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
+            contact_lcp(&problem, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
         let mut z = vec![0.0; contact.rows.len()];
         for (row, meaning) in contact.rows.iter().enumerate() {
             z[row] = match (meaning.couple, system.pairs[meaning.pair].tangential) {
@@ -76,7 +77,7 @@ impl Walk<'_> {
         }
         let w = vec![0.0; contact.rows.len()];
         let direction = RayDirection { entering: Variable::P, z, w, p: 0.0 };
-        Ok(ray::report(system, &numbers, &contact, &direction, p))
+        Ok(ray::report(&problem, None, &contact, &direction, p))
     }
 
     /// The answer of eq. (8) just beyond, in increments from the present slip, where there is one; the place it is at.
@@ -106,19 +107,20 @@ impl Walk<'_> {
 
     /// The answer of eq. (8) at a place, in increments from the present slip.
     fn answer_at(&self, course: &Course, to: f64) -> Result<Option<There>, PathError> {
-        let system = self.place.laws.system;
+        let system = &*self.place.laws.problem.system;
         let mut committed = self.standing.z.clone();
         for i in 0..system.pair_count() {
             committed[i] = 0.0;
         }
-        let mut numbers = self.numbers_at(&course.factors_at(to), &course.gaps_at(to));
-        numbers.load += &system.stiffness * &committed;
-        let found = cold(system, &numbers, self.place.watch)?;
+        let mut problem = self.problem_at(&course.factors_at(to), &course.gaps_at(to));
+        let shift = &system.stiffness * &committed;
+        problem.add_load(1.0, &shift, &shift.abs());
+        let found = cold(&problem, self.place.watch)?;
         if found.basis.is_none() {
             return Ok(None);
         }
-        let state = state_of(system, &numbers, &found.contact, &found.point);
-        let pairs = pair_states(system, &numbers, &found.contact, &state);
+        let state = state_of(&problem, &found.contact, &found.point);
+        let pairs = pair_states(&problem, &found.contact, &state);
         let states = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
         Ok(Some(There { z: state.z + committed, states }))
     }

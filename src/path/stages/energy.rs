@@ -2,7 +2,7 @@
 //! two moments.
 
 use super::record::{Energy, History, Moment, StageResult};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::fem::{Displacements, Loaded};
 use crate::solve::Prepared;
@@ -25,11 +25,11 @@ fn loaded<'a>(u: &'a Displacements, moment: &'a Moment) -> Loaded<'a> {
 }
 
 /// W = Σ ½ (F_a + F_b)·Δu and ΔU of every stage, and what is left of W − ΔU − D beside the largest energy met.
-pub(super) fn balance(prepared: &Prepared, numbers: &ContactNumbers, history: &mut History) {
+pub(super) fn balance(prepared: &Prepared, problem: &ContactProblem, history: &mut History) {
     let Geometry::Structure { main, .. } = &*prepared.geometry else {
         return;
     };
-    let displacements = |moment: &Moment| main.displacements(&moment.factors, &numbers.dislocation(&moment.state.z));
+    let displacements = |moment: &Moment| main.displacements(&moment.factors, &problem.dislocation(&moment.state.z));
     let (mut largest, mut work, mut dissipated) = (0.0_f64, 0.0_f64, 0.0_f64);
     let mut of_stage = |stage: &StageResult| {
         let mut energy = Energy::default();

@@ -16,7 +16,7 @@ pub(super) fn next_event(
     sizes: &DVector<f64>,
 ) -> (f64, Vec<Reached>) {
     let force_noise = laws.force_sizes(&rates.z, sizes) * NOISE;
-    let length_noise = laws.length_sizes(&joint_scales(laws.system), &rates.z) * NOISE;
+    let length_noise = laws.length_sizes(&joint_scales(&laws.problem.system), &rates.z) * NOISE;
     let mut first = f64::INFINITY;
     let mut reached = Vec::new();
     let mut watch = |value: f64, rate: f64, noise: f64, limit: Reached| {
@@ -32,7 +32,7 @@ pub(super) fn next_event(
             reached.push(limit);
         }
     };
-    for (i, pair) in laws.system.pairs.iter().enumerate() {
+    for (i, pair) in laws.problem.system.pairs.iter().enumerate() {
         match standing.normal[i] {
             Normal::Open => watch(standing.z[i], rates.z[i], length_noise[i], Reached::Closing(i)),
             Normal::Closed => watch(standing.force[i], rates.force[i], force_noise[i], Reached::Opening(i)),

@@ -9,7 +9,7 @@ use super::record::{History, HistoryEnd, Moment, StageResult};
 use super::standing::Laws;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{OutcomeKind, PairState, Ray, State};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::path::change::{between, sentence};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
@@ -32,7 +32,7 @@ impl<'a> Place<'a> {
     /// Without loads, interfering parts apart.
     pub(super) fn unloaded(prepared: &'a Prepared, laws: Laws<'a>, watch: &'a dyn Watch) -> Place<'a> {
         let factors = vec![0.0; prepared.cases.len()];
-        let gaps = laws.numbers.gaps().map(|gap| gap.max(0.0)).collect();
+        let gaps = laws.problem.gaps().map(|gap| gap.max(0.0)).collect();
         Place { prepared, laws, watch, factors, gaps, way: Vec::new() }
     }
 }
@@ -59,8 +59,8 @@ pub(super) trait Follower<'a> {
     /// The pairs there.
     fn states(&self) -> Vec<PairState>;
 
-    /// The numbers of the laws under these factors and gaps.
-    fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers;
+    /// The problem under these factors and gaps.
+    fn problem_at(&self, factors: &[f64], gaps: &[f64]) -> ContactProblem;
 
     /// Goes through one stage.
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError>;
@@ -68,7 +68,7 @@ pub(super) trait Follower<'a> {
     /// Puts parts with interference (gaps below 0) together.
     fn put_together(&mut self) -> Result<(), PathError> {
         let Place { laws, factors, gaps, .. } = self.place();
-        let own: Vec<f64> = laws.numbers.gaps().collect();
+        let own: Vec<f64> = laws.problem.gaps().collect();
         if own.iter().all(|gap| *gap >= 0.0) {
             return Ok(());
         }
@@ -120,12 +120,12 @@ pub(super) trait Follower<'a> {
     /// A stage that has been followed, from the pairs `before` it.
     fn result(&self, mut way: Way, before: &[PairState], limit: Option<&(f64, Ray)>) -> StageResult {
         let Place { prepared, laws, factors, gaps, .. } = self.place();
-        let system = laws.system;
+        let system = &*laws.problem.system;
         tell_changes(&mut way.moments, || system.pairs.iter().map(|pair| pair.id.as_str()));
-        let numbers = self.numbers_at(factors, gaps);
+        let problem = self.problem_at(factors, gaps);
         let pairs = self.states();
         let slip = pairs.iter().zip(before).map(|(pair, before)| pair.z_t - before.z_t).collect();
-        let mut end = prepared.history_answer(system, &numbers, factors, &self.state(), &way.last_slip, pairs);
+        let mut end = prepared.history_answer(&problem, &self.state(), &way.last_slip, pairs);
         if let Some((_, collapse)) = limit
             && end.is_answer()
         {
@@ -148,7 +148,7 @@ pub(super) trait Follower<'a> {
 pub(super) fn recorded(place: &Place<'_>, stages: Vec<StageResult>, end: HistoryEnd) -> History {
     let cases = place.prepared.cases.iter().map(|(name, _)| name.clone()).collect();
     let mut history = History { cases, stages, end };
-    energy::balance(place.prepared, place.laws.numbers, &mut history);
+    energy::balance(place.prepared, place.laws.problem, &mut history);
     history
 }
 

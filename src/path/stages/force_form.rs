@@ -18,10 +18,10 @@ use super::standing::Laws;
 use super::walk::breakdown;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State};
-use crate::contact::lcp::{ContactLcp, load_with_gaps};
+use crate::contact::lcp::ContactLcp;
 use crate::contact::load_path::{is_answer, order, path_lcp};
-use crate::contact::numbers::ContactNumbers;
-use crate::explain::ray::full_report;
+use crate::contact::problem::ContactProblem;
+use crate::explain::ray;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{Parametric, Reach};
 use crate::lcp::variable::Variable;
@@ -67,48 +67,48 @@ pub(super) fn follow<'a>(
     targets: &[Vec<f64>],
     watch: &'a dyn Watch,
 ) -> Result<History, PathError> {
-    let joints = laws.system.joint_count();
+    let joints = laws.problem.system.joint_count();
     let mut walk = ForcedWalk {
         place: Place::unloaded(prepared, laws, watch),
-        state: JointState::at(laws.system, laws.numbers, DVector::zeros(joints), 0.0),
+        state: JointState::at(laws.problem, DVector::zeros(joints), 0.0),
         slips: DVector::zeros(joints),
         pairs: Vec::new(),
-        last_slip: vec![0.0; laws.system.pair_count()],
+        last_slip: vec![0.0; laws.problem.system.pair_count()],
     };
-    let numbers = walk.numbers_at(&walk.place.factors, &walk.place.gaps);
-    let unloaded = cold(laws.system, &numbers, watch)?;
+    let problem = walk.problem_at(&walk.place.factors, &walk.place.gaps);
+    let unloaded = cold(&problem, watch)?;
     if unloaded.basis.is_none() {
         let how = "in a ray: the gaps of the unloaded parts do not fit together".to_owned();
         return Err(PathError::NoStart { name: "interference".to_owned(), at: 0.0, how });
     }
-    walk.stand(&numbers, &unloaded.contact, &unloaded.point);
+    walk.stand(&problem, &unloaded.contact, &unloaded.point);
     walk.put_together()?;
     let (stages, end) = walk.stages(targets)?;
     Ok(recorded(&walk.place, stages, end))
 }
 
 impl ForcedWalk<'_> {
-    /// The numbers for slips that count from the committed ones.
-    fn beyond_slips(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
-        let system = self.place.laws.system;
-        let mut numbers = self.numbers_at(factors, gaps);
+    /// The problem for slips that count from the committed ones.
+    fn beyond_slips(&self, factors: &[f64], gaps: &[f64]) -> ContactProblem {
+        let system = &*self.place.laws.problem.system;
+        let mut problem = self.problem_at(factors, gaps);
         for joint in (0..self.slips.len()).filter(|&joint| self.slips[joint] != 0.0) {
             let slip = self.slips[joint];
             let shift = match system.is_forced(joint) {
                 true => DVector::from_fn(self.slips.len(), |i, _| if i == joint { -slip } else { 0.0 }),
                 false => system.stiffness.column(joint) * slip,
             };
-            numbers.add_load(1.0, &shift, &shift.abs());
+            problem.add_load(1.0, &shift, &shift.abs());
         }
-        numbers
+        problem
     }
 
     /// Stands at a point of an LCP of increments of slip.
-    fn stand(&mut self, numbers: &ContactNumbers, contact: &ContactLcp, point: &Point) {
-        let system = self.place.laws.system;
-        let mut state = state_of(system, numbers, contact, point);
+    fn stand(&mut self, problem: &ContactProblem, contact: &ContactLcp, point: &Point) {
+        let system = &*self.place.laws.problem.system;
+        let mut state = state_of(problem, contact, point);
         state.left.clear();
-        let mut pairs = pair_states(system, numbers, contact, &state);
+        let mut pairs = pair_states(problem, contact, &state);
         self.place.way = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
         for (i, (pair, shown)) in system.pairs.iter().zip(&mut pairs).enumerate() {
             let Some(joint) = pair.tangential else { continue };
@@ -135,14 +135,13 @@ impl ForcedWalk<'_> {
 
     /// The next event after t, found from the scheme a little ahead.
     fn ahead(&self, course: &Course, rate: &DVector<f64>, t: f64, way: &mut Way) -> Result<Ahead, PathError> {
-        let system = self.place.laws.system;
         let here = self.beyond_slips(&course.factors_at(t), &course.gaps_at(t));
-        let path = path_lcp(system, &here, rate);
+        let path = path_lcp(&here, rate);
         let (mut jump, mut limit) = (None, None);
         for step in AHEAD {
             let to = (t + step).min(1.0);
-            let numbers = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
-            let found = cold(system, &numbers, self.place.watch)?;
+            let problem = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let found = cold(&problem, self.place.watch)?;
             let Some(basis) = &found.basis else {
                 let p = found.point.p * found.contact.force_unit;
                 limit = found.ray().cloned().map(|ray| Box::new((found.contact.clone(), ray, p)));
@@ -168,23 +167,20 @@ impl ForcedWalk<'_> {
 
     /// The collapse at place t of a stage, from the ray met just beyond it.
     fn collapse(&self, course: &Course, t: f64, ray: Option<Box<(ContactLcp, RayDirection, f64)>>) -> Ray {
-        let system = self.place.laws.system;
         // At the limit itself the forces still balance.
         let (factors, gaps) = (course.factors_at(t + AHEAD[1]), course.gaps_at(t + AHEAD[1]));
-        let numbers = self.beyond_slips(&factors, &gaps);
-        let cases = self.place.prepared.named_factors(&factors);
-        let subject = self.place.prepared.subject(system, &numbers, &cases);
+        let problem = self.beyond_slips(&factors, &gaps);
         let (contact, direction, p) = match ray {
             Some(found) => *found,
             // The run ended in no ray: there is no motion to show.
             None => {
-                let contact = path_lcp(system, &numbers, &numbers.load);
+                let contact = path_lcp(&problem, &problem.load);
                 let still = vec![0.0; contact.rows.len()];
                 let direction = RayDirection { entering: Variable::P, z: still.clone(), w: still, p: 0.0 };
                 (contact, direction, 0.0)
             }
         };
-        let mut collapse = full_report(&subject, &contact, &direction, p);
+        let mut collapse = ray::report(&problem, self.place.prepared.built(), &contact, &direction, p);
         collapse.explanation = explanation(&collapse).to_owned();
         collapse
     }
@@ -202,27 +198,19 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
     fn states(&self) -> Vec<PairState> {
         let Place { prepared, factors, gaps, .. } = &self.place;
         let mut pairs = self.pairs.clone();
-        prepared.add_released_slips(&mut pairs, &self.numbers_at(factors, gaps), factors, &self.state.z);
+        prepared.add_released_slips(&mut pairs, &self.problem_at(factors, gaps), &self.state.z);
         pairs
     }
 
-    fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
-        let mut numbers = self.place.laws.numbers.with_gaps(gaps);
-        numbers.set_load(DVector::zeros(self.place.laws.system.joint_count()));
-        for (load, factor) in self.place.laws.system.loads.iter().zip(factors) {
-            numbers.add_load(*factor, &load.vector, &load.terms);
-        }
-        numbers.file_load = self.place.laws.system.file.as_ref().map(|file| file.load(factors));
-        numbers
+    fn problem_at(&self, factors: &[f64], gaps: &[f64]) -> ContactProblem {
+        self.place.laws.problem.clone().with_gaps(gaps).with_factors(factors)
     }
 
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
         let none = DVector::zeros(self.slips.len());
         let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
         let (mut t, mut events) = (0.0, 0);
-        let constants = |at: f64| {
-            load_with_gaps(self.place.laws.system, &self.numbers_at(&course.factors_at(at), &course.gaps_at(at)))
-        };
+        let constants = |at: f64| self.problem_at(&course.factors_at(at), &course.gaps_at(at)).joint_constants();
         let rate = constants(1.0) - constants(0.0);
         while t < 1.0 {
             self.place.watch.progress("stages", report(t));
@@ -236,10 +224,10 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
                 Ahead::Limit(ray) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
             };
             let (factors, gaps) = (course.factors_at(to), course.gaps_at(to));
-            let numbers = self.beyond_slips(&factors, &gaps);
+            let problem = self.beyond_slips(&factors, &gaps);
             let before = self.slips.clone();
             (self.place.factors, self.place.gaps) = (factors, gaps);
-            self.stand(&numbers, &contact, &point);
+            self.stand(&problem, &contact, &point);
             way.last_slip = &self.slips - before;
             way.moments.push(self.moment(to, jump));
             t = to;

@@ -28,7 +28,7 @@ use walk::Walk;
 
 use super::start::PathError;
 use crate::solve::Case;
-use crate::solve::numbers::{contact_numbers, factors};
+use crate::solve::problem::{contact_problem, factors};
 
 /// Follows the stages of the scenario from the unloaded structure.
 ///
@@ -66,9 +66,9 @@ pub fn follow_factors(case: Case<'_>, targets: &[Vec<f64>]) -> Result<History, P
     let Case { prepared, values, watch, .. } = case;
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let none = vec![0.0; prepared.cases.len()];
-    let numbers = contact_numbers(system, &none, values);
+    let problem = contact_problem(system, &none, values);
     let start = Instant::now();
-    let laws = Laws { system, numbers: &numbers };
+    let laws = Laws { problem: &problem };
     let mut history = match system.force_form {
         Some(_) => force_form::follow(prepared, laws, targets, watch)?,
         None => Walk::start(prepared, laws, watch)?.follow(targets)?,

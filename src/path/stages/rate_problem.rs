@@ -15,7 +15,8 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::released::Released;
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
-use crate::contact::lcp::{ContactLcp, RowId, RowKind, power_of_two};
+use crate::contact::lcp::{ContactLcp, power_of_two};
+use crate::contact::rows::{RowId, RowKind};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
@@ -77,7 +78,7 @@ fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
         RowKind::Minus => -1.0,
     };
     let mut terms: Vec<(usize, f64)> =
-        laws.system.pairs[pair].tangential.map(|joint| (joint, sign)).into_iter().collect();
+        laws.problem.system.pairs[pair].tangential.map(|joint| (joint, sign)).into_iter().collect();
     if !open && laws.friction(pair) > 0.0 {
         terms.push((pair, laws.friction(pair)));
     }
@@ -86,7 +87,7 @@ fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
 
 /// The joint that the z of a couple moves, and in which sense.
 fn moved(laws: Laws<'_>, meaning: RowId) -> (usize, f64) {
-    let tangential = laws.system.pairs[meaning.pair].tangential.unwrap_or(meaning.pair);
+    let tangential = laws.problem.system.pairs[meaning.pair].tangential.unwrap_or(meaning.pair);
     match meaning.couple {
         RowKind::Normal => (meaning.pair, 1.0),
         RowKind::Plus => (tangential, 1.0),
@@ -98,11 +99,11 @@ impl<'a> RateProblem<'a> {
     /// Writes the rate problem of a standing under the load's rate; `None` where the released joints have no stiffness
     /// matrix that can be factorized.
     pub(super) fn new(laws: Laws<'a>, standing: &Standing, rate: &'a DVector<f64>) -> Option<RateProblem<'a>> {
-        let pairs = &laws.system.pairs;
+        let pairs = &laws.problem.system.pairs;
         let mut joints: Vec<usize> = (0..pairs.len()).filter(|&i| standing.is_open(i)).collect();
         let free = (0..pairs.len()).filter(|&i| standing.tangential[i] == Tangential::Free);
         joints.extend(free.filter_map(|i| pairs[i].tangential));
-        let released = Released::new(laws.system, joints)?;
+        let released = Released::new(&laws.problem.system, joints)?;
         let contact = write(laws, standing, &released, rate);
         Some(RateProblem { laws, contact, released, rate })
     }
@@ -196,7 +197,7 @@ impl<'a> RateProblem<'a> {
             None
         } else {
             let joints = self.released.joints.iter().copied().filter(|joint| !close.contains(joint)).collect();
-            Released::new(self.laws.system, joints)
+            Released::new(&self.laws.problem.system, joints)
         };
         let released = narrower.as_ref().unwrap_or(&self.released);
         let force = self.laws.force(z, load);
@@ -204,7 +205,7 @@ impl<'a> RateProblem<'a> {
         let left = released.solve(&released.pick(&force));
         let mut after = force.clone();
         for (&joint, v) in released.joints.iter().zip(left.iter()) {
-            after.axpy(-v, &self.laws.system.stiffness.column(joint), 1.0);
+            after.axpy(-v, &self.laws.problem.system.stiffness.column(joint), 1.0);
         }
         let residual = DVector::from_fn(moving.len(), |a, _| {
             let own = if moving[a].couple == RowKind::Normal { 0.0 } else { constant(moving[a].pair) };
@@ -277,7 +278,7 @@ fn search(lcp: &MirroredLcp) -> Option<(Vec<f64>, Vec<usize>)> {
 
 /// R of the given joints, the released ones condensed out. (An open pair's normal joint among them has no entry left.)
 fn condensed(laws: Laws<'_>, released: &Released, joints: &[usize]) -> DMatrix<f64> {
-    let r = &laws.system.stiffness;
+    let r = &laws.problem.system.stiffness;
     let own = DMatrix::from_fn(joints.len(), joints.len(), |a, b| r[(joints[a], joints[b])]);
     if released.joints.is_empty() {
         return own;
@@ -288,7 +289,7 @@ fn condensed(laws: Laws<'_>, released: &Released, joints: &[usize]) -> DMatrix<f
 
 /// The primary rows: all normal ones, then the tangential ones.
 fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
-    let pairs = &laws.system.pairs;
+    let pairs = &laws.problem.system.pairs;
     let grazing = (0..pairs.len()).filter(|&i| standing.normal[i] == Normal::Grazing);
     let normals = grazing.map(|pair| Row { pair, joint: pair, couple: RowKind::Normal, mirrored: false });
     let tangentials = (0..pairs.len()).filter_map(|pair| {
@@ -306,7 +307,7 @@ fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
 
 /// Writes the LCP, dimensionless as that of eq. (8).
 fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVector<f64>) -> ContactLcp {
-    let system = laws.system;
+    let system = &*laws.problem.system;
     let primary = primary_rows(laws, standing);
     let count = primary.len();
     let mut joints: Vec<usize> = primary.iter().flat_map(|row| [row.joint, row.pair]).collect();
@@ -392,7 +393,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
     ContactLcp {
         swapped: vec![false; rows.len()],
         lcp: Arc::new(lcp),
-        friction: laws.numbers.frictions(),
+        friction: laws.problem.frictions(),
         rows,
         force_unit,
         length_unit: force_unit / stiffness_unit,

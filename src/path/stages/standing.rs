@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::answer::record::{PairState, State};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
 
@@ -75,29 +75,28 @@ pub(super) enum Reached {
 /// The laws of the pairs with their numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Laws<'a> {
-    pub(super) system: &'a ContactSystem,
-    pub(super) numbers: &'a ContactNumbers,
+    pub(super) problem: &'a ContactProblem,
 }
 
 impl Laws<'_> {
     pub(super) fn friction(&self, pair: usize) -> f64 {
-        self.numbers.laws[pair].friction()
+        self.problem.laws[pair].friction()
     }
 
     /// What the bound has besides f x_n.
     pub(super) fn constant(&self, pair: usize) -> f64 {
-        self.numbers.laws[pair].fixed_bound()
+        self.problem.laws[pair].fixed_bound()
     }
 
     /// λ = R z + load, afresh.
     pub(super) fn force(&self, z: &DVector<f64>, load: &DVector<f64>) -> DVector<f64> {
-        &self.system.stiffness * z + load
+        &self.problem.system.stiffness * z + load
     }
 
     /// Σ_k |R_ik| |z_k| + `load`: what the rounding of the forces is judged against, joint by joint.
     pub(super) fn force_sizes(&self, z: &DVector<f64>, load: &DVector<f64>) -> DVector<f64> {
         let mut sizes = load.clone();
-        for (k, column) in self.system.stiffness.column_iter().enumerate() {
+        for (k, column) in self.problem.system.stiffness.column_iter().enumerate() {
             if z[k] != 0.0 {
                 sizes.zip_apply(&column, |size, entry| *size += (entry * z[k]).abs());
             }
@@ -139,12 +138,12 @@ pub(super) struct Standing {
 impl Standing {
     /// The structure without loads, each pair as far open as its gap.
     pub(super) fn unloaded(laws: Laws<'_>) -> Standing {
-        let joints = laws.system.joint_count();
+        let joints = laws.problem.system.joint_count();
         let mut z = DVector::zeros(joints);
-        for (i, gap) in laws.numbers.gaps().enumerate() {
+        for (i, gap) in laws.problem.gaps().enumerate() {
             z[i] = gap.max(0.0);
         }
-        let pairs = laws.system.pair_count();
+        let pairs = laws.problem.system.pair_count();
         let mut standing = Standing {
             z,
             force: DVector::zeros(joints),
@@ -153,7 +152,7 @@ impl Standing {
             last_slip: vec![None; pairs],
             force_sizes: DVector::zeros(joints),
             length_sizes: DVector::zeros(joints),
-            scale: joint_scales(laws.system),
+            scale: joint_scales(&laws.problem.system),
         };
         standing.classify(laws, &DVector::zeros(joints), &[]);
         standing
@@ -181,7 +180,7 @@ impl Standing {
     /// Reads from the values which limits every pair stands at. `load_sizes`: Σ |terms| of the load; `reached`:
     /// limits that are known to be reached, whatever rounding makes of their values.
     pub(super) fn classify(&mut self, laws: Laws<'_>, load_sizes: &DVector<f64>, reached: &[Reached]) {
-        let system = laws.system;
+        let system = &*laws.problem.system;
         let sizes = laws.force_sizes(&self.z, load_sizes);
         self.force_sizes.zip_apply(&sizes, |most, now| *most = f64::max(*most, now));
         let lengths = laws.length_sizes(&self.scale, &self.z);
@@ -233,7 +232,8 @@ impl Standing {
 
     /// The pairs as they stand: one that is on the limit at which it slipped last is shown as slipping.
     pub(super) fn pair_states(&self, laws: Laws<'_>) -> Vec<PairState> {
-        let (system, drop) = (laws.system, |value: f64, noise: f64| if value.abs() <= noise { 0.0 } else { value });
+        let (system, drop) =
+            (&*laws.problem.system, |value: f64, noise: f64| if value.abs() <= noise { 0.0 } else { value });
         system
             .pairs
             .iter()

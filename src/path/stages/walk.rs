@@ -12,8 +12,9 @@ use super::record::History;
 use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales, scheme_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
-use crate::contact::lcp::{ContactLcp, RowId, RowKind};
-use crate::contact::numbers::ContactNumbers;
+use crate::contact::lcp::ContactLcp;
+use crate::contact::problem::ContactProblem;
+use crate::contact::rows::{RowId, RowKind};
 use crate::explain::sentence::pivot_records;
 use crate::lcp::outcome::Run;
 use crate::lcp::problem::NOISE;
@@ -63,7 +64,7 @@ impl<'a> Walk<'a> {
         if let (Some(stage), Some((run, contact))) = (stages.last_mut(), &self.last_run) {
             stage.end.attempts.iter_mut().for_each(|attempt| attempt.outcome = kind(&run.outcome));
             stage.end.pivot_count = run.pivots.count();
-            stage.end.pivots = pivot_records(run.pivots.recorded(), contact, self.place.laws.system);
+            stage.end.pivots = pivot_records(run.pivots.recorded(), contact, &self.place.laws.problem.system);
             stage.end.timings.lemke = self.lemke_seconds;
         }
         Ok(recorded(&self.place, stages, end))
@@ -78,7 +79,7 @@ impl<'a> Walk<'a> {
         reached: &mut Vec<Reached>,
         way: &mut Way,
     ) -> Result<Stretch, PathError> {
-        let system = self.place.laws.system;
+        let system = &*self.place.laws.problem.system;
         let Some(problem) = RateProblem::new(self.place.laws, &self.standing, rate) else {
             return Err(breakdown(t, "the stiffness of the open pairs is not positive definite"));
         };
@@ -119,7 +120,7 @@ impl<'a> Walk<'a> {
         (t, to): (f64, f64),
         reached: &[Reached],
     ) {
-        let (laws, system) = (self.place.laws, self.place.laws.system);
+        let (laws, system) = (self.place.laws, &*self.place.laws.problem.system);
         let load = course.load_at(system, to);
         let standing = &self.standing;
         let mut z = &standing.z + &rates.z * (to - t);
@@ -153,9 +154,9 @@ impl<'a> Walk<'a> {
     fn way_of(&self, rates: &Rates) -> Vec<(State, Option<State>)> {
         let moves = |pair: usize, couple: RowKind| rates.moving.contains(&RowId { pair, couple });
         // A pair that may slip but whose rate is rounding rests at its limit.
-        let noise = self.place.laws.length_sizes(&joint_scales(self.place.laws.system), &rates.z) * NOISE;
+        let noise = self.place.laws.length_sizes(&joint_scales(&self.place.laws.problem.system), &rates.z) * NOISE;
         let slides = |joint: Option<usize>| joint.is_some_and(|joint| rates.z[joint].abs() > noise[joint]);
-        let pairs = self.place.laws.system.pairs.iter().enumerate();
+        let pairs = self.place.laws.problem.system.pairs.iter().enumerate();
         pairs
             .map(|(i, pair)| {
                 let open = match self.standing.normal[i] {
@@ -177,7 +178,7 @@ impl<'a> Walk<'a> {
 
     /// Stands in another state, at place `t` of the stage.
     pub(super) fn stand_at(&mut self, course: &Course, t: f64, z: DVector<f64>, way: Vec<(State, Option<State>)>) {
-        let system = self.place.laws.system;
+        let system = &*self.place.laws.problem.system;
         for (i, pair) in system.pairs.iter().enumerate() {
             let Some(joint) = pair.tangential else {
                 continue;
@@ -210,22 +211,17 @@ impl<'a> Follower<'a> for Walk<'a> {
 
     fn states(&self) -> Vec<PairState> {
         let mut pairs = self.standing.pair_states(self.place.laws);
-        let numbers = self.numbers_at(&self.place.factors, &self.place.gaps);
-        self.place.prepared.add_released_slips(&mut pairs, &numbers, &self.place.factors, &self.standing.z);
+        let problem = self.problem_at(&self.place.factors, &self.place.gaps);
+        self.place.prepared.add_released_slips(&mut pairs, &problem, &self.standing.z);
         pairs
     }
 
-    fn numbers_at(&self, factors: &[f64], gaps: &[f64]) -> ContactNumbers {
-        let mut numbers = self.place.laws.numbers.with_gaps(gaps);
-        numbers.load.fill(0.0);
-        for (load, factor) in self.place.laws.system.loads.iter().zip(factors) {
-            numbers.load.axpy(*factor, &load.vector, 1.0);
-        }
-        numbers
+    fn problem_at(&self, factors: &[f64], gaps: &[f64]) -> ContactProblem {
+        self.place.laws.problem.clone().with_gaps(gaps).with_factors(factors)
     }
 
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
-        let system = self.place.laws.system;
+        let system = &*self.place.laws.problem.system;
         let (rate, sizes) = (course.rate(system), course.rate_sizes(system));
         let none = DVector::zeros(system.joint_count());
         let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };

@@ -7,7 +7,7 @@ use crate::path::quantity::{Facts, NoValue, OnPath};
 use crate::path::record::{Followed, PathPlace, PathRecord};
 use crate::session::{CommandError, Session};
 use crate::solve::Prepared;
-use crate::solve::numbers::factors;
+use crate::solve::problem::factors;
 use crate::watch::Watch;
 
 impl Session {

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::{Value as Json, json};
 
 use crate::path::quantity::{Facts, NoValue, Value};
-use crate::solve::numbers::factors;
+use crate::solve::problem::factors;
 use crate::solve::{Case, Prepared, Solved};
 use crate::view;
 use crate::view::combinations::{Line, Row};

@@ -76,8 +76,7 @@ impl Session {
         };
         let (solved, prepared) = (Arc::clone(solved), Arc::clone(prepared));
         worker::run(watch, move |watch| {
-            let (RunData::Contact { contact, numbers, factors, .. }, Some(system)) = (&solved.run, prepared.system())
-            else {
+            let (RunData::Contact { contact, problem, .. }, Some(system)) = (&solved.run, prepared.system()) else {
                 return Err(CommandError::Refused(
                     "answers are enumerated for contact problems, this is a bare LCP".into(),
                 ));
@@ -89,7 +88,7 @@ impl Session {
                     system.pair_count()
                 )));
             }
-            let found = enumerate(system, numbers, &mut |progress| {
+            let found = enumerate(problem, &mut |progress| {
                 watch.progress("all answers", progress.share);
                 watch.go_on()
             });
@@ -97,9 +96,9 @@ impl Session {
                 .answers
                 .iter()
                 .map(|answer| {
-                    let state = JointState::at(system, numbers, answer.state.z.clone(), 0.0);
-                    let mut pairs = pair_states(system, numbers, contact, &state);
-                    prepared.add_released_slips(&mut pairs, numbers, factors, &state.z);
+                    let state = JointState::at(problem, answer.state.z.clone(), 0.0);
+                    let mut pairs = pair_states(problem, contact, &state);
+                    prepared.add_released_slips(&mut pairs, problem, &state.z);
                     OneAnswer {
                         shown: solved.answer.is_answer() && same(&pairs, &solved.answer.pairs),
                         pairs,

@@ -12,7 +12,7 @@ use crate::export::atomic;
 use crate::model::scenario::Source;
 use crate::path::stages::{self, History};
 use crate::session::{CommandError, Output, Session, worker};
-use crate::solve::numbers::factors;
+use crate::solve::problem::factors;
 use crate::view;
 use crate::view::number::short;
 use crate::view::report::{Block, Report};
