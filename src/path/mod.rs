@@ -1,6 +1,7 @@
 //! Paths: how the answer changes with the load, with friction and with history, breakpoint by breakpoint.
 
 pub mod change;
+pub mod cycle;
 pub mod edge;
 pub mod end;
 pub mod envelope;

@@ -5,6 +5,7 @@ pub mod check;
 pub mod combinations;
 pub mod compare;
 pub mod critical;
+pub mod cycle;
 pub mod difference;
 pub mod displacements;
 pub mod enumerate;

@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod cycle;
 mod find;
 mod friction;
 mod hertz;

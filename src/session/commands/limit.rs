@@ -7,6 +7,7 @@ use serde_json::json;
 
 use crate::path::limit;
 use crate::path::record::PathRecord;
+use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::start::case_names;
 use crate::session::{CommandError, Next, Output, Session, worker};
@@ -14,20 +15,37 @@ use crate::view;
 
 /// Find the limit of a load: its factor, the safety, how the structure collapses
 ///
-/// A load whose present value is negative grows downwards.
+/// A load whose present value is negative grows downwards. `limit cycle LOAD [A..B]` brackets the largest value to which
+/// the load may go to and fro from A (0 if it is left out) so that the structure still shakes down; B, or the present
+/// value, is looked at first.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  limit pull\n  limit F2")]
+#[command(after_help = "Example:\n  limit pull\n  limit F2\n  limit cycle F2 0..100")]
 pub struct Limit {
-    /// Load case, or a parameter in which the loads are linear
-    #[arg(value_name = "LOAD")]
-    name: String,
+    /// Load case, or a parameter in which the loads are linear; `cycle` before it
+    #[arg(value_name = "LOAD", required = true, num_args = 1..=3, allow_hyphen_values = true)]
+    words: Vec<String>,
 }
 
-pub const LIMIT: Command = Command { complete: |asked| asked.varied(), ..Command::of::<Limit>("limit") };
+pub const LIMIT: Command = Command { complete: candidates, ..Command::of::<Limit>("limit") };
+
+fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
+    match asked.given {
+        [] => asked.varied().into_iter().chain(Candidate::plain(["cycle"])).collect(),
+        [first] if first == "cycle" => asked.varied(),
+        _ => Vec::new(),
+    }
+}
 
 impl Action for Limit {
     fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
-        session.limit(&self.name, io)?;
+        match &self.words[..] {
+            [first, rest @ ..] if first == "cycle" && !rest.is_empty() => session.limit_cycle(rest, io)?,
+            [name] => session.limit(name, io)?,
+            _ => {
+                let refusal = "limit: expected one load: `limit LOAD`, or `limit cycle LOAD [A..B]`";
+                return Err(CommandError::Refused(refusal.to_owned()));
+            }
+        }
         Ok(Next::Continue)
     }
 

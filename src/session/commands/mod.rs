@@ -6,6 +6,7 @@ pub(in crate::session) mod check;
 pub(in crate::session) mod combine;
 pub(in crate::session) mod compare;
 pub(in crate::session) mod critical;
+pub(in crate::session) mod cycle;
 pub(in crate::session) mod enumerate;
 pub(in crate::session) mod envelope;
 pub(in crate::session) mod expect;
@@ -83,7 +84,7 @@ pub static GROUPS: &[(&str, &[Command])] = &[
     ("trouble", &[ray::RAY, compare::COMPARE, enumerate::ENUMERATE, critical::CRITICAL]),
     (
         "paths",
-        &[sweep::SWEEP, trace::TRACE, limit::LIMIT, find::FIND, map::MAP, sensitivity::SENSITIVITY, stages::STAGES],
+        &[sweep::SWEEP, trace::TRACE, limit::LIMIT, find::FIND, map::MAP, sensitivity::SENSITIVITY, stages::STAGES, cycle::CYCLE],
     ),
     ("pictures", &[plots::PLOT, screen::TUI]),
     ("scripts", &[script::SOURCE, record::RECORD, expect::EXPECT, exports::EXPORT, script::ECHO, restore::RESTORE]),

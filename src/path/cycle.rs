@@ -1,0 +1,294 @@
+//! A load that goes to and fro: does the structure shake down, slip to and fro, or creep further with every cycle?
+//!
+//! The history is followed by the rate problem ([`super::stages`]). The rates depend on the forces and on the gaps that are
+//! open, not on the slips committed before: where both come back after a cycle, every further cycle is the same.
+
+use super::stages::{History, HistoryEnd, StageResult, follow_factors};
+use super::start::PathError;
+use crate::answer::record::Ray;
+use crate::model::parameter::{Number, ParameterValues};
+use crate::model::scenario::Scenario;
+use crate::solve::numbers::factors;
+use crate::solve::{PrepareError, Prepared};
+use crate::watch::Watch;
+
+/// Two states are one where they differ by less than this share of the largest of their kind.
+const SAME: f64 = 1e-12;
+/// Cycles followed first; then twice as many, and so on.
+const FIRST: usize = 4;
+/// Cycles followed at most, where nothing else is said.
+pub const MOST: usize = 256;
+/// The bracket of the largest amplitude that shakes down is narrowed to this share of it.
+const NARROW: f64 = 1e-9;
+/// The amplitude is doubled this often in search of one that does not.
+const DOUBLINGS: usize = 40;
+
+/// What repeated loading comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Nothing slips any more.
+    ShakesDown,
+    /// The same slips to and fro in every cycle.
+    Alternates,
+    /// The same further way in every cycle.
+    Ratchets,
+    /// A limit is met on the way.
+    Collapses,
+    /// Not told apart within the cycles followed.
+    Undecided,
+}
+
+/// One pair over one cycle.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct PairCycle {
+    /// Pair id.
+    pub pair: String,
+    /// Slip on the way there.
+    pub there: f64,
+    /// Slip on the way back.
+    pub back: f64,
+    /// What is left of both: the way per cycle.
+    pub net: f64,
+    /// Total slip at its end.
+    pub total: f64,
+}
+
+/// One cycle.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Turn {
+    /// Work lost in friction on the way there and back.
+    pub dissipated: [f64; 2],
+    /// The pairs.
+    pub pairs: Vec<PairCycle>,
+    /// The largest difference of a contact force or gap from the cycle before, as a share of the largest of its kind;
+    /// `None` of the first.
+    pub difference: Option<f64>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// The load case or parameter.
+    pub name: String,
+    /// Its values at both ends.
+    pub ends: [f64; 2],
+    /// What it comes to.
+    pub kind: Kind,
+    /// The cycles up to the first that repeats.
+    pub turns: Vec<Turn>,
+    /// The history behind them, the way from the unloaded structure to the first end included.
+    pub history: History,
+    /// The proof, or what is missing, in a sentence.
+    pub sentence: String,
+}
+
+impl Cycle {
+    /// The collapse on the way, where there is one.
+    pub fn collapse(&self) -> Option<&Ray> {
+        match (&self.history.end, self.kind) {
+            (HistoryEnd::Limit { collapse, .. }, Kind::Collapses) => Some(collapse),
+            _ => None,
+        }
+    }
+}
+
+/// The factors of all load cases at a value of a case or parameter.
+fn target(
+    prepared: &Prepared,
+    scenario: &Scenario,
+    values: &ParameterValues,
+    name: &str,
+    value: f64,
+    watch: &dyn Watch,
+) -> Result<Vec<f64>, PathError> {
+    let mut there = prepared.clone();
+    if let Some(case) = there.cases.iter().position(|(known, _)| known == name) {
+        there.cases[case].1 = Number::Value(value);
+        return Ok(factors(&there, values));
+    }
+    if let Some(refusal) = scenario.refusal(name, value) {
+        return Err(PathError::Target(refusal));
+    }
+    let mut moved = values.clone();
+    moved.insert(name.to_owned(), value);
+    let why = |what: &str| PathError::Mixed { name: name.to_owned(), why: what.to_owned() };
+    match prepared.renewed(scenario, &moved, watch) {
+        Ok(None) => {}
+        Ok(Some(_)) => return Err(why("it moves more than the factors of load cases; put it into the factor of one")),
+        Err(PrepareError::Interrupted) => return Err(PathError::Interrupted),
+        Err(PrepareError::Problems(problems)) => return Err(PathError::Target(problems.to_string())),
+    }
+    let (present, found) = (factors(prepared, values), factors(prepared, &moved));
+    if present == found && values.get(name).is_some_and(|now| *now != value) {
+        return Err(why("no factor of a load case depends on it"));
+    }
+    Ok(found)
+}
+
+/// Follows a load from the first value to the second and back, until a cycle repeats: the other loads stand at their
+/// present factors.
+///
+/// # Errors
+/// A name that is no load, a bare LCP, a history that breaks down; see [`PathError`].
+pub fn cycle(
+    prepared: &Prepared,
+    scenario: &Scenario,
+    values: &ParameterValues,
+    name: &str,
+    ends: [f64; 2],
+    most: usize,
+    watch: &dyn Watch,
+) -> Result<Cycle, PathError> {
+    if prepared.system().is_none() {
+        return Err(PathError::Plain("cycle"));
+    }
+    let [a, b] = ends;
+    let at = |value| target(prepared, scenario, values, name, value, watch);
+    let (start, turned) = (at(a)?, at(b)?);
+    let mut count = FIRST.min(most);
+    loop {
+        let mut targets = vec![start.clone()];
+        (0..count).for_each(|_| targets.extend([turned.clone(), start.clone()]));
+        let history = follow_factors(prepared, values, &targets, watch)?;
+        let found = judged(name, ends, history);
+        if found.kind != Kind::Undecided || count == most {
+            return Ok(found);
+        }
+        count = (2 * count).min(most);
+    }
+}
+
+/// The cycles of a history, and what they come to.
+fn judged(name: &str, ends: [f64; 2], history: History) -> Cycle {
+    let end = |stage: usize| &history.stages[stage].end.pairs;
+    let largest = |of: &dyn Fn(&crate::answer::record::PairState) -> f64| {
+        let pairs = history.stages.iter().flat_map(|stage| &stage.end.pairs);
+        pairs.map(|pair| of(pair).abs()).fold(0.0, f64::max)
+    };
+    let force = largest(&|pair| pair.x_n.abs().max(pair.x_t.abs()));
+    let slips = history.stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
+    let gap = largest(&|pair| pair.z_n).max(slips);
+    let share = |off: f64, size: f64| if off == 0.0 { 0.0 } else { off / size };
+    let complete = (history.stages.len() - usize::from(history.end != HistoryEnd::Complete)).saturating_sub(1) / 2;
+    let mut turns: Vec<Turn> = Vec::new();
+    let mut kind = Kind::Undecided;
+    for number in 0..complete {
+        let (there, back) = (2 * number + 1, 2 * number + 2);
+        let halves: [&StageResult; 2] = [&history.stages[there], &history.stages[back]];
+        let pairs = end(back).iter().enumerate().map(|(index, pair)| {
+            let [there, back] = halves.map(|half| half.slip[index]);
+            PairCycle { pair: pair.id.clone(), there, back, net: there + back, total: pair.z_t }
+        });
+        let pairs: Vec<PairCycle> = pairs.collect();
+        let off = |now: usize, before: usize| {
+            end(now).iter().zip(end(before)).fold(0.0, |largest: f64, (a, b)| {
+                let forces = share((a.x_n - b.x_n).abs().max((a.x_t - b.x_t).abs()), force);
+                largest.max(forces).max(share((a.z_n - b.z_n).abs(), gap))
+            })
+        };
+        // The place before the first cycle is the end of the way there from the unloaded structure.
+        let closed = off(back, back - 2);
+        let difference = (number > 0).then(|| closed.max(off(there, there - 2)));
+        let lost = halves.map(|half| half.dissipated);
+        let still = pairs.iter().all(|pair| pair.there.abs().max(pair.back.abs()) <= SAME * slips)
+            && lost.iter().all(|lost| *lost <= SAME * force * slips);
+        let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
+        turns.push(Turn { dissipated: lost, pairs, difference });
+        if closed <= SAME {
+            kind = match () {
+                () if still => Kind::ShakesDown,
+                () if net <= SAME * slips => Kind::Alternates,
+                () => Kind::Ratchets,
+            };
+            break;
+        }
+    }
+    if kind == Kind::Undecided && history.end != HistoryEnd::Complete {
+        kind = Kind::Collapses;
+    }
+    let sentence = said(kind, &turns, &history);
+    Cycle { name: name.to_owned(), ends, kind, turns, history, sentence }
+}
+
+fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
+    let count = turns.len();
+    let proof = "the forces and gaps at its end are those at its beginning, and the rates depend on nothing else: every \
+                 further cycle is the same";
+    match kind {
+        Kind::ShakesDown => format!("nothing slips in cycle {count}; {proof}"),
+        Kind::Alternates => format!("the slips of cycle {count} go to and fro; {proof}"),
+        Kind::Ratchets => format!("cycle {count} leaves slips behind; {proof}"),
+        Kind::Collapses => format!("in cycle {}: {}", count + 1, history.end_sentence()),
+        Kind::Undecided => {
+            let difference = |index: usize| turns.get(index).and_then(|turn| turn.difference);
+            let rate = match (difference(count.wrapping_sub(1)), difference(count.wrapping_sub(2))) {
+                (Some(last), Some(before)) if last < before => {
+                    format!(
+                        "; it differs from the one before by {last:.1e} of the largest, {:.3} times less",
+                        last / before
+                    )
+                }
+                (Some(last), _) => format!("; it differs from the one before by {last:.1e} of the largest"),
+                _ => String::new(),
+            };
+            format!("no cycle of {count} repeats to {SAME:e}{rate}")
+        }
+    }
+}
+
+/// The largest amplitude that shakes down.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShakedownLimit {
+    /// The value held at the other end.
+    pub from: f64,
+    /// A value at which the structure shakes down.
+    pub shakes_down: f64,
+    /// A value beyond, and what it comes to there; `None` where none was found.
+    pub beyond: Option<(f64, Kind)>,
+}
+
+/// Brackets the largest second end, away from `from`, at which the structure shakes down; `first` is looked at first.
+///
+/// # Errors
+/// As [`cycle`].
+pub fn shakedown_limit(
+    prepared: &Prepared,
+    scenario: &Scenario,
+    values: &ParameterValues,
+    name: &str,
+    [from, first]: [f64; 2],
+    watch: &dyn Watch,
+) -> Result<ShakedownLimit, PathError> {
+    let kind = |to: f64| Ok(cycle(prepared, scenario, values, name, [from, to], MOST, watch)?.kind);
+    let (mut good, mut bad) = (from, None);
+    let mut to = first;
+    for round in 0..DOUBLINGS {
+        watch.progress(&format!("{name} = {to}"), 0.5 * round as f64 / DOUBLINGS as f64);
+        match kind(to)? {
+            Kind::ShakesDown => {
+                good = to;
+                to = from + 2.0 * (to - from);
+            }
+            other => {
+                bad = Some((to, other));
+                break;
+            }
+        }
+    }
+    let Some((mut beyond, mut what)) = bad else {
+        return Ok(ShakedownLimit { from, shakes_down: good, beyond: None });
+    };
+    while (beyond - good).abs() > NARROW * (beyond - from).abs().max(f64::MIN_POSITIVE) {
+        let middle = 0.5 * (good + beyond);
+        if middle == good || middle == beyond {
+            break;
+        }
+        watch.progress(&format!("{name} = {middle}"), 0.75);
+        match kind(middle)? {
+            Kind::ShakesDown => good = middle,
+            other => (beyond, what) = (middle, other),
+        }
+    }
+    Ok(ShakedownLimit { from, shakes_down: good, beyond: Some((beyond, what)) })
+}

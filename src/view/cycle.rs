@@ -1,0 +1,132 @@
+//! What repeated loading comes to, in words and cycle by cycle.
+
+use std::io::{self, Write};
+
+use super::moment_unit;
+use super::number::{short, with_unit};
+use super::path::exact;
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::model::scenario::Units;
+use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
+
+/// Cycles shown of a longer list, at its beginning and at its end.
+const SHOWN: usize = 6;
+
+/// `shakes down`, …
+pub fn word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::ShakesDown => "shakes down",
+        Kind::Alternates => "slips to and fro",
+        Kind::Ratchets => "ratchets",
+        Kind::Collapses => "collapses",
+        Kind::Undecided => "undecided",
+    }
+}
+
+fn role(kind: Kind) -> Role {
+    match kind {
+        Kind::ShakesDown => Role::Good,
+        Kind::Alternates | Kind::Ratchets | Kind::Undecided => Role::Warning,
+        Kind::Collapses => Role::Bad,
+    }
+}
+
+fn paragraph(out: &mut dyn Write, role: Role, text: &str, style: &Style) -> io::Result<()> {
+    for line in style.wrap(&style.text(text), style.width) {
+        writeln!(out, "{}", style.paint(role, &line))?;
+    }
+    Ok(())
+}
+
+/// The largest net slip of a cycle and its pair.
+fn furthest(turn: &Turn) -> Option<(&str, f64)> {
+    let pairs = turn.pairs.iter().map(|pair| (pair.pair.as_str(), pair.net));
+    pairs.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })
+}
+
+/// The verdict, the cycles, the pairs of the last one.
+pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Units, style: &Style) -> io::Result<()> {
+    let [from, to] = cycle.ends.map(|end| with_unit(&short(end), unit));
+    let mut line = format!("{} from {from} to {to} and back: {}", cycle.name, word(cycle.kind));
+    if let (Kind::Ratchets, Some((pair, net))) = (cycle.kind, cycle.turns.last().and_then(furthest)) {
+        line.push_str(&format!(", {} per cycle at {pair}", with_unit(&exact(net), units.length.as_deref())));
+    }
+    paragraph(out, role(cycle.kind), &line, style)?;
+    paragraph(out, Role::Plain, &cycle.sentence, style)?;
+    if cycle.turns.is_empty() {
+        return Ok(());
+    }
+    let energy = moment_unit(units);
+    let mut table = Table::new(vec![
+        Column::count("cycle"),
+        Column::numbers("dissipated there", energy.clone()),
+        Column::numbers("back", energy),
+        Column::numbers("largest net slip", units.length.clone()),
+        Column::words("at"),
+        Column::numbers("difference", None).droppable(1),
+    ]);
+    let count = cycle.turns.len();
+    for (index, turn) in cycle.turns.iter().enumerate() {
+        if count > 2 * SHOWN && (SHOWN..count - SHOWN).contains(&index) {
+            continue;
+        }
+        let (pair, net) = furthest(turn).unwrap_or_default();
+        table.rows.push(Row::new(vec![
+            Cell::from((index + 1).to_string()),
+            Cell::from(short(turn.dissipated[0])),
+            Cell::from(short(turn.dissipated[1])),
+            Cell::from(short(net)),
+            Cell::from(if net == 0.0 { String::new() } else { pair.to_owned() }),
+            Cell::from(turn.difference.map_or(String::new(), |difference| format!("{difference:.1e}"))),
+        ]));
+    }
+    table.write(out, style)?;
+    if count > 2 * SHOWN {
+        paragraph(out, Role::Muted, &format!("the first and the last {SHOWN} of {count} cycles"), style)?;
+    }
+    pairs(out, cycle, units, style)
+}
+
+/// The pairs that move in the last cycle, or hold a slip from before.
+fn pairs(out: &mut dyn Write, cycle: &Cycle, units: &Units, style: &Style) -> io::Result<()> {
+    let Some(last) = cycle.turns.last() else { return Ok(()) };
+    let moved = |pair: &&crate::path::cycle::PairCycle| pair.there != 0.0 || pair.back != 0.0 || pair.total != 0.0;
+    let length = || units.length.clone();
+    let mut table = Table::new(vec![
+        Column::words("pair"),
+        Column::numbers("slip there", length()),
+        Column::numbers("back", length()),
+        Column::numbers("net", length()),
+        Column::numbers("total", length()),
+    ]);
+    for pair in last.pairs.iter().filter(moved) {
+        let numbers = [pair.there, pair.back, pair.net, pair.total];
+        let cells = std::iter::once(Cell::from(pair.pair.clone())).chain(numbers.map(|slip| Cell::from(short(slip))));
+        table.rows.push(Row::new(cells.collect()));
+    }
+    if table.rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "{}", style.paint(Role::Title, &format!("Cycle {}", cycle.turns.len())))?;
+    table.write(out, style)
+}
+
+/// The largest amplitude that shakes down, between two values.
+pub fn write_limit(
+    out: &mut dyn Write,
+    name: &str,
+    found: &ShakedownLimit,
+    unit: Option<&str>,
+    style: &Style,
+) -> io::Result<()> {
+    let number = |value: f64| with_unit(&exact(value), unit);
+    let from = number(found.from);
+    let Some((beyond, kind)) = found.beyond else {
+        let text = format!("{name} from {from}: shakes down as far as was looked, to {}", number(found.shakes_down));
+        return paragraph(out, Role::Good, &text, style);
+    };
+    let text = format!("{name} from {from}: the largest end that shakes down is {}", number(found.shakes_down));
+    paragraph(out, Role::Accent, &text, style)?;
+    paragraph(out, Role::Plain, &format!("at {} it {}", number(beyond), word(kind)), style)
+}
