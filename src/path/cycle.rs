@@ -6,11 +6,9 @@
 use super::stages::{History, HistoryEnd, StageResult, follow_factors};
 use super::start::PathError;
 use crate::answer::record::Ray;
-use crate::model::parameter::{Number, ParameterValues};
-use crate::model::scenario::Scenario;
+use crate::solve::case::Case;
+use crate::solve::error::QuestionError;
 use crate::solve::numbers::factors;
-use crate::solve::{PrepareError, Prepared};
-use crate::watch::Watch;
 
 /// Two states are one where they differ by less than this share of the largest of their kind.
 const SAME: f64 = 1e-12;
@@ -94,33 +92,18 @@ impl Cycle {
 }
 
 /// The factors of all load cases at a value of a case or parameter.
-fn target(
-    prepared: &Prepared,
-    scenario: &Scenario,
-    values: &ParameterValues,
-    name: &str,
-    value: f64,
-    watch: &dyn Watch,
-) -> Result<Vec<f64>, PathError> {
-    let mut there = prepared.clone();
-    if let Some(case) = there.cases.iter().position(|(known, _)| known == name) {
-        there.cases[case].1 = Number::Value(value);
-        return Ok(factors(&there, values));
+fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>, PathError> {
+    let Case { scenario, prepared, values, watch, .. } = case;
+    let there = case.at(name, value)?;
+    let found = factors(&there.prepared, &there.values);
+    if prepared.cases.iter().any(|(known, _)| known == name) {
+        return Ok(found);
     }
-    if let Some(refusal) = scenario.refusal(name, value) {
-        return Err(PathError::Target(refusal));
-    }
-    let mut moved = values.clone();
-    moved.insert(name.to_owned(), value);
     let why = |what: &str| PathError::Mixed { name: name.to_owned(), why: what.to_owned() };
-    match prepared.renewed(scenario, &moved, watch) {
-        Ok(None) => {}
-        Ok(Some(_)) => return Err(why("it moves more than the factors of load cases; put it into the factor of one")),
-        Err(PrepareError::Interrupted) => return Err(PathError::Interrupted),
-        Err(PrepareError::Problems(problems)) => return Err(PathError::Target(problems.to_string())),
+    if prepared.renewed(scenario, &there.values, watch).map_err(QuestionError::from)?.is_some() {
+        return Err(why("it moves more than the factors of load cases; put it into the factor of one"));
     }
-    let (present, found) = (factors(prepared, values), factors(prepared, &moved));
-    if present == found && values.get(name).is_some_and(|now| *now != value) {
+    if factors(prepared, values) == found && values.get(name).is_some_and(|now| *now != value) {
         return Err(why("no factor of a load case depends on it"));
     }
     Ok(found)
@@ -131,26 +114,17 @@ fn target(
 ///
 /// # Errors
 /// A name that is no load, a bare LCP, a history that breaks down; see [`PathError`].
-pub fn cycle(
-    prepared: &Prepared,
-    scenario: &Scenario,
-    values: &ParameterValues,
-    name: &str,
-    ends: [f64; 2],
-    most: usize,
-    watch: &dyn Watch,
-) -> Result<Cycle, PathError> {
-    if prepared.system().is_none() {
+pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<Cycle, PathError> {
+    if case.prepared.system().is_none() {
         return Err(PathError::Plain("cycle"));
     }
     let [a, b] = ends;
-    let at = |value| target(prepared, scenario, values, name, value, watch);
-    let (start, turned) = (at(a)?, at(b)?);
+    let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
     let mut count = FIRST.min(most);
     loop {
         let mut targets = vec![start.clone()];
         (0..count).for_each(|_| targets.extend([turned.clone(), start.clone()]));
-        let history = follow_factors(prepared, values, &targets, watch)?;
+        let history = follow_factors(case, &targets)?;
         let found = judged(name, ends, history);
         if found.kind != Kind::Undecided || count == most {
             return Ok(found);
@@ -252,19 +226,12 @@ pub struct ShakedownLimit {
 ///
 /// # Errors
 /// As [`cycle`].
-pub fn shakedown_limit(
-    prepared: &Prepared,
-    scenario: &Scenario,
-    values: &ParameterValues,
-    name: &str,
-    [from, first]: [f64; 2],
-    watch: &dyn Watch,
-) -> Result<ShakedownLimit, PathError> {
-    let kind = |to: f64| Ok(cycle(prepared, scenario, values, name, [from, to], MOST, watch)?.kind);
+pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> Result<ShakedownLimit, PathError> {
+    let kind = |to: f64| cycle(case, name, [from, to], MOST).map(|found| found.kind);
     let (mut good, mut bad) = (from, None);
     let mut to = first;
     for round in 0..DOUBLINGS {
-        watch.progress(&format!("{name} = {to}"), 0.5 * round as f64 / DOUBLINGS as f64);
+        case.watch.progress(&format!("{name} = {to}"), 0.5 * round as f64 / DOUBLINGS as f64);
         match kind(to)? {
             Kind::ShakesDown => {
                 good = to;
@@ -284,7 +251,7 @@ pub fn shakedown_limit(
         if middle == good || middle == beyond {
             break;
         }
-        watch.progress(&format!("{name} = {middle}"), 0.75);
+        case.watch.progress(&format!("{name} = {middle}"), 0.75);
         match kind(middle)? {
             Kind::ShakesDown => good = middle,
             other => (beyond, what) = (middle, other),

@@ -67,11 +67,8 @@ impl Session {
         };
         let (name, ends) = (self.varied(name)?.to_owned(), ends(span)?);
         let ground = self.ground(io.watch)?;
-        let (scenario, values, prepared) =
-            (Arc::clone(&self.now.scenario), self.now.values.clone(), Arc::clone(&ground.prepared));
         let what = name.clone();
-        let found =
-            worker::run(io.watch, move |watch| cycle(&prepared, &scenario, &values, &what, ends, most, watch))??;
+        let found = worker::run(io.watch, move |watch| cycle(ground.case(watch), &what, ends, most))??;
         let units = &self.now.scenario.units;
         io.report(
             || {
@@ -114,11 +111,8 @@ impl Session {
             None => self.now.values.get(&name).copied().unwrap_or_default(),
         };
         let ends = span.unwrap_or([0.0, if present == 0.0 { 1.0 } else { present }]);
-        let (scenario, values, prepared) =
-            (Arc::clone(&self.now.scenario), self.now.values.clone(), Arc::clone(&ground.prepared));
         let what = name.clone();
-        let found =
-            worker::run(io.watch, move |watch| shakedown_limit(&prepared, &scenario, &values, &what, ends, watch))??;
+        let found = worker::run(io.watch, move |watch| shakedown_limit(ground.case(watch), &what, ends))??;
         io.report(
             || {
                 json!({
