@@ -119,13 +119,14 @@ pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<
         return Err(PathError::Plain("cycle"));
     }
     let [a, b] = ends;
+    let softest = softest(case);
     let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
     let mut count = FIRST.min(most);
     loop {
         let mut targets = vec![start.clone()];
         (0..count).for_each(|_| targets.extend([turned.clone(), start.clone()]));
         let history = follow_factors(case, &targets)?;
-        let found = judged(name, ends, history);
+        let found = judged(name, ends, history, softest);
         if found.kind != Kind::Undecided || count == most {
             return Ok(found);
         }
@@ -133,8 +134,16 @@ pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<
     }
 }
 
+/// The largest displacement of a tangential joint under a unit force, the others held.
+fn softest(case: Case<'_>) -> f64 {
+    let Some(system) = case.prepared.system() else { return 0.0 };
+    let joints = system.pairs.iter().filter_map(|pair| pair.tangential);
+    let stiffness = joints.map(|joint| system.stiffness[(joint, joint)]).filter(|stiffness| *stiffness > 0.0);
+    stiffness.map(f64::recip).fold(0.0, f64::max)
+}
+
 /// The cycles of a history, and what they come to.
-fn judged(name: &str, ends: [f64; 2], history: History) -> Cycle {
+fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
     let end = |stage: usize| &history.stages[stage].end.pairs;
     let largest = |of: &dyn Fn(&crate::answer::record::PairState) -> f64| {
         let pairs = history.stages.iter().flat_map(|stage| &stage.end.pairs);
@@ -142,6 +151,8 @@ fn judged(name: &str, ends: [f64; 2], history: History) -> Cycle {
     };
     let force = largest(&|pair| pair.x_n.abs().max(pair.x_t.abs()));
     let slips = history.stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
+    // What the forces move at least by: rounding is small against it, also where nothing slips.
+    let slips = slips.max(force * softest);
     let gap = largest(&|pair| pair.z_n).max(slips);
     let share = |off: f64, size: f64| if off == 0.0 { 0.0 } else { off / size };
     let complete = (history.stages.len() - usize::from(history.end != HistoryEnd::Complete)).saturating_sub(1) / 2;
