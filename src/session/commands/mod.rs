@@ -84,7 +84,16 @@ pub static GROUPS: &[(&str, &[Command])] = &[
     ("trouble", &[ray::RAY, compare::COMPARE, enumerate::ENUMERATE, critical::CRITICAL]),
     (
         "paths",
-        &[sweep::SWEEP, trace::TRACE, limit::LIMIT, find::FIND, map::MAP, sensitivity::SENSITIVITY, stages::STAGES, cycle::CYCLE],
+        &[
+            sweep::SWEEP,
+            trace::TRACE,
+            limit::LIMIT,
+            find::FIND,
+            map::MAP,
+            sensitivity::SENSITIVITY,
+            stages::STAGES,
+            cycle::CYCLE,
+        ],
     ),
     ("pictures", &[plots::PLOT, screen::TUI]),
     ("scripts", &[script::SOURCE, record::RECORD, expect::EXPECT, exports::EXPORT, script::ECHO, restore::RESTORE]),
