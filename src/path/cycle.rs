@@ -8,7 +8,7 @@ use super::start::PathError;
 use crate::answer::record::Ray;
 use crate::solve::case::Case;
 use crate::solve::error::QuestionError;
-use crate::solve::numbers::factors;
+use crate::solve::problem::factors;
 
 /// Two states are one where they differ by less than this share of the largest of their kind.
 const SAME: f64 = 1e-12;
