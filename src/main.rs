@@ -18,7 +18,7 @@ fn main() -> ExitCode {
             cli::finish(repl::serve(&mut session, style, &signals), &errors)
         }
         Next::Tui(start) => {
-            let first = tui::Start { tour: false, home: Leave::Quit };
+            let first = tui::Start { tour: None, home: Leave::Quit };
             finish(*start, Some(first))
         }
     })
@@ -54,7 +54,7 @@ fn converse(start: Start, mut screen: Option<tui::Start>) -> io::Result<u8> {
             session::Next::FullScreen { tour } => {
                 screen = Some(tui::Start { tour, home: Leave::Repl });
             }
-            session::Next::Continue | session::Next::Quit => return Ok(ended.status),
+            session::Next::Continue | session::Next::Quit | session::Next::Edit => return Ok(ended.status),
         }
     }
 }

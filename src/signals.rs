@@ -39,6 +39,8 @@ pub struct Signals {
     quit: Arc<AtomicBool>,
     stop: Arc<AtomicBool>,
     resumed: Arc<AtomicBool>,
+    /// Something of our own waits for the line editor to stop waiting.
+    knocks: Arc<AtomicBool>,
     /// Whether the terminal is as the shell left it, so that the program may be stopped where it stands.
     cooked: Arc<AtomicBool>,
 }
@@ -123,7 +125,38 @@ impl Signals {
         self.resumed.swap(false, Ordering::SeqCst)
     }
 
-    /// Wakes a line editor that waits for a key when the program has to end or to stop.
+    /// Forgets what came while another program had the terminal: it was meant for that.
+    pub fn forget_keys(&self) {
+        self.interrupt.store(false, Ordering::SeqCst);
+        self.stop.store(false, Ordering::SeqCst);
+        self.resumed.store(false, Ordering::SeqCst);
+    }
+
+    /// Runs `with` while the terminal is as the shell left it, within the life of a [`RawTerminal`].
+    pub fn while_cooked<T>(&self, with: impl FnOnce() -> T) -> T {
+        self.cooked.store(true, Ordering::SeqCst);
+        let result = with();
+        self.cooked.store(false, Ordering::SeqCst);
+        self.forget_keys();
+        result
+    }
+
+    /// Asks the line editor to stop waiting for keys, see [`Signals::wake_editor`].
+    pub fn knock(&self) {
+        self.knocks.store(true, Ordering::SeqCst);
+    }
+
+    /// Whether somebody knocked and was not heard yet.
+    pub fn has_knocked(&self) -> bool {
+        self.knocks.load(Ordering::SeqCst)
+    }
+
+    /// Whether somebody knocked since the last call.
+    pub fn take_knock(&self) -> bool {
+        self.knocks.swap(false, Ordering::SeqCst)
+    }
+
+    /// Wakes a line editor that waits for a key when the program has to end or to stop, or somebody knocked.
     ///
     /// The editor listens to SIGINT only; it is raised again and again, as one may arrive just before it listens.
     pub fn wake_editor(&self) {
@@ -132,7 +165,8 @@ impl Signals {
             loop {
                 std::thread::sleep(Duration::from_millis(50));
                 let is_editing = !signals.cooked.load(Ordering::SeqCst);
-                let stops = is_editing && signals.stop.load(Ordering::SeqCst);
+                let asked = [&signals.stop, &signals.knocks].iter().any(|flag| flag.load(Ordering::SeqCst));
+                let stops = is_editing && asked;
                 if (stops || signals.must_end()) && low_level::raise(SIGINT).is_err() {
                     return;
                 }

@@ -38,9 +38,13 @@ struct Terminal {
 impl Terminal {
     /// Starts the REPL in `folder`, its state kept there too.
     fn start(folder: &Path, term: &str, arguments: &[&str]) -> Terminal {
+        Terminal::spawn(command(folder, term, arguments))
+    }
+
+    fn spawn(command: CommandBuilder) -> Terminal {
         let pair =
             native_pty_system().openpty(PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 }).unwrap();
-        let child = pair.slave.spawn_command(command(folder, term, arguments)).unwrap();
+        let child = pair.slave.spawn_command(command).unwrap();
         drop(pair.slave);
         let mut reader = pair.master.try_clone_reader().unwrap();
         let writer = pair.master.take_writer().unwrap();
@@ -390,6 +394,78 @@ fn a_line_that_drops_loses_nothing() {
     }
     let terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
     terminal.wait("the offer", |screen| screen.contains("brings back its 1 change"));
+}
+
+/// A scenario of the test, with this much friction.
+fn block(folder: &Path, title: &str, friction: &str) {
+    let text = format!(
+        r#"{{ "format": "stickslip/1", "title": "{title}",
+          "parameters": {{ "f": {friction}, "H": 0.1 }},
+          "materials": {{ "m": {{ "E": 1000, "nu": 0.2 }} }},
+          "plates": [{{ "id": "b", "origin": [0, 0], "size": [1, 1], "divisions": [1, 1], "thickness": 1, "material": "m", "plane": "stress" }}],
+          "contacts": [{{ "id": "base", "edge": "b.bottom", "against": "ground", "friction": "f" }}],
+          "loads": {{ "weight": {{ "items": [{{ "point": {{ "at": "b.top", "force": [0, -1] }} }}] }},
+                     "push": {{ "factor": "H", "items": [{{ "point": {{ "at": "b.top", "force": [1, 0] }} }}] }} }} }}"#
+    );
+    std::fs::write(folder.join("b.json"), text).unwrap();
+}
+
+#[test]
+fn a_watched_file_is_solved_when_it_is_saved_and_the_line_stays() {
+    let folder = folder();
+    block(folder.path(), "one", "0.5");
+    let mut terminal = Terminal::start(folder.path(), "xterm-256color", &["b.json"]);
+    terminal.prompt();
+    terminal.ask("set H 0.2", "trivial");
+    terminal.ask("watch on", "is watched");
+    // half a line is typed, the cursor goes back into it
+    terminal.send("show x_t base[1]\x1b[D\x1b[D\x1b[D");
+    terminal.wait("the line", |screen| screen.contains("show x_t base[1]"));
+    block(folder.path(), "two", "0.6");
+    let told = |screen: &str| {
+        let below = screen.rsplit_once("b.json read again").map_or("", |(_, below)| below);
+        below.contains("kept: H = 0.2") && below.trim_end().ends_with("show x_t base[1]")
+    };
+    let screen = terminal.wait("the news and the line under them", told);
+    assert_eq!(screen.matches("show x_t base[1]").count(), 1, "{screen}");
+    // the cursor is where it was
+    terminal.send("0");
+    terminal.wait("the cursor", |screen| screen.contains("show x_t base0[1]"));
+    terminal.send("\x03");
+    // a file with an error: the place is told, the session stays as it was
+    std::fs::write(folder.path().join("b.json"), "{ \"format\": \"stickslip/1\",\n  \"title\": }").unwrap();
+    terminal.wait("the place", |screen| screen.contains("b.json:2:"));
+    terminal.ask("params", "0.6");
+    // an editor that writes beside the file and renames; what was set does not fit any more
+    block(folder.path(), "three", "0.7");
+    terminal.wait("right again", |screen| screen.matches("b.json read again").count() == 2);
+    terminal.ask("watch off", "no file is watched");
+    terminal.send("quit\r");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
+fn edit_opens_the_editor_of_the_user_and_reads_again() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    block(folder.path(), "one", "0.5");
+    let editor = folder.path().join("my editor");
+    // an editor with an option: it changes the friction, after the user pressed a key and Ctrl-C
+    std::fs::write(&editor, "#!/bin/sh\ntrap '' INT\necho EDITING $1\nread key\nsed -i s/0.5/0.625/ \"$2\"\n").unwrap();
+    std::fs::set_permissions(&editor, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = command(folder.path(), "xterm-256color", &["beam"]);
+    command.env("VISUAL", format!("'{}' --wait", editor.display()));
+    let mut terminal = Terminal::spawn(command);
+    terminal.prompt();
+    terminal.ask("edit", "`save beam.json` gives it one");
+    terminal.ask("load b.json", "trivial");
+    terminal.send("edit\r");
+    terminal.wait("the editor", |screen| screen.contains("EDITING --wait"));
+    terminal.send("\x03x\r");
+    terminal.wait("the news", |screen| screen.contains("b.json read again"));
+    terminal.ask("params", "0.625");
+    terminal.send("quit\r");
+    assert_eq!(terminal.end(), 0);
 }
 
 #[test]

@@ -319,6 +319,71 @@ fn to_the_command_line_and_back_with_one_session() {
     screen.is_restored();
 }
 
+/// A scenario of the test, with this much friction, put into its place as an editor does that renames.
+fn block(folder: &std::path::Path, friction: &str) {
+    let text = format!(
+        r#"{{ "format": "stickslip/1", "title": "a block", "parameters": {{ "f": {friction}, "H": 0.1 }},
+          "materials": {{ "m": {{ "E": 1000, "nu": 0.2 }} }},
+          "plates": [{{ "id": "b", "origin": [0, 0], "size": [1, 1], "divisions": [1, 1], "thickness": 1, "material": "m", "plane": "stress" }}],
+          "contacts": [{{ "id": "base", "edge": "b.bottom", "against": "ground", "friction": "f" }}],
+          "loads": {{ "weight": {{ "items": [{{ "point": {{ "at": "b.top", "force": [0, -1] }} }}] }},
+                     "push": {{ "factor": "H", "items": [{{ "point": {{ "at": "b.top", "force": [1, 0] }} }}] }} }} }}"#
+    );
+    std::fs::write(folder.join("new"), text).unwrap();
+    std::fs::rename(folder.join("new"), folder.join("b.json")).unwrap();
+}
+
+#[test]
+fn a_watched_file_is_shown_when_it_is_saved_and_its_errors_over_the_last_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    block(folder.path(), "0.5");
+    let path = folder.path().join("b.json").display().to_string();
+    let mut screen = Screen::start(&["tui", &path], 100, 30);
+    screen.wait("a block");
+    screen.send(":watch on\r");
+    screen.wait("is watched");
+    block(folder.path(), "0.625");
+    screen.wait("0.625");
+    std::fs::write(&path, "{ \"format\": \"stickslip/1\",\n  \"title\": }").unwrap();
+    screen.wait("b.json:2:");
+    let text = screen.text();
+    assert!(text.contains("0.625") && text.contains("2 Parameters"), "the panes stay:\n{text}");
+    // it swallows no key: the friction goes up, the error stays
+    screen.send("+");
+    screen.until("a key", |screen| screen.contents().contains("0.645") && screen.contents().contains("b.json:2:"));
+    block(folder.path(), "0.25");
+    screen.until("right again", |screen| !screen.contents().contains("b.json:2:"));
+    screen.settle();
+    let before = screen.bytes();
+    thread::sleep(Duration::from_secs(2));
+    assert_eq!(screen.bytes(), before, "nothing is sent while nothing is saved");
+    screen.send("q");
+    assert_eq!(screen.exit(), 0);
+}
+
+#[test]
+fn edit_lends_the_terminal_to_the_editor() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    block(folder.path(), "0.5");
+    let editor = folder.path().join("editor");
+    std::fs::write(&editor, "#!/bin/sh\necho EDITING\nread key\nsed -i s/0.5/0.625/ \"$1\"\n").unwrap();
+    std::fs::set_permissions(&editor, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_stickslip"));
+    command.args(["tui", &folder.path().join("b.json").display().to_string()]);
+    command.env("VISUAL", editor.display().to_string());
+    let mut screen = Screen::spawn(command, 100, 30);
+    screen.wait("a block");
+    screen.send(":edit\r");
+    screen.until("the editor", |screen| !screen.alternate_screen() && screen.contents().contains("EDITING"));
+    screen.is_restored();
+    screen.send("x\r");
+    screen.until("the panes", |screen| screen.alternate_screen() && screen.contents().contains("0.625"));
+    screen.send("q");
+    assert_eq!(screen.exit(), 0);
+    screen.is_restored();
+}
+
 #[test]
 fn keys_can_be_changed() {
     let home = tempfile::tempdir().unwrap();

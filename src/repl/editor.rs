@@ -22,8 +22,8 @@ pub struct Editing {
     pub vocabulary: Vocabulary,
     /// Whether and how to colour.
     style: Style,
-    /// The line as it was hinted last.
-    line: Mutex<String>,
+    /// The line and the cursor in it, as they were seen last.
+    line: Mutex<(String, usize)>,
 }
 
 impl Editing {
@@ -32,9 +32,15 @@ impl Editing {
         Editing { vocabulary, style, line: Mutex::default() }
     }
 
-    /// The line as it was when the editor was interrupted.
-    pub fn last_line(&self) -> String {
-        self.line.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    fn keep(&self, line: &str, position: usize) {
+        *self.line.lock().unwrap_or_else(PoisonError::into_inner) = (line.to_owned(), position);
+    }
+
+    /// The line as it was when the editor was interrupted, before the cursor and behind it.
+    pub fn last_line(&self) -> (String, String) {
+        let (line, position) = self.line.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let (before, behind) = line.split_at_checked(position).unwrap_or((&line, ""));
+        (before.to_owned(), behind.to_owned())
     }
 }
 
@@ -100,7 +106,7 @@ impl Hinter for Editing {
     type Hint = ShownHint;
 
     fn hint(&self, line: &str, position: usize, _: &Context<'_>) -> Option<ShownHint> {
-        line.clone_into(&mut self.line.lock().unwrap_or_else(PoisonError::into_inner));
+        self.keep(line, position);
         if position < line.len() {
             return None;
         }
@@ -151,7 +157,9 @@ impl Highlighter for Editing {
         if self.style.color { Cow::Owned(self.style.paint(Role::Muted, hint)) } else { Cow::Borrowed(hint) }
     }
 
-    fn highlight_char(&self, _: &str, _: usize, kind: CmdKind) -> bool {
+    fn highlight_char(&self, line: &str, position: usize, kind: CmdKind) -> bool {
+        // the only one that hears of a cursor that moves
+        self.keep(line, position);
         self.style.color && kind != CmdKind::MoveCursor
     }
 }

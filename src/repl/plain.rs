@@ -77,8 +77,8 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
         }
         match result {
             Ok(Next::Continue) => {}
-            // the session refuses the full screen here
-            Ok(Next::Quit | Next::FullScreen { .. }) => break,
+            // the session refuses the full screen and the editor here
+            Ok(Next::Quit | Next::FullScreen { .. } | Next::Edit) => break,
             Err(error) if error.is_broken_pipe() => return Ok(Ended::with(0)),
             Err(error) if error.is_output() => return Err(io::Error::other(error.to_string())),
             Err(error) => {

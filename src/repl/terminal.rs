@@ -10,6 +10,10 @@ use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
 use rustyline::{ColorMode, CompletionType, Config, Editor, Event, EventHandler};
 
+use unicode_width::UnicodeWidthStr;
+
+use crate::session::commands::reload::open_editor;
+use crate::session::file_watch::FileWatch;
 use crate::session::{CommandError, Next, Output, Session, journal};
 use crate::text::printable;
 use crate::view::style::{Role, Style};
@@ -34,12 +38,14 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
     if printer.is_ok() {
         signals.wake_editor();
     }
+    let knocking = signals.clone();
+    let files = FileWatch::start(move || knocking.knock()).ok().filter(|_| printer.is_ok());
     let fixed_width = style.width != terminal_width();
     let mut style = style;
     // lines of a paste or typed ahead, and the beginning of one
     let mut waiting: VecDeque<String> = VecDeque::new();
     let mut pasted = false;
-    let mut begun = String::new();
+    let mut begun = (String::new(), String::new());
     let prompt_text = if style.ascii { "> " } else { "› " };
     let prompt_colour = style.paint(Role::Accent, prompt_text);
     loop {
@@ -50,15 +56,27 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
             Some(line) => line,
             None => {
                 pasted = false;
+                if let Some(files) = &files {
+                    files.aim(session.watched());
+                }
+                if signals.take_knock() && session.watched().is_some() {
+                    reload(session, style, signals);
+                }
                 if let Some(helper) = editor.helper_mut() {
                     helper.vocabulary = session.vocabulary();
                 }
                 let prompt = (prompt_text, prompt_colour.as_str());
                 let raw = signals.raw();
-                let read = editor.readline_with_initial(&prompt, (&begun, ""));
+                let read = editor.readline_with_initial(&prompt, (&begun.0, &begun.1));
                 drop(raw);
-                begun.clear();
+                begun = Default::default();
                 signals.take_interrupt();
+                if read.is_err() && signals.has_knocked() {
+                    // the line gives way to what is told, and comes again as it was
+                    begun = editor.helper().map(Editing::last_line).unwrap_or_default();
+                    erase_line(prompt_text, &begun.0)?;
+                    continue;
+                }
                 if signals.take_stop() {
                     // what was typed so far stands in the line again after `fg`
                     begun = editor.helper().map(Editing::last_line).unwrap_or_default();
@@ -104,11 +122,12 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
         pasted |= !by_hand;
         let (result, typed) = execute(session, &line, style, signals, by_hand, pasted);
         let mut typed: Vec<&str> = typed.split('\n').collect();
-        begun = typed.pop().unwrap_or_default().to_owned();
+        begun = (typed.pop().unwrap_or_default().to_owned(), String::new());
         waiting.extend(typed.into_iter().map(ToOwned::to_owned));
         match result {
             Ok(Next::Continue) => {}
             Ok(Next::Quit) => return Ok(Ended::with(0)),
+            Ok(Next::Edit) => edit(session, style, signals),
             Ok(next) => return Ok(Ended { status: 0, next }),
             Err(error) if error.is_output() => {
                 if signals.must_end() || !io::stdin().is_terminal() {
@@ -125,6 +144,37 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
                 let _ = writeln!(io::stderr(), "{}", show_error(&error, &style));
             }
         }
+    }
+}
+
+/// Takes the line away that was being typed; the cursor stood behind `before`.
+fn erase_line(prompt: &str, before: &str) -> io::Result<()> {
+    // the editor has gone to the next row when it returns
+    let rows = (prompt.width() + before.width()) / terminal_width().max(1) + 1;
+    let mut out = io::stdout();
+    write!(out, "\x1b[{rows}A\r\x1b[J")?;
+    out.flush()
+}
+
+/// `edit`: the editor has the terminal, then the file is read again.
+fn edit(session: &mut Session, style: Style, signals: &Signals) {
+    let Some(path) = session.scenario().path.clone() else { return };
+    let edited = open_editor(&path);
+    signals.forget_keys();
+    match edited {
+        Ok(()) => reload(session, style, signals),
+        Err(error) => {
+            let _ = writeln!(io::stderr(), "{}", show_error(&error, &style));
+        }
+    }
+}
+
+/// `reload`, which nobody typed.
+fn reload(session: &mut Session, style: Style, signals: &Signals) {
+    let (result, _) = execute(session, "reload", style, signals, false, false);
+    if let Err(error) = result {
+        signals.take_interrupt();
+        let _ = writeln!(io::stderr(), "{}", show_error(&error, &style));
     }
 }
 

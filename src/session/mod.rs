@@ -8,6 +8,7 @@ mod ask;
 mod change;
 pub mod commands;
 mod error;
+pub mod file_watch;
 mod history;
 pub mod journal;
 pub mod language;
@@ -55,9 +56,11 @@ pub enum Next {
     Quit,
     /// The full screen, with the same session.
     FullScreen {
-        /// Whether it begins with the tour.
-        tour: bool,
+        /// The tour it begins with, if any.
+        tour: Option<commands::screen::Tour>,
     },
+    /// The file of the scenario in an editor, then `reload`.
+    Edit,
 }
 
 /// What the commands that follow were meant for and is not there.
@@ -105,6 +108,8 @@ pub struct Session {
     auto: bool,
     undo: Vec<Change>,
     redo: Vec<Change>,
+    /// Whether the files of the scenario are watched.
+    watches: bool,
     history: Vec<String>,
     journal: Option<Journal>,
     left_over: Option<LeftOver>,
@@ -167,6 +172,7 @@ impl Session {
             auto: true,
             undo: Vec::new(),
             redo: Vec::new(),
+            watches: false,
             history: Vec::new(),
             journal: None,
             left_over: None,

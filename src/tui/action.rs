@@ -1,5 +1,6 @@
 //! What can happen to the screen, and what it asks for in return.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::session::{AllAnswers, Next};
@@ -230,6 +231,10 @@ pub enum Action {
     },
     /// A job ended.
     Done(Box<Done>),
+    /// A watched file was saved.
+    Saved,
+    /// The editor ended; with an error if it could not be used.
+    Edited(Option<String>),
 }
 
 /// Where the full screen goes when it ends.
@@ -252,6 +257,8 @@ pub enum Effect {
     Leave(Leave),
     /// Stop the program until `fg`.
     Suspend,
+    /// Let the user edit this file.
+    Edit(PathBuf),
     /// Draw everything anew.
     Redraw,
     /// Take or leave the mouse.

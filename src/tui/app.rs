@@ -10,6 +10,7 @@ use ratatui::text::Line;
 
 use crate::model::parameter::Parameter;
 use crate::session::AllAnswers;
+use crate::session::commands::screen::Tour;
 use crate::session::results::PairState;
 use crate::view::style::Role;
 
@@ -143,14 +144,16 @@ pub struct State {
     pub remedies_sought: Option<The<Moment>>,
     /// A line at the bottom.
     pub message: Option<Message>,
+    /// What is wrong with the file that is watched: the panes show what it was before.
+    pub trouble: Option<String>,
     /// What is typed.
     pub input: Input,
     /// Lines typed before.
     pub history: Vec<String>,
     /// What lies over the panes.
     pub overlay: Overlay,
-    /// Step of the tour.
-    pub tour: Option<usize>,
+    /// The tour, and its step.
+    pub tour: Option<(Tour, usize)>,
     /// Whether the mouse is taken.
     pub mouse: bool,
     /// The parameter whose slider the mouse holds.
@@ -191,6 +194,7 @@ impl State {
             progress: None,
             remedies_sought: None,
             message: None,
+            trouble: None,
             input: Input::None,
             history: Vec::new(),
             overlay: Overlay::None,
@@ -221,6 +225,15 @@ impl State {
             self.focus = Pane::Pivots;
         }
         self.plot = self.plots()[0];
+    }
+
+    /// The same scenario in another version: what was looked at stays as far as it is there. Pairs and parameters are
+    /// brought within their numbers by what follows every job.
+    pub fn reloaded(&mut self) {
+        self.moving = false;
+        self.playing = false;
+        self.wanted.clear();
+        self.held = None;
     }
 
     /// How long until the next [`super::action::Action::Tick`]; `None` while nothing moves.

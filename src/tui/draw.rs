@@ -44,6 +44,9 @@ pub fn draw_on(state: &State, area: Rect, buffer: &mut Buffer) -> Option<(u16, u
     }
     draw_sentence(state, places.sentence, buffer);
     draw_about(state, places.about, buffer);
+    if let Some(trouble) = &state.trouble {
+        draw_trouble(state, trouble, places.sentence, buffer);
+    }
     overlay::draw(state, area, buffer);
     match overlay::draw_input(state, places.bottom, buffer) {
         Some(cursor) => Some(cursor),
@@ -51,6 +54,26 @@ pub fn draw_on(state: &State, area: Rect, buffer: &mut Buffer) -> Option<(u16, u
             draw_bottom(state, places.bottom, buffer);
             None
         }
+    }
+}
+
+/// What is wrong with the watched file, over the lowest rows of the panes; `bottom` stands under them.
+fn draw_trouble(state: &State, trouble: &str, bottom: Rect, buffer: &mut Buffer) {
+    /// More would hide the picture.
+    const ROWS: usize = 6;
+    let width = usize::from(bottom.width);
+    let report = state.look.report(width);
+    let mut lines: Vec<String> = trouble.lines().flat_map(|line| report.wrap(line, width)).collect();
+    if lines.len() > ROWS {
+        let more = lines.len() + 1 - ROWS;
+        lines.truncate(ROWS - 1);
+        lines.push(format!("{} {more} more lines: `:reload` shows them all", report.ellipsis()));
+    }
+    lines.truncate(usize::from(bottom.y.saturating_sub(1)));
+    let top = bottom.y.saturating_sub(lines.len() as u16);
+    let style = state.look.role(Role::Bad).add_modifier(Modifier::REVERSED);
+    for (row, line) in lines.iter().enumerate() {
+        buffer.set_stringn(bottom.x, top + row as u16, format!("{line:<width$}"), width, style);
     }
 }
 

@@ -1,6 +1,8 @@
 //! The loop: keys, signals, results and time come in; frames and jobs go out. It sleeps while nothing happens.
 
+use std::collections::VecDeque;
 use std::io;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,6 +12,9 @@ use std::time::{Duration, Instant};
 use crossterm::event::{self, Event, MouseButton, MouseEventKind};
 
 use crate::session::Session;
+use crate::session::commands::reload::open_editor;
+use crate::session::commands::screen::Tour;
+use crate::session::file_watch::FileWatch;
 use crate::signals::Signals;
 use crate::view::style::{Role, Style};
 
@@ -32,8 +37,8 @@ const TOGETHER: Duration = Duration::from_millis(12);
 /// How the screen begins.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
-    /// Whether with the tour.
-    pub tour: bool,
+    /// With which tour, if any.
+    pub tour: Option<Tour>,
     /// Where `q` goes.
     pub home: Leave,
 }
@@ -80,8 +85,11 @@ pub fn run(session: Session, style: Style, start: Start, signals: &Signals) -> i
         let _ = results.lock().unwrap_or_else(PoisonError::into_inner).send(Incoming::Action(action));
     })?;
     let reader = Reader::start(sender.clone(), signals.clone())?;
-    reader.watch_signals(sender, signals.clone())?;
-    let mut loop_ = Loop { state, screen, worker, reader, incoming };
+    reader.watch_signals(sender.clone(), signals.clone())?;
+    let files = FileWatch::start(move || {
+        let _ = sender.send(Incoming::Action(Action::Saved));
+    })?;
+    let mut loop_ = Loop { state, screen, worker, reader, incoming, files, signals: signals.clone() };
     let ended = loop_.run(start.tour);
     let Loop { screen, worker, reader, .. } = loop_;
     reader.end();
@@ -154,7 +162,8 @@ impl Reader {
         let theirs = Arc::clone(&self.rests);
         let look = move || {
             while !theirs.end.load(Ordering::SeqCst) {
-                if let Some(asked) = asked(&signals)
+                if !theirs.pause.load(Ordering::SeqCst)
+                    && let Some(asked) = asked(&signals)
                     && sender.send(Incoming::Signal(asked)).is_err()
                 {
                     return;
@@ -187,11 +196,13 @@ struct Loop {
     worker: Worker,
     reader: Reader,
     incoming: Receiver<Incoming>,
+    files: FileWatch,
+    signals: Signals,
 }
 
 impl Loop {
-    fn run(&mut self, tour: bool) -> io::Result<Ended> {
-        let mut effects = if tour { begin_tour(&mut self.state, 0) } else { Vec::new() };
+    fn run(&mut self, tour: Option<Tour>) -> io::Result<Ended> {
+        let mut effects = tour.map_or_else(Vec::new, |tour| begin_tour(&mut self.state, tour, 0));
         effects.extend(background(&mut self.state));
         if let Some(ended) = self.carry_out(effects)? {
             return Ok(ended);
@@ -282,7 +293,9 @@ impl Loop {
     }
 
     fn carry_out(&mut self, effects: Vec<Effect>) -> io::Result<Option<Ended>> {
-        for effect in effects {
+        let mut effects = VecDeque::from(effects);
+        self.files.aim(self.state.shown.watches.then(|| Arc::clone(&self.state.shown.scenario)));
+        while let Some(effect) = effects.pop_front() {
             match effect {
                 Effect::Run(job) => {
                     let width = overlay::text_width(&self.state);
@@ -293,6 +306,10 @@ impl Loop {
                     return Ok(Some(Ended { leave, status: 0 }));
                 }
                 Effect::Suspend => self.suspend()?,
+                Effect::Edit(path) => {
+                    let edited = self.edit(&path)?;
+                    effects.extend(update(&mut self.state, Action::Edited(edited)));
+                }
                 Effect::Redraw => self.redraw()?,
                 Effect::Mouse(mouse) => self.screen.set_mouse(mouse)?,
             }
@@ -301,16 +318,28 @@ impl Loop {
     }
 
     fn suspend(&mut self) -> io::Result<()> {
+        self.nobody_reads(Screen::suspend)
+    }
+
+    /// The editor of the user has the terminal; why it could not be used.
+    fn edit(&mut self, path: &Path) -> io::Result<Option<String>> {
+        let signals = self.signals.clone();
+        self.nobody_reads(|screen| screen.lend(|| signals.while_cooked(|| open_editor(path))))
+            .map(|edited| edited.err().map(|error| error.to_string()))
+    }
+
+    /// What is done with the terminal while neither keys nor signals are taken.
+    fn nobody_reads<T>(&mut self, with: impl FnOnce(&mut Screen) -> io::Result<T>) -> io::Result<T> {
         let rests = Arc::clone(&self.reader.rests);
         rests.pause.store(true, Ordering::SeqCst);
-        let suspended = {
+        let result = {
             let _nobody_reads = rests.reading.lock().unwrap_or_else(PoisonError::into_inner);
-            self.screen.suspend()
+            with(&mut self.screen)
         };
         rests.pause.store(false, Ordering::SeqCst);
-        suspended?;
+        let result = result?;
         self.state.size = self.screen.size()?;
-        Ok(())
+        Ok(result)
     }
 
     fn redraw(&mut self) -> io::Result<()> {

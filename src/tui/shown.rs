@@ -30,6 +30,8 @@ pub struct Shown {
     pub position: Option<usize>,
     /// The state there.
     pub moment: Arc<Moment>,
+    /// Whether the files of the scenario are watched.
+    pub watches: bool,
     /// What would stop the collapse, once it was looked for.
     pub remedies: Option<Arc<Remedies>>,
     /// Names for completion, gathered when the first letter asks for them.
@@ -95,6 +97,7 @@ impl Shown {
             previous: session.previous(),
             position: session.position(),
             moment: Arc::default(),
+            watches: session.watched().is_some(),
             remedies: session.remedies(),
             vocabulary: Arc::default(),
         };

@@ -128,15 +128,24 @@ impl Screen {
         Write::flush(out)
     }
 
+    /// Gives the terminal to another program and takes it again when `with` ends.
+    ///
+    /// # Errors
+    /// The terminal does not come back.
+    pub fn lend<T>(&mut self, with: impl FnOnce() -> T) -> io::Result<T> {
+        restore();
+        let result = with();
+        take(self.mouse)?;
+        self.clear()?;
+        Ok(result)
+    }
+
     /// Gives the terminal back and stops the program; goes on after `fg`.
     ///
     /// # Errors
     /// The terminal does not come back.
     pub fn suspend(&mut self) -> io::Result<()> {
-        restore();
-        signals::stop()?;
-        take(self.mouse)?;
-        self.clear()
+        self.lend(signals::stop)?
     }
 }
 

@@ -5,11 +5,13 @@ use clap::Args;
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
 
-/// Show all commands, or what one of them does
+/// Show all commands, or what one of them does; `help method`, `help signs`: the theory
+///
+/// `help ray` also goes through the steps that find out what a ray means, with the names of the problem loaded.
 #[derive(Debug, Args)]
-#[command(visible_alias = "?", after_help = "Example:\n  help set")]
+#[command(visible_alias = "?", after_help = "Example:\n  help set\n  help method\n  help ray")]
 pub struct Help {
-    /// The command
+    /// The command, or method, or signs
     #[arg(value_name = "COMMAND")]
     command: Option<String>,
 }
@@ -17,8 +19,8 @@ pub struct Help {
 pub const HELP: Command = Command { alias: Some("?"), without_scenario: true, ..Command::of::<Help>("help") };
 
 impl Action for Help {
-    fn run(&self, _: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
-        Session::show_help(self.command.as_deref(), io)?;
+    fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
+        session.show_help(self.command.as_deref(), io)?;
         Ok(Next::Continue)
     }
 }

@@ -25,10 +25,12 @@ pub(in crate::session) mod plot_path;
 pub(in crate::session) mod plots;
 pub(in crate::session) mod quit;
 pub(in crate::session) mod ray;
+pub(in crate::session) mod ray_guide;
 pub(in crate::session) mod record;
+pub mod reload;
 pub(in crate::session) mod restore;
 pub(in crate::session) mod save;
-pub(in crate::session) mod screen;
+pub mod screen;
 pub mod script;
 pub(in crate::session) mod sensitivity;
 pub(in crate::session) mod set;
@@ -55,6 +57,9 @@ pub static GROUPS: &[(&str, &[Command])] = &[
             new::NEW,
             load::SCENARIOS,
             save::SAVE,
+            reload::EDIT,
+            reload::RELOAD,
+            reload::WATCH,
             parameters::PARAMS,
             set::SET,
             set::RESET,

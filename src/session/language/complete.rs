@@ -4,6 +4,7 @@ use crate::session::commands;
 use crate::session::language::command::Command;
 use crate::session::language::grammar::resolve;
 use crate::session::language::tokens;
+use crate::session::language::topics::TOPICS;
 
 use super::candidates::{Asked, MOST};
 pub use super::candidates::{Candidate, Vocabulary};
@@ -184,7 +185,10 @@ fn values(command: &Command, argument: &clap::Arg, asked: &Asked<'_>) -> Vec<Can
             }
             all
         }
-        "COMMAND" => commands(),
+        "COMMAND" => {
+            let topics = TOPICS.iter().map(|topic| Candidate::new(topic.name, topic.about));
+            commands().into_iter().chain(topics).collect()
+        }
         _ => (command.complete)(asked),
     }
 }

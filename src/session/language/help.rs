@@ -3,8 +3,10 @@
 use serde_json::Value;
 
 use crate::session::commands::GROUPS;
+use crate::session::commands::ray::RAY;
 use crate::session::language::error::GrammarError;
 use crate::session::language::grammar::resolve;
+use crate::session::language::topics::{self, TOPICS};
 use crate::session::{CommandError, Output, Session};
 use crate::view::style::Style;
 
@@ -25,6 +27,12 @@ pub fn overview(style: &Style) -> String {
             add(&format!("  {:<14} ", command.name), &command.about());
         }
     }
+    add("", "");
+    add("", "topics");
+    for topic in TOPICS {
+        add(&format!("  {:<14} ", topic.name), topic.about);
+    }
+    add("  ray            ", "also how to find out what a ray means, step by step");
     add("", "");
     add("", "`help COMMAND` says more, with an example.");
     text
@@ -47,11 +55,19 @@ pub fn help(word: &str, width: usize) -> Result<String, GrammarError> {
 }
 
 impl Session {
-    /// `help [COMMAND]`. It stands with the table, which the commands themselves do not know.
-    pub(in crate::session) fn show_help(command: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let text = match command {
+    /// `help`: all commands, one of them, or a topic; `help ray` with the steps for the present problem. It stands with
+    /// the table, which the commands themselves do not know.
+    pub(in crate::session) fn show_help(&self, word: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let text = match word {
             None => overview(&io.style),
-            Some(word) => help(word, io.style.width)?,
+            Some(word) => match topics::find(word) {
+                Some(topic) => topic.text(&io.style),
+                None => {
+                    let text = help(word, io.style.width)?;
+                    let is_ray = resolve(word).is_ok_and(|command| command.name == RAY.name);
+                    if is_ray { format!("{text}\n{}", self.ray_guide(&io.style)) } else { text }
+                }
+            },
         };
         io.report(
             || Value::String(text.clone()),

@@ -13,3 +13,4 @@ pub(in crate::session) mod selection;
 pub mod setting;
 pub mod suggestion;
 pub mod tokens;
+pub mod topics;

@@ -9,7 +9,7 @@ use super::{output, selection, tour};
 use crate::tui::action::{Done, Effect, Job, Leave};
 use crate::tui::app::{Overlay, PERIOD, State};
 use crate::tui::kept::The;
-use crate::tui::tour::STEPS;
+use crate::tui::tour::steps;
 
 /// Runs a job now, or after the one at work. Of the same slider only the newest value counts: an older solve is
 /// stopped. Of the steps only the last counts.
@@ -50,9 +50,19 @@ pub(super) fn line(state: &mut State, text: String, shows: bool) -> Vec<Effect> 
     order(state, Job::Line { text, shows })
 }
 
+/// What [`reload`] orders.
+const RELOAD: &str = "reload";
+
+/// Reads the file again: it was saved. One such job that waits is enough.
+pub(super) fn reload(state: &mut State) -> Vec<Effect> {
+    let job = Job::Line { text: RELOAD.into(), shows: false };
+    if state.waiting.contains(&job) { Vec::new() } else { order(state, job) }
+}
+
 pub(super) fn stop(state: &mut State) -> Vec<Effect> {
     state.playing = false;
     state.moving = false;
+    state.trouble = None;
     state.waiting.clear();
     state.wanted_step = None;
     if state.running.is_some() { vec![Effect::Stop] } else { Vec::new() }
@@ -60,6 +70,7 @@ pub(super) fn stop(state: &mut State) -> Vec<Effect> {
 
 /// A job ended: its result is shown, the next one begins.
 pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
+    let is_reload = matches!(&done.job, Job::Line { text, .. } if text == RELOAD);
     let new_scenario = !Arc::ptr_eq(&state.shown.scenario, &done.shown.scenario);
     state.running = None;
     state.progress = None;
@@ -68,7 +79,14 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         // Sliders and steps meant the old one; lines (those of the tour, too) are carried out in their order.
         state.waiting.retain(|job| matches!(job, Job::Line { .. }));
         state.wanted_step = None;
-        state.new_scenario();
+        if is_reload {
+            state.reloaded();
+        } else {
+            state.new_scenario();
+        }
+    }
+    if new_scenario || is_reload {
+        state.trouble = None;
     }
     settle(state, &done.job);
     if done.job == Job::Remedies && done.interrupted {
@@ -82,6 +100,9 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
             if !changed || state.waiting.is_empty() {
                 state.say(Role::Warning, "stopped: the session is as it was");
             }
+        } else if is_reload && matches!(done.job, Job::Line { shows: false, .. }) {
+            // it stays over the last good picture until the file is right
+            state.trouble = Some(error);
         } else {
             output::tell(state, &done.job, &error, Role::Bad);
         }
@@ -94,8 +115,9 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     match done.next {
         Next::Continue => {}
         Next::Quit => return vec![Effect::Leave(Leave::Quit)],
-        Next::FullScreen { tour: true } => effects.extend(tour::begin_tour(state, 0)),
-        Next::FullScreen { tour: false } => {
+        Next::Edit => effects.extend(state.shown.scenario.path.clone().map(Effect::Edit)),
+        Next::FullScreen { tour: Some(of) } => effects.extend(tour::begin_tour(state, of, 0)),
+        Next::FullScreen { tour: None } => {
             state.say(Role::Plain, "this is the full screen: `q` leaves it");
         }
     }
@@ -142,8 +164,8 @@ fn settle(state: &mut State, job: &Job) {
     let count = state.shown.pairs().len();
     state.pair = state.pair.min(count.saturating_sub(1));
     state.parameter = state.parameter.min(state.shown.values.len().saturating_sub(1));
-    if let (Some(at), Job::Line { shows: false, .. }) = (state.tour, job)
-        && let Some(step) = STEPS.get(at)
+    if let (Some((of, at)), Job::Line { shows: false, .. }) = (state.tour, job)
+        && let Some(step) = steps(of).get(at)
     {
         state.plot = step.plot;
         if at == 0 && (state.shown.previous.is_some() || !state.shown.moment.changes.is_empty()) {

@@ -61,6 +61,11 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         Action::Done(done) => finish(state, *done),
+        Action::Saved | Action::Edited(None) => jobs::reload(state),
+        Action::Edited(Some(error)) => {
+            state.say(Role::Bad, error);
+            Vec::new()
+        }
     }
 }
 

@@ -1,24 +1,9 @@
-//! The guided tour: six steps through the paper's Example 1, from sticking to the ray.
+//! Six steps through the paper's Example 1, from sticking to the ray.
 
-use super::app::State;
-use super::bindings::Context;
-use super::pane::{Pane, Plot};
+use super::Step;
+use crate::tui::pane::{Pane, Plot};
 
-/// One step.
-pub struct Step {
-    /// What is to be seen.
-    pub text: &'static str,
-    /// The commands that lead there.
-    pub commands: &'static str,
-    /// The pane to look at.
-    pub pane: Pane,
-    /// The plot to look at.
-    pub plot: Plot,
-}
-
-/// The steps. The first loads the scenario `beam`; the others set all its values, so that what the user varied in
-/// between does no harm and each is compared with the step before.
-pub const STEPS: [Step; 6] = [
+pub const STEPS: &[Step] = &[
     Step {
         text: "A beam lies on six supports, F = 100 kN on each, and is pulled at its right end. With F2 = 40 kN the \
                pull stays below f F = 50 kN, the bound of one support: every pair sticks, nothing moves, and the main \
@@ -65,22 +50,3 @@ pub const STEPS: [Step; 6] = [
         plot: Plot::Ray,
     },
 ];
-
-/// The text of a step with its keys, in lines of `width` columns; the keys are the first `usize` bytes.
-pub fn lines(state: &State, at: usize, width: usize) -> Option<(Vec<String>, usize)> {
-    let step = STEPS.get(at)?;
-    let look = state.look;
-    let keys = state.keys.rows(Context::Tour, look.ascii);
-    let key = |name: &str| keys.iter().find(|(_, binding)| binding.name == name).map_or("", |(keys, _)| keys);
-    let head = format!(
-        "Tour {} of {} ({} on, {} back, {} ends):",
-        at + 1,
-        STEPS.len(),
-        key("tour-next"),
-        key("tour-back"),
-        key("tour-end")
-    );
-    let head = look.text(&head);
-    let lines = look.report(width).wrap(&format!("{head} {}", step.text), width);
-    Some((lines, head.len()))
-}
