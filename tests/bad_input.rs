@@ -7,8 +7,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
+use stickslip::model::catalog::load_named_or_file;
 use stickslip::model::embedded;
-use stickslip::model::load::{load_file, load_named_or_file, load_text};
+use stickslip::model::load::{load_file, load_text};
 
 fn invalid_files() -> Vec<PathBuf> {
     let folder = Path::new("tests/invalid");

@@ -22,11 +22,11 @@ use faer::{Mat, MatMut, Side};
 use nalgebra::DMatrix;
 
 use super::error::MainSystemError;
-use super::memory::available_memory;
 use super::order::{Places, elimination_order};
 use super::sparse::SymmetricSparse;
 use super::supernodes::Supernodes;
 use super::watch::check_stop;
+use crate::model::memory::available_memory;
 use crate::watch::Watch;
 
 /// Added to the unit diagonal where K_m itself has no factor in f64, and multiplied by [`SHIFT_STEP`] until it has one.

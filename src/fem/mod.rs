@@ -52,7 +52,6 @@ mod joint_rows;
 mod kernel;
 mod loads;
 mod loose;
-mod memory;
 mod null_space;
 mod order;
 mod parts;

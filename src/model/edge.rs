@@ -1,56 +1,7 @@
 //! Edges: chains of element sides, their nodes, normals, and the consistent loads on them.
 
-use super::structure::{Element, Node, Plate};
-
-/// One of the four edges of a plate, in the plate's own axes (before its rotation).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PlateSide {
-    /// j = 0.
-    Bottom,
-    /// Largest j.
-    Top,
-    /// i = 0.
-    Left,
-    /// Largest i.
-    Right,
-}
-
-impl PlateSide {
-    /// The words in files.
-    pub const WORDS: [(&'static str, PlateSide); 4] = [
-        ("bottom", PlateSide::Bottom),
-        ("top", PlateSide::Top),
-        ("left", PlateSide::Left),
-        ("right", PlateSide::Right),
-    ];
-
-    /// The edge, by increasing i or j.
-    pub fn edge(self, plate: &Plate) -> Edge {
-        // Every plate has at least two rows of at least two nodes.
-        let rows = &plate.nodes;
-        let (columns, lines) = (rows[0].len() - 1, rows.len() - 1);
-        let nodes: Vec<usize> = match self {
-            PlateSide::Bottom => rows[0].clone(),
-            PlateSide::Top => rows[lines].clone(),
-            PlateSide::Left => rows.iter().map(|row| row[0]).collect(),
-            PlateSide::Right => rows.iter().map(|row| row[columns]).collect(),
-        };
-        let element = |k: usize| {
-            plate.elements.start
-                + match self {
-                    PlateSide::Bottom => k,
-                    PlateSide::Top => (lines - 1) * columns + k,
-                    PlateSide::Left => k * columns,
-                    PlateSide::Right => k * columns + columns - 1,
-                }
-        };
-        let reversed = matches!(self, PlateSide::Top | PlateSide::Left);
-        let sides = (1..nodes.len())
-            .map(|k| EdgeSide { element: element(k - 1), ends: [nodes[k - 1], nodes[k]], middle: None, reversed })
-            .collect();
-        Edge { nodes, sides }
-    }
-}
+use super::element::Element;
+use super::node::Node;
 
 /// One element side of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -378,6 +329,7 @@ fn key([a, b]: [usize; 2]) -> (usize, usize) {
 mod tests {
     use super::*;
     use crate::model::grid::{GridLines, PlateGrid};
+    use crate::model::plate::{Plate, PlateSide};
     use crate::model::structure::Plane;
 
     fn graded(rotation: f64) -> (Vec<Node>, Plate, Vec<Element>) {

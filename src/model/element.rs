@@ -2,7 +2,7 @@
 //!
 //! How they carry force is told by [`crate::fem`], in one file for each kind.
 
-use super::component::Component;
+use super::node::Component;
 use super::shape::Shape;
 
 /// Linear elastic material.
@@ -100,6 +100,14 @@ impl Element {
         match &self.kind {
             ElementKind::Frame { area, .. } | ElementKind::Truss { area } => *area,
             ElementKind::Membrane { thickness, .. } => *thickness,
+        }
+    }
+
+    /// Area and second moment of area of the cross-section of one that bends.
+    pub fn section(&self) -> Option<[f64; 2]> {
+        match self.kind {
+            ElementKind::Frame { area, inertia, .. } => Some([area, inertia]),
+            ElementKind::Truss { .. } | ElementKind::Membrane { .. } => None,
         }
     }
 

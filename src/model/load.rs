@@ -1,16 +1,14 @@
-//! From a file, a text or an embedded name to a checked [`Scenario`].
+//! From a file or a text to a checked [`Scenario`].
 
 use std::path::{Path, PathBuf};
 
 use super::decode::{self, Under};
-use super::embedded;
 use super::locate::position;
 use super::memory;
 use super::mesh;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
-use super::words::did_you_mean;
 use crate::text::file;
 
 /// Reads and checks a scenario file; the scenario's name is the path as given.
@@ -93,30 +91,4 @@ pub fn at_values(scenario: &Scenario, values: &ParameterValues) -> Result<Scenar
 pub fn rates_along(scenario: &Scenario, values: &ParameterValues, parameter: &str) -> Result<Scenario, Problems> {
     let under = Under { values: Some(values), along: Some(parameter), meshes: scenario.meshes.clone() };
     decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), under)
-}
-
-/// Loads what a user names: an embedded scenario, or a file if the word holds a slash, ends in `.json` or is the
-/// name of an existing file that is no embedded scenario.
-pub fn load_named_or_file(word: &str) -> Result<Scenario, Problems> {
-    let path = Path::new(word);
-    let looks_like_a_path = word.contains(['/', std::path::MAIN_SEPARATOR])
-        || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-    if !looks_like_a_path {
-        if embedded::text(word).is_some() {
-            return embedded::load(word);
-        }
-        if !path.exists() {
-            return Err(unknown(word));
-        }
-    }
-    load_file(path)
-}
-
-fn unknown(word: &str) -> Problems {
-    let names: Vec<&str> = embedded::names().collect();
-    Problems::of_file(
-        word,
-        format!("no embedded scenario and no file has this name{}", did_you_mean(word, names.iter().copied())),
-        format!("expected the path of a scenario file or one of {}", names.join(", ")),
-    )
 }

@@ -1,6 +1,6 @@
 //! Loads, resolved: on nodes, on elements, and displacements imposed on supports.
 
-use super::component::Component;
+use super::node::Component;
 use super::parameter::Number;
 
 /// One resolved part of a load case, per unit factor.

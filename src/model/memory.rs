@@ -1,4 +1,4 @@
-//! How much memory a model will need, estimated before anything is generated.
+//! How much memory a model will need, estimated before anything is generated, and how much there is.
 
 /// Bytes per node: mesh, assembled matrix and its sparse factor. Measured: 467 MB for 160 400 nodes.
 const BYTES_PER_NODE: f64 = 3000.0;
@@ -80,16 +80,32 @@ pub fn address_space_left() -> Option<f64> {
 fn left(limits: &str, status: &str) -> Option<f64> {
     let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
     let limit: f64 = limit.split_whitespace().next()?.parse().ok()?; // or `unlimited`
-    let used = status.lines().find_map(|line| line.strip_prefix("VmSize:"))?;
-    let used: f64 = used.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some((limit - 1024.0 * used).max(0.0))
+    Some((limit - in_bytes(status, "VmSize:")?).max(0.0))
+}
+
+/// Bytes this process can use: what the system calls available, or its control group's limit, or the address space that
+/// is left, if that is less. `None` where the system does not tell (other than Linux).
+pub fn available_memory() -> Option<u64> {
+    let system = meminfo("MemAvailable:")? as u64;
+    let limit =
+        std::fs::read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse::<u64>().ok());
+    let space = address_space_left().map(|bytes| bytes as u64);
+    Some([limit, space].into_iter().flatten().fold(system, u64::min))
 }
 
 /// Bytes of physical memory, where the system tells.
 fn physical_memory() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
-    let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    meminfo("MemTotal:")
+}
+
+/// Bytes that a line of `/proc/meminfo` names.
+fn meminfo(line: &str) -> Option<f64> {
+    in_bytes(&std::fs::read_to_string("/proc/meminfo").ok()?, line)
+}
+
+fn in_bytes(text: &str, line: &str) -> Option<f64> {
+    let amount = text.lines().find_map(|text| text.strip_prefix(line))?;
+    let kibibytes: f64 = amount.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024.0)
 }
 
@@ -122,6 +138,13 @@ mod tests {
         assert_eq!(left(&limits("unlimited"), status), None);
         assert_eq!(left(&limits("4096000"), status), Some(2048000.0));
         assert_eq!(left(&limits("1000"), status), Some(0.0));
+    }
+
+    #[test]
+    fn the_line_of_meminfo_is_read() {
+        let text = "MemTotal:       24 kB\nMemFree: 3 kB\nMemAvailable:   22 kB\n";
+        assert_eq!(in_bytes(text, "MemAvailable:"), Some(22.0 * 1024.0));
+        assert_eq!(in_bytes("MemTotal: 24 kB\n", "MemAvailable:"), None);
     }
 
     #[test]

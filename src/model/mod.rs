@@ -4,7 +4,7 @@
 //! plates, `mortar` joins edges) → `scenario` (what everything later works on).
 
 pub mod amend;
-pub mod component;
+pub mod catalog;
 mod decode;
 pub mod edge;
 pub mod element;
@@ -18,8 +18,10 @@ pub mod locate;
 pub(crate) mod memory;
 pub mod mesh;
 pub mod mortar;
+pub mod node;
 pub mod pair;
 pub mod parameter;
+pub mod plate;
 pub mod plausible;
 pub mod problem;
 pub mod quantity;

@@ -4,22 +4,14 @@
 //! the generated ones (plate nodes `lower[i,j]`, mesh nodes `dam/17`, bar divisions `AB/1`), so that results keep the
 //! author's order.
 
-pub use super::component::Component;
 use super::edge::EdgeSide;
 pub use super::element::{Element, ElementKind, Material, Plane};
 pub use super::load_case::{ElementLoad, Load, LoadCase};
+pub use super::node::{Component, Node};
 use super::pair::Pair;
+pub use super::plate::Plate;
 use super::superelement::Superelement;
 pub use super::support::{RigidBody, Spring, SpringTerm, Support, Tie};
-
-/// A node: its name and its place in the plane.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Node {
-    /// `A`, `AB/1`, `lower[0,8]`.
-    pub id: String,
-    /// Coordinates (x, y), in the author's unit of length.
-    pub position: [f64; 2],
-}
 
 /// A bar of the file: a chain of equal elements.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,17 +20,6 @@ pub struct Bar {
     pub id: String,
     /// Its elements, from start to end: a range of [`Structure::elements`].
     pub elements: std::ops::Range<usize>,
-}
-
-/// A rectangular plate of the file: a grid of quads.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plate {
-    /// Name in the file.
-    pub id: String,
-    /// Its elements, row by row from the bottom: a range of [`Structure::elements`].
-    pub elements: std::ops::Range<usize>,
-    /// Node grid: `nodes[j][i]` is `id[i,j]`.
-    pub nodes: Vec<Vec<usize>>,
 }
 
 /// The elements of a mesh file that are areas.
@@ -184,12 +165,5 @@ impl Structure {
         }
         let nodes: Vec<&str> = self.elements[element].nodes.iter().map(|&node| self.nodes[node].id.as_str()).collect();
         format!("the element with the nodes {}", nodes.join(", "))
-    }
-}
-
-impl Plate {
-    /// How many elements lie side by side along its length.
-    pub fn columns(&self) -> usize {
-        self.nodes.first().map_or(0, |row| row.len().saturating_sub(1))
     }
 }

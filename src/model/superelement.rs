@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::structure::{Component, Node};
+use super::node::{Component, Node};
 
 /// A row of K u below this share of its terms is zero by the digits of K.
 const DIGITS: f64 = 64.0 * f64::EPSILON;

@@ -1,6 +1,6 @@
 //! What holds nodes: supports, ties, rigid bodies and springs.
 
-use super::component::Component;
+use super::node::Component;
 
 /// A displacement component held by a support.
 #[derive(Clone, Debug, PartialEq)]

@@ -60,3 +60,13 @@ pub fn is_id(text: &str) -> bool {
 
 /// What [`is_id`] asks for.
 pub const ID_RULE: &str = "ids and names are letters, digits, `_` and `-`, starting with a letter";
+
+/// A number as written, cut where it is very long.
+pub fn shortened(literal: &str) -> String {
+    if literal.len() <= 30 {
+        literal.to_string()
+    } else {
+        // JSON numbers are ASCII, so any byte is a boundary.
+        format!("{}…", &literal[..27])
+    }
+}

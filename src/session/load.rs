@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::model::load;
 use crate::model::mesh::overview::Overview;
 use crate::model::mesh::{self, Mesh};
 use crate::model::problem::Problems;
 use crate::model::scenario::Scenario;
+use crate::model::{catalog, load};
 use crate::text::file;
 use crate::watch::Watch;
 
@@ -26,7 +26,7 @@ fn on_a_thread(
 /// Problems of the scenario, an interruption.
 pub fn scenario(word: &str, watch: &dyn Watch) -> Result<Scenario, CommandError> {
     let word = word.to_owned();
-    on_a_thread(watch, move || load::load_named_or_file(&word))
+    on_a_thread(watch, move || catalog::load_named_or_file(&word))
 }
 
 /// A scenario from stdin.

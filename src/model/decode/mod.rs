@@ -4,6 +4,7 @@ mod bars;
 mod builder;
 mod contact_system;
 mod contacts;
+mod declared;
 mod edges;
 mod elements;
 mod findings;

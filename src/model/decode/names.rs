@@ -5,7 +5,8 @@ use super::mesh_names::MeshPart;
 use super::reader::Cursor;
 use super::spot::Spot;
 use super::words::{did_you_mean, listed, nearest, quoted};
-use crate::model::edge::{Edge, PlateSide};
+use crate::model::edge::Edge;
+use crate::model::plate::PlateSide;
 
 impl<'d> Builder<'d> {
     /// The node or edge that a string names.

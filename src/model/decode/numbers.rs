@@ -4,7 +4,7 @@ use jsonc_parser::ast::Value;
 use jsonc_parser::common::Ranged;
 
 use super::reader::Cursor;
-use super::words::{is_id, quoted};
+use super::words::{is_id, quoted, shortened};
 use crate::model::expression::Expression;
 use crate::model::jet::{Dependence, Jet};
 use crate::model::parameter::{Along, Number};
@@ -269,15 +269,5 @@ impl<'d> Cursor<'d> {
         let entries = self.list_of(count, what)?;
         let numbers: Vec<Option<f64>> = entries.map(Cursor::number).collect();
         numbers.into_iter().collect()
-    }
-}
-
-/// A number as written, cut where it is very long.
-pub fn shortened(literal: &str) -> String {
-    if literal.len() <= 30 {
-        literal.to_string()
-    } else {
-        // JSON numbers are ASCII, so any byte is a boundary.
-        format!("{}…", &literal[..27])
     }
 }

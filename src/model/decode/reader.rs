@@ -11,9 +11,9 @@ use std::path::PathBuf;
 use jsonc_parser::ast::{ObjectProp, Value};
 use jsonc_parser::common::Ranged;
 
+use super::declared::Parameters;
 pub use super::findings::{Findings, Place};
-use super::numbers::shortened;
-use super::parameters::Parameters;
+use super::words::shortened;
 use super::words::{counted, did_you_mean, listed, quoted};
 use crate::model::locate::{self, Document};
 use crate::model::mesh::MeshFiles;

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::units::Sizes;
 use super::{Warning, keys};
 use crate::model::scenario::Scenario;
-use crate::model::structure::{ElementKind, ElementLoad, Load, Structure};
+use crate::model::structure::{ElementLoad, Load, Structure};
 
 /// Word in a material's name, Young's modulus in N/m², weight in N/m³: what such materials commonly have.
 const KNOWN: &[(&str, f64, f64)] = &[
@@ -145,7 +145,7 @@ pub fn sections(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec
     let mut seen: Vec<String> = Vec::new();
     let mut warnings = Vec::new();
     for (element, place) in structure.elements.iter().zip(&scenario.places.elements) {
-        let ElementKind::Frame { area, inertia, .. } = element.kind else { continue };
+        let Some([area, inertia]) = element.section() else { continue };
         let Some(name) = section_at(file, place) else { continue };
         let path = format!("sections.{name}");
         if seen.contains(&path) {

@@ -9,7 +9,7 @@ use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
-use crate::model::structure::{Bar, Element, ElementKind, ElementLoad, Load, Structure};
+use crate::model::structure::{Bar, Component, Element, ElementLoad, Load, Structure};
 use crate::view::number::{largest, short};
 
 /// By how much displacements are enlarged.
@@ -98,25 +98,22 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
     let mut outline = Vec::new();
     let mut grid = Vec::new();
     let plates = structure.plates.iter().map(|plate| &plate.elements);
-    let own: Vec<_> = plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)).collect();
-    let in_plate = |index: usize| own.iter().any(|elements| elements.contains(&index));
+    let mut in_plate = vec![false; structure.elements.len()];
+    for elements in plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)) {
+        in_plate[elements.clone()].fill(true);
+    }
     let mut faces = Vec::new();
     for (index, element) in structure.elements.iter().enumerate() {
         if element.shape().is_area() {
             faces.push(element.ring().map(at).collect());
         }
-        match &element.kind {
-            ElementKind::Truss { .. } => {
-                outline.push(element.nodes.iter().map(|&node| at(node)).collect());
-            }
-            ElementKind::Frame { hinges, .. } => {
-                outline.push(bent(structure, element, *hinges, u, factor));
-            }
-            ElementKind::Membrane { .. } if in_plate(index) => {}
-            ElementKind::Membrane { .. } => {
-                let ring = element.ring().chain(element.nodes.first().copied());
-                outline.push(ring.map(at).collect());
-            }
+        if element.bends() {
+            outline.push(bent(structure, element, u, factor));
+        } else if !element.shape().is_area() {
+            outline.push(element.nodes.iter().map(|&node| at(node)).collect());
+        } else if !in_plate[index] {
+            let ring = element.ring().chain(element.nodes.first().copied());
+            outline.push(ring.map(at).collect());
         }
     }
     for mesh in &structure.meshes {
@@ -208,7 +205,7 @@ fn hull(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 }
 
 /// Shape of a frame element: linear along it, cubic across it; at a hinge its end turns freely.
-fn bent(structure: &Structure, element: &Element, hinges: [bool; 2], u: &[[f64; 3]], factor: f64) -> Vec<(f64, f64)> {
+fn bent(structure: &Structure, element: &Element, u: &[[f64; 3]], factor: f64) -> Vec<(f64, f64)> {
     let &[a, b] = &element.nodes[..] else {
         return Vec::new();
     };
@@ -226,7 +223,7 @@ fn bent(structure: &Structure, element: &Element, hinges: [bool; 2], u: &[[f64; 
     let across = |u: [f64; 3]| -s * u[0] + c * u[1];
     let chord = (across(ub) - across(ua)) / length;
     // End rotations; without a moment at an end: θ₁ = 3/2 chord − θ₂/2.
-    let (turn_a, turn_b) = match hinges {
+    let (turn_a, turn_b) = match [0, 1].map(|end| !element.components(end).contains(&Component::R)) {
         [false, false] => (ua[2], ub[2]),
         [true, false] => (1.5 * chord - 0.5 * ub[2], ub[2]),
         [false, true] => (ua[2], 1.5 * chord - 0.5 * ua[2]),

@@ -1,4 +1,13 @@
-//! The displacement components of a node.
+//! Nodes and their displacement components.
+
+/// A node: its name and its place in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// `A`, `AB/1`, `lower[0,8]`.
+    pub id: String,
+    /// Coordinates (x, y), in the author's unit of length.
+    pub position: [f64; 2],
+}
 
 /// One of the displacement components of a node, in the global axes; its number is its place in
 /// [`Component::ALL`].
