@@ -13,7 +13,8 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use common::{Plates, Pull, Ready};
-use stickslip::contact::lcp::{ContactLcp, contact_lcp};
+use stickslip::contact::lcp::contact_lcp;
+use stickslip::contact::written::ContactLcp;
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
 use stickslip::model::rules::TieBreak;

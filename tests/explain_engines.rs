@@ -5,10 +5,10 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::answer::record::{OutcomeKind, RayClass, Verdict};
+use stickslip::answer::same::same_answer;
 use stickslip::model::load::load_text;
 use stickslip::model::rules::{Engine, Rules};
 use stickslip::model::scenario::Scenario;
-use stickslip::solve::compare::same;
 use stickslip::solve::{Prepared, Solved, prepare};
 use stickslip::watch::Quiet;
 
@@ -126,7 +126,7 @@ fn engines_agree(count: usize, seed: u64) {
             let other = solve(&prepared, &scenario, engine);
             assert!(other.answer.is_answer(), "problem {k} {engine}");
             assert_eq!(other.answer.attempts.len(), 1, "problem {k} {engine}");
-            if !same(&scheme.answer, &other.answer) {
+            if !same_answer(&scheme.answer, &other.answer) {
                 // Rounding may break a tie differently; then both must be answers, proved exactly.
                 other_answers += 1;
                 assert!(scheme.answer.check.passed && other.answer.check.passed);

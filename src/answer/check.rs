@@ -3,7 +3,8 @@
 use super::pairs::JointState;
 use super::record::Check;
 use crate::contact::problem::ContactProblem;
-use crate::contact::sums::{Sum, displacement_share, pair_sums};
+use crate::contact::sum::Sum;
+use crate::contact::sums::{displacement_share, pair_sums};
 use crate::lcp::problem::NOISE;
 
 /// Largest relative violation that an answer may have where sizes are those of a whole problem.

@@ -7,4 +7,5 @@ pub mod diagram;
 pub mod pairs;
 pub mod record;
 pub mod rounding;
+pub mod same;
 pub mod stress;

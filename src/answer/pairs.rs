@@ -4,11 +4,12 @@ use nalgebra::DVector;
 
 use super::record::{PairState, State};
 use crate::contact::force_form::unknowns;
-use crate::contact::lcp::ContactLcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::least_norm;
-use crate::contact::sums::{StateForces, Sum, is_still, state_forces};
+use crate::contact::sum::Sum;
+use crate::contact::sums::{StateForces, is_still, state_forces};
 use crate::contact::system::ContactSystem;
+use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::Point;
 
 /// A vertex over the joints, in the user's units, rounding noise removed.

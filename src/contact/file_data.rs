@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::pivoted::PivotedCholesky;
-use super::sums::Sum;
+use super::sum::Sum;
 use crate::lcp::doubled::dot;
 
 /// Rounds of refinement of a solution whose residual is summed in doubled precision.

@@ -24,25 +24,17 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::given::orthonormal;
+use super::pivoted::orthonormal;
 use super::problem::ContactProblem;
-use super::sums::{Sum, joint_forces};
-use super::system::{ContactSystem, JointLoad};
-use crate::contact::lcp::{ContactLcp, CoveringError, power_of_two};
+use super::sum::Sum;
+use super::sums::joint_forces;
+use super::system::{ContactSystem, ForceForm, JointLoad};
 use crate::contact::rows::rows;
 use crate::contact::rows::{RowId, RowKind};
+use crate::contact::written::{ContactLcp, CoveringError, power_of_two};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::{Lcp, Scale};
 use crate::model::rules::Covering;
-
-/// The joints in force form of a [`ContactSystem`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct ForceForm {
-    /// Whether a joint is, per joint.
-    pub joints: Vec<bool>,
-    /// Basis of the self-stress: joint forces that nothing feels, k × s.
-    pub self_stress: DMatrix<f64>,
-}
 
 /// A joint that repeats others: index and its z as a combination of theirs.
 pub struct Repeats<'a> {

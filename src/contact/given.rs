@@ -5,9 +5,8 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::file_data::FileData;
-use super::force_form::ForceForm;
-use super::pivoted::{NullSpace, PivotedCholesky, is_null};
-use super::system::{ContactPair, ContactSystem, JointLoad};
+use super::pivoted::{NullSpace, PivotedCholesky, is_null, orthonormal};
+use super::system::{ContactPair, ContactSystem, ForceForm, JointLoad};
 use crate::lcp::problem::NOISE;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
 
@@ -390,28 +389,6 @@ fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64], 
         0..=6 => named.iter().map(one).collect::<Vec<_>>().join(", "),
         more => format!("{}, … ({more} joints)", named[..5].iter().map(one).collect::<Vec<_>>().join(", ")),
     }
-}
-
-/// Orthonormal basis of the span of some vectors of length n; nearly dependent ones count once.
-pub fn orthonormal(vectors: &[DVector<f64>], n: usize) -> DMatrix<f64> {
-    let mut basis: Vec<DVector<f64>> = Vec::new();
-    for vector in vectors {
-        let size = vector.norm();
-        if size == 0.0 {
-            continue;
-        }
-        let mut rest = vector / size;
-        for _ in 0..2 {
-            for one in &basis {
-                rest -= one.dot(&rest) * one;
-            }
-        }
-        let left = rest.norm();
-        if left > 1e-8 {
-            basis.push(rest / left);
-        }
-    }
-    if basis.is_empty() { DMatrix::zeros(n, 0) } else { DMatrix::from_columns(&basis) }
 }
 
 /// R with the motions exactly in its kernel: (I − Q Qᵀ) S (I − Q Qᵀ) scaled back, where S is R scaled to unit diagonal (by

@@ -6,9 +6,9 @@
 
 use nalgebra::DVector;
 
-use crate::contact::lcp::ContactLcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::RowKind;
+use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::corrected;
 use crate::lcp::outcome::Point;
@@ -42,7 +42,7 @@ fn balanced_rows(problem: &ContactProblem, contact: &ContactLcp, point: &Point) 
 
 /// The vertex of `basis` with its equations solved once more from forces whose kernel part is exact; the point as it
 /// is where there is no kernel or the equations are singular.
-pub fn sharpen(problem: &ContactProblem, contact: &ContactLcp, basis: &Basis, point: Point) -> Point {
+pub fn kernel_correction(problem: &ContactProblem, contact: &ContactLcp, basis: &Basis, point: Point) -> Point {
     let system = &*problem.system;
     if system.kernel.ncols() == 0 || system.force_form.is_some() {
         return point;

@@ -1,7 +1,7 @@
-//! Contact system + numbers → LCP, eqs. (1), (2), (8) of method §3, laws mixed, dimensionless inside.
+//! Contact problem → LCP, eqs. (1), (2), (8) of method §3, laws mixed, dimensionless inside.
 //!
-//! Rows of the whole LCP: all x_n, then all x⁺, then all x⁻, each in the order of the pairs. Only x_n and x⁺ are stored; x⁻ is the mirror of x⁺ (see `lcp::mirrored`), so the 3m rows of M
-//! are never formed.
+//! Rows of the full LCP: all x_n, then all x⁺, then all x⁻, each in the order of the pairs. Only x_n and x⁺ are stored; x⁻
+//! is the mirror of x⁺ (see `lcp::mirrored`), so the 3m rows of M are never formed.
 //!
 //! Forces are divided by `force_unit`, displacements by `length_unit`, both exact powers of two (up to the ratio
 //! given by R), so that results scale back without rounding.
@@ -13,57 +13,13 @@ use nalgebra::{DMatrix, DVector};
 use crate::contact::force_form;
 use crate::contact::law::PairLaw;
 use crate::contact::problem::ContactProblem;
-use crate::contact::rows::{Quantity, RowId, RowKind, rows, rows_of};
+use crate::contact::rows::{RowId, RowKind, rows, rows_of};
 use crate::contact::sums::joint_forces;
 use crate::contact::system::ContactSystem;
+use crate::contact::written::{ContactLcp, CoveringError, power_of_two};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
-use crate::lcp::outcome::Point;
 use crate::lcp::problem::{NOISE, Scale};
-use crate::lcp::ratio_test::TieRule;
-use crate::lcp::variable::Variable;
-use crate::model::rules::{Covering, TieBreak};
-
-/// A covering that cannot be used with these numbers.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CoveringError {
-    /// `weight` has d_τ = f, which is zero where a force must be covered.
-    #[error(
-        "covering `weight` needs friction above 0 in pair {pair}: its tangential force in the main system exceeds \
-         its cohesion, and with f = 0 no tightening weight can hold it; use covering cohesive or ones"
-    )]
-    WeightWithoutFriction {
-        /// Id of the pair.
-        pair: String,
-    },
-}
-
-/// The LCP of a contact problem with the way back to pairs and units.
-#[derive(Clone, Debug)]
-pub struct ContactLcp {
-    /// The dimensionless LCP.
-    pub lcp: Arc<MirroredLcp>,
-    /// f of each pair: what the matrix depends on, apart from R.
-    pub friction: Vec<f64>,
-    /// What each row of the whole LCP stands for.
-    pub rows: Vec<RowId>,
-    /// User's force = dimensionless × this.
-    pub force_unit: f64,
-    /// User's length = dimensionless × this.
-    pub length_unit: f64,
-    /// Row of the whole LCP of each pair's couples.
-    pub normal_row: Vec<Option<usize>>,
-    /// Likewise for x⁺.
-    pub plus_row: Vec<Option<usize>>,
-    /// Likewise for x⁻.
-    pub minus_row: Vec<Option<usize>>,
-    /// Of each row of the whole LCP: whether its w is the displacement and its z the force ([`force_form`]).
-    pub swapped: Vec<bool>,
-}
-
-/// Largest power of two not above `value`; 1 for zero.
-pub fn power_of_two(value: f64) -> f64 {
-    if value > 0.0 && value.is_finite() { 2f64.powi(value.log2().floor() as i32) } else { 1.0 }
-}
+use crate::model::rules::Covering;
 
 /// √R_ii of every joint, R in the given unit. A joint without stiffness responds to nothing: any size will do for it,
 /// but not zero.
@@ -101,7 +57,7 @@ pub fn contact_lcp_like(
     // x⁻ is not stored: its rows are the last ones.
     let stored = &rows[..rows.len() - minus_row.iter().flatten().count()];
     let joints: Vec<usize> = stored.iter().map(|row| row.joint(system)).collect();
-    let written = Written::of(earlier, problem, stored);
+    let written = LoadAndUnits::of(earlier, problem, stored);
     let joint_scale = match earlier {
         Some(earlier) => {
             let mut scale = vec![0.0; system.joint_count()];
@@ -172,7 +128,7 @@ fn stiffness_of(system: &ContactSystem, joints: &[usize], unit: f64) -> DMatrix<
 }
 
 /// The constants of an LCP and its units.
-struct Written {
+struct LoadAndUnits {
     /// RF − R·(g, 0) of the joints, what cancels to rounding left out.
     load: Vec<f64>,
     /// Largest |q| of all rows, and of their loads alone; forces.
@@ -182,8 +138,8 @@ struct Written {
     stiffness_unit: f64,
 }
 
-impl Written {
-    fn of(earlier: Option<&ContactLcp>, problem: &ContactProblem, stored: &[RowId]) -> Written {
+impl LoadAndUnits {
+    fn of(earlier: Option<&ContactLcp>, problem: &ContactProblem, stored: &[RowId]) -> LoadAndUnits {
         let system = &*problem.system;
         let constants = joint_forces(problem, &DVector::zeros(system.joint_count()));
         let load: Vec<f64> = constants.iter().map(|sum| sum.cleaned()).collect();
@@ -203,7 +159,7 @@ impl Written {
             || power_of_two(system.stiffness.diagonal().amax()),
             |earlier| earlier.force_unit / earlier.length_unit,
         );
-        Written { load, largest, largest_load, force_unit: power_of_two(largest), stiffness_unit }
+        LoadAndUnits { load, largest, largest_load, force_unit: power_of_two(largest), stiffness_unit }
     }
 
     fn length_unit(&self) -> f64 {
@@ -234,45 +190,6 @@ impl Written {
 }
 
 impl ContactLcp {
-    /// The tie rule over the rows of this LCP.
-    pub fn tie_rule(&self, tie_break: TieBreak) -> TieRule {
-        let normals = self.rows.iter().filter(|row| row.couple == RowKind::Normal).count();
-        let n = self.rows.len();
-        match tie_break {
-            TieBreak::Lexicographic => TieRule::Lexicographic((normals..n).chain(0..normals).collect()),
-            TieBreak::Natural => TieRule::Lexicographic((0..n).collect()),
-            TieBreak::FirstRow => TieRule::FirstRow,
-            TieBreak::Random(seed) => TieRule::Random(seed),
-        }
-    }
-
-    /// Name of a variable: `p`, `x_n[c1]`, `x+[c1]`, `z-[c1]`.
-    pub fn name(&self, variable: Variable, system: &ContactSystem) -> String {
-        match self.quantity(variable) {
-            None => "p".to_owned(),
-            Some((row, Quantity::Force)) => self.rows[row].name('x', system),
-            Some((row, Quantity::Displacement)) => self.rows[row].name('z', system),
-        }
-    }
-
-    /// Row of a variable and what it is; `None` for p.
-    pub fn quantity(&self, variable: Variable) -> Option<(usize, Quantity)> {
-        let (row, is_force) = match variable {
-            Variable::P => return None,
-            Variable::W(row) => (row, !self.swapped[row]),
-            Variable::Z(row) => (row, self.swapped[row]),
-        };
-        Some((row, if is_force { Quantity::Force } else { Quantity::Displacement }))
-    }
-
-    /// User's value = dimensionless × this.
-    pub fn unit(&self, variable: Variable) -> f64 {
-        match self.quantity(variable) {
-            Some((_, Quantity::Displacement)) => self.length_unit,
-            _ => self.force_unit,
-        }
-    }
-
     /// z over the joints (z_n, z_τ = z⁺ − z⁻) of a point or direction, dimensionless. With joints in force form: of a
     /// direction.
     pub fn joint_displacements(&self, system: &ContactSystem, z: &[f64]) -> DVector<f64> {
@@ -289,26 +206,5 @@ impl ContactLcp {
             }
         }
         joints
-    }
-
-    /// (d_n, d_τ) of a pair; 0 where it has no such row.
-    pub fn covering_of(&self, pair: usize) -> (f64, f64) {
-        let covers = |row: &usize| !self.swapped[*row];
-        let read = |row: Option<usize>| row.filter(covers).map_or(0.0, |row| self.lcp.covering[row]);
-        (read(self.normal_row[pair]), read(self.plus_row[pair]))
-    }
-
-    /// What p (user's units) adds to z_n of a pair whose normal joint is in force form; 0 for all others.
-    pub fn covered_distance(&self, pair: usize, p: f64) -> f64 {
-        let row = self.normal_row[pair].filter(|&row| self.swapped[row]);
-        row.map_or(0.0, |row| self.lcp.covering[row] * (p / self.force_unit) * self.length_unit)
-    }
-
-    /// A point in the user's units.
-    pub fn in_units(&self, point: &Point) -> Point {
-        let scaled = |values: &[f64], variable: fn(usize) -> Variable| {
-            values.iter().enumerate().map(|(row, value)| value * self.unit(variable(row))).collect()
-        };
-        Point { z: scaled(&point.z, Variable::Z), w: scaled(&point.w, Variable::W), p: point.p * self.force_unit }
     }
 }

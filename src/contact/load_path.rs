@@ -6,7 +6,8 @@ use nalgebra::DVector;
 
 use super::force_form::constants;
 use super::problem::ContactProblem;
-use crate::contact::lcp::{ContactLcp, contact_lcp};
+use crate::contact::lcp::contact_lcp;
+use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::MirroredLcp;

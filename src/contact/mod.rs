@@ -30,5 +30,7 @@ pub mod refine;
 pub mod rows;
 pub mod schemes;
 pub mod self_stress;
+pub mod sum;
 pub mod sums;
 pub mod system;
+pub mod written;

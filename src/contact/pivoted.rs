@@ -169,6 +169,28 @@ pub fn is_null(matrix: &DMatrix<f64>, z: &DVector<f64>) -> bool {
     })
 }
 
+/// Orthonormal basis of the span of some vectors of length n; nearly dependent ones count once.
+pub fn orthonormal(vectors: &[DVector<f64>], n: usize) -> DMatrix<f64> {
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    for vector in vectors {
+        let size = vector.norm();
+        if size == 0.0 {
+            continue;
+        }
+        let mut rest = vector / size;
+        for _ in 0..2 {
+            for one in &basis {
+                rest -= one.dot(&rest) * one;
+            }
+        }
+        let left = rest.norm();
+        if left > 1e-8 {
+            basis.push(rest / left);
+        }
+    }
+    if basis.is_empty() { DMatrix::zeros(n, 0) } else { DMatrix::from_columns(&basis) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

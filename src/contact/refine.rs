@@ -8,10 +8,11 @@
 use nalgebra::DVector;
 
 use super::problem::ContactProblem;
-use super::sums::{Sum, joint_forces, pair_sums};
+use super::sum::Sum;
+use super::sums::{joint_forces, pair_sums};
 use super::system::ContactSystem;
-use crate::contact::lcp::ContactLcp;
 use crate::contact::rows::{RowId, RowKind};
+use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::corrected;
 use crate::lcp::doubled::dot;

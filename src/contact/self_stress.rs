@@ -18,7 +18,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::problem::ContactProblem;
-use super::sums::Sum;
+use super::sum::Sum;
 use super::system::ContactSystem;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::driver::run;
@@ -41,7 +41,7 @@ pub fn least_norm(problem: &ContactProblem, z: &DVector<f64>, forces: &mut [Sum]
     let mut free = Vec::new();
     for pairs in clusters(system, &form.self_stress) {
         let cluster = Cluster { problem, z, pairs };
-        free.extend(cluster.settle(&form.self_stress, forces));
+        free.extend(cluster.put_least(&form.self_stress, forces));
     }
     free.sort_unstable();
     free
@@ -177,7 +177,7 @@ impl Cluster<'_> {
     }
 
     /// Puts the forces of least norm in their place; the pairs whose forces could be others.
-    fn settle(&self, self_stress: &DMatrix<f64>, forces: &mut [Sum]) -> Vec<usize> {
+    fn put_least(&self, self_stress: &DMatrix<f64>, forces: &mut [Sum]) -> Vec<usize> {
         let (zero, positive) = self.laws();
         let Some(freedom) = self.freedom(self_stress, &zero) else {
             return Vec::new();
@@ -280,8 +280,8 @@ fn shortest(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::force_form::ForceForm;
     use crate::contact::full_lcp::tests::{coulomb, plain};
+    use crate::contact::system::ForceForm;
 
     /// Two opposed pairs at one node: their normals and their tangents are opposed.
     fn guide() -> ContactSystem {

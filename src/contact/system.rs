@@ -5,7 +5,6 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::file_data::FileData;
-use super::force_form::ForceForm;
 
 use crate::model::pair::Law;
 
@@ -41,6 +40,15 @@ impl JointLoad {
     pub fn exactly(name: String, vector: DVector<f64>) -> JointLoad {
         JointLoad { name, terms: vector.abs(), vector }
     }
+}
+
+/// The joints whose force is the unknown (see [`super::force_form`]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceForm {
+    /// Whether a joint is, per joint.
+    pub joints: Vec<bool>,
+    /// Basis of the self-stress: joint forces that nothing feels, k × s.
+    pub self_stress: DMatrix<f64>,
 }
 
 /// λ = R z + Σ factor·RF over the joints: m normals, then the tangentials of the pairs that have one.
@@ -112,7 +120,7 @@ impl ContactSystem {
     /// Makes joints that carry no elastic force at all exactly such: a joint whose unit dislocation lies in the kernel
     /// (it alone holds some motion of a part) has a zero row and column in R, not one of rounding noise, against which
     /// every zero test that is relative to √R_ii would fail. The kernel is given a basis that contains it.
-    pub fn settle(&mut self) {
+    pub fn zero_free_joints(&mut self) {
         let k = self.joint_count();
         let free: Vec<usize> = (0..k).filter(|&i| 1.0 - self.kernel.row(i).norm_squared() <= FREE).collect();
         if free.is_empty() {

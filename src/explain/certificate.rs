@@ -14,21 +14,19 @@
 //! motion, no certificate. Of a system that a file gives, the motions are exact, and so is a last linear program
 //! ([`super::exact_certificate`]).
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use nalgebra::DVector;
 use num_rational::BigRational;
 use num_traits::Zero;
 
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved, exact, nearest};
 use super::motions::{Entry, FreeMotions, Rounded};
+use super::proof::{BUDGET, Certificate, CertificateSearch};
 use crate::contact::law::FACETS;
 use crate::contact::problem::ContactProblem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 
-/// Time for all that is tried.
-pub const BUDGET: Duration = Duration::from_secs(5);
 /// A margin below this share of the motion is looked at more closely: the linear program cannot tell it from 0.
 const UNCLEAR: f64 = 1e-5;
 /// Magnifications of the closer looks.
@@ -37,28 +35,6 @@ const ZOOMS: [f64; 2] = [1e6, 1e9];
 const CLEAR: f64 = 1e-7;
 /// An inequality that can be slack by no more than this share must hold as an equation.
 const TIGHT: f64 = 1e-6;
-
-/// A motion that proves that no contact forces within the laws' bounds balance the loads.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Certificate {
-    /// ζ over the joints, largest entry 1. It may part pairs that slip: ζ_n ≥ f |ζ_τ|.
-    pub direction: DVector<f64>,
-    /// Power −RF·ζ of the loads on it, > `dissipation`.
-    pub power: f64,
-    /// Σ c |ζ_τ|: the most that cohesion and known bounds can take.
-    pub dissipation: f64,
-    /// Whether some sign had no room and was proved in exact arithmetic.
-    pub exact: bool,
-}
-
-/// What a search for a certificate found.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CertificateSearch {
-    /// The proof, if there is one.
-    pub certificate: Option<Certificate>,
-    /// Whether the time was up before everything was tried.
-    pub out_of_time: bool,
-}
 
 /// Looks for a certificate.
 pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSearch {

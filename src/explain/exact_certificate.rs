@@ -13,7 +13,7 @@ use nalgebra::DVector;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
-use super::certificate::{Certificate, CertificateSearch};
+use super::proof::{Certificate, CertificateSearch};
 use crate::contact::law::{FACETS, PairLaw};
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::exact_system::ExactSystem;

@@ -4,11 +4,11 @@ use nalgebra::DVector;
 use serde::Serialize;
 
 use super::mode::{RigidMotion, direction_word, pair_words, parts};
-use super::words::{list, short};
 use crate::contact::system::ContactSystem;
 use crate::fem::MainSystem;
 use crate::model::pair::joints;
 use crate::model::structure::Structure;
+use crate::text::words::{list, short};
 
 /// A part and the ways in which it can move when every contact joint is off.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -6,9 +6,10 @@
 use serde::Serialize;
 
 use super::vertex::value;
-use crate::contact::lcp::{ContactLcp, CoveringError, contact_lcp};
+use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{Quantity, RowKind};
+use crate::contact::written::{ContactLcp, CoveringError};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::outcome::Point;

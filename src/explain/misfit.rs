@@ -11,8 +11,8 @@ use std::time::Instant;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use super::certificate::BUDGET;
 use super::exact_equations::{Equations, Solved, exact, nearest};
+use super::proof::BUDGET;
 use crate::contact::problem::ContactProblem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::lcp::problem::NOISE;

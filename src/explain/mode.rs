@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use nalgebra::DVector;
 
-use super::words::{list, short};
 use crate::contact::system::ContactSystem;
 use crate::fem::{MainSystem, mutual_displacements};
 use crate::model::pair::joints;
 use crate::model::structure::Structure;
+use crate::text::words::{list, short};
 
 /// Entries below this share of the largest do not move.
 pub(super) const STILL: f64 = 1e-7;

@@ -1,12 +1,12 @@
 //! The ray of a bare LCP: what drives it, where it goes, and why nothing stops it, where that can be said.
 
 use super::sentence::plain_name;
-use super::words::{list, short};
 use crate::answer::record::{Direction, Ray, RayClass, VariableRate, Verdict};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::pivot::PivotLog;
 use crate::lcp::variable::Variable;
+use crate::text::words::{list, short};
 
 /// Variables named in the sentence of the motion.
 const NAMED: usize = 4;

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::words::short;
 use crate::answer::record::{PivotRecord, PlainSolution};
 use crate::lcp::mirrored::MirroredLcp;
+use crate::text::words::short;
 
 /// Terms of a row that are written out; the smaller ones are counted.
 const WRITTEN: usize = 8;

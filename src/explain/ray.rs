@@ -6,23 +6,24 @@ use std::ops::ControlFlow;
 use nalgebra::DVector;
 
 use super::balance::is_balanced;
-use super::certificate::{BUDGET, Certificate, certify};
+use super::certificate::certify;
 use super::kernel::releasable_kernel;
 use super::misfit::{Misfit, misfit};
 use super::mode::{Mode, mode, pair_words};
 use super::motions::FreeMotions;
+use super::proof::{BUDGET, Certificate};
 use super::remedy::digits;
-use super::words::{list, short};
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
-use crate::contact::lcp::ContactLcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::enumerate::{Enumeration, enumerate};
 use crate::contact::system::ContactSystem;
+use crate::contact::written::ContactLcp;
 use crate::fem::MainSystem;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::problem::NOISE;
 use crate::model::rules::Covering;
 use crate::model::structure::Structure;
+use crate::text::words::{list, short};
 use crate::watch::Watch;
 
 /// z̄ whose part outside the kernel is below this share of it costs no energy.

@@ -8,8 +8,8 @@ use serde::Serialize;
 use super::balance::{Multiples, balanced_multiples, is_balanced};
 use super::mode::{PartMotion, RigidMotion, direction_word};
 use super::motions::FreeMotions;
-use super::words::short;
 use crate::contact::problem::ContactProblem;
+use crate::text::words::short;
 use crate::watch::{Budget, Watch};
 
 /// Friction (or its multiplier) up to which is looked.

@@ -1,13 +1,13 @@
 //! Pivots as changes of the working scheme, told in sentences.
 
 use super::remedy::told_apart;
-use super::words::{list, short};
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
-use crate::contact::lcp::ContactLcp;
 use crate::contact::rows::{Quantity, RowKind};
 use crate::contact::system::ContactSystem;
+use crate::contact::written::ContactLcp;
 use crate::lcp::pivot::Pivot;
 use crate::lcp::variable::Variable;
+use crate::text::words::{list, short};
 
 /// Tangential joint of a pair in the working scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,6 @@ use std::collections::HashSet;
 
 use nalgebra::DVector;
 
-use super::words::list;
 use crate::contact::system::ContactSystem;
 use crate::model::pair::Pair;
 use crate::model::parameter::{Number, ParameterValues};
@@ -17,6 +16,7 @@ use crate::model::plausible::Warning;
 use crate::model::plausible::normals::{is_down, is_guided, parts};
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
+use crate::text::words::list;
 
 /// RF is zero below this many ε of the magnitude of its terms: it went through a factorization.
 const ROUNDING: f64 = 1e4 * f64::EPSILON;

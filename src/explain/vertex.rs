@@ -1,7 +1,7 @@
 //! A vertex of a run with names: its basic variables and their values, in the user's units.
 
-use crate::contact::lcp::ContactLcp;
 use crate::contact::system::ContactSystem;
+use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;

@@ -1,7 +1,7 @@
 //! What changes at a breakpoint, in words.
 
 use crate::answer::record::{PairState, State};
-use crate::explain::words::list;
+use crate::text::words::list;
 
 /// A pair that changes its state at a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]

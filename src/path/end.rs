@@ -1,7 +1,7 @@
 //! Why a path ends.
 
-use crate::explain::words::short;
 use crate::lcp::outcome::RayDirection;
+use crate::text::words::short;
 
 /// Why a path over a load or over friction ends.
 #[derive(Clone, Debug, PartialEq)]

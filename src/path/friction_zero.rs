@@ -3,8 +3,8 @@
 
 use super::friction::{Follower, FrictionPath, Place, STEPS, ZERO};
 use super::start::PathError;
-use crate::explain::words::short;
 use crate::lcp::basis::Basis;
+use crate::text::words::short;
 
 /// Relative difference between cubic and function up to which the cubic stands for it.
 const FAITHFUL: f64 = 1e-3;

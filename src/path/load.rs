@@ -11,10 +11,9 @@ use super::load_parameter::LoadParameter;
 use super::start::{PIVOTS, PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
-use crate::contact::lcp::ContactLcp;
 use crate::contact::load_path::{is_answer, order, path_lcp};
 use crate::contact::problem::ContactProblem;
-use crate::explain::words::short;
+use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::MirroredLcp;
@@ -22,6 +21,7 @@ use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Path, Reach};
 use crate::solve::problem::{contact_problem, factors};
 use crate::solve::{Case, Prepared, Solved};
+use crate::text::words::short;
 
 /// A followed load path. Between two knots everything is affine in the factor.
 #[derive(Clone, Debug)]

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::contact::force_form::constants;
-use crate::contact::lcp::ContactLcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
+use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::direction;
 use crate::lcp::mirrored::MirroredLcp;

@@ -1,9 +1,10 @@
 //! Where a path starts, and why it cannot.
 
 use crate::answer::pairs::{JointState, joint_state};
-use crate::contact::lcp::{ContactLcp, contact_lcp};
+use crate::contact::lcp::contact_lcp;
 use crate::contact::load_path::is_answer;
 use crate::contact::problem::ContactProblem;
+use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::outcome::{Outcome, Point, RayDirection};

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use crate::answer::record::{OutcomeKind, Start};
+use crate::answer::same::same_answer;
 use crate::model::load::at_values;
 use crate::model::uses::Redone;
-use crate::solve::follow::same_answer;
 use crate::solve::{Prepared, Solved};
 use crate::view::status;
 use crate::view::style::Role;

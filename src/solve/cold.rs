@@ -13,10 +13,11 @@ use super::state::{RunData, Solved};
 use super::warm::WarmStart;
 use crate::answer::pairs::{joint_state, pair_states};
 use crate::answer::record::{AttemptRules, OutcomeKind};
-use crate::contact::kernel_correction::sharpen;
-use crate::contact::lcp::{ContactLcp, contact_lcp};
+use crate::contact::kernel_correction::kernel_correction;
+use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::refine::refined;
+use crate::contact::written::ContactLcp;
 use crate::explain::{ray, sentence};
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::parametric::Parametric;
@@ -112,7 +113,7 @@ impl Prepared {
         let basis = run.pivots.basis();
         match &run.outcome {
             Outcome::Ray(_) if rules.engine != Engine::Exact => {
-                run.point = sharpen(problem, &contact, &basis, run.point);
+                run.point = kernel_correction(problem, &contact, &basis, run.point);
             }
             Outcome::Normal { .. } => {
                 run.point = refined(problem, &contact, run.point);

@@ -9,6 +9,7 @@ use super::problem::{contact_problem, factors};
 use super::state::Solved;
 use crate::answer::attempt::AttemptRules;
 use crate::answer::record::{Answer, OutcomeKind, RayClass};
+use crate::answer::same::same_answer;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 use crate::watch::Watch;
@@ -17,8 +18,6 @@ use crate::watch::Watch;
 const TABLEAU_PAIRS: usize = 80;
 /// Contact pairs up to which exact arithmetic takes part.
 const EXACT_PAIRS: usize = 12;
-/// Relative difference up to which two answers are the same.
-const SAME: f64 = 1e-7;
 
 /// One combination and its end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -127,33 +126,11 @@ fn row(rules: Rules, solved: Result<Solved, SolveError>, found: &mut Vec<Answer>
     row.pivots = answer.pivot_count;
     row.p = answer.p;
     if answer.is_answer() {
-        let known = found.iter().position(|other| same(other, &answer));
+        let known = found.iter().position(|other| same_answer(other, &answer));
         row.answer = Some(known.unwrap_or_else(|| {
             found.push(answer);
             found.len() - 1
         }));
     }
     Ok(row)
-}
-
-/// Whether two answers have the same states (a pair on a limit may be told either way) and the same values.
-pub fn same(a: &Answer, b: &Answer) -> bool {
-    fn near(a: impl Iterator<Item = f64>, b: impl Iterator<Item = f64>) -> bool {
-        let pairs: Vec<(f64, f64)> = a.zip(b).collect();
-        let size = pairs.iter().fold(0.0, |s: f64, (a, b)| s.max(a.abs()).max(b.abs()));
-        pairs.iter().all(|(a, b)| (a - b).abs() <= SAME * size)
-    }
-    match (&a.solution, &b.solution) {
-        (Some(a), Some(b)) => near(a.z.iter().copied(), b.z.iter().copied()),
-        (None, None) => {
-            let read = |answer: &'_ Answer, get: fn(&crate::answer::record::PairState) -> f64| {
-                answer.pairs.iter().map(get).collect::<Vec<f64>>().into_iter()
-            };
-            // Forces and displacements, each by their own size. z_τ of an open pair counts too: it follows.
-            let forces = |x: &Answer| read(x, |p| p.x_n).chain(read(x, |p| p.x_t));
-            let moves = |x: &Answer| read(x, |p| p.z_n).chain(read(x, |p| p.z_t));
-            a.pairs.len() == b.pairs.len() && near(forces(a), forces(b)) && near(moves(a), moves(b))
-        }
-        _ => false,
-    }
 }

@@ -9,9 +9,9 @@ use num_traits::{One, Zero};
 
 use crate::answer::record::OutcomeKind;
 use crate::contact::full_lcp::full_lcp_of;
-use crate::contact::lcp::ContactLcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
+use crate::contact::written::ContactLcp;
 use crate::explain::kernel::clean;
 use crate::lcp::basis_solution::{direction, vertex};
 use crate::lcp::driver::{Engine, run};

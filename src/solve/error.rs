@@ -1,7 +1,7 @@
 //! Why nothing was solved, and why a question has no answer.
 
 use super::prepared::PrepareError;
-use crate::contact::lcp::CoveringError;
+use crate::contact::written::CoveringError;
 use crate::model::rules::Covering;
 
 /// Why nothing was solved; the session stays as it was.

@@ -10,16 +10,16 @@ use crate::answer::record::{
     Answer, Attempt, AttemptRules, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, Reaction,
     Size, Start, Timings,
 };
-use crate::contact::lcp::ContactLcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::may_hold_otherwise;
 use crate::contact::system::ContactSystem;
-use crate::explain::words::{list, short};
+use crate::contact::written::ContactLcp;
 use crate::fem::Displacements;
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::pivot::Cycle;
 use crate::model::structure::Structure;
 use crate::model::uses::Redone;
+use crate::text::words::{list, short};
 
 /// Most pairs that a note names.
 const NAMED: usize = 6;

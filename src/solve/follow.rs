@@ -3,7 +3,7 @@
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-use crate::answer::record::{Answer, PairState, Start};
+use crate::answer::record::Start;
 use crate::contact::lcp::contact_lcp_like;
 use crate::contact::problem::ContactProblem;
 use crate::lcp::outcome::Point;
@@ -18,8 +18,6 @@ use crate::watch::Watch;
 
 /// Below this number of pairs a cold start is as quick as anyone can see, and it has the pivots.
 pub const WARM_PAIRS: usize = 150;
-/// Two answers whose forces and slips differ by less than this, relative to the largest, are the same.
-const SAME: f64 = 1e-7;
 
 impl Case<'_> {
     /// Solves from the last answer where the model has [`WARM_PAIRS`] pairs or more, the rules are the defaults and the
@@ -99,21 +97,4 @@ impl Prepared {
         solved.answer.start = Start::Warm { changes: found.pivots };
         Some((solved, seconds))
     }
-}
-
-/// Whether two answers are the same: states and forces and displacements of all pairs.
-pub fn same_answer(a: &Answer, b: &Answer) -> bool {
-    let largest = |pick: fn(&PairState) -> [f64; 2]| {
-        a.pairs.iter().chain(&b.pairs).flat_map(pick).fold(0.0, |m: f64, x| m.max(x.abs()))
-    };
-    let force = largest(|pair| [pair.x_n, pair.x_t]);
-    let length = largest(|pair| [pair.z_n, pair.z_t]);
-    a.outcome == b.outcome
-        && a.pairs.len() == b.pairs.len()
-        && a.pairs.iter().zip(&b.pairs).all(|(a, b)| {
-            (a.x_n - b.x_n).abs() <= SAME * force
-                && (a.x_t - b.x_t).abs() <= SAME * force
-                && (a.z_n - b.z_n).abs() <= SAME * length
-                && (a.z_t - b.z_t).abs() <= SAME * length
-        })
 }

@@ -86,8 +86,8 @@ impl Prepared {
 #[cfg(test)]
 mod tests {
     use super::AlongLoad;
+    use crate::answer::same::same_answer;
     use crate::model::embedded;
-    use crate::solve::follow::same_answer;
     use crate::solve::prepare;
     use crate::solve::problem::{contact_problem, factors};
     use crate::watch::Quiet;

@@ -5,7 +5,6 @@ use num_traits::{Signed, Zero};
 
 use crate::answer::record::{Ray, RayClass, Verdict};
 use crate::explain::plain_ray::PlainRay;
-use crate::explain::words::short;
 use crate::lcp::exact::all_solutions::{Continuum, Progress, all_solutions};
 use crate::lcp::exact::classes::{SolvableClass, solvable_class};
 use crate::lcp::exact::dyadic::{WholeRows, nearest};
@@ -13,6 +12,7 @@ use crate::lcp::exact::farkas::{Farkas, farkas};
 use crate::lcp::exact::rational_solve::{RationalSolution, solve};
 use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 use crate::lcp::mirrored::MirroredLcp;
+use crate::text::words::short;
 use crate::watch::Watch;
 
 /// Most rows of the exact check of a basis.

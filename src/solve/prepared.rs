@@ -263,7 +263,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         force_form: None,
         file: None,
     };
-    system.settle();
+    system.zero_free_joints();
     if !main.repeated().is_empty() {
         system = with_repeated(system, &dependence(&main));
     }

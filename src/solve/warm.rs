@@ -6,8 +6,8 @@
 
 use std::sync::{Arc, Mutex};
 
-use crate::contact::lcp::ContactLcp;
 use crate::contact::problem::ContactProblem;
+use crate::contact::written::ContactLcp;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};

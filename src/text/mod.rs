@@ -3,3 +3,4 @@
 pub mod file;
 pub mod hash;
 pub mod printable;
+pub mod words;

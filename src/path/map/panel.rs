@@ -1,8 +1,8 @@
 //! Strips of the map in which every line passes the same schemes in the same order, and the areas of their parts.
 
 use super::line::{Line, Lines};
-use crate::explain::words::short;
 use crate::path::start::PathError;
+use crate::text::words::short;
 
 /// Strips looked at first.
 const STRIPS: usize = 16;

@@ -15,8 +15,8 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::released::Released;
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
-use crate::contact::lcp::{ContactLcp, power_of_two};
 use crate::contact::rows::{RowId, RowKind};
+use crate::contact::written::{ContactLcp, power_of_two};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::{Mirror, MirroredLcp};

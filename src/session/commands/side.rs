@@ -7,6 +7,7 @@ use nalgebra::DVector;
 
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{NodeDisplacement, PairState};
+use crate::answer::same::same_pairs;
 use crate::contact::schemes::enumerate::enumerate;
 use crate::solve::prepared::Geometry;
 use crate::solve::state::RunData;
@@ -38,8 +39,6 @@ pub struct AllAnswers {
 
 /// Most pairs whose answers are shown side by side.
 const MOST_PAIRS: usize = 10;
-/// Relative difference up to which an enumerated answer is the present one.
-const SAME: f64 = 1e-6;
 
 impl Session {
     /// The motion of the ray as displacements of the nodes (largest mutual displacement 1); `None` without a ray or
@@ -100,7 +99,7 @@ impl Session {
                     let mut pairs = pair_states(problem, contact, &state);
                     prepared.add_released_slips(&mut pairs, problem, &state.z);
                     OneAnswer {
-                        shown: solved.answer.is_answer() && same(&pairs, &solved.answer.pairs),
+                        shown: solved.answer.is_answer() && same_pairs(&pairs, &solved.answer.pairs),
                         pairs,
                         exact: true,
                         continuum: answer.continuum,
@@ -110,19 +109,4 @@ impl Session {
             Ok(AllAnswers { answers, complete: found.complete && found.undecided == 0 })
         })?
     }
-}
-
-/// Whether two lists of pairs are one state.
-fn same(a: &[PairState], b: &[PairState]) -> bool {
-    let largest = |value: fn(&PairState) -> f64| a.iter().chain(b).map(|pair| value(pair).abs()).fold(0.0, f64::max);
-    let near = |value: fn(&PairState) -> f64, size: f64| {
-        a.iter().zip(b).all(|(a, b)| (value(a) - value(b)).abs() <= SAME * size)
-    };
-    let force = largest(|p| p.x_n).max(largest(|p| p.x_t));
-    let length = largest(|p| p.z_n).max(largest(|p| p.z_t));
-    a.len() == b.len()
-        && near(|p| p.x_n, force)
-        && near(|p| p.x_t, force)
-        && near(|p| p.z_n, length)
-        && near(|p| p.z_t, length)
 }
