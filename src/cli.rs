@@ -385,6 +385,8 @@ fn status(result: Result<u8, Failure>, json: bool, errors: &Style) -> u8 {
         Err(failure) => failure,
     };
     let (status, message) = match &failure {
+        // a shell run leaves no session behind
+        Failure::Command(error) if error.is_interrupted() => (error.status(), "interrupted".to_owned()),
         Failure::Command(error) => (error.status(), error.to_string()),
         Failure::Status(status, message) => (*status, message.clone()),
         Failure::Told(status) => (*status, String::new()),
@@ -681,7 +683,7 @@ fn check(names: &[String], format: Form, style: &Style, out: &mut dyn Write) -> 
                         writeln!(out, "{line}")?;
                     }
                 }
-                view::loose::write(out, &of.loose, style)?;
+                view::status::write_loose(out, &of.loose, style)?;
                 view::warnings::write(out, name, &of.warnings, style)?;
             }
             Err(error) if error.is_interrupted() => return Err(error.into()),

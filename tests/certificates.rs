@@ -38,7 +38,7 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> ContactProblem {
             next += 1;
             next - 1
         });
-        pairs.push(ContactPair { id: format!("c{i}"), law, position: None, tangential });
+        pairs.push(ContactPair { id: format!("c{i}"), law, position: None, joint: 0, tangential });
     }
     let k = next;
     let motions = rng.random_range(1..=4usize.min(k));

@@ -254,8 +254,11 @@ fn sweeps_paths_and_plots_speak_the_same_language() {
 fn the_summary_fits_on_a_screen() {
     let mut session = session(TWO);
     let text = run(&mut session, "summary").unwrap();
-    for part in ["base", "bending moment", "-12 kN·m at AB", "sum of 1", "fy 3 kN", "push", "2.5", "tip sag"] {
+    for part in ["base", "push", "2.5", "tip sag"] {
         assert!(text.contains(part), "{part}: {text}");
+    }
+    for row in [&["bending", "moment", "-12.000", "kN·m", "AB"][..], &["sum", "of", "1", "0", "3.0000"]] {
+        assert!(text.lines().any(|line| line.split_whitespace().eq(row.iter().copied())), "{row:?}: {text}");
     }
     assert!(text.lines().count() <= 40, "{text}");
     let report = report(&mut session, "summary");

@@ -205,6 +205,11 @@ fn pasted_and_typed_ahead_lines_all_arrive() {
     terminal.prompt();
     terminal.send("\u{1b}[200~set F2 110\nset F2 120\necho pasted\u{1b}[201~\r");
     terminal.wait("the pasted lines", |screen| screen.contains("\npasted"));
+    // each answer stands under its command
+    let screen = terminal.wait("the commands", |screen| screen.contains("› echo pasted\n"));
+    for command in ["› set F2 110\nnormal", "› set F2 120\nnormal", "› echo pasted\npasted"] {
+        assert!(screen.contains(command), "{command} is missing in\n{screen}");
+    }
     terminal.prompt();
     // faster than they are answered, and with a long table among them that would be paged
     let lines: String = (1..=20).map(|k| format!("set F2 {k}\r")).collect();

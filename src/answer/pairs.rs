@@ -216,5 +216,6 @@ fn pair_state(
         reserve_plus: bound + x_t,
         reserve_minus: bound - x_t,
         position: pair.position,
+        joint: pair.joint,
     }
 }

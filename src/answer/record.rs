@@ -224,6 +224,9 @@ pub struct PairState {
     pub reserve_minus: f64,
     /// Place; for a contact system [s, 0] or null.
     pub position: Option<[f64; 2]>,
+    /// Number of the joint it belongs to; for pictures.
+    #[serde(skip)]
+    pub joint: usize,
 }
 
 /// Fresh check of an answer from R, RF, f and K, all relative to the largest force and displacement.

@@ -28,6 +28,7 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
                 id: format!("c{}", i + 1),
                 law: Law::Coulomb { friction: zero(), cohesion: zero(), gap: zero() },
                 position: None,
+                joint: 0,
                 tangential: Some(m + i),
             })
             .collect(),
@@ -122,7 +123,7 @@ fn check<T: Scalar>(problem: &ContactProblem, covering: Covering, expected: Opti
 fn laws_mix() {
     let mut system = coulomb(DMatrix::from_fn(5, 5, |i, j| if i == j { 2.0 } else { 0.1 * (i + j) as f64 }));
     let zero = Number::Value(0.0);
-    let pair = |id: &str, law, tangential| ContactPair { id: id.into(), law, position: None, tangential };
+    let pair = |id: &str, law, tangential| ContactPair { id: id.into(), law, position: None, joint: 0, tangential };
     system.pairs = vec![
         pair("a", Law::Frictionless { gap: zero.clone() }, None),
         pair("b", Law::Bound { bound: zero.clone() }, Some(3)),

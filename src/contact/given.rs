@@ -355,6 +355,7 @@ fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
                 id: id.clone(),
                 law: given.laws[i].clone(),
                 position: given.positions.as_ref().map(|s| [s[i], 0.0]),
+                joint: 0,
                 tangential,
             }
         })

@@ -20,6 +20,8 @@ pub struct ContactPair {
     pub law: Law,
     /// Place in the plane; for a contact system read from a file [s, 0], or `None` without positions.
     pub position: Option<[f64; 2]>,
+    /// Number of the joint it belongs to: a line along which its pairs follow one another.
+    pub joint: usize,
     /// Row of the tangential joint in R; `None` for a frictionless pair. The normal joint of pair i is row i.
     pub tangential: Option<usize>,
 }

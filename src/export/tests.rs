@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::{csv, json};
 use crate::answer::record::*;
 use crate::model::parameter::ParameterValues;
-use crate::view::sample::{beam, beam_ray};
+use crate::view::tests::sample::{beam, beam_ray};
 
 fn keys(value: &Value) -> Vec<&str> {
     match value {

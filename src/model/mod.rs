@@ -12,6 +12,7 @@ pub mod embedded;
 pub mod expression;
 pub mod grid;
 pub mod jet;
+pub mod joints;
 pub mod load;
 pub mod load_case;
 pub mod locate;

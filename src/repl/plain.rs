@@ -80,7 +80,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
             // the session refuses the full screen and the editor here
             Ok(Next::Quit | Next::FullScreen { .. } | Next::Edit) => break,
             Err(error) if error.is_broken_pipe() => return Ok(Ended::with(0)),
-            Err(error) if error.is_output() => return Err(io::Error::other(error.to_string())),
+            Err(error) if error.is_output() => return Err(error.into_output()),
             Err(error) => {
                 // a stderr that is closed is no reason to stop
                 let _ = writeln!(io::stderr(), "{}", show_error(&error, &error_style(style)));

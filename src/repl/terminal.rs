@@ -52,8 +52,8 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
         if signals.must_end() {
             return Ok(Ended::with(signals.status()));
         }
-        let line = match waiting.pop_front() {
-            Some(line) => line,
+        let (line, echoes) = match waiting.pop_front() {
+            Some(line) => (line, true),
             None => {
                 pasted = false;
                 if let Some(files) = &files {
@@ -92,7 +92,8 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
                             continue;
                         };
                         waiting.extend(lines);
-                        first
+                        let several = !waiting.is_empty();
+                        (first, several)
                     }
                     Err(ReadlineError::Interrupted) => continue,
                     Err(ReadlineError::Signal(_)) => continue,
@@ -117,6 +118,10 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
         if !fixed_width {
             style.width = terminal_width();
         }
+        if echoes {
+            // each answer of a paste stands under its command
+            let _ = writeln!(io::stdout(), "{prompt_colour}{}", printable::line(&line));
+        }
         // nobody reads while the next lines are there already
         let by_hand = waiting.is_empty() && !pace.is_burst();
         pasted |= !by_hand;
@@ -134,7 +139,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
                     signals.note_hangup();
                     return Ok(Ended::with(signals.status()));
                 }
-                return Err(io::Error::other(error.to_string()));
+                return Err(error.into_output());
             }
             Err(error) => {
                 if error.is_interrupted() {

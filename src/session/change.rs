@@ -120,7 +120,9 @@ impl Session {
                     Some(answer) => {
                         writeln!(out, "{}", status::line(answer, previous, units, style))?;
                         for note in &answer.notes {
-                            writeln!(out, "{}", style.paint(Role::Warning, &style.text(note)))?;
+                            for line in style.wrap(&style.text(note), style.width) {
+                                writeln!(out, "{}", style.paint(Role::Warning, &line))?;
+                            }
                         }
                         Ok(())
                     }

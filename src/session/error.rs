@@ -127,6 +127,15 @@ impl CommandError {
         }
     }
 
+    /// What the place for the results said, where that is the error.
+    pub fn into_output(self) -> io::Error {
+        match self {
+            CommandError::Output(error) => error,
+            CommandError::Script { error, .. } => error.into_output(),
+            other => io::Error::other(other.to_string()),
+        }
+    }
+
     /// Whether the user stopped it.
     pub fn is_interrupted(&self) -> bool {
         match self {

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use crate::answer::record::{Answer, NodeDisplacement, PairState};
 use crate::path::record::PathRecord;
 use crate::path::stages::{self, History, HistoryEnd};
+use crate::text::number::short;
 use crate::view;
-use crate::view::number::short;
 use crate::view::style::Style;
 use crate::watch::Watch;
 

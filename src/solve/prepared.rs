@@ -14,6 +14,7 @@ use crate::explain::ray::Built;
 use crate::fem::{MainSystem, MainSystemError};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
+use crate::model::joints::joint_numbers;
 use crate::model::load::at_values;
 use crate::model::pair::{JointDirection, joints};
 use crate::model::parameter::{Number, ParameterValues};
@@ -241,6 +242,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     let tangential = |pair: usize| {
         joints.iter().position(|joint| joint.pair == pair && joint.direction == JointDirection::Tangential)
     };
+    let numbers = joint_numbers(structure);
     let pairs = structure
         .pairs
         .iter()
@@ -249,6 +251,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
             id: pair.id.clone(),
             law: pair.law.clone(),
             position: Some(structure.nodes[pair.node].position),
+            joint: numbers[i],
             tangential: tangential(i),
         })
         .collect();

@@ -127,6 +127,8 @@ pub enum LookChange {
     DeformLess,
     /// Displacements at the automatic scale.
     DeformAuto,
+    /// Show or hide the loads.
+    Loads,
 }
 
 /// What the mouse did, at a character of the screen.

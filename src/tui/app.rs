@@ -120,6 +120,8 @@ pub struct State {
     pub view: Viewport,
     /// Scale of the displacements; `None` is automatic.
     pub magnification: Option<f64>,
+    /// Whether the loads are shown.
+    pub loads: bool,
     /// Whether the answer before is shown too.
     pub ghost: bool,
     /// Whether each pane explains itself.
@@ -182,6 +184,7 @@ impl State {
             descending: false,
             view: Viewport::default(),
             magnification: None,
+            loads: true,
             ghost: true,
             explains: true,
             moving: false,

@@ -2,7 +2,7 @@
 //! come from [`BINDINGS`].
 
 use super::action::Do;
-use super::action::LookChange::{DeformAuto, DeformLess, DeformMore, Fit, Pan, ZoomIn, ZoomOut};
+use super::action::LookChange::{DeformAuto, DeformLess, DeformMore, Fit, Loads, Pan, ZoomIn, ZoomOut};
 use super::entry::Edit;
 use super::pane::Pane;
 
@@ -138,6 +138,7 @@ pub const BINDINGS: &[Binding] = &[
     row(STRUCTURE, "deform-more", &["d"], Do::Look(DeformMore), "displacements larger", "scale"),
     row(STRUCTURE, "deform-less", &["D"], Do::Look(DeformLess), "displacements smaller", "scale"),
     row(STRUCTURE, "deform-auto", &["A"], Do::Look(DeformAuto), "displacements at the automatic scale", ""),
+    row(STRUCTURE, "loads", &["L"], Do::Look(Loads), "show or hide the loads", "loads"),
 
     row(PARAMETERS, "type-value", &["enter"], Do::TypeValue, "type the value", "type"),
 

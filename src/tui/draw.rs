@@ -8,8 +8,8 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Widget};
 use unicode_width::UnicodeWidthStr;
 
+use crate::text::number::{short, with_unit};
 use crate::view::difference::Change;
-use crate::view::number::{short, with_unit};
 use crate::view::status::{class_word, outcome_word, pivot_count};
 use crate::view::style::Role;
 

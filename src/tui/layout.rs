@@ -145,7 +145,7 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
 /// Whether a structure is so low that it needs few rows.
 fn is_flat(structure: &crate::model::structure::Structure) -> bool {
     let side = |axis: usize| {
-        let (low, high) = crate::view::plot::chart::range(structure.nodes.iter().map(|node| node.position[axis]));
+        let (low, high) = crate::view::plot::ticks::range(structure.nodes.iter().map(|node| node.position[axis]));
         high - low
     };
     side(1) < 0.12 * side(0)

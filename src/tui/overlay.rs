@@ -10,8 +10,8 @@ use unicode_width::UnicodeWidthStr;
 use crate::session::AllAnswers;
 use crate::session::language::complete;
 use crate::session::results::PairState;
-use crate::view::number::{in_column, largest};
 use crate::view::pairs::state_words;
+use crate::view::scale::Scale;
 use crate::view::style::{Role, pad_left, pad_right};
 
 use super::app::{Input, Overlay, State};
@@ -109,8 +109,12 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
     let block = word + 3 * NUMBER + 2;
     let fit = (width.saturating_sub(id + 1) / block).max(1);
     let all = || found.answers.iter().flat_map(|answer| &answer.pairs);
-    let forces = largest(all().flat_map(|pair| [pair.x_n, pair.x_t]));
-    let lengths = largest(all().flat_map(|pair| [pair.z_n, pair.z_t]));
+    let forces = Scale::of(all().flat_map(|pair| [pair.x_n, pair.x_t]));
+    let lengths = Scale::of(all().map(|pair| pair.z_t));
+    let headed = |head: &str, scale: Scale| {
+        let power = scale.unit(None, look.ascii).map_or(String::new(), |power| format!(" {power}"));
+        pad_left(&format!("{}{power}", look.text(head)), NUMBER)
+    };
     for (group, answers) in found.answers.chunks(fit).enumerate() {
         if group > 0 {
             lines.push(Line::default());
@@ -135,9 +139,9 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
         let columns = format!(
             "{}{}{}{}  ",
             pad_right("state", word),
-            pad_left("x_n", NUMBER),
-            pad_left(&look.text("x_τ"), NUMBER),
-            pad_left(&look.text("z_τ"), NUMBER)
+            headed("x_n", forces),
+            headed("x_τ", forces),
+            headed("z_τ", lengths)
         );
         lines.push(Line::styled(
             format!("{} {}", pad_right("pair", id), columns.repeat(answers.len())),
@@ -148,7 +152,7 @@ pub fn side_by_side(found: &AllAnswers, look: Look, width: usize) -> Vec<Line<'s
             for answer in answers {
                 let pair: &PairState = &answer.pairs[row];
                 spans.push(Span::styled(pad_right(state_words(pair), word), look.role(Role::State(pair.state))));
-                let numbers = [in_column(pair.x_n, forces), in_column(pair.x_t, forces), in_column(pair.z_t, lengths)];
+                let numbers = [forces.measured(pair.x_n), forces.measured(pair.x_t), lengths.measured(pair.z_t)];
                 let text: String = numbers.iter().map(|n| pad_left(n, NUMBER)).collect();
                 spans.push(Span::raw(format!("{text}  ")));
             }

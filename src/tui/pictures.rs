@@ -95,6 +95,8 @@ pub struct StructureKey {
     pub phase: Option<u32>,
     /// Whether the answer before is shown too.
     pub ghost: bool,
+    /// Whether the loads are shown.
+    pub loads: bool,
 }
 
 /// The structure as drawn, with the places of its pairs.

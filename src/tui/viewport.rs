@@ -2,7 +2,7 @@
 
 use crate::model::structure::Structure;
 use crate::view::plot::canvas::Canvas;
-use crate::view::plot::chart::range;
+use crate::view::plot::ticks::range;
 
 /// The part of the structure in view.
 #[derive(Clone, Copy, Debug, PartialEq)]

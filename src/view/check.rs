@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use super::number::residual;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{Answer, Check};
+use crate::text::number::residual;
 
 /// Writes the figures of the check and what each means; without an answer it says that nothing was checked.
 pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<()> {

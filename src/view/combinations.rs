@@ -2,11 +2,12 @@
 
 use std::io::{self, Write};
 
-use super::number::{short, with_unit};
+use super::scale::ByUnit;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row as TableRow, Table};
 use crate::model::quantity::Quantity;
 use crate::model::scenario::Units;
+use crate::path::quantity::{NoValue, Value};
 
 /// A combination as it is shown.
 pub struct Row {
@@ -14,16 +15,8 @@ pub struct Row {
     pub name: String,
     /// The line of its answer.
     pub line: String,
-    /// Its probes.
-    pub values: Vec<Line>,
-}
-
-/// A named value.
-pub struct Line {
-    /// Name of the probe.
-    pub name: String,
-    /// Value with unit, or why there is none.
-    pub text: String,
+    /// Values of its probes, in their order.
+    pub values: Vec<Result<Value, NoValue>>,
 }
 
 /// Least and largest value of a quantity, each with the combination or the place that governs.
@@ -36,15 +29,36 @@ pub struct Extreme {
     pub largest: Option<(f64, String)>,
 }
 
-/// A line for each combination, its probes beneath.
-pub fn write(out: &mut dyn Write, rows: &[Row], note: Option<&str>, style: &Style) -> io::Result<()> {
+/// A line for each combination, then the values of the probes: a row for each combination, a column for each probe.
+pub fn write(
+    out: &mut dyn Write,
+    rows: &[Row],
+    probes: &[(String, Quantity)],
+    note: Option<&str>,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
     for row in rows {
         writeln!(out, "{}", style.paint(Role::Accent, &style.text(&row.name)))?;
         writeln!(out, "  {}", row.line)?;
-        for value in &row.values {
-            let line = format!("  {} = {}", value.name, value.text);
-            writeln!(out, "{}", style.fit(&style.text(&line), style.width))?;
+    }
+    if !probes.is_empty() {
+        writeln!(out)?;
+        let mut table = Table::new(vec![Column::words("combination")]);
+        table.columns.extend(probes.iter().map(|(name, quantity)| match quantity.unit(units) {
+            None => Column::plain(name, None),
+            unit => Column::numbers(name, unit),
+        }));
+        for row in rows {
+            let mut cells = vec![Cell::new(row.name.clone(), Role::Accent)];
+            cells.extend(row.values.iter().map(|value| match value {
+                Ok(Value::Number(value)) => Cell::number(*value),
+                Ok(Value::Word(word)) => Cell::from(word.as_str()),
+                Err(reason) => Cell::new(reason.0.clone(), Role::Muted),
+            }));
+            table.rows.push(TableRow::new(cells));
         }
+        table.write(out, style)?;
     }
     match note {
         Some(note) => writeln!(out, "{}", style.paint(Role::Muted, &style.text(note))),
@@ -61,32 +75,46 @@ pub fn write_envelope(
     units: &Units,
     style: &Style,
 ) -> io::Result<()> {
-    let mut table = Table::new(vec![
-        Column::words("quantity"),
-        Column::words("least"),
-        Column::words(at),
-        Column::words("largest"),
-        Column::words(at),
-    ]);
-    for extreme in extremes {
-        let unit = extreme.quantity.unit(units);
-        let mut cells = vec![Cell::from(extreme.quantity.to_string())];
-        for end in [&extreme.least, &extreme.largest] {
-            match end {
-                Some((value, name)) => {
-                    cells.push(Cell::from(with_unit(&short(*value), unit.as_deref())));
-                    cells.push(Cell::new(name.clone(), Role::Accent));
-                }
-                None => cells.extend([Cell::new("no value", Role::Muted), Cell::from("")]),
-            }
-        }
-        table.rows.push(TableRow::new(cells));
-    }
-    table.write(out, style)?;
+    envelope_table(at, extremes, units, style.ascii).write(out, style)?;
     for note in notes {
         for line in style.wrap(&style.text(note), style.width) {
             writeln!(out, "{}", style.paint(Role::Warning, &line))?;
         }
     }
     Ok(())
+}
+
+/// The table that is written; values of one unit share their power of ten.
+pub fn envelope_table(at: &str, extremes: &[Extreme], units: &Units, ascii: bool) -> Table {
+    let mut table = Table::new(vec![
+        Column::words("quantity"),
+        Column::words("unit"),
+        Column::numbers("least", None),
+        Column::words(at),
+        Column::numbers("largest", None),
+        Column::words(at),
+    ]);
+    let ends = |extreme: &Extreme| [extreme.least.clone(), extreme.largest.clone()];
+    let values: Vec<(Option<String>, f64)> = extremes
+        .iter()
+        .flat_map(|extreme| ends(extreme).into_iter().flatten().map(|(value, _)| (extreme.quantity.unit(units), value)))
+        .collect();
+    let scales = ByUnit::of(&values);
+    for extreme in extremes {
+        let unit = extreme.quantity.unit(units);
+        let own: Vec<f64> = ends(extreme).into_iter().flatten().map(|(value, _)| value).collect();
+        let scale = scales.of_row(&own, unit.as_deref());
+        let shown_unit = scale.unit(unit.as_deref(), ascii).unwrap_or_default();
+        let mut cells = vec![Cell::from(extreme.quantity.to_string()), Cell::new(shown_unit, Role::Muted)];
+        for end in ends(extreme) {
+            match end {
+                Some((value, name)) => {
+                    cells.extend([Cell::from(scale.number(value)), Cell::new(name, Role::Accent)]);
+                }
+                None => cells.extend([Cell::new("no value", Role::Muted), Cell::from("")]),
+            }
+        }
+        table.rows.push(TableRow::new(cells));
+    }
+    table
 }

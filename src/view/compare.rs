@@ -3,13 +3,14 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 
-use super::number::{denoised, engineering};
 use super::status::{class_word, outcome_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules};
+use crate::answer::rounding::denoised;
 use crate::model::rules::TieBreak;
 use crate::solve::compare::{Compared, Comparison};
+use crate::text::number::short;
 
 /// Letter of an answer: A, B … Z, then its number.
 fn letter(index: usize) -> String {
@@ -41,11 +42,11 @@ struct Group<'a> {
 
 /// What a row of the table shows of an end.
 fn end(row: &Compared) -> (String, usize, String, Option<usize>) {
-    (outcome(row).0, row.pivots, p_of(row), row.answer)
+    (outcome(row).0, row.pivots, short(p_of(row)), row.answer)
 }
 
-fn p_of(row: &Compared) -> String {
-    engineering(denoised(row.p, 1.0))
+fn p_of(row: &Compared) -> f64 {
+    denoised(row.p, 1.0)
 }
 
 /// Joins groups with the same end that differ in one rule alone: in engines first, then tie-breaks, then coverings.
@@ -93,7 +94,7 @@ pub fn write(out: &mut dyn Write, comparison: &Comparison, style: &Style) -> io:
         Column::words("engine"),
         Column::words("outcome"),
         Column::count("pivots"),
-        Column::numbers("p", None).droppable(1),
+        Column::numbers("p", None).clean().droppable(1),
         Column::words("answer"),
     ]);
     for group in groups(&comparison.rows) {
@@ -106,7 +107,7 @@ pub fn write(out: &mut dyn Write, comparison: &Comparison, style: &Style) -> io:
             Cell::from(names(&group.engines, &comparison.rows, |rules| rules.engine)),
             Cell::new(text, role),
             Cell::from(if ran { row.pivots.to_string() } else { String::new() }),
-            Cell::from(if ran { p_of(row) } else { String::new() }),
+            Cell::maybe(ran.then(|| p_of(row))),
             Cell::from(row.answer.map_or(String::new(), letter)),
         ]));
     }

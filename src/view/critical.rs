@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use super::number::short;
 use super::style::Style;
 use crate::contact::schemes::critical::{Coverage, CriticalFriction};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::text::number::short;
 
 /// "c1 open, c2 slip+".
 pub fn scheme_words(ids: &[&str], scheme: &[PairScheme]) -> String {

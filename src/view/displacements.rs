@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use super::length_unit;
-use super::number::{in_column, largest};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::NodeDisplacement;
@@ -19,23 +18,16 @@ pub fn write(out: &mut dyn Write, displacements: &[NodeDisplacement], units: &Un
 
 /// The table that is written.
 pub fn table(displacements: &[NodeDisplacement], units: &Units) -> Table {
-    let length = length_unit(units);
+    let length = |head: &str| Column::numbers(head, length_unit(units)).of(1);
     let rotations = displacements.iter().any(|node| node.rz != 0.0);
-    let mut table =
-        Table::new(vec![Column::words("node"), Column::numbers("u_x", length.clone()), Column::numbers("u_y", length)]);
+    let mut table = Table::new(vec![Column::words("node"), length("u_x"), length("u_y")]);
     if rotations {
         table.columns.push(Column::numbers("rotation", Some("rad".into())).droppable(1));
     }
-    let lengths = largest(displacements.iter().flat_map(|node| [node.ux, node.uy]));
-    let angles = largest(displacements.iter().map(|node| node.rz));
     for node in displacements {
-        let mut cells = vec![
-            Cell::from(node.node.as_str()),
-            Cell::from(in_column(node.ux, lengths)),
-            Cell::from(in_column(node.uy, lengths)),
-        ];
+        let mut cells = vec![Cell::from(node.node.as_str()), Cell::number(node.ux), Cell::number(node.uy)];
         if rotations {
-            cells.push(Cell::from(in_column(node.rz, angles)));
+            cells.push(Cell::number(node.rz));
         }
         table.rows.push(Row::new(cells));
     }

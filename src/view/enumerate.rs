@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use super::number::short;
 use super::pairs::state_words;
 use super::style::{Role, Style};
 use crate::answer::record::{Answer, PairDirection};
 use crate::solve::all_answers::{AllAnswers, Continuum, Moving};
+use crate::text::number::short;
 
 fn vector(z: &[f64]) -> String {
     let z: Vec<String> = z.iter().map(|z| short(*z)).collect();

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use super::number::short;
 use super::style::{Role, Style};
 use crate::contact::schemes::exact_check::{ExactSign, Finding};
 use crate::solve::exact::Exactly;
+use crate::text::number::short;
 
 fn signs(signs: &[ExactSign]) -> String {
     let words: Vec<String> =

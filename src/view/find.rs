@@ -2,12 +2,12 @@
 
 use std::io::{self, Write};
 
-use super::number::with_unit;
 use super::path::exact;
 use super::status::{class_word, outcome_word, verdict_word};
 use super::style::{Role, Style};
 use crate::path::edge::{Edge, Run};
 use crate::path::find::{Found, Place};
+use crate::text::number::with_unit;
 
 /// What was asked.
 pub struct Asked<'a> {

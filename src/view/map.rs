@@ -2,13 +2,12 @@
 
 use std::io::{self, Write};
 
-use super::number::{short, with_unit};
-use super::path::exact;
 use super::status::{class_word, verdict_word};
 use super::style::{Role, Style, pad_left};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::State;
 use crate::path::map::{Map, Region};
+use crate::text::number::{short, with_unit};
 
 /// Rows of the picture.
 const HEIGHT: usize = 18;
@@ -182,9 +181,9 @@ fn regions(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -
     };
     let mut columns = vec![
         Column::words(""),
-        Column::numbers("area", area_unit),
-        Column::numbers(&map.axes[0].name, unit(0)).droppable(2),
-        Column::numbers(&map.axes[1].name, unit(1)).droppable(2),
+        Column::given("area", area_unit),
+        Column::plain(&map.axes[0].name, unit(0)).droppable(2),
+        Column::plain(&map.axes[1].name, unit(1)).droppable(2),
     ];
     if let Some((name, unit)) = &labels.quantity {
         columns.push(Column::numbers(name, unit.clone()));
@@ -193,15 +192,15 @@ fn regions(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -
     for (index, region) in map.regions.iter().enumerate() {
         let mut cells = vec![
             Cell::new(region.letter.clone(), role(index, region)),
-            Cell::from(exact(region.area)),
-            Cell::from(short(region.at[0])),
-            Cell::from(short(region.at[1])),
+            Cell::number(region.area),
+            Cell::number(region.at[0]),
+            Cell::number(region.at[1]),
         ];
         if labels.quantity.is_some() {
-            cells.push(Cell::from(match &region.value {
-                None => "no value".to_owned(),
-                Some(value) => value.as_f64().map_or_else(|| value.as_str().unwrap_or("?").to_owned(), short),
-            }));
+            cells.push(match &region.value {
+                None => Cell::from("no value"),
+                Some(value) => value.as_f64().map_or_else(|| value.as_str().unwrap_or("?").into(), Cell::number),
+            });
         }
         table.rows.push(Row::new(cells));
     }

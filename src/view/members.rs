@@ -2,14 +2,14 @@
 
 use std::io::{self, Write};
 
-use super::number::{denoised, in_column, largest, short, with_unit};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, length_unit, moment_unit};
 use crate::answer::diagram::{Diagram, Internal, Place};
 use crate::answer::record::MemberForces;
-use crate::answer::rounding::of_members;
+use crate::answer::rounding::{denoised, largest};
 use crate::model::scenario::Units;
+use crate::text::number::{short, with_unit};
 
 /// Writes N, Q, M at both ends of every element of `bar` (of all bars without one). Tension, and M with tension
 /// on the −y side of the bar, are positive.
@@ -40,16 +40,15 @@ pub fn write(
 
 /// The table that is written of some elements.
 pub fn table(chosen: &[&MemberForces], units: &Units) -> Table {
-    let force = force_unit(units);
+    let force = |head: &str| Column::numbers(head, force_unit(units)).of(1);
     let mut table = Table::new(vec![
         Column::words("bar"),
         Column::count("element"),
         Column::words("end"),
-        Column::numbers("N", force.clone()),
-        Column::numbers("Q", force),
+        force("N"),
+        force("Q"),
         Column::numbers("M", moment_unit(units)),
     ]);
-    let [forces, moments] = of_members(chosen.iter().copied());
     for member in chosen {
         for (word, end) in [("start", member.start), ("end", member.end)] {
             let first = word == "start";
@@ -57,9 +56,9 @@ pub fn table(chosen: &[&MemberForces], units: &Units) -> Table {
                 Cell::from(if first { member.bar.as_str() } else { "" }),
                 Cell::from(if first { member.element.to_string() } else { String::new() }),
                 Cell::new(word, Role::Muted),
-                Cell::from(in_column(end.n, forces)),
-                Cell::from(in_column(end.q, forces)),
-                Cell::from(in_column(end.m, moments)),
+                Cell::number(end.n),
+                Cell::number(end.q),
+                Cell::number(end.m),
             ]));
         }
     }

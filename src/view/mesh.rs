@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest, short};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::mesh::overview::Overview;
 use crate::model::mesh::{Mesh, Shape};
+use crate::text::number::short;
 
 /// Writes nodes, elements, groups with their lengths and areas, the boundary by direction, and the worst element.
 pub fn write(out: &mut dyn Write, name: &str, mesh: &Mesh, overview: &Overview, style: &Style) -> io::Result<()> {
@@ -41,13 +41,12 @@ pub fn write(out: &mut dyn Write, name: &str, mesh: &Mesh, overview: &Overview, 
     }
     if !overview.boundary.is_empty() {
         writeln!(out)?;
-        let lengths = largest(overview.boundary.iter().map(|edge| edge.length));
         let mut table =
             Table::new(vec![Column::words("boundary"), Column::count("nodes"), Column::numbers("length", None)]);
         const LISTED: usize = 40;
         for edge in overview.boundary.iter().take(LISTED) {
-            let length = in_column(edge.length, lengths);
-            table.rows.push(Row::new(vec![edge.name.as_str().into(), edge.nodes.to_string().into(), length.into()]));
+            let cells = [edge.name.as_str().into(), edge.nodes.to_string().into(), Cell::number(edge.length)];
+            table.rows.push(Row::new(cells.into()));
         }
         table.write(out, style)?;
         if overview.boundary.len() > LISTED {
@@ -64,11 +63,6 @@ fn counted(shape: Shape, count: usize) -> String {
 }
 
 fn groups(overview: &Overview, style: &Style) -> Table {
-    let of = |areas: bool| {
-        let those = overview.groups.iter().filter(move |group| (group.dimension == 2) == areas);
-        largest(those.filter_map(|group| group.measure))
-    };
-    let (lengths, areas) = (of(false), of(true));
     let mut table = Table::new(vec![
         Column::words("group"),
         Column::words("members"),
@@ -78,16 +72,14 @@ fn groups(overview: &Overview, style: &Style) -> Table {
         Column::words("").droppable(1),
     ]);
     for group in &overview.groups {
-        let text = |scale: f64| group.measure.map_or(String::new(), |measure| in_column(measure, scale));
-        let (length, area) =
-            if group.dimension == 2 { (String::new(), text(areas)) } else { (text(lengths), String::new()) };
+        let measure = |is_area: bool| Cell::maybe(group.measure.filter(|_| (group.dimension == 2) == is_area));
         let fault = group.fault.as_ref().map_or(String::new(), |fault| format!("no edge: {fault}"));
         table.rows.push(Row::new(vec![
             Cell::from(style.text(&group.name)),
             Cell::from(group.what),
             Cell::from(group.count.to_string()),
-            Cell::from(length),
-            Cell::from(area),
+            measure(false),
+            measure(true),
             Cell::new(fault, Role::Muted),
         ]));
     }

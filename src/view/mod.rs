@@ -11,11 +11,9 @@ pub mod displacements;
 pub mod enumerate;
 pub mod exact;
 pub mod find;
-pub mod loose;
 pub mod map;
 pub mod members;
 pub mod mesh;
-pub mod number;
 pub mod pairs;
 pub mod parameters;
 pub mod path;
@@ -25,6 +23,7 @@ pub mod quantities;
 pub mod ray;
 pub mod reactions;
 pub mod report;
+pub mod scale;
 pub mod sensitivity;
 pub mod stages;
 pub mod status;
@@ -40,11 +39,7 @@ pub mod warnings;
 pub mod why;
 
 #[cfg(test)]
-mod random;
-#[cfg(test)]
-pub(crate) mod sample;
-#[cfg(test)]
-mod snapshots;
+pub(crate) mod tests;
 
 use crate::model::scenario::Units;
 

@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use super::number::{aligned, largest};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, length_unit};
@@ -30,37 +29,26 @@ pub fn write(out: &mut dyn Write, pairs: &[PairState], units: &Units, style: &St
 
 /// The table that is written.
 pub fn table(pairs: &[PairState], units: &Units) -> Table {
-    let (force, length) = (force_unit(units), length_unit(units));
+    let force = |head: &str| Column::numbers(head, force_unit(units)).clean().of(1);
+    let length = |head: &str| Column::numbers(head, length_unit(units)).clean().of(2);
     let friction = pairs.iter().any(|pair| pair.law.has_tangential_joint());
     let mut columns = vec![
         Column::words("pair"),
         Column::words("state"),
-        Column::numbers("x_n", force.clone()),
-        Column::numbers("x_τ", force.clone()).droppable(1),
-        Column::numbers("z_n", length.clone()).droppable(2),
-        Column::numbers("z_τ", length),
+        force("x_n"),
+        force("x_τ").droppable(1),
+        length("z_n").droppable(2),
+        length("z_τ"),
     ];
     if friction {
-        columns.push(Column::numbers("bound", force.clone()).droppable(3));
-        columns.push(Column::numbers("x⁺", force.clone()).droppable(4));
-        columns.push(Column::numbers("x⁻", force).droppable(5));
+        columns.extend([force("bound").droppable(3), force("x⁺").droppable(4), force("x⁻").droppable(5)]);
     }
-    let forces = largest(pairs.iter().flat_map(|p| [p.x_n, p.x_t, p.bound]));
-    let lengths = largest(pairs.iter().flat_map(|p| [p.z_n, p.z_t]));
-    let f = |value: f64| Cell::from(aligned(value, forces));
-    let d = |value: f64| Cell::from(aligned(value, lengths));
     let mut table = Table::new(columns);
     for pair in pairs {
-        let mut cells = vec![
-            Cell::from(pair.id.as_str()),
-            Cell::new(state_words(pair), Role::State(pair.state)),
-            f(pair.x_n),
-            f(pair.x_t),
-            d(pair.z_n),
-            d(pair.z_t),
-        ];
+        let mut cells = vec![Cell::from(pair.id.as_str()), Cell::new(state_words(pair), Role::State(pair.state))];
+        cells.extend([pair.x_n, pair.x_t, pair.z_n, pair.z_t].map(Cell::number));
         if friction {
-            cells.extend([f(pair.bound), f(pair.reserve_plus), f(pair.reserve_minus)]);
+            cells.extend([pair.bound, pair.reserve_plus, pair.reserve_minus].map(Cell::number));
         }
         table.rows.push(Row::new(cells));
     }

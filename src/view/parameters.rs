@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_full, short};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::parameter::{Parameter, ParameterValues};
 use crate::model::scenario::Scenario;
+use crate::text::number::{in_full, short};
 
 /// Writes name, present value, unit, range and meaning; a value that differs from the file says what the file has.
 pub fn write(out: &mut dyn Write, scenario: &Scenario, values: &ParameterValues, style: &Style) -> io::Result<()> {
@@ -22,7 +22,7 @@ pub fn table(scenario: &Scenario, values: &ParameterValues) -> Table {
         values.get(name).is_some_and(|value| value.to_bits() != parameter.value.to_bits())
     };
     let any = scenario.parameters.iter().any(|(n, p)| changed(n, p));
-    let mut table = Table::new(vec![Column::words("name"), Column::numbers("value", None), Column::words("unit")]);
+    let mut table = Table::new(vec![Column::words("name"), Column::given("value", None), Column::words("unit")]);
     if any {
         table.columns.push(Column::words("in the file"));
     }

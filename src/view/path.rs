@@ -3,15 +3,16 @@
 use std::io::{self, Write};
 
 use super::length_unit;
-use super::number::{in_column, largest, short, with_unit};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairState, RayClass, Verdict};
+use crate::answer::rounding::largest;
 use crate::model::scenario::Units;
 use crate::path::end::PathEnd;
 use crate::path::friction::FrictionPath;
 use crate::path::limit::Limit;
 use crate::path::load::LoadPath;
+use crate::text::number::{short, with_unit};
 
 /// A breakpoint with the digits it has been found to: ten, without trailing zeros.
 pub fn exact(value: f64) -> String {
@@ -47,17 +48,12 @@ fn breakpoints(
     style: &Style,
 ) -> io::Result<()> {
     let mut table = Table::new(vec![
-        Column::numbers(name, None),
+        Column::given(name, None),
         Column::numbers("max slip", length_unit(units)).droppable(1),
         Column::words("change"),
     ]);
-    let slips = largest(rows.iter().filter_map(|(_, _, slip)| *slip));
     for (value, sentence, slip) in rows {
-        table.rows.push(Row::new(vec![
-            Cell::from(exact(*value)),
-            Cell::from(slip.map_or(String::new(), |slip| in_column(slip, slips))),
-            Cell::from(style.text(sentence)),
-        ]));
+        table.rows.push(Row::new(vec![Cell::number(*value), Cell::maybe(*slip), Cell::from(style.text(sentence))]));
     }
     table.write(out, style)
 }

@@ -6,10 +6,10 @@ use std::ops::RangeInclusive;
 use unicode_width::UnicodeWidthStr;
 
 use super::force_unit;
-use super::number::{in_column, largest};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{Answer, PivotRecord};
+use crate::answer::rounding::{denoised, largest};
 use crate::model::scenario::Units;
 
 /// Whether the pivots are those of a contact problem, where p is a force; in a bare LCP it has no unit. Told by
@@ -67,7 +67,7 @@ pub fn write(
             Cell::from(pivot.step.to_string()),
             Cell::from(pivot.entering.as_str()),
             Cell::from(pivot.leaving.as_str()),
-            Cell::from(in_column(pivot.p, scale)),
+            Cell::number(denoised(pivot.p, scale)),
         ]);
         if ties {
             let count = pivot.ties.len();

@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest, short, with_unit};
 use super::path::exact;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
@@ -10,6 +9,7 @@ use crate::model::quantity::Quantity;
 use crate::model::scenario::Units;
 use crate::path::quantity::{NoValue, OnPath, Value};
 use crate::path::record::PathRecord;
+use crate::text::number::{short, with_unit};
 
 /// A value with its unit, or why there is none.
 pub fn shown(quantity: &Quantity, value: &Result<Value, NoValue>, units: &Units) -> (String, Role) {
@@ -31,18 +31,17 @@ pub fn write_along(
     if along.is_empty() {
         return Ok(());
     }
-    let mut columns = vec![Column::numbers(&path.name, None)];
+    let mut columns = vec![Column::given(&path.name, None)];
     for (quantity, _) in along {
-        columns.push(Column::numbers(&quantity.to_string(), quantity.unit(units)));
+        columns.push(match quantity.unit(units) {
+            None => Column::plain(&quantity.to_string(), None),
+            unit => Column::numbers(&quantity.to_string(), unit),
+        });
     }
     let mut table = Table::new(columns);
-    let sizes: Vec<f64> = along.iter().map(|(_, values)| largest(values.iter().flatten().copied())).collect();
     for (k, place) in path.places.iter().enumerate() {
-        let mut cells = vec![Cell::from(exact(place.value))];
-        for ((_, values), size) in along.iter().zip(&sizes) {
-            let value = values.get(k).copied().flatten();
-            cells.push(Cell::from(value.map_or(String::new(), |value| in_column(value, *size))));
-        }
+        let mut cells = vec![Cell::number(place.value)];
+        cells.extend(along.iter().map(|(_, values)| Cell::maybe(values.get(k).copied().flatten())));
         table.rows.push(Row::new(cells));
     }
     table.write(out, style)

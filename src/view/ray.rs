@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 
 use super::force_unit;
-use super::number::{denoised, in_column, short, with_unit};
 use super::status::{class_word, verdict_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairDirection, Ray, RayClass, VariableRate, Verdict};
+use crate::answer::rounding::denoised;
 use crate::contact::system::ContactSystem;
 use crate::explain::mode::{PartMotion, pair_words};
 use crate::explain::proof::Certificate;
@@ -15,6 +15,7 @@ use crate::explain::ray::RayReport;
 use crate::explain::remedy::Remedies;
 use crate::model::scenario::Units;
 use crate::solve::explain::REMEDY_TIME;
+use crate::text::number::{short, with_unit};
 
 /// Parts of a motion that are named one by one.
 const MOST_PARTS: usize = 6;
@@ -95,15 +96,15 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
     writeln!(out)?;
     let mut table = Table::new(vec![
         Column::words("pair"),
-        Column::numbers("z̄_n", None),
-        Column::numbers("z̄_τ", None),
+        Column::numbers("z̄_n", None).of(1),
+        Column::numbers("z̄_τ", None).of(1),
         Column::words("motion").droppable(1),
     ]);
     for (direction, motion) in &moving {
         table.rows.push(Row::new(vec![
             Cell::from(direction.pair.as_str()),
-            Cell::from(in_column(direction.z_n, 1.0)),
-            Cell::from(in_column(direction.z_t, 1.0)),
+            Cell::number(direction.z_n),
+            Cell::number(direction.z_t),
             Cell::from(*motion),
         ]));
     }
@@ -122,7 +123,7 @@ fn write_variables(out: &mut dyn Write, rates: &[VariableRate], style: &Style) -
     writeln!(out)?;
     let mut table = Table::new(vec![Column::words("variable"), Column::numbers("rate", None)]);
     for rate in rates {
-        table.rows.push(Row::new(vec![Cell::from(rate.variable.as_str()), Cell::from(in_column(rate.rate, 1.0))]));
+        table.rows.push(Row::new(vec![Cell::from(rate.variable.as_str()), Cell::number(rate.rate)]));
     }
     table.write(out, style)
 }
@@ -133,7 +134,7 @@ pub fn write_details(out: &mut dyn Write, report: &RayReport, system: &ContactSy
         writeln!(out)?;
         let mut table = Table::new(vec![
             Column::words("load case"),
-            Column::numbers("factor", None),
+            Column::given("factor", None),
             Column::numbers("work on the mode", None),
             Column::words("").droppable(1),
         ]);
@@ -145,8 +146,8 @@ pub fn write_details(out: &mut dyn Write, report: &RayReport, system: &ContactSy
             };
             table.rows.push(Row::new(vec![
                 Cell::from(power.case.as_str()),
-                Cell::from(short(power.factor)),
-                Cell::from(short(power.power)),
+                Cell::number(power.factor),
+                Cell::number(power.power),
                 Cell::from(word),
             ]));
         }

@@ -2,13 +2,13 @@
 
 use std::io::{self, Write};
 
-use super::number::{balance, in_column, short, with_unit};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, moment_unit};
 use crate::answer::record::Reaction;
-use crate::answer::rounding::of_reactions;
+use crate::answer::rounding::balance;
 use crate::model::scenario::Units;
+use crate::text::number::{short, with_unit};
 
 /// Writes the forces of supports and springs on the structure, and their totals: the sums, and the moment of all of
 /// them about the origin. Forces of contact with the ground are not among them: they stand under the pairs.
@@ -29,18 +29,16 @@ pub fn write(
 
 /// The table that is written, with the sums.
 pub fn table(reactions: &[Reaction], units: &Units) -> Table {
-    let force = force_unit(units);
+    let force = |head: &str| Column::numbers(head, force_unit(units)).of(1);
     let moments = reactions.iter().any(|reaction| reaction.m != 0.0);
-    let mut table =
-        Table::new(vec![Column::words("node"), Column::numbers("F_x", force.clone()), Column::numbers("F_y", force)]);
+    let mut table = Table::new(vec![Column::words("node"), force("F_x"), force("F_y")]);
     if moments {
         table.columns.push(Column::numbers("M", moment_unit(units)).droppable(1));
     }
-    let [forces, largest_moment] = of_reactions(reactions);
     let mut push = |name: &str, fx: f64, fy: f64, m: Option<f64>| {
-        let mut cells = vec![Cell::from(name), Cell::from(in_column(fx, forces)), Cell::from(in_column(fy, forces))];
+        let mut cells = vec![Cell::from(name), Cell::number(fx), Cell::number(fy)];
         if moments {
-            cells.push(Cell::from(m.map_or_else(String::new, |m| in_column(m, largest_moment))));
+            cells.push(Cell::maybe(m));
         }
         table.rows.push(Row::new(cells));
     };

@@ -1,6 +1,8 @@
 //! A report as a list of blocks, written as Markdown or as one file of HTML.
 
-use super::table::{Align, Table};
+use super::style::Style;
+use super::table::{Align, Printed, Table};
+use crate::text::number::DIGITS;
 use crate::text::printable::{is_unprintable, xml as escaped};
 
 /// Longer tables show so many rows of their beginning and of their end.
@@ -35,28 +37,25 @@ pub struct Report {
     pub blocks: Vec<Block>,
 }
 
-/// Rows of a table as they are shown; `None` stands for those that are left out.
-fn rows(table: &Table) -> Vec<Option<Vec<&str>>> {
-    fn shown(row: &super::table::Row) -> Option<Vec<&str>> {
-        Some(row.cells.iter().map(|cell| cell.text.as_str()).collect())
-    }
+/// Heads of a table and its rows as they are shown; `None` stands for those that are left out.
+fn shown(table: &Table) -> (Vec<String>, Vec<Option<Vec<String>>>) {
+    let columns = table.printed(DIGITS, &Style::default());
+    let row = |index: usize| Some(columns.iter().map(|column| column.cells[index].trim().to_owned()).collect());
+    let head = |column: &Printed| match column.unit.as_str() {
+        "" => column.head.clone(),
+        unit => format!("{} [{unit}]", column.head),
+    };
+    let heads = columns.iter().map(head).collect();
+    let count = table.rows.len();
     // leaving out two rows and saying so saves nothing
-    if table.rows.len() <= 2 * ENDS + 2 {
-        return table.rows.iter().map(shown).collect();
+    if count <= 2 * ENDS + 2 {
+        return (heads, (0..count).map(row).collect());
     }
-    let (first, last) = (&table.rows[..ENDS], &table.rows[table.rows.len() - ENDS..]);
-    first.iter().map(shown).chain([None]).chain(last.iter().map(shown)).collect()
+    (heads, (0..ENDS).map(row).chain([None]).chain((count - ENDS..count).map(row)).collect())
 }
 
 fn left_out(table: &Table, how: &str) -> String {
     format!("… {} rows left out: {how}", table.rows.len() - 2 * ENDS)
-}
-
-fn head(column: &super::table::Column) -> String {
-    match &column.unit {
-        Some(unit) => format!("{} [{unit}]", column.head),
-        None => column.head.clone(),
-    }
 }
 
 const STYLE: &str = "body{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;line-height:1.45;max-width:60rem;\
@@ -115,13 +114,11 @@ fn html_table(table: &Table, how: &str) -> String {
         let cells = cells.iter().enumerate().map(|(i, cell)| format!("<{tag}{}>{}</{tag}>", class(i), escaped(cell)));
         format!("<tr>{}</tr>\n", cells.collect::<String>())
     };
-    let heads: Vec<String> = table.columns.iter().map(head).collect();
+    let (heads, rows) = shown(table);
     let mut text = format!("<table>\n<thead>\n{}</thead>\n<tbody>\n", line("th", &heads));
-    for row in rows(table) {
+    for row in rows {
         match row {
-            Some(cells) => {
-                text.push_str(&line("td", &cells.into_iter().map(str::to_owned).collect::<Vec<_>>()));
-            }
+            Some(cells) => text.push_str(&line("td", &cells)),
             None => text.push_str(&format!(
                 "<tr><td class=\"more\" colspan=\"{}\">{}</td></tr>\n",
                 table.columns.len(),
@@ -135,13 +132,14 @@ fn html_table(table: &Table, how: &str) -> String {
 
 fn markdown_table(table: &Table, how: &str) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let mut text = line(table.columns.iter().map(|column| plain(&head(column))).collect());
+    let (heads, rows) = shown(table);
+    let mut text = line(heads.iter().map(|head| plain(head)).collect());
     let align = |column: &super::table::Column| if column.align == Align::Left { "---" } else { "---:" }.to_owned();
     text.push_str(&line(table.columns.iter().map(align).collect()));
     let mut cut = false;
-    for row in rows(table) {
+    for row in rows {
         match row {
-            Some(cells) => text.push_str(&line(cells.into_iter().map(plain).collect())),
+            Some(cells) => text.push_str(&line(cells.iter().map(|cell| plain(cell)).collect())),
             None => {
                 cut = true;
                 text.push_str(&line(table.columns.iter().map(|_| "…".to_owned()).collect()));

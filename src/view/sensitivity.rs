@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::number::{in_column, largest};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
+use crate::answer::rounding::largest;
 use crate::path::sensitivity::Sensitivity;
 
 /// Writes the derivatives with respect to `parameter`, or to all of them.
@@ -24,19 +24,15 @@ pub fn write(out: &mut dyn Write, sensitivity: &Sensitivity, parameter: Option<&
         }
         let mut table = Table::new(vec![
             Column::words("pair"),
-            Column::numbers("dx_n", None),
-            Column::numbers("dx_τ", None),
-            Column::numbers("dz_n", None).droppable(1),
-            Column::numbers("dz_τ", None),
+            Column::numbers("dx_n", None).of(1),
+            Column::numbers("dx_τ", None).of(1),
+            Column::numbers("dz_n", None).of(2).droppable(1),
+            Column::numbers("dz_τ", None).of(2),
         ]);
         for pair in &rate.pairs {
-            table.rows.push(Row::new(vec![
-                Cell::from(pair.pair.as_str()),
-                Cell::from(in_column(pair.x_n, forces)),
-                Cell::from(in_column(pair.x_t, forces)),
-                Cell::from(in_column(pair.z_n, lengths)),
-                Cell::from(in_column(pair.z_t, lengths)),
-            ]));
+            let mut cells = vec![Cell::from(pair.pair.as_str())];
+            cells.extend([pair.x_n, pair.x_t, pair.z_n, pair.z_t].map(Cell::number));
+            table.rows.push(Row::new(cells));
         }
         table.write(out, style)?;
     }

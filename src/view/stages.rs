@@ -2,12 +2,13 @@
 
 use std::io::{self, Write};
 
-use super::number::{denoised, in_column, largest, residual, short};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{length_unit, moment_unit};
+use crate::answer::rounding::{denoised, largest};
 use crate::model::scenario::Units;
 use crate::path::stages::{History, HistoryEnd};
+use crate::text::number::{residual, short};
 
 /// Writes a row per stage: its factors, pivots, changes, largest slip and slip increment, energy.
 pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Style) -> io::Result<()> {
@@ -37,38 +38,36 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
 /// The table that is written.
 pub fn table(history: &History, units: &Units) -> Table {
     let mut columns = vec![Column::count("stage")];
-    columns.extend(history.cases.iter().map(|case| Column::numbers(case, None)));
+    columns.extend(history.cases.iter().map(|case| Column::given(case, None)));
     columns.extend([
         Column::count("pivots").droppable(4),
         Column::count("changes").droppable(3),
-        Column::numbers("max slip", length_unit(units)),
-        Column::numbers("max Δslip", length_unit(units)).droppable(2),
+        Column::numbers("max slip", length_unit(units)).of(1),
+        Column::numbers("max Δslip", length_unit(units)).of(1).droppable(2),
         Column::numbers("dissipated", moment_unit(units)).droppable(1),
         Column::words("balance").droppable(5),
     ]);
     let mut table = Table::new(columns);
-    let ends = || history.stages.iter().filter_map(|stage| stage.moments.last());
-    let factors: Vec<f64> = (0..history.cases.len()).map(|case| largest(ends().map(|end| end.factors[case]))).collect();
-    let slips = largest(ends().flat_map(|end| end.pairs.iter().map(|pair| pair.z_t)));
+    let ends = history.stages.iter().filter_map(|stage| stage.moments.last());
+    let slips = largest(ends.flat_map(|end| end.pairs.iter().map(|pair| pair.z_t)));
     // Rounding beside the work of the loads is no dissipation.
     let energies = largest(history.stages.iter().flat_map(|stage| {
         let energy = stage.energy.unwrap_or_default();
         [stage.dissipated, energy.work, energy.stored]
     }));
-    let work = denoised(largest(history.stages.iter().map(|stage| stage.dissipated)), energies);
     for (index, stage) in history.stages.iter().enumerate() {
         let Some(end) = stage.moments.last() else {
             continue;
         };
         let mut cells = vec![Cell::from((index + 1).to_string())];
-        cells.extend(end.factors.iter().zip(&factors).map(|(factor, scale)| Cell::from(in_column(*factor, *scale))));
+        cells.extend(end.factors.iter().map(|factor| Cell::number(*factor)));
         let changes = stage.moments.iter().filter(|moment| !moment.changes.is_empty()).count();
         cells.extend([
             Cell::from(stage.pivots.to_string()),
             Cell::from(changes.to_string()),
-            Cell::from(in_column(largest(end.pairs.iter().map(|pair| pair.z_t)), slips)),
-            Cell::from(in_column(largest(stage.slip.iter().copied()), slips)),
-            Cell::from(in_column(denoised(stage.dissipated, energies), work)),
+            Cell::number(largest(end.pairs.iter().map(|pair| pair.z_t))),
+            Cell::number(denoised(largest(stage.slip.iter().copied()), slips)),
+            Cell::number(denoised(stage.dissipated, energies)),
             Cell::from(stage.energy.map_or(String::new(), |energy| residual(energy.residual))),
         ]);
         table.rows.push(Row::new(cells));
@@ -87,13 +86,13 @@ pub fn write_stage(
     let Some(stage) = history.stages.get(index) else {
         return writeln!(out, "no stage {}", index + 1);
     };
-    let mut columns = vec![Column::numbers("done", None).droppable(1)];
-    columns.extend(history.cases.iter().map(|case| Column::numbers(case, None)));
+    let mut columns = vec![Column::given("done", None).droppable(1)];
+    columns.extend(history.cases.iter().map(|case| Column::given(case, None)));
     columns.push(Column::words("change"));
     let mut table = Table::new(columns);
     for moment in &stage.moments {
-        let mut cells = vec![Cell::from(short(moment.t))];
-        cells.extend(moment.factors.iter().map(|factor| Cell::from(super::path::exact(*factor))));
+        let mut cells = vec![Cell::number(moment.t)];
+        cells.extend(moment.factors.iter().map(|factor| Cell::number(*factor)));
         cells.push(Cell::from(style.text(&moment.sentence)));
         table.rows.push(Row::new(cells));
     }

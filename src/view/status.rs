@@ -4,13 +4,14 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::number::{in_full, residual, short, with_unit};
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
+use crate::answer::attempt::Attempt;
 use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, Start, State, Verdict};
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::{Scenario, Source, Units};
 use crate::model::uses::Redone;
+use crate::text::number::{in_full, residual, short, with_unit};
 
 /// The word of an outcome, as in results.
 pub fn outcome_word(outcome: OutcomeKind) -> &'static str {
@@ -268,19 +269,7 @@ pub fn write(
         let p = with_unit(&short(answer.p), p_unit(answer, units).as_deref());
         rows.push(("marginal", format!("exactly on a limit: p stopped at {p} instead of 0")));
     }
-    let size = &answer.size;
-    let mut sizes = Vec::new();
-    if let Some(unknowns) = size.unknowns {
-        sizes.push(match size.free {
-            Some(free) => format!("{unknowns} unknowns ({free} free)"),
-            None => format!("{unknowns} unknowns"),
-        });
-    }
-    if !matches!(scenario.source, Source::Lcp(_)) {
-        sizes.push(format!("{} contact {}", size.pairs, if size.pairs == 1 { "pair" } else { "pairs" }));
-    }
-    sizes.push(format!("LCP of {}", size.lcp));
-    rows.push(("size", sizes.join(" · ")));
+    rows.push(("size", sizes(answer, scenario)));
     rows.push((
         "rules",
         format!(
@@ -293,46 +282,18 @@ pub fn write(
         rows.push(("start", format!("warm: followed from the last answer, {changes} {times} of the working scheme")));
     }
     if answer.is_answer() || answer.outcome == OutcomeKind::CheckFailed {
-        let check = &answer.check;
-        let mut figures = vec![
-            format!("min w {}", residual(check.min_w)),
-            format!("min z {}", residual(check.min_z)),
-            format!("w·z {}", residual(check.complementarity)),
-        ];
-        if let Some(equilibrium) = check.equilibrium {
-            figures.push(format!("equilibrium {}", residual(equilibrium)));
-        }
-        let word = if check.passed { "passed" } else { "FAILED" };
-        rows.push(("check", format!("{word}: {}", figures.join(" · "))));
+        rows.push(("check", check(answer)));
     }
     if answer.attempts.len() > 1 {
-        for (i, attempt) in answer.attempts.iter().enumerate() {
-            rows.push((
-                if i == 0 { "attempts" } else { "" },
-                format!(
-                    "{} · {} · {}: {}{}{}",
-                    attempt.rules.covering,
-                    attempt.rules.tie_break,
-                    attempt.rules.engine,
-                    outcome_word(attempt.outcome),
-                    attempt.pivots.map_or(String::new(), |pivots| format!(" · {}", pivots_word(pivots))),
-                    attempt.why.as_ref().map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')))
-                ),
-            ));
-        }
+        rows.extend(labelled("attempts", answer.attempts.iter().map(attempt)));
     }
-    for (i, note) in answer.notes.iter().enumerate() {
-        rows.push((if i == 0 { "notes" } else { "" }, note.clone()));
-    }
+    rows.extend(labelled("notes", answer.notes.iter().cloned()));
     if !parameters.is_empty() {
-        let values: Vec<String> = parameters
-            .iter()
-            .map(|(name, value)| {
-                let unit = scenario.parameters.get(name).and_then(|p| p.unit.as_deref());
-                format!("{name} = {}", with_unit(&in_full(*value), unit))
-            })
-            .collect();
-        rows.push(("parameters", values.join(", ")));
+        let value = |(name, value): (&String, &f64)| {
+            let unit = scenario.parameters.get(name).and_then(|p| p.unit.as_deref());
+            format!("{name} = {}", with_unit(&in_full(*value), unit))
+        };
+        rows.push(("parameters", parameters.iter().map(value).collect::<Vec<_>>().join(", ")));
     }
     if let Some(description) = &scenario.description {
         rows.push(("description", description.clone()));
@@ -344,6 +305,66 @@ pub fn write(
                 Some(rest) if i == 0 => writeln!(out, "{}{rest}", style.paint(Role::Muted, &label))?,
                 _ => writeln!(out, "{line}")?,
             }
+        }
+    }
+    Ok(())
+}
+
+/// Rows of which the first one has the label.
+fn labelled<'l>(
+    label: &'l str,
+    texts: impl Iterator<Item = String> + 'l,
+) -> impl Iterator<Item = (&'l str, String)> + 'l {
+    texts.enumerate().map(move |(i, text)| (if i == 0 { label } else { "" }, text))
+}
+
+/// `612 unknowns (576 free) · 16 contact pairs · LCP of 48`.
+fn sizes(answer: &Answer, scenario: &Scenario) -> String {
+    let size = &answer.size;
+    let mut sizes = Vec::new();
+    if let Some(unknowns) = size.unknowns {
+        sizes.push(match size.free {
+            Some(free) => format!("{unknowns} unknowns ({free} free)"),
+            None => format!("{unknowns} unknowns"),
+        });
+    }
+    if !matches!(scenario.source, Source::Lcp(_)) {
+        sizes.push(format!("{} contact {}", size.pairs, if size.pairs == 1 { "pair" } else { "pairs" }));
+    }
+    sizes.push(format!("LCP of {}", size.lcp));
+    sizes.join(" · ")
+}
+
+/// The figures of the check and whether they passed.
+fn check(answer: &Answer) -> String {
+    let check = &answer.check;
+    let mut figures = vec![
+        format!("min w {}", residual(check.min_w)),
+        format!("min z {}", residual(check.min_z)),
+        format!("w·z {}", residual(check.complementarity)),
+    ];
+    figures.extend(check.equilibrium.map(|equilibrium| format!("equilibrium {}", residual(equilibrium))));
+    format!("{}: {}", if check.passed { "passed" } else { "FAILED" }, figures.join(" · "))
+}
+
+/// A try of the solver and how it ended.
+fn attempt(attempt: &Attempt) -> String {
+    format!(
+        "{} · {} · {}: {}{}{}",
+        attempt.rules.covering,
+        attempt.rules.tie_break,
+        attempt.rules.engine,
+        outcome_word(attempt.outcome),
+        attempt.pivots.map_or(String::new(), |pivots| format!(" · {}", pivots_word(pivots))),
+        attempt.why.as_ref().map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')))
+    )
+}
+
+/// Writes a line for every part that only contact holds; nothing where there are none.
+pub fn write_loose(out: &mut dyn Write, sentences: &[String], style: &Style) -> io::Result<()> {
+    for sentence in sentences {
+        for line in style.hanging("loose: ", &style.text(sentence)) {
+            writeln!(out, "{}", style.paint(Role::Muted, &line))?;
         }
     }
     Ok(())

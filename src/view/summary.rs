@@ -2,15 +2,17 @@
 
 use std::io::{self, Write};
 
-use super::number::{balance, short, with_unit};
 use super::quantities::shown;
+use super::scale::ByUnit;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, length_unit};
 use crate::answer::record::Reaction;
+use crate::answer::rounding::balance;
 use crate::model::quantity::Quantity;
 use crate::model::scenario::Units;
 use crate::path::quantity::{NoValue, Resultant, Value};
+use crate::text::number::short;
 
 /// More reactions than this are only summed.
 const REACTIONS: usize = 10;
@@ -66,44 +68,35 @@ pub fn resultants_table(resultants: &[Resultant], units: &Units) -> Table {
     let force = force_unit(units);
     let mut table = Table::new(vec![
         Column::words("joint"),
-        Column::numbers("N", force.clone()),
-        Column::numbers("T", force),
+        Column::numbers("N", force.clone()).of(1),
+        Column::numbers("T", force).of(1),
         Column::numbers("e", length_unit(units)),
     ]);
     for one in resultants {
-        let e = one.eccentricity.map_or("no force".to_owned(), short);
-        let cells = [one.joint.clone(), short(one.normal), short(one.tangential), e];
-        table.rows.push(Row::new(cells.into_iter().map(Cell::from).collect()));
+        let e = one.eccentricity.map_or_else(|| Cell::new("no force", Role::Muted), Cell::number);
+        let cells = [Cell::from(one.joint.as_str()), Cell::number(one.normal), Cell::number(one.tangential), e];
+        table.rows.push(Row::new(cells.into()));
     }
     table
 }
 
 /// Writes all of it, parts that are empty left out.
 pub fn write(out: &mut dyn Write, summary: &Summary, units: &Units, style: &Style) -> io::Result<()> {
-    let force = force_unit(units);
-    let head = |out: &mut dyn Write, text: &str| writeln!(out, "{}", style.paint(Role::Header, text));
-    if !summary.resultants.is_empty() {
-        resultants_table(&summary.resultants, units).write(out, style)?;
-    }
-    if !summary.peaks.is_empty() {
-        head(out, "largest")?;
-        for peak in &summary.peaks {
-            let value = with_unit(&short(peak.value), peak.quantity.unit(units).as_deref());
-            let at = if peak.at.is_empty() { String::new() } else { format!(" at {}", peak.at) };
-            writeln!(out, "{}", style.fit(&style.text(&format!("  {:<18} {value}{at}", peak.what)), style.width))?;
+    let mut begun = false;
+    let mut part = |out: &mut dyn Write, table: Table| {
+        if table.rows.is_empty() {
+            return Ok(());
         }
-    }
-    if !summary.reactions.is_empty() {
-        head(out, "reactions")?;
-        let of = |value: f64| with_unit(&short(value), force.as_deref());
-        for reaction in summary.reactions.iter().filter(|_| summary.reactions.len() <= REACTIONS) {
-            let text = format!("  {:<18} fx {}, fy {}", reaction.node, of(reaction.fx), of(reaction.fy));
-            writeln!(out, "{}", style.fit(&style.text(&text), style.width))?;
+        if std::mem::replace(&mut begun, true) {
+            writeln!(out)?;
         }
-        let [fx, fy] = summary.sum_of_reactions();
-        let text = format!("  {:<18} fx {}, fy {}", format!("sum of {}", summary.reactions.len()), of(fx), of(fy));
-        writeln!(out, "{}", style.fit(&style.text(&text), style.width))?;
-    }
+        table.write(out, style)
+    };
+    part(out, resultants_table(&summary.resultants, units))?;
+    part(out, peaks_table(&summary.peaks, units, style.ascii))?;
+    part(out, reactions_table(summary, units))?;
+    part(out, probes_table(&summary.probes, units, style.ascii))?;
+    let head = |out: &mut dyn Write, text: &str| writeln!(out, "\n{}", style.paint(Role::Header, text));
     if !summary.safety.is_empty() {
         head(out, "safety")?;
         for safety in &summary.safety {
@@ -119,12 +112,58 @@ pub fn write(out: &mut dyn Write, summary: &Summary, units: &Units, style: &Styl
             }
         }
     }
-    if !summary.probes.is_empty() {
-        head(out, "probes")?;
-        for (name, quantity, value) in &summary.probes {
-            let text = format!("  {name:<18} {}", shown(quantity, value, units).0);
-            writeln!(out, "{}", style.fit(&style.text(&text), style.width))?;
-        }
-    }
     Ok(())
+}
+
+/// A value and its unit with their power of ten.
+fn written(scales: &ByUnit, value: f64, unit: Option<&str>, ascii: bool) -> [String; 2] {
+    let scale = scales.of_row(&[value], unit);
+    [scale.number(value), scale.unit(unit, ascii).unwrap_or_default()]
+}
+
+/// The largest of everything; values of one unit share their power of ten.
+fn peaks_table(peaks: &[Peak], units: &Units, ascii: bool) -> Table {
+    let mut table =
+        Table::new(vec![Column::words("largest"), Column::numbers("", None), Column::words(""), Column::words("at")]);
+    let values: Vec<_> = peaks.iter().map(|peak| (peak.quantity.unit(units), peak.value)).collect();
+    let scales = ByUnit::of(&values);
+    for (peak, (unit, value)) in peaks.iter().zip(&values) {
+        let [number, unit] = written(&scales, *value, unit.as_deref(), ascii);
+        let cells = [Cell::from(peak.what), number.into(), Cell::new(unit, Role::Muted), peak.at.as_str().into()];
+        table.rows.push(Row::new(cells.into()));
+    }
+    table
+}
+
+/// The reactions and their sum, or the sum alone of many.
+fn reactions_table(summary: &Summary, units: &Units) -> Table {
+    let force = |head: &str| Column::numbers(head, force_unit(units)).of(1);
+    let mut table = Table::new(vec![Column::words("reactions"), force("F_x"), force("F_y")]);
+    let mut push = |name: &str, fx: f64, fy: f64| {
+        table.rows.push(Row::new(vec![Cell::from(name), Cell::number(fx), Cell::number(fy)]));
+    };
+    for reaction in summary.reactions.iter().filter(|_| summary.reactions.len() <= REACTIONS) {
+        push(&reaction.node, reaction.fx, reaction.fy);
+    }
+    if !summary.reactions.is_empty() {
+        let [fx, fy] = summary.sum_of_reactions();
+        push(&format!("sum of {}", summary.reactions.len()), fx, fy);
+    }
+    table
+}
+
+/// The probes; values of one unit share their power of ten.
+pub fn probes_table(probes: &[(String, Quantity, Result<Value, NoValue>)], units: &Units, ascii: bool) -> Table {
+    let mut table = Table::new(vec![Column::words("probes"), Column::numbers("", None), Column::words("")]);
+    let number = |value: &Result<Value, NoValue>| value.as_ref().ok().and_then(Value::number);
+    let values: Vec<_> = probes.iter().filter_map(|(_, of, value)| Some((of.unit(units), number(value)?))).collect();
+    let scales = ByUnit::of(&values);
+    for (name, quantity, value) in probes {
+        let [text, unit] = match number(value) {
+            Some(value) => written(&scales, value, quantity.unit(units).as_deref(), ascii),
+            None => [shown(quantity, value, units).0, String::new()],
+        };
+        table.rows.push(Row::new(vec![Cell::from(name.as_str()), text.into(), Cell::new(unit, Role::Muted)]));
+    }
+    table
 }

@@ -4,7 +4,6 @@ use std::io::{self, Write};
 
 use serde_json::Value;
 
-use super::number::{in_column, largest, short};
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 
@@ -30,6 +29,8 @@ pub fn write(
                 let rank = LESS.iter().position(|name| *name == columns[k]).map_or(0, |at| (LESS.len() - at) as u8);
                 let column = if is_words(k) {
                     Column::words(&columns[k])
+                } else if k < axes {
+                    Column::given(&columns[k], None)
                 } else if is_count(k) {
                     Column::count(&columns[k])
                 } else {
@@ -43,15 +44,8 @@ pub fn write(
         let cells = used.iter().map(|&k| match &row[k] {
             Value::Null => Cell::from(""),
             Value::String(text) => Cell::from(style.text(text)),
-            Value::Number(number) if is_count(k) => Cell::from(number.to_string()),
-            other => {
-                let value = other.as_f64().unwrap_or(f64::NAN);
-                if k < axes {
-                    return Cell::from(short(value));
-                }
-                let scale = largest(rows.iter().filter_map(|row| row[k].as_f64()));
-                Cell::from(in_column(value, scale))
-            }
+            Value::Number(number) if k >= axes && is_count(k) => Cell::from(number.to_string()),
+            other => Cell::number(other.as_f64().unwrap_or(f64::NAN)),
         });
         table.rows.push(Row::new(cells.collect()));
     }

@@ -1,10 +1,14 @@
-//! A small table writer: aligned columns with units, fitted to the width by leaving out whole columns.
+//! A small table writer: aligned columns with units, fitted to the width without losing any of them. Words are broken
+//! over several lines first, then numbers lose a digit, then columns go on beneath.
 
 use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
+use super::scale::{APART, Scale};
 use super::style::{Role, Style, pad_left, pad_right};
+use crate::answer::rounding::{denoised, largest};
+use crate::text::number::DIGITS;
 
 /// Where the text of a cell stands in its column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,19 +21,35 @@ pub enum Align {
     Decimal,
 }
 
+/// What the numbers of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Measured: what is rounding beside the largest is 0.
+    Measured,
+    /// The same, freed of its rounding already: beside a bound of 1e15 a force of 1 is no noise.
+    Clean,
+    /// Given by the user, or read back by him.
+    Given,
+    /// Counts and ratios: no zeros behind their digits.
+    Plain,
+}
+
 /// One column.
 #[derive(Clone, Debug)]
 pub struct Column {
-    pub(super) head: String,
-    pub(super) unit: Option<String>,
+    head: String,
+    unit: Option<String>,
     pub(super) align: Align,
+    kind: Kind,
+    /// Columns of one quantity have the same number.
+    quantity: Option<u8>,
     rank: u8,
 }
 
 impl Column {
     /// Left-aligned words.
     pub fn words(head: &str) -> Column {
-        Column { head: head.into(), unit: None, align: Align::Left, rank: 0 }
+        Column { head: head.into(), unit: None, align: Align::Left, kind: Kind::Measured, quantity: None, rank: 0 }
     }
 
     /// Counters, at the right.
@@ -37,29 +57,63 @@ impl Column {
         Column { align: Align::Right, ..Column::words(head) }
     }
 
-    /// Numbers with their unit.
+    /// Numbers with their unit; they share one power of ten.
     pub fn numbers(head: &str, unit: Option<String>) -> Column {
         Column { unit, align: Align::Decimal, ..Column::words(head) }
     }
 
-    /// May be left out where the table is too wide; the highest rank goes first, 0 stays to the last.
+    /// Numbers that the user gives or reads back to the last digit: parameters, factors, breakpoints.
+    pub fn given(head: &str, unit: Option<String>) -> Column {
+        Column { kind: Kind::Given, ..Column::numbers(head, unit) }
+    }
+
+    /// Counts or ratios: `37`, `1.3333`.
+    pub fn plain(head: &str, unit: Option<String>) -> Column {
+        Column { kind: Kind::Plain, ..Column::numbers(head, unit) }
+    }
+
+    /// Its small numbers are no rounding.
+    pub fn clean(mut self) -> Column {
+        self.kind = Kind::Clean;
+        self
+    }
+
+    /// Shares its power of ten with the other columns of this quantity, unless all its numbers are under a thousandth of
+    /// their largest.
+    pub fn of(mut self, quantity: u8) -> Column {
+        self.quantity = Some(quantity);
+        self
+    }
+
+    /// Goes on beneath first where the table is too wide; the highest rank goes before the others, 0 last.
     pub fn droppable(mut self, rank: u8) -> Column {
         self.rank = rank;
         self
     }
 }
 
-/// Text of a cell and its colour.
+/// What a cell holds and its colour.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    pub(super) text: String,
+    text: String,
+    number: Option<f64>,
     role: Role,
 }
 
 impl Cell {
     /// Coloured text.
     pub fn new(text: impl Into<String>, role: Role) -> Cell {
-        Cell { text: text.into(), role }
+        Cell { text: text.into(), number: None, role }
+    }
+
+    /// A number, written as its column asks for.
+    pub fn number(value: f64) -> Cell {
+        Cell { text: String::new(), number: Some(value), role: Role::Plain }
+    }
+
+    /// A number, or nothing.
+    pub fn maybe(value: Option<f64>) -> Cell {
+        value.map_or_else(|| Cell::from(""), Cell::number)
     }
 }
 
@@ -98,6 +152,24 @@ pub struct Table {
 
 /// Blanks between columns.
 const GAP: usize = 2;
+/// Words are not broken into lines shorter than this, unless nothing else helps.
+const NARROW: usize = 12;
+
+/// A column ready for printing.
+pub(super) struct Printed {
+    pub(super) head: String,
+    pub(super) unit: String,
+    pub(super) cells: Vec<String>,
+    width: usize,
+    /// Words may be broken into lines as short as this.
+    least: usize,
+}
+
+/// Columns that stand beside each other, with their widths, and the blanks between them.
+struct Block {
+    columns: Vec<(usize, usize)>,
+    gap: usize,
+}
 
 impl Table {
     /// An empty table.
@@ -105,124 +177,194 @@ impl Table {
         Table { columns, rows: Vec::new() }
     }
 
-    /// Writes the table: heads, units (if any), rows. Columns that find no room are named beneath it.
+    /// Writes the table: heads, units (if any), rows; columns that find no room beneath, after the first one again.
     pub fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        let columns: Vec<Printed> = (0..self.columns.len()).map(|index| self.printed(index, style)).collect();
         let gutter = if self.rows.iter().any(|row| row.marked) { 2 } else { 0 };
         let room = style.width.saturating_sub(gutter);
-        let all: usize = columns.iter().map(|column| column.width).sum();
-        let gaps = columns.len().saturating_sub(1);
-        // One blank between columns if that saves one from being left out.
-        let tight = all + GAP * gaps > room && all + gaps <= room;
-        let gap = if tight { 1 } else { GAP };
-        let shown = self.shown(&columns, room, gap);
-        let units = shown.iter().any(|&(i, _)| !columns[i].unit.is_empty());
-
-        let head = |text: fn(&Printed) -> &str, role: Role, out: &mut dyn Write| {
-            let cells: Vec<(String, usize, Align, Role)> = shown
-                .iter()
-                .map(|&(i, width)| {
-                    let align = self.columns[i].align;
-                    (text(&columns[i]).to_owned(), width, align, role)
-                })
-                .collect();
-            write_line(out, (gutter, gap), None, &cells, style)
+        let mut columns = self.printed(DIGITS, style);
+        let blocks = match fitted(&columns, &all(&columns), room) {
+            Some(block) => vec![block],
+            None => {
+                let fewer = self.printed(DIGITS - 1, style);
+                let block = fitted(&fewer, &all(&fewer), room);
+                if block.is_some() {
+                    columns = fewer;
+                }
+                block.map_or_else(|| self.folded(&columns, room), |block| vec![block])
+            }
         };
-        head(|column| &column.head, Role::Header, out)?;
-        if units {
-            head(|column| &column.unit, Role::Muted, out)?;
+        for (index, block) in blocks.iter().enumerate() {
+            if index > 0 {
+                writeln!(out)?;
+            }
+            self.write_block(out, &columns, block, (gutter, index == 0), style)?;
         }
-        for (index, row) in self.rows.iter().enumerate() {
-            let cells: Vec<(String, usize, Align, Role)> = shown
+        Ok(())
+    }
+
+    /// The columns with at most so many digits in their numbers.
+    pub(super) fn printed(&self, digits: usize, style: &Style) -> Vec<Printed> {
+        (0..self.columns.len()).map(|index| self.printed_column(index, digits, style)).collect()
+    }
+
+    fn numbers(&self, index: usize) -> impl Iterator<Item = f64> + '_ {
+        self.rows.iter().filter_map(move |row| row.cells.get(index)?.number)
+    }
+
+    fn printed_column(&self, index: usize, digits: usize, style: &Style) -> Printed {
+        let column = &self.columns[index];
+        let alike = |other: &Column| column.quantity.is_some() && other.quantity == column.quantity;
+        let of_quantity: Vec<usize> =
+            (0..self.columns.len()).filter(|&other| other == index || alike(&self.columns[other])).collect();
+        let most = largest(of_quantity.iter().flat_map(|&other| self.numbers(other)));
+        let value = |value: f64| if column.kind == Kind::Measured { denoised(value, most) } else { value };
+        let own = largest(self.numbers(index).map(value));
+        let decisive = if own > 0.0 && own < APART * most { own } else { most };
+        let scale = match column.kind {
+            Kind::Given => Scale::given(self.numbers(index)),
+            Kind::Plain => Scale::of_axis(self.numbers(index)),
+            _ => Scale::with_digits([decisive], digits),
+        };
+        let text = |cell: &Cell| match cell.number {
+            Some(number) => scale.number(value(number)),
+            None => style.text(&cell.text),
+        };
+        let mut cells: Vec<String> =
+            self.rows.iter().map(|row| row.cells.get(index).map_or_else(String::new, text)).collect();
+        if column.align == Align::Decimal {
+            align_decimals(&mut cells);
+        }
+        let head = style.text(&column.head);
+        let own_unit = column.unit.as_ref().map(|unit| style.text(unit));
+        let unit = scale.unit(own_unit.as_deref(), style.ascii).unwrap_or_default();
+        let width = cells.iter().map(|cell| cell.width()).chain([head.width(), unit.width()]).max().unwrap_or(0);
+        let word = cells.iter().flat_map(|cell| cell.split(' ')).map(|word| word.width()).max().unwrap_or(0);
+        let least = match column.align {
+            Align::Left => width.min(head.width().max(word.min(2 * NARROW)).max(NARROW)),
+            _ => width,
+        };
+        Printed { head, unit, cells, width, least }
+    }
+
+    /// Blocks of columns where they do not all stand beside each other: those that are told first stay, the first one is
+    /// repeated.
+    fn folded(&self, columns: &[Printed], room: usize) -> Vec<Block> {
+        let mut left: Vec<usize> = (1..columns.len()).collect();
+        left.sort_by_key(|&index| self.columns[index].rank);
+        let mut blocks = Vec::new();
+        while let Some(&next) = left.first() {
+            let mut chosen = vec![0, next];
+            for &index in &left[1..] {
+                let mut wider = chosen.clone();
+                wider.push(index);
+                wider.sort_unstable();
+                if fitted(columns, &wider, room).is_none() {
+                    break;
+                }
+                chosen = wider;
+            }
+            left.retain(|index| !chosen.contains(index));
+            blocks.push(fitted(columns, &chosen, room).unwrap_or_else(|| squeezed(columns, &chosen, room)));
+        }
+        if blocks.is_empty() {
+            blocks.push(squeezed(columns, &[0], room));
+        }
+        blocks
+    }
+
+    fn write_block(
+        &self,
+        out: &mut dyn Write,
+        columns: &[Printed],
+        block: &Block,
+        (gutter, first): (usize, bool),
+        style: &Style,
+    ) -> io::Result<()> {
+        let line = |out: &mut dyn Write, mark: Option<char>, text: &dyn Fn(usize) -> (String, Role)| {
+            let cells: Vec<(String, usize, Align, Role)> = block
+                .columns
                 .iter()
-                .map(|&(i, width)| {
-                    let text = columns[i].cells[index].clone();
-                    let role = row.cells.get(i).map_or(Role::Plain, |cell| cell.role);
-                    (text, width, self.columns[i].align, role)
+                .map(|&(index, width)| {
+                    let (text, role) = text(index);
+                    (text, width, self.columns[index].align, role)
                 })
                 .collect();
-            let mark = row.marked.then(|| style.mark());
-            write_line(out, (gutter, gap), mark, &cells, style)?;
-            if let Some(sentence) = &row.beneath {
+            write_line(out, (gutter, block.gap), mark, &cells, style)
+        };
+        line(out, None, &|index| (columns[index].head.clone(), Role::Header))?;
+        if block.columns.iter().any(|&(index, _)| !columns[index].unit.is_empty()) {
+            line(out, None, &|index| (columns[index].unit.clone(), Role::Muted))?;
+        }
+        for (number, row) in self.rows.iter().enumerate() {
+            let lines: Vec<Vec<String>> = block
+                .columns
+                .iter()
+                .map(|&(index, width)| {
+                    let text = &columns[index].cells[number];
+                    let breaks = self.columns[index].align == Align::Left && text.width() > width;
+                    if breaks { style.wrap(text, width) } else { vec![text.clone()] }
+                })
+                .collect();
+            for part in 0..lines.iter().map(Vec::len).max().unwrap_or(0) {
+                let mark = (row.marked && part == 0).then(|| style.mark());
+                line(out, mark, &|index| {
+                    let place = block.columns.iter().position(|(column, _)| *column == index).unwrap_or_default();
+                    let text = lines[place].get(part).cloned().unwrap_or_default();
+                    (text, row.cells.get(index).map_or(Role::Plain, |cell| cell.role))
+                })?;
+            }
+            if let Some(sentence) = row.beneath.as_ref().filter(|_| first) {
                 let indent = (gutter + 4).min(style.width / 4);
                 for line in style.wrap(sentence, style.width - indent) {
                     writeln!(out, "{}{}", " ".repeat(indent), style.paint(Role::Muted, &line))?;
                 }
             }
         }
-        let left_out: Vec<&str> = (0..columns.len())
-            .filter(|i| !shown.iter().any(|(shown, _)| shown == i))
-            .map(|i| columns[i].head.as_str())
-            .collect();
-        if !left_out.is_empty() {
-            let text = format!("(no room for {})", left_out.join(", "));
-            for line in style.wrap(&text, style.width) {
-                writeln!(out, "{}", style.paint(Role::Muted, &line))?;
-            }
-        }
         Ok(())
-    }
-
-    fn printed(&self, index: usize, style: &Style) -> Printed {
-        let column = &self.columns[index];
-        let mut cells: Vec<String> = self
-            .rows
-            .iter()
-            .map(|row| row.cells.get(index).map_or_else(String::new, |cell| style.text(&cell.text)))
-            .collect();
-        if column.align == Align::Decimal {
-            align_decimals(&mut cells);
-        }
-        let head = style.text(&column.head);
-        let unit = column.unit.as_ref().map_or_else(String::new, |unit| style.text(unit));
-        let width = cells.iter().map(|cell| cell.width()).chain([head.width(), unit.width()]).max().unwrap_or(0);
-        Printed { head, unit, cells, width }
-    }
-
-    /// Columns that are shown, with their widths: whole ones as long as that is possible; then words are cut.
-    fn shown(&self, columns: &[Printed], width: usize, gap: usize) -> Vec<(usize, usize)> {
-        let total = |shown: &[(usize, usize)]| {
-            shown.iter().map(|(_, width)| width).sum::<usize>() + gap * shown.len().saturating_sub(1)
-        };
-        let mut shown: Vec<(usize, usize)> =
-            columns.iter().enumerate().map(|(index, column)| (index, column.width)).collect();
-        while total(&shown) > width {
-            let last = shown.iter().enumerate().max_by_key(|(place, (index, _))| (self.columns[*index].rank, *place));
-            match last {
-                Some((place, (index, _))) if self.columns[*index].rank > 0 => {
-                    shown.remove(place);
-                }
-                _ => break,
-            }
-        }
-        // Words give way next; a number is never cut, its column goes.
-        while total(&shown) > width {
-            let excess = total(&shown) - width;
-            let widest = shown
-                .iter_mut()
-                .filter(|(index, width)| self.columns[*index].align == Align::Left && *width > 6)
-                .max_by_key(|(_, width)| *width);
-            match widest {
-                Some((_, width)) => *width -= excess.min(*width - 6),
-                None => break,
-            }
-        }
-        while total(&shown) > width && shown.len() > 1 {
-            shown.pop();
-        }
-        if let [(_, only)] = shown.as_mut_slice() {
-            *only = (*only).min(width);
-        }
-        shown
     }
 }
 
-/// A column ready for printing.
-struct Printed {
-    head: String,
-    unit: String,
-    cells: Vec<String>,
-    width: usize,
+fn all(columns: &[Printed]) -> Vec<usize> {
+    (0..columns.len()).collect()
+}
+
+/// The chosen columns beside each other, if they find room: with one blank between them if that helps, words broken into
+/// lines if that does.
+fn fitted(columns: &[Printed], chosen: &[usize], room: usize) -> Option<Block> {
+    let gaps = chosen.len().saturating_sub(1);
+    let natural: usize = chosen.iter().map(|&index| columns[index].width).sum();
+    let least: usize = chosen.iter().map(|&index| columns[index].least).sum();
+    let gap = match () {
+        () if natural + GAP * gaps <= room => GAP,
+        () if natural + gaps <= room => 1,
+        () if least + GAP * gaps <= room => GAP,
+        () if least + gaps <= room => 1,
+        () => return None,
+    };
+    let mut block = Block { columns: chosen.iter().map(|&index| (index, columns[index].width)).collect(), gap };
+    let mut excess = (natural + gap * gaps).saturating_sub(room);
+    while excess > 0 {
+        let widest = block.columns.iter_mut().filter(|(index, width)| *width > columns[*index].least);
+        let (_, width) = widest.max_by_key(|(_, width)| *width)?;
+        *width -= 1;
+        excess -= 1;
+    }
+    Some(block)
+}
+
+/// The last of the chosen columns and as much of the others as there is room for: where even two of them are too wide.
+fn squeezed(columns: &[Printed], chosen: &[usize], room: usize) -> Block {
+    let mut block = Block { columns: chosen.iter().map(|&index| (index, columns[index].width)).collect(), gap: 1 };
+    if let [(_, key), (_, other)] = block.columns.as_mut_slice() {
+        match room.checked_sub(*other + 1) {
+            Some(rest) if rest >= 3 => *key = (*key).min(rest),
+            _ => drop(block.columns.remove(0)),
+        }
+    }
+    if let [(_, only)] = block.columns.as_mut_slice() {
+        *only = (*only).min(room);
+    }
+    block
 }
 
 /// Pads numbers so that their decimal points (or the ends of their integers) stand below each other.

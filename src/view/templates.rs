@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::number::in_full;
 use super::style::{Role, Style, pad_left, pad_right};
 use crate::model::template::{Choice, Template};
+use crate::text::number::in_full;
 
 /// Writes each kind with its title, and beneath it what can be chosen of it: name, value, range, meaning.
 pub fn write(out: &mut dyn Write, kinds: &[(&Template, String, Vec<Choice>)], style: &Style) -> io::Result<()> {

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::number::short;
 use super::style::Style;
 use crate::explain::margin::{Margin, Turn};
+use crate::text::number::short;
 
 fn turn_words(turn: &Turn) -> String {
     format!("{}: pair {} {}", short(turn.at), turn.pair, turn.what)

@@ -14,7 +14,13 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> Co
     let m = load.len() / 2;
     let law = Law::Coulomb { friction: Number::Value(friction), cohesion: Number::Value(0.0), gap: Number::Value(0.0) };
     let pairs = (0..m)
-        .map(|i| ContactPair { id: format!("c{}", i + 1), law: law.clone(), position: None, tangential: Some(m + i) })
+        .map(|i| ContactPair {
+            id: format!("c{}", i + 1),
+            law: law.clone(),
+            position: None,
+            joint: 0,
+            tangential: Some(m + i),
+        })
         .collect();
     let system = ContactSystem {
         pairs,

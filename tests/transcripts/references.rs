@@ -10,7 +10,7 @@ use stickslip::model::embedded;
 use stickslip::model::expression::Expression;
 use stickslip::model::jet::Jet;
 use stickslip::session::{Format, Output, Session, language::tokens};
-use stickslip::view::number::{short, with_unit};
+use stickslip::text::number::{short, with_unit};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 

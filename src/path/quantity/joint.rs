@@ -41,7 +41,8 @@ impl Facts<'_> {
         let normal = balance(pairs.iter().map(|pair| pair.x_n));
         let tangential = balance(pairs.iter().map(|pair| pair.x_t));
         let places = self.places(joint, &pairs);
-        let moment: Option<f64> = pairs.iter().zip(&places).map(|(pair, s)| Some(pair.x_n * (*s)?)).sum();
+        let moments: Option<Vec<f64>> = pairs.iter().zip(&places).map(|(pair, s)| Some(pair.x_n * (*s)?)).collect();
+        let moment = moments.map(|moments| balance(moments.into_iter()));
         let eccentricity = moment.map(|moment| moment / normal).filter(|e| normal != 0.0 && e.is_finite());
         (!pairs.is_empty()).then(|| Resultant { joint: joint.to_owned(), normal, tangential, eccentricity })
     }

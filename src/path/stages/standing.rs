@@ -265,6 +265,7 @@ impl Standing {
                     reserve_plus: bound + x_t,
                     reserve_minus: bound - x_t,
                     position: pair.position,
+                    joint: pair.joint,
                 }
             })
             .collect()

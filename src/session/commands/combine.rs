@@ -9,7 +9,7 @@ use crate::path::quantity::{Facts, NoValue, Value};
 use crate::solve::problem::factors;
 use crate::solve::{Case, Prepared, Solved};
 use crate::view;
-use crate::view::combinations::{Line, Row};
+use crate::view::combinations::Row;
 use crate::watch::Watch;
 
 use crate::session::language::candidates::Candidate;
@@ -121,12 +121,7 @@ impl Session {
                     "probes": self.probe_values(&facts),
                 });
                 let line = view::status::line(answer, None, &units, &io.style);
-                let values = probes.iter().zip(values);
-                let values = values.map(|((name, quantity), value)| Line {
-                    name: name.clone(),
-                    text: view::quantities::shown(quantity, &value, &units).0,
-                });
-                (Row { name: combined.name.clone(), line, values: values.collect() }, json)
+                (Row { name: combined.name.clone(), line, values }, json)
             })
             .collect();
         let note = match (name, &all[..]) {
@@ -138,7 +133,7 @@ impl Session {
         let (rows, json): (Vec<Row>, Vec<Json>) = rows.into_iter().unzip();
         io.report(
             || json!({"combinations": json}),
-            |out, style| view::combinations::write(out, &rows, note.as_deref(), style),
+            |out, style| view::combinations::write(out, &rows, probes, note.as_deref(), &units, style),
         )?;
         if let (Some(_), [one]) = (name, &all[..]) {
             let (solved, prepared) = (Arc::clone(&one.solved), Arc::clone(&one.prepared));

@@ -70,7 +70,12 @@ impl Session {
         }
     }
 
-    fn envelope_of_combinations(&self, quantities: Vec<Quantity>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    /// Least and largest of quantities over the combinations, and those without an answer.
+    pub(super) fn extremes(
+        &self,
+        quantities: Vec<Quantity>,
+        io: &mut Output<'_>,
+    ) -> Result<(Vec<Extreme>, Vec<String>), CommandError> {
         let all = self.combined(None, io)?;
         let watch = io.watch;
         let without: Vec<String> = all
@@ -83,7 +88,11 @@ impl Session {
             .filter(|combined| combined.solved.answer.is_answer())
             .map(|combined| (combined, self.facts_of(combined, watch)))
             .collect();
-        let extremes: Vec<Extreme> = quantities.into_iter().map(|quantity| extreme(quantity, &answered)).collect();
+        Ok((quantities.into_iter().map(|quantity| extreme(quantity, &answered)).collect(), without))
+    }
+
+    fn envelope_of_combinations(&self, quantities: Vec<Quantity>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (extremes, without) = self.extremes(quantities, io)?;
         let units = &self.now.scenario.units;
         io.report(
             || {

@@ -6,8 +6,8 @@ use serde_json::json;
 use crate::session::language::command::{Action, Command};
 use crate::session::language::setting::RULES;
 use crate::session::{CommandError, Next, Output, Session};
+use crate::text::number::with_unit;
 use crate::view;
-use crate::view::number::with_unit;
 
 /// Show the parameters, their values and ranges
 #[derive(Debug, Args)]

@@ -97,7 +97,9 @@ fn abscissa(path: &PathRecord, name: &str) -> Result<usize, CommandError> {
 /// The pairs that slip most on a path, at most four: what a plot shows if none is named.
 fn busiest(path: &PathRecord, ids: &[&str]) -> Vec<usize> {
     let most = |pair: usize| {
-        view::number::largest(path.places.iter().filter_map(|place| place.pairs.get(pair).map(|pair| pair.z_t)))
+        crate::answer::rounding::largest(
+            path.places.iter().filter_map(|place| place.pairs.get(pair).map(|pair| pair.z_t)),
+        )
     };
     let mut pairs: Vec<usize> = (0..ids.len()).collect();
     pairs.sort_by(|&a, &b| most(b).total_cmp(&most(a)).then(a.cmp(&b)));

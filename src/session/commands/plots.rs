@@ -70,7 +70,8 @@ pub struct Plot {
     /// Lines of the picture
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(5..=500))]
     height: Option<u16>,
-    /// Bar, for moment, shear and axial (all of them without one); quantity, pairs and `over CASE`, for path
+    /// Bar, for moment, shear and axial (all of them without one); quantity, pairs and `over CASE`, for path;
+    /// `loads on|off` and `scale FACTOR|auto`, for structure and mode
     #[arg(value_name = "OF")]
     of: Vec<String>,
 }
@@ -96,6 +97,13 @@ fn words(asked: &Asked<'_>) -> Vec<Candidate> {
         (None, [bars, ..]) if ["moment", "shear", "axial"].contains(&bars.as_str()) => {
             Candidate::plain(&asked.names.bars)
         }
+        (None, [shape, .., last]) if ["structure", "mode"].contains(&shape.as_str()) && last == "loads" => {
+            Candidate::plain(["on", "off"])
+        }
+        (None, [shape, .., last]) if ["structure", "mode"].contains(&shape.as_str()) && last == "scale" => {
+            Candidate::plain(["auto"])
+        }
+        (None, [shape, ..]) if ["structure", "mode"].contains(&shape.as_str()) => Candidate::plain(["loads", "scale"]),
         _ => Vec::new(),
     }
 }
@@ -127,13 +135,14 @@ impl Session {
         let height = height.map(usize::from);
         let most = match picture {
             Picture::Moment | Picture::Shear | Picture::Axial => 1,
-            Picture::Path => usize::MAX,
+            Picture::Path | Picture::Structure | Picture::Mode => usize::MAX,
             _ => 0,
         };
         let bar = of.first().map(String::as_str);
         let result = if let Some(word) = of.get(most) {
             Err(CommandError::Refused(format!(
-                "plot: `{word}` makes no sense here; a bar belongs to moment, shear and axial, pairs to path"
+                "plot: `{word}` makes no sense here; a bar belongs to moment, shear and axial, pairs to path, `loads` and `scale` \
+                 to structure and mode"
             )))
         } else {
             match picture {
@@ -146,8 +155,8 @@ impl Session {
                 )),
                 Picture::P => self.plot_p(height, io),
                 Picture::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
-                Picture::Structure => self.plot_structure(height, io),
-                Picture::Mode => self.plot_mode(height, io),
+                Picture::Structure => self.plot_structure(of, height, io),
+                Picture::Mode => self.plot_mode(of, height, io),
                 Picture::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
                 Picture::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
                 Picture::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
@@ -233,21 +242,31 @@ impl Session {
         Ok(pivots)
     }
 
-    fn plot_structure(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn plot_structure(&self, of: &[String], height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let look = Look::read(of)?;
         let shown = self.shape()?;
+        let loads = look.loads.unwrap_or(true).then_some((&self.now.values, &self.now.scenario.units));
         io.report(
             || json!({"displacements": shown.displacements, "pairs": shown.pairs}),
-            |out, style| structure::write(out, &shown.picture(height.unwrap_or(STRUCTURE_HEIGHT)), style),
+            |out, style| {
+                let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
+                structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
+            },
         )?;
         Ok(())
     }
 
     /// The motion of the structure along the ray.
-    fn plot_mode(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn plot_mode(&self, of: &[String], height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let look = Look::read(of)?;
         let shown = self.mode_shape()?;
+        let loads = look.loads.unwrap_or(false).then_some((&self.now.values, &self.now.scenario.units));
         io.report(
             || json!({"displacements": shown.displacements}),
-            |out, style| structure::write(out, &shown.picture(height.unwrap_or(STRUCTURE_HEIGHT)), style),
+            |out, style| {
+                let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
+                structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
+            },
         )?;
         Ok(())
     }
@@ -356,6 +375,44 @@ impl Session {
             },
         )?;
         Ok(())
+    }
+}
+
+/// What the user asks of the picture of a structure.
+#[derive(Default)]
+struct Look {
+    loads: Option<bool>,
+    scale: Magnification,
+}
+
+impl Look {
+    /// `loads on|off` and `scale FACTOR|auto`, in any order.
+    fn read(words: &[String]) -> Result<Look, CommandError> {
+        let mut look = Look::default();
+        let mut words = words.iter().map(String::as_str);
+        while let Some(word) = words.next() {
+            match (word, words.next()) {
+                ("loads", Some("on")) => look.loads = Some(true),
+                ("loads", Some("off")) => look.loads = Some(false),
+                ("scale", Some("auto")) => look.scale = Magnification::Auto,
+                ("scale", Some(factor)) => {
+                    let factor = factor.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor >= 0.0);
+                    look.scale = Magnification::Factor(factor.ok_or_else(|| {
+                        CommandError::Refused("plot: `scale` takes a number from 0 on, or `auto`".to_owned())
+                    })?);
+                }
+                ("loads", _) => return Err(CommandError::Refused("plot: `loads` takes on or off".to_owned())),
+                ("scale", None) => {
+                    return Err(CommandError::Refused("plot: `scale` takes a number from 0 on, or `auto`".to_owned()));
+                }
+                _ => {
+                    return Err(CommandError::Refused(format!(
+                        "plot: `{word}` makes no sense here: expected `loads on`, `loads off`, `scale FACTOR` or `scale auto`"
+                    )));
+                }
+            }
+        }
+        Ok(look)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::model::scenario::{Scenario, Source};
 use crate::session::language::command::{Action, Command};
 use crate::session::language::tokens;
 use crate::session::{CommandError, Next, Output, Session, Setup, load};
-use crate::view::number::short;
+use crate::text::number::short;
 
 /// Open the file of the scenario in your editor; read it again when that ends
 ///

@@ -193,13 +193,14 @@ impl Session {
             ));
         };
         let changes = left.changes();
+        let s = if changes == 1 { "" } else { "s" };
         if discard {
             left.discard().map_err(|source| CommandError::File {
                 doing: "remove the journal in",
                 path: journal::state_directory().unwrap_or_default(),
                 source,
             })?;
-            return Ok(io.say(&format!("{changes} changes forgotten"))?);
+            return Ok(io.say(&format!("{changes} change{s} forgotten"))?);
         }
         let before = self.now.clone();
         let notes = match self.rebuild(&left.records, io) {
@@ -218,7 +219,6 @@ impl Session {
             })
             .collect();
         let kept = self.journal.as_mut().map_or(Ok(()), |journal| journal.append(|| before.chosen(), &records));
-        let s = if changes == 1 { "" } else { "s" };
         let mut said = vec![format!("{changes} change{s} restored")];
         said.extend(notes);
         match kept {

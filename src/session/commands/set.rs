@@ -8,7 +8,7 @@ use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::language::setting::{self, RULES, SetError, Setting};
 use crate::session::{CommandError, Next, Output, Session};
-use crate::view::number::short;
+use crate::text::number::short;
 
 /// Change a parameter or a rule, and solve again
 ///

@@ -51,7 +51,7 @@ impl Session {
             || self.status_json(),
             |out, style| {
                 view::status::write(out, answer, &self.now.scenario, &self.now.values, style)?;
-                view::loose::write(out, &self.loose(), style)?;
+                view::status::write_loose(out, &self.loose(), style)?;
                 if !self.auto {
                     writeln!(out, "auto is off: changes wait for `solve`")?;
                 }

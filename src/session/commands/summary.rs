@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::{Value as Json, json};
 
 use crate::model::quantity::{BarPlace, Internal, Names, OfLoad, OfPair, Over, Quantity};
-use crate::path::quantity::{Facts, Resultant};
+use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
 use crate::view::summary::{self, Peak, Safety};
 
@@ -35,13 +35,7 @@ impl Session {
             peaks: if answer.is_answer() { peaks(facts, &self.names()) } else { Vec::new() },
             reactions: answer.reactions.clone().unwrap_or_default(),
             safety: self.safeties(facts),
-            probes: self
-                .now
-                .scenario
-                .probes
-                .iter()
-                .map(|(name, q)| (name.clone(), q.clone(), facts.value(q)))
-                .collect(),
+            probes: self.probed(facts),
         });
         if io.watch.stop() {
             return Err(CommandError::Interrupted);
@@ -71,6 +65,12 @@ impl Session {
             },
         )?;
         Ok(())
+    }
+
+    /// The probes with their values.
+    pub(super) fn probed(&self, facts: &Facts<'_>) -> Vec<(String, Quantity, Result<Value, NoValue>)> {
+        let probes = self.now.scenario.probes.iter();
+        probes.map(|(name, quantity)| (name.clone(), quantity.clone(), facts.value(quantity))).collect()
     }
 
     fn safeties(&self, facts: &Facts<'_>) -> Vec<Safety> {

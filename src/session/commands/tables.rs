@@ -14,8 +14,8 @@ use crate::model::scenario::Source;
 use crate::session::language::command::{Action, Command};
 use crate::session::language::selection::{Rows, displacement_keys, member_keys, no_pair, pair_keys, sort};
 use crate::session::{CommandError, Next, Output, Session};
+use crate::text::number::short;
 use crate::view;
-use crate::view::number::short;
 use crate::view::style::{Role, Style};
 
 /// Show state, forces and slip of the contact pairs, at the pivot chosen by `step`
@@ -236,7 +236,7 @@ impl Session {
             let [x, y] = positions.get(reaction.node.as_str()).copied().unwrap_or_default();
             [reaction.m, x * reaction.fy, -y * reaction.fx]
         };
-        view::number::balance(reactions.iter().flat_map(moment))
+        crate::answer::rounding::balance(reactions.iter().flat_map(moment))
     }
 
     pub(in crate::session) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {

@@ -8,8 +8,8 @@ use crate::explain::margin::Margin;
 use crate::explain::plain_why::Vertex;
 use crate::solve::prepared::Geometry;
 use crate::solve::state::RunData;
+use crate::text::number::{short, with_unit};
 use crate::view;
-use crate::view::number::{short, with_unit};
 use crate::watch::Quiet;
 
 use crate::session::language::candidates::Candidate;

@@ -7,13 +7,13 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::session::results::PairState;
+use crate::text::number::{short, with_unit};
 use crate::tui::app::State;
 use crate::tui::kept::The;
 use crate::tui::listing::{GUTTER, Listing};
 use crate::tui::paint::{inside, put_lines, put_text, report};
 use crate::tui::pane::{Pane, SortKey};
 use crate::tui::pictures::Sheet;
-use crate::view::number::{short, with_unit};
 use crate::view::pairs::{state_words, write};
 use crate::view::style::Role;
 use crate::view::{force_unit, length_unit};

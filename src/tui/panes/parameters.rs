@@ -5,12 +5,12 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use unicode_width::UnicodeWidthStr;
 
+use crate::text::number::{short, with_unit};
 use crate::tui::app::State;
 use crate::tui::listing::window;
 use crate::tui::paint::{inside, put_text};
 use crate::tui::pane::Pane;
 use crate::tui::vary;
-use crate::view::number::{short, with_unit};
 use crate::view::style::{Role, pad_left, pad_right};
 
 /// Longest name shown in full.

@@ -10,6 +10,7 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::session::Solved;
 use crate::session::results::PivotRecord;
+use crate::text::number::{short, with_unit};
 use crate::tui::app::State;
 use crate::tui::kept::The;
 use crate::tui::listing::{GUTTER, Listing};
@@ -18,8 +19,8 @@ use crate::tui::pane::Pane;
 use crate::tui::pictures::Sheet;
 use crate::tui::theme::Look;
 use crate::view::force_unit;
-use crate::view::number::{in_column, largest, short, with_unit};
 use crate::view::pivots::of_contact;
+use crate::view::scale::Scale;
 use crate::view::style::{Role, pad_left, pad_right};
 
 /// p at the pivot shown.
@@ -94,9 +95,9 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(pivots: &[PivotRecord], numbers: &[String], width: usize) -> Columns {
+    fn of(pivots: &[PivotRecord], (p, numbers): (&str, &[String]), width: usize) -> Columns {
         let step = pivots.last().map_or(1, |pivot| pivot.step.to_string().len());
-        let number = numbers.iter().map(String::len).max().unwrap_or(1).max(3);
+        let number = numbers.iter().map(String::len).max().unwrap_or(1).max(3).max(p.width());
         let tie = if pivots.iter().any(|pivot| pivot.ties.len() > 1) { 7 } else { 0 };
         let fixed = step + 2 + 1 + number + tie;
         let longest = pivots.iter().map(|pivot| pivot.leaving.width()).max().unwrap_or(0);
@@ -110,14 +111,15 @@ fn listing(state: &State, solved: &Arc<Solved>, width: u16) -> Rc<Listing> {
     let sheet = Sheet { width: usize::from(width.saturating_sub(GUTTER)), look };
     state.pictures.pivots.of((The::one(solved), sheet), || {
         let pivots = &solved.answer.pivots;
-        let scale = largest(pivots.iter().map(|pivot| pivot.p));
-        let numbers: Vec<String> = pivots.iter().map(|pivot| in_column(pivot.p, scale)).collect();
-        let columns = Columns::of(pivots, &numbers, sheet.width);
+        let scale = Scale::of(pivots.iter().map(|pivot| pivot.p));
+        let numbers: Vec<String> = pivots.iter().map(|pivot| scale.measured(pivot.p)).collect();
+        let p = scale.unit(None, look.ascii).map_or_else(|| "p".to_owned(), |power| format!("p {power}"));
+        let columns = Columns::of(pivots, (&p, &numbers), sheet.width);
         let heading = format!(
             "{} {} {}{}{}",
             pad_left("", columns.step),
             pad_right(" turned", columns.words + 1),
-            pad_left("p", columns.number),
+            pad_left(&p, columns.number),
             if columns.until > 0 { pad_right("   until", columns.until) } else { String::new() },
             if columns.tie > 0 { "   ties" } else { "" }
         );

@@ -74,7 +74,7 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
     let now_label = match shown.position {
         Some(step) => format!("pivot {step}"),
         None if shown.at_ray() => {
-            let p = shown.moment.p.map(crate::view::number::short).unwrap_or_default();
+            let p = shown.moment.p.map(crate::text::number::short).unwrap_or_default();
             format!("last vertex, p = {p}")
         }
         None => String::new(),

@@ -8,8 +8,8 @@ use crate::session::results::PairState;
 use crate::tui::app::State;
 use crate::tui::paint::put_text;
 use crate::view::plot::canvas::{Canvas, Stroke};
-use crate::view::plot::chart::range;
 use crate::view::plot::structure::pair_sign;
+use crate::view::plot::ticks::range;
 use crate::view::plot::zone::zone;
 use crate::view::style::Role;
 

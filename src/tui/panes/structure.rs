@@ -10,17 +10,19 @@ use super::legend::Legend;
 use super::strip;
 use crate::model::structure::Structure;
 use crate::session::results::{PairDirection, State as PairMotion};
+use crate::text::number::short;
 use crate::tui::app::{PERIOD, State};
 use crate::tui::kept::The;
 use crate::tui::paint::{paste, put_lines, put_text};
 use crate::tui::pane::Pane;
 use crate::tui::pictures::{Shape, StructureKey, StructurePicture};
 use crate::tui::viewport::View;
-use crate::view::number::short;
 use crate::view::plot::canvas::{Canvas, Stroke};
-use crate::view::plot::chart::{dotted, range};
-use crate::view::plot::scene::{Lines, Magnification, arrows, factor, lines, nodal, supported};
-use crate::view::plot::structure::{GRID_PITCH, grid_pitch, load_signs, pair_sign, support_sign, support_word};
+use crate::view::plot::chart::dotted;
+use crate::view::plot::loads::{Drawn, Loads};
+use crate::view::plot::scene::{Lines, Magnification, factor, lines, nodal, supported};
+use crate::view::plot::structure::{GRID_PITCH, grid_pitch, pair_sign, support_sign, support_word};
+use crate::view::plot::ticks::range;
 use crate::view::style::Role;
 
 /// How the structure moves at the place shown. The automatic scale is that of the answer while its pivots are shown, so
@@ -77,6 +79,9 @@ pub fn note(state: &State) -> String {
     note
 }
 
+/// Dots between arrows of loads.
+const BETWEEN_ARROWS: f64 = 8.0;
+
 /// Draws the pane.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     match state.shown.structure() {
@@ -99,6 +104,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         scale: scale(state),
         phase: state.shown.at_ray().then_some(state.phase),
         ghost: state.ghost,
+        loads: state.loads,
     };
     let picture = state.pictures.structure.of(key, || picture(state, structure, area));
     paste(&picture.buffer, area, buffer);
@@ -221,20 +227,23 @@ impl Painter<'_> {
     }
 
     fn draw_loads(&mut self) {
-        let (left, right) = range(self.structure.nodes.iter().map(|node| node.position[0]));
-        let middle = self.view.place((0.5 * (left + right), 0.0)).0;
-        for arrow in arrows(self.structure, &self.state.shown.values) {
-            let count = arrow.nodes.len().max(1) as f64;
-            let (mut x, mut y) = (0.0, 0.0);
-            for &node in &arrow.nodes {
-                let dot = self.dot(node);
-                x += dot.0 / count;
-                y += dot.1 / count;
-            }
-            for (sign, step_x, step_y) in load_signs(arrow.force, self.state.look.ascii) {
-                // a push stands before its body, a pull behind it: outside in either case
-                let side = if x < middle { -step_x.abs() } else { step_x.abs() };
-                self.put((x + side, y + step_y), sign, Role::Accent, "load");
+        let (state, look) = (self.state, self.state.look);
+        if !state.loads {
+            return;
+        }
+        let of = |axis: usize| range(self.structure.nodes.iter().map(|node| node.position[axis]));
+        let ((left, right), (bottom, top)) = (of(0), of(1));
+        let middle = self.view.place((0.5 * (left + right), 0.5 * (bottom + top)));
+        let extent = (right - left).max(top - bottom) * self.view.pitch;
+        let loads = Loads::of(self.structure, &state.shown.values, &|node| self.dot(node));
+        let arrows = loads.arrows(BETWEEN_ARROWS);
+        let words = loads.legend(&arrows, &state.shown.scenario.units);
+        for arrow in &arrows.arrows {
+            let drawn = Drawn::new(arrow, arrow.at, middle, extent);
+            if drawn.ends().iter().all(|end| self.view.holds(*end)) {
+                drawn.draw(&mut self.canvas, look.ascii);
+                let text = words.iter().find(|(kind, _)| *kind == arrow.kind).map_or("load", |(_, text)| text);
+                self.legend.note(drawn.sign(look.ascii), Role::Accent, text);
             }
         }
     }

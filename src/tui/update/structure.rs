@@ -25,6 +25,7 @@ pub(super) fn look(state: &mut State, change: LookChange) {
         LookChange::DeformMore => deform(state, 2.0),
         LookChange::DeformLess => deform(state, 0.5),
         LookChange::DeformAuto => state.magnification = None,
+        LookChange::Loads => state.loads = !state.loads,
     }
 }
 

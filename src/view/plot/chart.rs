@@ -6,7 +6,9 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Series;
 use super::canvas::{Canvas, Stroke};
-use crate::view::number::{short, with_unit};
+use super::ticks::{HUGE, Ticks, range};
+use crate::text::number::with_unit;
+use crate::view::scale::Scale;
 use crate::view::style::{Role, Style, pad_left};
 
 /// How a curve is drawn.
@@ -33,18 +35,38 @@ pub struct Curve {
     pub line: Line,
 }
 
+/// Which values of the abscissa are written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Values {
+    /// None.
+    #[default]
+    None,
+    /// Those of its ends, lengths.
+    Lengths,
+    /// Those of its ends, which are typed as they are read: a load factor, a coefficient of friction.
+    Typed,
+    /// Lengths at these abscissas: where pieces begin and end, each counted from its own beginning.
+    Pieces(Vec<(f64, f64)>),
+}
+
 /// A chart.
 #[derive(Clone, Debug, Default)]
 pub struct Chart {
-    /// Its title; the unit of the ordinates belongs in it.
+    /// What is drawn.
     pub title: String,
+    /// Unit of the ordinates; it stands behind the title, with their power of ten.
+    pub ordinate: Option<String>,
+    /// What is to be said behind the unit.
+    pub about: String,
     /// Curves, the first one lowest.
     pub curves: Vec<Curve>,
     /// Names at abscissas, in ascending order; those that find room are shown, first and last before the others.
     pub names: Vec<(f64, String)>,
-    /// Whether the values of the abscissas are shown at both ends.
-    pub values: bool,
-    /// What the abscissa is, with its unit.
+    /// Abscissas between pieces that do not hang together.
+    pub breaks: Vec<f64>,
+    /// Values at the abscissa.
+    pub values: Values,
+    /// What the abscissa is.
     pub abscissa: String,
     /// Unit of the abscissa.
     pub unit: Option<String>,
@@ -54,10 +76,8 @@ pub struct Chart {
     pub height: usize,
 }
 
-/// Values beyond this are cut: sums and differences of them stay finite.
-const HUGE: f64 = 1e300;
-/// Ranges below this cannot be divided into ticks any more.
-const TINY: f64 = 1e-290;
+/// Columns of a piece that is parted from the others by a line.
+const NARROWEST: usize = 8;
 
 /// Marker of curve `number`.
 pub fn marker(number: usize, style: &Style) -> char {
@@ -67,22 +87,67 @@ pub fn marker(number: usize, style: &Style) -> char {
     markers[number % markers.len()]
 }
 
+/// The axes of a chart.
+pub struct Axes {
+    /// Ticks of the ordinate.
+    pub ticks: Ticks,
+    /// The power of ten of the ticks.
+    pub scale: Scale,
+    /// Least and largest abscissa.
+    pub range: (f64, f64),
+    /// Whether all ordinates are 0.
+    pub flat: bool,
+}
+
+impl Axes {
+    /// The labels of the ticks.
+    pub fn labels(&self) -> Vec<String> {
+        self.ticks.values.iter().map(|&value| self.scale.number(value)).collect()
+    }
+}
+
 impl Chart {
-    /// Writes the chart, `height` rows of drawing and up to four lines around it.
-    pub fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        let title = style.fit(&style.text(&self.title), style.width);
-        writeln!(out, "{}", style.paint(Role::Title, &title))?;
+    /// The axes with at most about `count` ticks; `None` where there is nothing to draw.
+    pub fn axes(&self, count: impl Fn(bool) -> usize) -> Option<Axes> {
         let points = || {
             self.curves.iter().flat_map(|curve| &curve.series.points).filter(|(x, y)| x.is_finite() && y.is_finite())
         };
-        if points().next().is_none() {
-            return writeln!(out, "{}", style.fit("nothing to draw", style.width));
-        }
-        // Nothing but zeros needs no height.
+        points().next()?;
         let flat = points().all(|&(_, y)| y == 0.0);
-        let rows = if flat { 3 } else { self.height.clamp(3, 200) };
-        let ticks = Ticks::new(points().map(|&(_, y)| y), (rows / 3).clamp(2, 8));
-        let labels: Vec<String> = ticks.values.iter().map(|&value| short(value)).collect();
+        let ticks = Ticks::new(points().map(|&(_, y)| y), count(flat));
+        let scale = Scale::of_axis(ticks.values.iter().copied());
+        Some(Axes { scale, ticks, range: range(points().map(|&(x, _)| x)), flat })
+    }
+
+    /// The title, the unit with its power of ten, and what is said behind it.
+    pub fn heading(&self, scale: Option<&Scale>, ascii: bool) -> String {
+        let unit = scale.map_or(self.ordinate.clone(), |scale| scale.unit(self.ordinate.as_deref(), ascii));
+        let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+        format!("{}{unit}{}", self.title, self.about)
+    }
+
+    /// The power of ten of the values at the abscissa.
+    pub fn abscissa_scale(&self, (first, last): (f64, f64)) -> Scale {
+        match &self.values {
+            Values::Typed => Scale::of_typed_axis([first, last]),
+            Values::Pieces(places) => Scale::of_axis(places.iter().map(|(_, value)| *value)),
+            _ => Scale::of_axis([first, last]),
+        }
+    }
+
+    /// Writes the chart, `height` rows of drawing and up to five lines around it.
+    pub fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        // Nothing but zeros needs no height.
+        let height = |flat: bool| if flat { 3 } else { self.height.clamp(3, 200) };
+        let axes = self.axes(|flat| (height(flat) / 3).clamp(2, 8));
+        let scale = axes.as_ref().map(|axes| &axes.scale);
+        let title = style.fit(&style.text(&self.heading(scale, style.ascii)), style.width);
+        writeln!(out, "{}", style.paint(Role::Title, &title))?;
+        let Some(axes) = axes else {
+            return writeln!(out, "{}", style.fit("nothing to draw", style.width));
+        };
+        let rows = height(axes.flat);
+        let labels = axes.labels();
         let gutter = labels.iter().map(|label| label.width()).max().unwrap_or(0);
         // Label, blank, axis; at least a few columns must remain for the drawing.
         let (gutter, columns) = match style.width.checked_sub(gutter + 2) {
@@ -92,28 +157,39 @@ impl Chart {
                 return writeln!(out, "{}", style.fit(&text, style.width));
             }
         };
-
         let mut canvas = Canvas::new(columns, rows);
-        let (first, last) = range(points().map(|&(x, _)| x));
-        // Half a character from the ends, so that markers stand where their point is.
-        let width = canvas.dots_x();
-        let to_x = |x: f64| {
-            if last > first { (x.clamp(first, last) - first) / (last - first) * width } else { width / 2.0 }
-        };
-        let height = canvas.dots_y();
-        let to_y = |y: f64| {
-            let share = (y.clamp(-HUGE, HUGE) - ticks.low) / (ticks.high - ticks.low);
-            if self.inverted { (1.0 - share) * height } else { share * height }
-        };
+        let frame = Frame::new(&canvas, &axes, self.inverted);
+        self.draw(&mut canvas, &frame, style);
+        let mut at_row: Vec<Option<&str>> = vec![None; rows];
+        for (value, label) in axes.ticks.values.iter().zip(&labels) {
+            if let Some((_, row)) = canvas.cell(0.0, frame.y(*value)) {
+                at_row[row] = Some(label);
+            }
+        }
+        for (row, line) in canvas.lines(style).iter().enumerate() {
+            let (label, axis) = match (at_row[row], style.ascii) {
+                (Some(label), true) => (label, '+'),
+                (Some(label), false) => (label, '┤'),
+                (None, true) => ("", '|'),
+                (None, false) => ("", '│'),
+            };
+            let label = pad_left(label, gutter);
+            let axis = style.paint(Role::Muted, &axis.to_string());
+            writeln!(out, "{label} {axis}{line}")?;
+        }
+        let column = |x: f64| canvas.cell(frame.x(x), 0.0).map_or(0, |(column, _)| column);
+        self.write_abscissa(out, style, gutter + 2, columns, &column)?;
+        self.write_values(out, style, (gutter + 2, columns), axes.range, &column)?;
+        self.write_legend(out, style, gutter + 2)
+    }
+
+    /// The curves, the zero line and the lines between pieces.
+    fn draw(&self, canvas: &mut Canvas, frame: &Frame, style: &Style) {
+        let columns = (canvas.dots_x() as usize).div_ceil(2);
         for curve in &self.curves {
             let role = Role::Series(curve.number);
-            let dots: Vec<(f64, f64)> = curve
-                .series
-                .points
-                .iter()
-                .filter(|(x, y)| x.is_finite() && y.is_finite())
-                .map(|&(x, y)| (to_x(x), to_y(y)))
-                .collect();
+            let finite = curve.series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+            let dots: Vec<(f64, f64)> = finite.map(|&(x, y)| (frame.x(x), frame.y(y))).collect();
             match curve.line {
                 Line::Dotted => {
                     canvas.draw_under(role, vec![Stroke::Dots(dotted(&dots, 4.0))]);
@@ -131,45 +207,16 @@ impl Chart {
                 }
             }
         }
-
-        // The zero line, faint.
-        let zero = to_y(0.0);
+        let zero = frame.y(0.0);
         let faint: Vec<(f64, f64)> = (0..columns).step_by(2).map(|column| (2.0 * column as f64, zero)).collect();
         canvas.draw_under(Role::Muted, vec![Stroke::Dots(faint)]);
-
-        let mut at_row: Vec<Option<&str>> = vec![None; rows];
-        for (value, label) in ticks.values.iter().zip(&labels) {
-            if let Some((_, row)) = canvas.cell(0.0, to_y(*value)) {
-                at_row[row] = Some(label);
-            }
+        let height = canvas.dots_y();
+        // closer ones would hide what they part
+        let parted = columns >= NARROWEST * (self.breaks.len() + 1);
+        for x in self.breaks.iter().filter(|_| parted) {
+            let x = frame.x(*x);
+            canvas.draw_under(Role::Muted, vec![Stroke::Dots(dotted(&[(x, 0.0), (x, height)], 2.0))]);
         }
-        for (row, line) in canvas.lines(style).iter().enumerate() {
-            let (label, axis) = match (at_row[row], style.ascii) {
-                (Some(label), true) => (label, '+'),
-                (Some(label), false) => (label, '┤'),
-                (None, true) => ("", '|'),
-                (None, false) => ("", '│'),
-            };
-            let label = pad_left(label, gutter);
-            let axis = style.paint(Role::Muted, &axis.to_string());
-            writeln!(out, "{label} {axis}{line}")?;
-        }
-        self.write_abscissa(out, style, gutter + 2, columns, &|x| {
-            canvas.cell(to_x(x), 0.0).map_or(0, |(column, _)| column)
-        })?;
-        if self.values && last > first {
-            let unit = self.unit.as_deref();
-            let (left, right) = (short(first), with_unit(&short(last), unit));
-            let mut line = Slots::new(columns);
-            line.put(0, &style.text(&left));
-            let right = style.text(&right);
-            line.put(columns.saturating_sub(right.width()), &right);
-            let middle = style.text(&self.abscissa);
-            line.put(columns.saturating_sub(middle.width()) / 2, &middle);
-            let text = format!("{}{}", " ".repeat(gutter + 2), line.text());
-            writeln!(out, "{}", style.paint(Role::Muted, text.trim_end()))?;
-        }
-        self.write_legend(out, style, gutter + 2)
     }
 
     /// The axis with a tick at every name, and the names that find room.
@@ -200,11 +247,49 @@ impl Chart {
         let order = [0, last].into_iter().chain(1..last.max(1));
         for index in order {
             let (x, name) = &self.names[index];
-            let name = style.text(name);
-            let start = column(*x).saturating_sub(name.width() / 2);
-            line.put(start.min(columns.saturating_sub(name.width())), &name);
+            line.put_at(column(*x), &style.text(name));
         }
         writeln!(out, "{}", format!("{}{}", " ".repeat(indent), line.text()).trim_end())
+    }
+
+    /// Values at the abscissa and what it is.
+    fn write_values(
+        &self,
+        out: &mut dyn Write,
+        style: &Style,
+        (indent, columns): (usize, usize),
+        (first, last): (f64, f64),
+        column: &dyn Fn(f64) -> usize,
+    ) -> io::Result<()> {
+        if self.values == Values::None || last <= first {
+            return Ok(());
+        }
+        let scale = self.abscissa_scale((first, last));
+        let unit = scale.unit(self.unit.as_deref(), style.ascii);
+        let mut write = |line: Slots| {
+            let text = format!("{}{}", " ".repeat(indent), line.text());
+            writeln!(out, "{}", style.paint(Role::Muted, text.trim_end()))
+        };
+        let mut line = Slots::new(columns);
+        let middle = |line: &mut Slots, text: &str| {
+            line.put(columns.saturating_sub(text.width()) / 2, text);
+        };
+        let abscissa = style.text(&self.abscissa);
+        if let Values::Pieces(places) = &self.values {
+            let all = places.iter().all(|(x, value)| line.put_at(column(*x), &scale.number(*value)));
+            if all && !places.is_empty() {
+                write(line)?;
+            }
+            let mut line = Slots::new(columns);
+            let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+            middle(&mut line, &format!("{abscissa}{}", style.text(&unit)));
+            return write(line);
+        }
+        line.put(0, &scale.number(first));
+        let right = style.text(&with_unit(&scale.number(last), unit.as_deref()));
+        line.put(columns.saturating_sub(right.width()), &right);
+        middle(&mut line, &abscissa);
+        write(line)
     }
 
     fn write_legend(&self, out: &mut dyn Write, style: &Style, indent: usize) -> io::Result<()> {
@@ -226,6 +311,33 @@ impl Chart {
             })
             .collect();
         write_legend(out, &entries, indent, style)
+    }
+}
+
+/// Where an abscissa and an ordinate stand on a canvas.
+struct Frame {
+    range: (f64, f64),
+    ordinates: (f64, f64),
+    size: (f64, f64),
+    inverted: bool,
+}
+
+impl Frame {
+    fn new(canvas: &Canvas, axes: &Axes, inverted: bool) -> Frame {
+        let size = (canvas.dots_x(), canvas.dots_y());
+        Frame { range: axes.range, ordinates: (axes.ticks.low, axes.ticks.high), size, inverted }
+    }
+
+    fn x(&self, x: f64) -> f64 {
+        let (first, last) = self.range;
+        let share = if last > first { (x.clamp(first, last) - first) / (last - first) } else { 0.5 };
+        share * self.size.0
+    }
+
+    fn y(&self, y: f64) -> f64 {
+        let (low, high) = self.ordinates;
+        let share = (y.clamp(-HUGE, HUGE) - low) / (high - low);
+        if self.inverted { (1.0 - share) * self.size.1 } else { share * self.size.1 }
     }
 }
 
@@ -283,60 +395,6 @@ pub fn dotted(points: &[(f64, f64)], pitch: f64) -> Vec<(f64, f64)> {
     dots
 }
 
-/// Smallest and largest, cut to what can be computed with.
-pub fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) =
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-    (low.clamp(-HUGE, HUGE), high.clamp(-HUGE, HUGE))
-}
-
-/// A scale that holds 0 and all values and ends at ticks 1, 2 or 5 × 10^k apart.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ticks {
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-    /// The ticks, both ends among them.
-    pub values: Vec<f64>,
-}
-
-impl Ticks {
-    /// At most about `count` + 1 ticks.
-    pub fn new(values: impl Iterator<Item = f64>, count: usize) -> Ticks {
-        let (low, high) = range(values.filter(|value| value.is_finite()).chain([0.0]));
-        if high - low < TINY {
-            // All zero: a scale of no size would divide by zero; only its 0 is named.
-            return Ticks { low: -1.0, high: 1.0, values: vec![0.0] };
-        }
-        let step = round_step((high - low) / count.max(1) as f64);
-        let first = (low / step + 1e-9).floor() as i64;
-        let last = (high / step - 1e-9).ceil() as i64;
-        Ticks {
-            low: first as f64 * step,
-            high: last as f64 * step,
-            values: (first..=last).map(|i| i as f64 * step).collect(),
-        }
-    }
-}
-
-/// The least of 1, 2 or 5 × 10^k that is not less than `rough`.
-fn round_step(rough: f64) -> f64 {
-    let power = 10f64.powi(rough.log10().floor() as i32);
-    let steps = [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power);
-    steps.into_iter().find(|step| *step >= rough * (1.0 - 1e-9)).unwrap_or(10.0 * power)
-}
-
-/// Round places between two values, at most about `count`; none where they are too close to tell apart.
-pub fn round_places(low: f64, high: f64, count: usize) -> Vec<f64> {
-    if high - low < TINY {
-        return Vec::new();
-    }
-    let step = round_step((high - low) / count.max(1) as f64);
-    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
-    (first..=last).map(|i| i as f64 * step).collect()
-}
-
 /// A line into which texts are put where nothing stands yet.
 struct Slots {
     cells: Vec<char>,
@@ -347,21 +405,28 @@ impl Slots {
         Slots { cells: vec![' '; columns] }
     }
 
+    /// Puts `text` around a column; see [`Slots::put`].
+    fn put_at(&mut self, column: usize, text: &str) -> bool {
+        let start = column.saturating_sub(text.width() / 2);
+        self.put(start.min(self.cells.len().saturating_sub(text.width())), text)
+    }
+
     /// Puts `text` at `start` if it and a blank on either side find free room. Texts whose characters are not one
     /// column wide each are left out.
-    fn put(&mut self, start: usize, text: &str) {
+    fn put(&mut self, start: usize, text: &str) -> bool {
         let count = text.chars().count();
         let end = start + count;
         if count == 0 || count != text.width() || end > self.cells.len() {
-            return;
+            return false;
         }
         let around = start.saturating_sub(1)..(end + 1).min(self.cells.len());
         if self.cells[around].iter().any(|c| *c != ' ') {
-            return;
+            return false;
         }
         for (cell, c) in self.cells[start..end].iter_mut().zip(text.chars()) {
             *cell = c;
         }
+        true
     }
 
     fn text(&self) -> String {

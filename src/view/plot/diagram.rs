@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 
 use super::Series;
-use super::chart::{Chart, Curve, Line};
+use super::chart::{Chart, Curve, Line, Values};
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::MemberForces;
+use crate::answer::rounding::{denoised, largest};
 use crate::model::scenario::Units;
 use crate::view::members::extremes;
-use crate::view::number::{denoised, largest};
 use crate::view::style::Style;
 use crate::view::{force_unit, length_unit, moment_unit};
 
@@ -90,13 +90,6 @@ pub fn name(force: Internal, units: &Units) -> (&'static str, Option<String>) {
 pub fn chart(members: &[MemberForces], bar: &str, force: Internal, units: &Units) -> Option<Chart> {
     let series = series(members, bar, force)?;
     let (name, unit) = name(force, units);
-    let mut title = format!("{name} along {bar}");
-    if let Some(unit) = &unit {
-        title.push_str(&format!(" [{unit}]"));
-    }
-    if force == Internal::Moment {
-        title.push_str(", on the tension side");
-    }
     let joints = series
         .points
         .first()
@@ -105,10 +98,12 @@ pub fn chart(members: &[MemberForces], bar: &str, force: Internal, units: &Units
     let nodes = Series { label: String::new(), points: node_points(members, bar, &series) };
     let curve = |series: Series, line: Line| Curve { series, number: 0, line };
     Some(Chart {
-        title,
+        title: format!("{name} along {bar}"),
+        ordinate: unit,
+        about: if force == Internal::Moment { ", on the tension side".to_owned() } else { String::new() },
         curves: vec![curve(series, Line::Plain), curve(nodes, Line::Points)],
         names: joints.unwrap_or_default(),
-        values: true,
+        values: Values::Lengths,
         abscissa: format!("along {bar}"),
         unit: length_unit(units),
         inverted: force == Internal::Moment,

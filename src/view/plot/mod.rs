@@ -4,9 +4,11 @@
 pub mod canvas;
 pub mod chart;
 pub mod diagram;
+pub mod loads;
 pub mod path;
 pub mod scene;
 pub mod structure;
+pub mod ticks;
 pub mod trace;
 pub mod zone;
 

@@ -1,13 +1,13 @@
 //! Slip or force of chosen pairs over the load or friction, breakpoints marked; hysteresis loops of a history.
 
 use super::Series;
-use super::chart::{Chart, Curve, Line};
+use super::chart::{Chart, Curve, Line, Values};
 use super::zone::Quantity;
 use crate::answer::record::PairState;
+use crate::answer::rounding::{denoised, largest};
 use crate::model::scenario::Units;
 use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
-use crate::view::number::{denoised, largest};
 use crate::view::{force_unit, length_unit};
 
 fn read(quantity: Quantity, pair: &PairState) -> f64 {
@@ -73,11 +73,11 @@ pub fn drawing(path: &PathRecord, quantity: Quantity, pairs: &[usize], over: Opt
         curves.push(Curve { series: curve, number, line: Line::Plain });
         curves.push(Curve { series: marked, number, line: Line::Points });
     }
-    let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
     Chart {
-        title: format!("{what} over {over}, breakpoints marked{unit}"),
+        title: format!("{what} over {over}, breakpoints marked"),
+        ordinate: unit,
         curves,
-        values: true,
+        values: Values::Typed,
         abscissa: over,
         ..Chart::default()
     }
@@ -99,11 +99,11 @@ pub fn drawing_along(path: &PathRecord, along: &[OnPath], over: Option<usize>, u
     let unit = along.first().and_then(|(quantity, _)| quantity.unit(units));
     let unit = unit.filter(|unit| along.iter().all(|(quantity, _)| quantity.unit(units).as_ref() == Some(unit)));
     let names: Vec<String> = along.iter().map(|(quantity, _)| quantity.to_string()).collect();
-    let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
     Chart {
-        title: format!("{} over {over}, breakpoints marked{unit}", names.join(", ")),
+        title: format!("{} over {over}, breakpoints marked", names.join(", ")),
+        ordinate: unit,
         curves,
-        values: true,
+        values: Values::Typed,
         abscissa: over,
         ..Chart::default()
     }

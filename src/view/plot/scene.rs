@@ -3,14 +3,16 @@
 
 use std::collections::HashMap;
 
-use super::chart::range;
+use super::loads::Loads;
+use super::ticks::range;
 use super::{Series, diagram};
 use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
+use crate::answer::rounding::largest;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
-use crate::model::structure::{Bar, Component, Element, ElementLoad, Load, Structure};
-use crate::view::number::{largest, short};
+use crate::model::structure::{Bar, Element, ElementKind, Structure};
+use crate::text::number::short;
 
 /// By how much displacements are enlarged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -246,47 +248,6 @@ fn bent(structure: &Structure, element: &Element, u: &[[f64; 3]], factor: f64) -
         .collect()
 }
 
-/// Where a load acts and in which direction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Arrow {
-    /// The node, or the ends of the element.
-    pub nodes: Vec<usize>,
-    /// Sum of all cases, each by its factor.
-    pub force: [f64; 2],
-}
-
-/// Forces on nodes and elements, all cases added up; those that cancel out are left out.
-pub fn arrows(structure: &Structure, parameters: &ParameterValues) -> Vec<Arrow> {
-    let mut arrows: Vec<Arrow> = Vec::new();
-    let mut places: HashMap<Vec<usize>, usize> = HashMap::new();
-    for case in &structure.load_cases {
-        let factor = case.factor.value(parameters);
-        for load in &case.loads {
-            let at = |element: usize| structure.elements.get(element).map(|element| element.nodes.clone());
-            let (nodes, force) = match load {
-                Load::Nodal { node, force, .. } => (Some(vec![*node]), *force),
-                Load::Element { element, load: ElementLoad::Line { value: [a, b], .. } } => {
-                    (at(*element), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])])
-                }
-                Load::Element { element, load: ElementLoad::Point { force, .. } } => (at(*element), *force),
-                // They act everywhere, or along no direction.
-                Load::Element { .. } | Load::Settlement { .. } => continue,
-            };
-            let Some(nodes) = nodes else { continue };
-            let place = *places.entry(nodes.clone()).or_insert_with(|| {
-                arrows.push(Arrow { nodes, force: [0.0; 2] });
-                arrows.len() - 1
-            });
-            arrows[place].force[0] += factor * force[0];
-            arrows[place].force[1] += factor * force[1];
-        }
-    }
-    let size = |arrow: &Arrow| arrow.force[0].hypot(arrow.force[1]);
-    let most = arrows.iter().map(size).fold(0.0, f64::max);
-    arrows.retain(|arrow| size(arrow) > 1e-9 * most);
-    arrows
-}
-
 /// What a picture shows, in the coordinates of the model: the same for characters and for SVG.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -304,8 +265,8 @@ pub struct Scene {
     pub supports: Vec<((f64, f64), usize)>,
     /// The contact pairs.
     pub pairs: Vec<PairMark>,
-    /// Loads: where they act and which force.
-    pub loads: Vec<((f64, f64), [f64; 2])>,
+    /// The loads, where they are shown.
+    pub loads: Loads,
     /// Forces along the bars, where they lie: closed lines from the bar to its ordinates and back.
     pub diagrams: Vec<Vec<(f64, f64)>>,
     /// Least and largest x and y of all of it; `None` where there is nothing to draw.
@@ -326,8 +287,8 @@ pub struct PairMark {
 }
 
 impl Scene {
-    /// The scene of a picture, with an arrow for each load.
-    pub fn new(picture: &Picture<'_>, arrows: &[Arrow]) -> Scene {
+    /// The scene of a picture, with the loads under these values of the parameters.
+    pub fn new(picture: &Picture<'_>, loads: Option<&ParameterValues>) -> Scene {
         let structure = picture.structure;
         let rest = vec![[0.0; 3]; structure.nodes.len()];
         let u = picture.displacements.map(|displacements| nodal(structure, displacements));
@@ -351,11 +312,6 @@ impl Scene {
             let u = moved.get(node).copied().unwrap_or_default();
             (position[0] + factor * u[0], position[1] + factor * u[1])
         };
-        let middle = |nodes: &[usize]| {
-            let sum = nodes.iter().map(|&node| at(node)).fold((0.0, 0.0), |sum, at| (sum.0 + at.0, sum.1 + at.1));
-            let count = nodes.len().max(1) as f64;
-            (sum.0 / count, sum.1 / count)
-        };
         let mark = |(index, pair): (usize, &Pair)| PairMark {
             place: at(pair.node),
             id: pair.id.clone(),
@@ -368,7 +324,7 @@ impl Scene {
             is_deformed: moved.iter().any(|u| *u != [0.0; 3]) && factor != 0.0,
             supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
             pairs: structure.pairs.iter().enumerate().map(mark).collect(),
-            loads: arrows.iter().map(|arrow| (middle(&arrow.nodes), arrow.force)).collect(),
+            loads: loads.map_or_else(Loads::default, |parameters| Loads::of(structure, parameters, &at)),
             diagrams: Vec::new(),
             before,
             now,
@@ -438,7 +394,7 @@ pub fn supported(structure: &Structure) -> Vec<(usize, usize)> {
 mod tests {
     use super::{Magnification, Picture, Scene, hull};
     use crate::answer::diagram::Internal;
-    use crate::view::sample::cantilever;
+    use crate::view::tests::sample::cantilever;
 
     /// Cantilever of 4 m along x under q = −10: M = −10 (4 − x)²/2, tension above, so its ordinates stand above the bar,
     /// the largest, 80 at the clamp, an eighth of the model high; Q = 10 (4 − x) > 0 on the +y side too.
@@ -457,7 +413,7 @@ mod tests {
             (Internal::Moment, (|x: f64| 0.5 * (4.0 - x) * (4.0 - x) / 16.0) as fn(f64) -> f64),
             (Internal::Shear, |x: f64| 0.5 * (4.0 - x) / 4.0),
         ] {
-            let scene = Scene::new(&picture, &[]).with_diagrams(&structure, &members, force);
+            let scene = Scene::new(&picture, None).with_diagrams(&structure, &members, force);
             let [line] = &scene.diagrams[..] else { panic!("{:?}", scene.diagrams) };
             assert_eq!((line[0], line[line.len() - 1]), ((0.0, 0.0), (4.0, 0.0)));
             for (x, y) in &line[1..line.len() - 1] {

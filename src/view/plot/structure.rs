@@ -5,14 +5,15 @@ use std::io::{self, Write};
 use super::canvas::{Canvas, Stroke};
 use super::chart::{dotted, write_legend};
 use super::diagram;
-use super::scene::{Picture, Scene, arrows};
+use super::loads::{Arrow, Drawn};
+use super::scene::{Picture, Scene};
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, State};
+use crate::answer::rounding::largest;
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::Units;
 use crate::model::structure::Structure;
 use crate::view::members::extremes;
-use crate::view::number::largest;
 use crate::view::style::{Role, Style};
 
 /// Bars whose extremes are told below a picture.
@@ -62,9 +63,15 @@ pub fn support_sign(held: usize, ascii: bool) -> char {
     }
 }
 
-/// Draws the picture with a legend of the signs it uses.
-pub fn write(out: &mut dyn Write, picture: &Picture<'_>, style: &Style) -> io::Result<()> {
-    draw(out, picture, &Scene::new(picture, &[]), style)
+/// Draws the picture with a legend of the signs it uses; with parameters and units the loads too.
+pub fn write(
+    out: &mut dyn Write,
+    picture: &Picture<'_>,
+    loads: Option<(&ParameterValues, &Units)>,
+    style: &Style,
+) -> io::Result<()> {
+    let scene = Scene::new(picture, loads.map(|(parameters, _)| parameters));
+    draw(out, picture, &scene, loads.map(|(_, units)| units), style)
 }
 
 /// The same undeformed, with a force along every bar where it lies, and the extremes of each bar in words.
@@ -81,8 +88,8 @@ pub fn write_with_diagrams(
     let head = if picture.title.is_empty() { String::new() } else { format!("{} · ", picture.title) };
     let title = format!("{head}{name}{unit}{side}");
     let picture = Picture { title: &title, displacements: None, ..*picture };
-    let scene = Scene::new(&picture, &[]).with_diagrams(picture.structure, members, force);
-    draw(out, &picture, &scene, style)?;
+    let scene = Scene::new(&picture, None).with_diagrams(picture.structure, members, force);
+    draw(out, &picture, &scene, None, style)?;
     let diagrams = picture.structure.bars.iter().filter_map(|bar| Some((&bar.id, Diagram::of(members, &bar.id)?)));
     let size = |diagram: &Diagram| largest(diagram.extremes(force).map(|place| place.value));
     let mut diagrams: Vec<_> = diagrams.collect();
@@ -100,93 +107,118 @@ pub fn write_with_diagrams(
     Ok(())
 }
 
-/// The same with an arrow beside every node and bar that carries load under these parameter values.
-pub fn write_with_loads(
+/// Dots between arrows of loads.
+const APART: f64 = 8.0;
+/// Most dots that arrows take at a side.
+const MARGIN: f64 = 24.0;
+
+/// The structure on a canvas: a point of the model is at (x − corner)·pitch + origin, in dots.
+struct Fit {
+    canvas: Canvas,
+    pitch: f64,
+    corner: (f64, f64),
+    origin: (f64, f64),
+}
+
+impl Fit {
+    /// As large as it finds room; `margins` (left, right, below, above, in dots) stay free besides a character at every
+    /// side. One scale for both directions: a dot is about as high as it is wide.
+    fn new([[left, right], [bottom, top]]: [[f64; 2]; 2], columns: usize, most: usize, margins: [f64; 4]) -> Fit {
+        let (wide, high) = (right - left, top - bottom);
+        let [before, after, below, above] = margins;
+        let room_x = ((2 * columns - 5) as f64 - before - after).max(4.0);
+        let room_y = ((4 * most) as f64 - 9.0 - below - above).max(1.0);
+        let pitch = f64::min(room_x / wide, room_y / high);
+        let pitch = if pitch.is_finite() && pitch > 0.0 { pitch } else { 1.0 };
+        let rows = (((high * pitch + below + above) / 4.0).ceil().min(most as f64) as usize + 2).clamp(3, most);
+        let canvas = Canvas::new(columns, rows);
+        let origin = (
+            before + 0.5 * (canvas.dots_x() - before - after - wide * pitch),
+            below + 0.5 * (canvas.dots_y() - below - above - high * pitch),
+        );
+        Fit { canvas, pitch, corner: (left, bottom), origin }
+    }
+
+    fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        ((x - self.corner.0) * self.pitch + self.origin.0, (y - self.corner.1) * self.pitch + self.origin.1)
+    }
+
+    fn placed(&self, lines: &[Vec<(f64, f64)>]) -> Vec<Vec<(f64, f64)>> {
+        let ends = (self.canvas.dots_x(), self.canvas.dots_y());
+        let place = |line: &Vec<(f64, f64)>| {
+            let finite = line.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+            finite.map(|&at| self.place(at)).map(|(x, y)| (x.clamp(0.0, ends.0), y.clamp(0.0, ends.1))).collect()
+        };
+        lines.iter().map(place).collect()
+    }
+
+    /// The arrows of loads as they stand here.
+    fn arrows(&self, arrows: &[Arrow], [[left, right], [bottom, top]]: [[f64; 2]; 2]) -> Vec<Drawn> {
+        let middle = self.place((0.5 * (left + right), 0.5 * (bottom + top)));
+        let extent = (right - left).max(top - bottom) * self.pitch;
+        arrows.iter().map(|arrow| Drawn::new(arrow, self.place(arrow.at), middle, extent)).collect()
+    }
+
+    /// How far arrows stand out of the structure at each side.
+    fn overhang(&self, drawn: &[Drawn], [[left, right], [bottom, top]]: [[f64; 2]; 2]) -> [f64; 4] {
+        let ((left, bottom), (right, top)) = (self.place((left, bottom)), self.place((right, top)));
+        let mut margins = [0.0_f64; 4];
+        for (x, y) in drawn.iter().flat_map(Drawn::ends) {
+            for (margin, out) in margins.iter_mut().zip([left - x, x - right, bottom - y, y - top]) {
+                // displacements of any size may be drawn
+                *margin = if out.is_finite() { margin.max(out.min(MARGIN)) } else { *margin };
+            }
+        }
+        margins
+    }
+}
+
+fn draw(
     out: &mut dyn Write,
     picture: &Picture<'_>,
-    parameters: &ParameterValues,
+    scene: &Scene,
+    units: Option<&Units>,
     style: &Style,
 ) -> io::Result<()> {
-    draw(out, picture, &Scene::new(picture, &arrows(picture.structure, parameters)), style)
-}
-
-/// A component below this share of a load gets no arrow of its own.
-const COMPONENT: f64 = 0.05;
-
-/// Signs of the components of a load and the steps from its node to their places, in dots: a force down or up stands
-/// before its node, one sideways behind it.
-pub fn load_signs(force: [f64; 2], ascii: bool) -> Vec<(char, f64, f64)> {
-    let signs = if ascii { ['V', 'U', '{', '}'] } else { ['↓', '↑', '←', '→'] };
-    let least = COMPONENT * force[0].hypot(force[1]);
-    let mut shown = Vec::new();
-    if force[1].abs() > least {
-        let up = force[1] > 0.0;
-        shown.push((signs[usize::from(up)], 0.0, if up { -4.0 } else { 4.0 }));
-    }
-    if force[0].abs() > least {
-        let right = force[0] > 0.0;
-        let step = if right { 2.0 } else { -2.0 };
-        shown.push((signs[2 + usize::from(right)], step, 0.0));
-    }
-    shown
-}
-
-fn draw(out: &mut dyn Write, picture: &Picture<'_>, scene: &Scene, style: &Style) -> io::Result<()> {
     let title = style.fit(&style.text(&scene.title), style.width);
     writeln!(out, "{}", style.paint(Role::Title, &title))?;
-    let Some([[left, right], [bottom, top]]) = scene.bounds.filter(|_| style.width >= 8) else {
+    let Some(bounds) = scene.bounds.filter(|_| style.width >= 8) else {
         return writeln!(out, "{}", style.fit("nothing to draw", style.width));
     };
-    let (wide, high) = (right - left, top - bottom);
     let most = picture.height.clamp(3, 200);
-    let columns = style.width;
-    // One scale for both directions: a dot is about as high as it is wide. A character stays free at every side.
-    let room_x = (2 * columns - 5) as f64;
-    let room_y = (4 * most - 9).max(1) as f64;
-    let mut pitch = f64::min(room_x / wide, room_y / high);
-    if !(pitch.is_finite() && pitch > 0.0) {
-        pitch = 1.0;
+    let mut fit = Fit::new(bounds, style.width, most, [0.0; 4]);
+    let mut arrows = scene.loads.arrows(APART / fit.pitch);
+    if !arrows.arrows.is_empty() {
+        let margins = fit.overhang(&fit.arrows(&arrows.arrows, bounds), bounds);
+        fit = Fit::new(bounds, style.width, most, margins);
+        arrows = scene.loads.arrows(APART / fit.pitch);
     }
-    let rows = (((high * pitch) / 4.0).ceil() as usize + 2).clamp(3, most);
-    let mut canvas = Canvas::new(columns, rows);
-    let (shift_x, shift_y) = ((canvas.dots_x() - wide * pitch) / 2.0, (canvas.dots_y() - high * pitch) / 2.0);
-    let place = |(x, y): (f64, f64)| ((x - left) * pitch + shift_x, (y - bottom) * pitch + shift_y);
-    let ends = (canvas.dots_x(), canvas.dots_y());
-    let placed = |lines: &[Vec<(f64, f64)>]| -> Vec<Vec<(f64, f64)>> {
-        lines
-            .iter()
-            .map(|line| {
-                let finite = line.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-                finite.map(|&point| place(point)).map(|(x, y)| (x.clamp(0.0, ends.0), y.clamp(0.0, ends.1))).collect()
-            })
-            .collect()
-    };
     if scene.is_deformed {
-        let strokes = placed(&scene.before.outline).iter().map(|line| Stroke::Dots(dotted(line, 4.0))).collect();
-        canvas.draw_under(Role::Muted, strokes);
+        let strokes = fit.placed(&scene.before.outline).iter().map(|line| Stroke::Dots(dotted(line, 4.0))).collect();
+        fit.canvas.draw_under(Role::Muted, strokes);
     }
-    if grid_pitch(picture.structure, pitch) >= GRID_PITCH {
-        let strokes = placed(&scene.now.grid).iter().map(|line| Stroke::Dots(dotted(line, 2.0))).collect();
-        canvas.draw_under(Role::Muted, strokes);
+    if grid_pitch(picture.structure, fit.pitch) >= GRID_PITCH {
+        let strokes = fit.placed(&scene.now.grid).iter().map(|line| Stroke::Dots(dotted(line, 2.0))).collect();
+        fit.canvas.draw_under(Role::Muted, strokes);
     }
-    let strokes = placed(&scene.now.outline).into_iter().map(Stroke::Line).collect();
-    canvas.draw(Role::Plain, strokes);
-    let strokes = placed(&scene.diagrams).into_iter().map(Stroke::Line).collect();
-    canvas.draw(Role::Accent, strokes);
-    let legend = draw_marks(scene, &mut canvas, &place, style);
-    for line in canvas.lines(style) {
+    let strokes = fit.placed(&scene.now.outline).into_iter().map(Stroke::Line).collect();
+    fit.canvas.draw(Role::Plain, strokes);
+    let strokes = fit.placed(&scene.diagrams).into_iter().map(Stroke::Line).collect();
+    fit.canvas.draw(Role::Accent, strokes);
+    let drawn = fit.arrows(&arrows.arrows, bounds);
+    drawn.iter().for_each(|arrow| arrow.draw(&mut fit.canvas, style.ascii));
+    let mut legend = draw_marks(scene, &mut fit, style);
+    let sign = |kind| arrows.arrows.iter().position(|arrow| arrow.kind == kind).map(|k| drawn[k].sign(style.ascii));
+    let words = units.map_or_else(Vec::new, |units| scene.loads.legend(&arrows, units));
+    legend.extend(words.into_iter().filter_map(|(kind, text)| Some((sign(kind)?, Role::Accent, style.text(&text)))));
+    for line in fit.canvas.lines(style) {
         writeln!(out, "{line}")?;
     }
     write_legend(out, &legend, 0, style)
 }
 
-/// Supports, pairs and loads as signs; the legend of those that occur.
-fn draw_marks(
-    scene: &Scene,
-    canvas: &mut Canvas,
-    place: &dyn Fn((f64, f64)) -> (f64, f64),
-    style: &Style,
-) -> Vec<(char, Role, String)> {
+/// Supports and pairs as signs; the legend of those that occur.
+fn draw_marks(scene: &Scene, fit: &mut Fit, style: &Style) -> Vec<(char, Role, String)> {
     let mut legend: Vec<(char, Role, String)> = Vec::new();
     let mut note = |sign: char, role: Role, word: &str| {
         let entry = (sign, role, word.to_owned());
@@ -196,8 +228,8 @@ fn draw_marks(
     };
     for &(at, held) in &scene.supports {
         let (sign, word) = (support_sign(held, style.ascii), support_word(held));
-        let (x, y) = place(at);
-        canvas.put(x, y, sign, Role::Muted);
+        let (x, y) = fit.place(at);
+        fit.canvas.put(x, y, sign, Role::Muted);
         note(sign, Role::Muted, word);
     }
     for pair in &scene.pairs {
@@ -205,17 +237,10 @@ fn draw_marks(
             Some(state) => (pair_sign(state, pair.tangent, style.ascii), Role::State(state), state.word()),
             None => (if style.ascii { 'o' } else { '◦' }, Role::Accent, "contact pair"),
         };
-        let (x, y) = place(pair.place);
-        canvas.put(x, y, sign, role);
-        canvas.label(x, y, &style.text(&pair.id), Role::Muted);
+        let (x, y) = fit.place(pair.place);
+        fit.canvas.put(x, y, sign, role);
+        fit.canvas.label(x, y, &style.text(&pair.id), Role::Muted);
         note(sign, role, word);
-    }
-    for &(at, force) in &scene.loads {
-        let (x, y) = place(at);
-        for (sign, step_x, step_y) in load_signs(force, style.ascii) {
-            canvas.put(x + step_x, y + step_y, sign, Role::Accent);
-            note(sign, Role::Accent, "load");
-        }
     }
     legend
 }

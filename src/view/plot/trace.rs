@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use super::Series;
 use super::chart::{Chart, Curve, Line};
 use crate::answer::record::PivotRecord;
+use crate::answer::rounding::{denoised, largest};
 use crate::model::scenario::Units;
 use crate::view::force_unit;
-use crate::view::number::{denoised, largest};
 use crate::view::pivots::of_contact;
 use crate::view::style::Style;
 
@@ -34,7 +34,6 @@ pub fn write(
 
 /// The chart of p over the pivots.
 pub fn drawing(pivots: &[PivotRecord], current: Option<usize>, units: &Units) -> Chart {
-    let unit = force_unit(units).filter(|_| of_contact(pivots));
     let series = p_series("", pivots);
     let mut curves = vec![Curve { series: series.clone(), number: 0, line: Line::Marked }];
     if let Some(current) = current
@@ -47,10 +46,8 @@ pub fn drawing(pivots: &[PivotRecord], current: Option<usize>, units: &Units) ->
         });
     }
     Chart {
-        title: match unit {
-            Some(unit) => format!("p over the pivots [{unit}]"),
-            None => "p over the pivots".into(),
-        },
+        title: "p over the pivots".into(),
+        ordinate: force_unit(units).filter(|_| of_contact(pivots)),
         curves,
         names: pivots.iter().map(|pivot| (pivot.step as f64, pivot.step.to_string())).collect(),
         abscissa: "pivot".into(),

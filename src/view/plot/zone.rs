@@ -1,12 +1,12 @@
-//! Slip, friction force, opening and pressure along the contact zone.
+//! Slip, friction force, opening and pressure along the contact zone: joint by joint where there are several.
 
 use std::io::{self, Write};
 
 use super::Series;
-use super::chart::{Chart, Curve, Line};
+use super::chart::{Chart, Curve, Line, Values};
 use crate::answer::record::{PairState, Ray};
+use crate::answer::rounding::{denoised, largest};
 use crate::model::scenario::Units;
-use crate::view::number::{denoised, largest};
 use crate::view::style::Style;
 use crate::view::{force_unit, length_unit};
 
@@ -23,63 +23,105 @@ pub enum Quantity {
     Pressure,
 }
 
+/// Most of the width that stands between the joints.
+const BETWEEN: f64 = 0.4;
+/// Of the length of all joints, what stands between two of them where they are few.
+const GAP: f64 = 0.1;
+
 /// Abscissas of the pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Zone {
-    /// One per pair: the length along the pairs' positions, or the number of the pair.
+    /// One per pair: the length along the pairs' positions from joint to joint, or the number of the pair.
     pub abscissas: Vec<f64>,
     /// Whether the abscissas are lengths.
     pub is_length: bool,
+    /// The pairs of each joint.
+    pub joints: Vec<Vec<usize>>,
+    /// Abscissas in the middle between two joints.
+    pub breaks: Vec<f64>,
 }
 
-/// Abscissas along the contact zone: the length of the way from pair to pair, in their order. Where a pair has no
-/// position, or all have the same, the numbers 1, 2 … serve.
+/// Abscissas along the contact zone: in each joint the length of the way from pair to pair, in their order; the joints
+/// stand one behind the other, apart. Where a pair has no position, or all have the same, the numbers 1, 2 … serve.
 pub fn zone(pairs: &[PairState]) -> Zone {
-    let mut at = 0.0;
-    let mut abscissas = Vec::with_capacity(pairs.len());
-    let mut before: Option<[f64; 2]> = None;
-    for pair in pairs {
-        let Some(position) = pair.position else {
-            break;
-        };
-        if let Some(before) = before {
-            at += (position[0] - before[0]).hypot(position[1] - before[1]);
+    let joints = joints(pairs);
+    let place = |pair: usize| pairs[pair].position.unwrap_or_default();
+    let lengths = |joint: &[usize]| {
+        let mut at = 0.0;
+        let steps = joint.windows(2).map(|ends| {
+            let [a, b] = [place(ends[0]), place(ends[1])];
+            at += (b[0] - a[0]).hypot(b[1] - a[1]);
+            at
+        });
+        [0.0].into_iter().chain(steps.collect::<Vec<_>>()).collect::<Vec<f64>>()
+    };
+    let along: Vec<Vec<f64>> = joints.iter().map(|joint| lengths(joint)).collect();
+    let total: f64 = along.iter().filter_map(|lengths| lengths.last()).sum();
+    let is_length = pairs.iter().all(|pair| pair.position.is_some())
+        && total.is_finite()
+        && (total > 0.0 || pairs.len() == 1 || joints.len() > 1);
+    if !is_length {
+        let abscissas = (1..=pairs.len()).map(|number| number as f64).collect();
+        return Zone { abscissas, is_length, joints: vec![(0..pairs.len()).collect()], breaks: Vec::new() };
+    }
+    let size = if total > 0.0 { total } else { 1.0 };
+    let between = joints.len().saturating_sub(1).max(1) as f64;
+    let gap = size * f64::min(GAP, BETWEEN / (1.0 - BETWEEN) / between);
+    let (mut abscissas, mut breaks) = (vec![0.0; pairs.len()], Vec::new());
+    let mut from = 0.0;
+    for (number, (joint, lengths)) in joints.iter().zip(&along).enumerate() {
+        if number > 0 {
+            breaks.push(from + 0.5 * gap);
+            from += gap;
         }
-        abscissas.push(at);
-        before = Some(position);
+        for (&pair, length) in joint.iter().zip(lengths) {
+            abscissas[pair] = from + length;
+        }
+        from += lengths.last().copied().unwrap_or_default();
     }
-    let usable = abscissas.len() == pairs.len() && at.is_finite() && (at > 0.0 || pairs.len() == 1);
-    if usable {
-        Zone { abscissas, is_length: true }
-    } else {
-        Zone { abscissas: (1..=pairs.len()).map(|number| number as f64).collect(), is_length: false }
-    }
+    Zone { abscissas, is_length, joints, breaks }
 }
 
-fn over_zone(label: &str, pairs: &[PairState], value: impl Fn(&PairState) -> f64) -> Series {
-    Series { label: label.to_owned(), points: zone(pairs).abscissas.into_iter().zip(pairs.iter().map(value)).collect() }
+/// The pairs of each joint, in the order of their first ones.
+fn joints(pairs: &[PairState]) -> Vec<Vec<usize>> {
+    let mut joints: Vec<(usize, Vec<usize>)> = Vec::new();
+    for (index, pair) in pairs.iter().enumerate() {
+        match joints.iter_mut().find(|(joint, _)| *joint == pair.joint) {
+            Some((_, pairs)) => pairs.push(index),
+            None => joints.push((pair.joint, vec![index])),
+        }
+    }
+    joints.into_iter().map(|(_, pairs)| pairs).collect()
+}
+
+/// A series for each joint, the first one named.
+fn over_zone(label: &str, pairs: &[PairState], value: impl Fn(&PairState) -> f64) -> Vec<Series> {
+    let zone = zone(pairs);
+    let points = |joint: &Vec<usize>| joint.iter().map(|&pair| (zone.abscissas[pair], value(&pairs[pair]))).collect();
+    let name = |number: usize| if number == 0 { label.to_owned() } else { String::new() };
+    zone.joints.iter().enumerate().map(|(k, joint)| Series { label: name(k), points: points(joint) }).collect()
 }
 
 /// Slip z_τ over the zone.
-pub fn slip_series(label: &str, pairs: &[PairState]) -> Series {
+pub fn slip_series(label: &str, pairs: &[PairState]) -> Vec<Series> {
     let scale = largest(pairs.iter().flat_map(|pair| [pair.z_t, pair.z_n]));
     over_zone(label, pairs, |pair| denoised(pair.z_t, scale))
 }
 
 /// Opening z_n over the zone.
-pub fn gap_series(label: &str, pairs: &[PairState]) -> Series {
+pub fn gap_series(label: &str, pairs: &[PairState]) -> Vec<Series> {
     let scale = largest(pairs.iter().flat_map(|pair| [pair.z_t, pair.z_n]));
     over_zone(label, pairs, |pair| denoised(pair.z_n, scale))
 }
 
 /// Pressing force x_n over the zone.
-pub fn pressure_series(label: &str, pairs: &[PairState]) -> Series {
+pub fn pressure_series(label: &str, pairs: &[PairState]) -> Vec<Series> {
     let scale = largest(pairs.iter().flat_map(|pair| [pair.x_t, pair.x_n]));
     over_zone(label, pairs, |pair| denoised(pair.x_n, scale))
 }
 
 /// Friction force x_τ, upper bound + r_f and lower bound − r_f over the zone.
-pub fn force_series(label: &str, pairs: &[PairState]) -> [Series; 3] {
+pub fn force_series(label: &str, pairs: &[PairState]) -> [Vec<Series>; 3] {
     let scale = largest(pairs.iter().flat_map(|pair| [pair.x_t, pair.x_n]));
     [
         over_zone(label, pairs, |pair| denoised(pair.x_t, scale)),
@@ -111,8 +153,8 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
     let mut curves = Vec::new();
     let several = states.len() > 1;
     for (number, (label, pairs)) in states.iter().enumerate() {
-        let mut push = |series: Series, line: Line| {
-            curves.push(Curve { series, number, line });
+        let mut push = |series: Vec<Series>, line: Line| {
+            curves.extend(series.into_iter().map(|series| Curve { series, number, line }));
         };
         let named = |single: &str| {
             if several { (*label).to_owned() } else { single.to_owned() }
@@ -123,7 +165,9 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
             Quantity::Pressure => push(pressure_series(&named(""), pairs), Line::Marked),
             Quantity::Force => {
                 let [force, mut plus, minus] = force_series(&named("x_τ"), pairs);
-                plus.label = if several { format!("{label}: bound") } else { "±(f x_n + c)".into() };
+                if let Some(first) = plus.first_mut() {
+                    first.label = if several { format!("{label}: bound") } else { "±(f x_n + c)".into() };
+                }
                 push(plus, Line::Dotted);
                 push(minus, Line::Dotted);
                 push(force, Line::Marked);
@@ -131,12 +175,12 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
         }
     }
     let pairs = states.first().map_or(&[][..], |(_, pairs)| pairs);
-    let mut chart = chart(name, unit, curves, pairs, units);
+    let mut chart = Chart { ordinate: unit, ..chart(name, curves, pairs, units) };
     // A single state is named in the title, several in the legend.
     if let [(label, _)] = states
         && !label.is_empty()
     {
-        chart.title.push_str(&format!(" · {label}"));
+        chart.about = format!(" · {label}");
     }
     chart
 }
@@ -159,25 +203,38 @@ pub fn mode(
     let curves = [along("z̄_n", |d| d.z_n), along("z̄_τ", |d| d.z_t)]
         .into_iter()
         .enumerate()
+        .flat_map(|(number, series)| series.into_iter().map(move |series| (number, series)))
         .map(|(number, series)| Curve { series, number, line: Line::Marked })
         .collect();
     let title = format!("Direction of the ray: {}", ray.mode);
-    Chart { height, ..chart(&title, None, curves, pairs, units) }.write(out, style)
+    Chart { height, ..chart(&title, curves, pairs, units) }.write(out, style)
 }
 
-fn chart(name: &str, unit: Option<String>, curves: Vec<Curve>, pairs: &[PairState], units: &Units) -> Chart {
-    let title = match unit {
-        Some(unit) => format!("{name} [{unit}]"),
-        None => name.to_owned(),
-    };
+fn chart(name: &str, curves: Vec<Curve>, pairs: &[PairState], units: &Units) -> Chart {
     let zone = zone(pairs);
-    let ids = pairs.iter().map(|pair| pair.id.clone());
+    let mut names: Vec<(f64, String)> =
+        zone.abscissas.iter().copied().zip(pairs.iter().map(|pair| pair.id.clone())).collect();
+    names.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let several = zone.joints.len() > 1;
+    let ends = zone.joints.iter().filter(|joint| joint.len() > 1).flat_map(|joint| {
+        let [from, to] = [joint[0], joint[joint.len() - 1]].map(|pair| zone.abscissas[pair]);
+        [(from, 0.0), (to, to - from)]
+    });
     Chart {
-        title,
+        title: name.to_owned(),
         curves,
-        names: zone.abscissas.iter().copied().zip(ids).collect(),
-        values: zone.is_length,
-        abscissa: "along the contact zone".into(),
+        names,
+        values: match (zone.is_length, several) {
+            (false, _) => Values::None,
+            (true, false) => Values::Lengths,
+            (true, true) => Values::Pieces(ends.collect()),
+        },
+        breaks: zone.breaks,
+        abscissa: if several {
+            format!("along each of {} joints", zone.joints.len())
+        } else {
+            "along the contact zone".into()
+        },
         unit: length_unit(units),
         ..Chart::default()
     }

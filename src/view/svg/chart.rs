@@ -1,13 +1,13 @@
 //! Curves over an axis.
 
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FAINT, GREY, MARGIN, SMALL, Sign, WIDTH, width_of};
-use crate::view::number::{short, with_unit};
-use crate::view::plot::chart::{Chart, Curve, Line, Ticks, range, round_places};
+use crate::text::number::with_unit;
+use crate::view::plot::chart::{Chart, Curve, Line, Values};
+use crate::view::plot::ticks::{HUGE, round_places};
+use crate::view::scale::Scale;
 
 /// Height of the area of the curves.
 const HEIGHT: f64 = 260.0;
-/// Values beyond this are cut.
-const HUGE: f64 = 1e300;
 
 /// The marker of a curve: shapes differ, not only colours.
 fn marker(drawing: &mut Drawing, (x, y): (f64, f64), number: usize) {
@@ -37,21 +37,20 @@ pub(super) fn sample(drawing: &mut Drawing, (x, y): (f64, f64), number: usize, l
 
 const DOTTED: &str = "stroke-dasharray=\"2 4\"";
 
-/// The figure; `note` stands under it.
-pub fn figure(chart: &Chart, caption: &Caption, note: &str) -> String {
-    let mut drawing = Drawing::new(caption);
-    let points =
-        || chart.curves.iter().flat_map(|curve| &curve.series.points).filter(|(x, y)| x.is_finite() && y.is_finite());
-    if points().next().is_none() {
+/// The figure, its title that of the chart; `note` stands under it.
+pub fn figure(chart: &Chart, about: &str, note: &str) -> String {
+    let axes = chart.axes(|_| 6);
+    let title = chart.heading(axes.as_ref().map(|axes| &axes.scale), false);
+    let mut drawing = Drawing::new(&Caption { title, about: about.to_owned() });
+    let Some(axes) = axes else {
         drawing.paragraph("nothing to draw", SMALL, "", BLACK);
         return drawing.finish();
-    }
-    let ticks = Ticks::new(points().map(|&(_, y)| y), 6);
-    let labels = labels(&ticks.values);
+    };
+    let (ticks, labels) = (&axes.ticks, axes.labels());
     let gutter = labels.iter().map(|label| width_of(label, SMALL)).fold(0.0, f64::max);
     let (left, right) = (MARGIN + gutter + 12.0, WIDTH - MARGIN - 12.0);
     let (top, bottom) = (drawing.y + 8.0, drawing.y + 8.0 + HEIGHT);
-    let (first, last) = range(points().map(|&(x, _)| x));
+    let (first, last) = axes.range;
     let to_x = |x: f64| {
         if last > first { left + (x - first) / (last - first) * (right - left) } else { 0.5 * (left + right) }
     };
@@ -67,6 +66,10 @@ pub fn figure(chart: &Chart, caption: &Caption, note: &str) -> String {
     drawing.line((left, to_y(0.0)), (right, to_y(0.0)), GREY, 1.2, "");
     drawing.line((left, top), (left, bottom), BLACK, 1.2, "");
     drawing.line((left, bottom), (right, bottom), BLACK, 1.2, "");
+    // closer ones would hide what they part
+    for x in chart.breaks.iter().filter(|_| chart.breaks.len() < 12) {
+        drawing.line((to_x(*x), top), (to_x(*x), bottom), GREY, 1.0, DOTTED);
+    }
     for curve in &chart.curves {
         draw_curve(&mut drawing, curve, &|(x, y)| (to_x(x), to_y(y)));
     }
@@ -88,18 +91,6 @@ pub fn figure(chart: &Chart, caption: &Caption, note: &str) -> String {
         drawing.paragraph(note, SMALL, "", BLACK);
     }
     drawing.finish()
-}
-
-/// Values of a scale, all with the same power of ten.
-fn labels(values: &[f64]) -> Vec<String> {
-    let plain: Vec<String> = values.iter().map(|&value| short(value + 0.0)).collect();
-    let powers = plain.iter().filter_map(|label| label.split_once('e')?.1.parse::<i32>().ok());
-    let Some(power) = powers.max() else { return plain };
-    let scaled = |value: &f64| match short(value / 10f64.powi(power)) {
-        zero if zero == "0" => zero,
-        number => format!("{number}e{power}"),
-    };
-    values.iter().map(scaled).collect()
 }
 
 fn draw_curve(drawing: &mut Drawing, curve: &Curve, place: &dyn Fn((f64, f64)) -> (f64, f64)) {
@@ -138,22 +129,31 @@ fn name_abscissas(drawing: &mut Drawing, chart: &Chart, (first, last): (f64, f64
             drawing.text_if_free((to_x(*x), y), name, Anchor::Middle, BLACK);
         }
     }
-    if chart.values && last > first {
+    let has_values = chart.values != Values::None && last > first;
+    let scale = chart.abscissa_scale((first, last));
+    if has_values {
         drawing.y += if chart.names.is_empty() { 20.0 } else { 17.0 };
         let y = drawing.y;
-        let places = round_places(first, last, 8);
-        for (value, label) in places.iter().copied().zip(labels(&places)) {
+        for (x, label) in labelled(chart, &scale, (first, last)) {
             if chart.names.is_empty() {
-                drawing.line((to_x(value), bottom), (to_x(value), bottom + 4.0), BLACK, 1.0, "");
+                drawing.line((to_x(x), bottom), (to_x(x), bottom + 4.0), BLACK, 1.0, "");
             }
-            drawing.text_if_free((to_x(value), y), &label, Anchor::Middle, GREY);
+            drawing.text_if_free((to_x(x), y), &label, Anchor::Middle, GREY);
         }
     }
     if !chart.abscissa.is_empty() {
-        let unit = chart.unit.as_deref().filter(|_| chart.values).map(|unit| format!("[{unit}]"));
+        let unit = scale.unit(chart.unit.as_deref(), false).filter(|_| has_values).map(|unit| format!("[{unit}]"));
         let text = with_unit(&chart.abscissa, unit.as_deref());
         drawing.y += 19.0;
         let y = drawing.y;
         drawing.text((0.5 * WIDTH, y), &text, SMALL, Anchor::Middle, BLACK, "");
+    }
+}
+
+/// Where values are written at the abscissa.
+fn labelled(chart: &Chart, scale: &Scale, (first, last): (f64, f64)) -> Vec<(f64, String)> {
+    match &chart.values {
+        Values::Pieces(places) => places.iter().map(|(x, value)| (*x, scale.number(*value))).collect(),
+        _ => round_places(first, last, 8).into_iter().map(|value| (value, scale.number(value + 0.0))).collect(),
     }
 }

@@ -4,8 +4,9 @@ use super::structure::{AROUND, Place, draw_lines};
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, SMALL};
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::MemberForces;
+use crate::answer::rounding::{denoised, largest};
 use crate::model::structure::{Bar, Structure};
-use crate::view::number::{denoised, largest, short};
+use crate::text::number::short;
 use crate::view::plot::diagram::series;
 use crate::view::plot::scene::Scene;
 

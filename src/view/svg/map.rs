@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, GREY, MARGIN, SMALL, WIDTH, points, width_of};
 use crate::path::map::Map;
+use crate::text::number::short;
 use crate::view::map::{Labels, meaning};
-use crate::view::number::short;
 use crate::view::path::exact;
 
 /// Height of the plane, in px.

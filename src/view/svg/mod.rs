@@ -277,7 +277,7 @@ fn overlap(a: &[f64; 4], b: &[f64; 4]) -> bool {
 enum Sign {
     Pair(Option<crate::answer::record::State>),
     Support(usize),
-    Load,
+    Load(super::plot::loads::LoadKind),
     Undeformed,
     Curve(usize, super::plot::chart::Line),
 }
@@ -287,7 +287,7 @@ impl Sign {
         match self {
             Sign::Pair(state) => structure::pair(drawing, at, *state, (1.0, 0.0), 5.5),
             Sign::Support(held) => structure::support(drawing, at, *held, 6.0),
-            Sign::Load => drawing.arrow((at.0 - 9.0, at.1), (at.0 + 9.0, at.1), BLACK),
+            Sign::Load(kind) => drawing.arrow((at.0 - 9.0, at.1), (at.0 + 9.0, at.1), structure::colour(*kind)),
             Sign::Undeformed => {
                 drawing.line((at.0 - 9.0, at.1), (at.0 + 9.0, at.1), GREY, 1.0, "stroke-dasharray=\"4 3\"")
             }

@@ -2,10 +2,17 @@
 
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FACE, FAINT, GREY, MARGIN, SMALL, Sign, WIDTH, points};
 use crate::answer::record::State;
-use crate::view::number::{short, with_unit};
+use crate::model::scenario::Units;
+use crate::text::number::{short, with_unit};
+use crate::view::plot::loads::{Arrow, LoadKind};
 use crate::view::plot::scene::Scene;
 use crate::view::plot::structure::support_word;
 
+/// px between arrows of loads.
+const APART: f64 = 24.0;
+/// Lengths of arrows in px, of the largest of a kind and of a tiny one.
+const LONGEST: f64 = 34.0;
+const SHORTEST: f64 = 9.0;
 /// Most height of the structure itself.
 const HEIGHT: f64 = 420.0;
 /// Room around the structure for arrows, signs and names.
@@ -110,8 +117,8 @@ pub(super) fn support(drawing: &mut Drawing, (x, y): (f64, f64), held: usize, r:
     }
 }
 
-/// The figure; `unit` is that of lengths.
-pub fn figure(scene: &Scene, unit: Option<&str>, caption: &Caption) -> String {
+/// The figure.
+pub fn figure(scene: &Scene, units: &Units, caption: &Caption) -> String {
     let mut drawing = Drawing::new(caption);
     let Some(bounds) = scene.bounds else {
         drawing.paragraph("nothing to draw", SMALL, "", BLACK);
@@ -132,7 +139,8 @@ pub fn figure(scene: &Scene, unit: Option<&str>, caption: &Caption) -> String {
         drawing.take(place.at(at), 1.5 * radius);
         note(&mut legend, Sign::Support(held), support_word(held));
     }
-    draw_loads(&mut drawing, scene, &place, bounds);
+    let arrows = scene.loads.arrows(APART / place.scale);
+    draw_loads(&mut drawing, &arrows.arrows, &place, bounds);
     for mark in &scene.pairs {
         let at = place.at(mark.place);
         pair(&mut drawing, at, mark.state, (mark.tangent[0], -mark.tangent[1]), radius);
@@ -140,14 +148,14 @@ pub fn figure(scene: &Scene, unit: Option<&str>, caption: &Caption) -> String {
         note(&mut legend, Sign::Pair(mark.state), mark.state.map_or("contact pair", State::word));
     }
     name_pairs(&mut drawing, scene, &place);
-    if !scene.loads.is_empty() {
-        note(&mut legend, Sign::Load, "load");
-    }
+    let mut entries: Vec<(Sign, String)> = Vec::new();
+    entries.extend(scene.loads.legend(&arrows, units).into_iter().map(|(kind, text)| (Sign::Load(kind), text)));
+    legend.extend(entries);
     if scene.is_deformed {
         note(&mut legend, Sign::Undeformed, "undeformed");
     }
     drawing.y = top + place.height;
-    place.scale_bar(&mut drawing, unit);
+    place.scale_bar(&mut drawing, units.length.as_deref());
     drawing.y += 4.0;
     drawing.legend(&legend);
     drawing.finish()
@@ -184,26 +192,34 @@ fn sign_radius(scene: &Scene, place: &Place) -> f64 {
     (0.42 * pairs.min(supports)).clamp(3.0, 5.5)
 }
 
-/// An arrow for each load, as long as the root of its share of the largest: from outside to its place, or from there
+/// An arrow for each load, as long as its share of the largest of its kind: from outside to its place, or from there
 /// where it pulls away from the structure.
-fn draw_loads(drawing: &mut Drawing, scene: &Scene, place: &Place, [x, y]: [[f64; 2]; 2]) {
-    let size = |force: &[f64; 2]| force[0].hypot(force[1]);
-    let most = scene.loads.iter().map(|(_, force)| size(force)).fold(0.0, f64::max);
+fn draw_loads(drawing: &mut Drawing, arrows: &[Arrow], place: &Place, [x, y]: [[f64; 2]; 2]) {
     let middle = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
-    for (at, force) in &scene.loads {
-        let share = (size(force) / most).sqrt();
-        let (length, apart) = (10.0 + 22.0 * share, 7.0);
-        let (c, s) = (force[0] / size(force), -force[1] / size(force));
-        let here = place.at(*at);
-        let outward = (at.0 - middle.0) * force[0] + (at.1 - middle.1) * force[1];
-        // how far from the middle along the force, in px: a pull at the very end leads away from the structure
-        let pulls = outward / size(force) * place.scale > 0.25 * WIDTH;
+    for arrow in arrows {
+        let size = arrow.force[0].hypot(arrow.force[1]);
+        let longest = if arrow.kind == LoadKind::Line { 0.6 * LONGEST } else { LONGEST };
+        let (length, apart) = (SHORTEST + (longest - SHORTEST) * arrow.share, 7.0);
+        let (c, s) = (arrow.force[0] / size, -arrow.force[1] / size);
+        let here = place.at(arrow.at);
+        let outward = (arrow.at.0 - middle.0) * arrow.force[0] + (arrow.at.1 - middle.1) * arrow.force[1];
+        // how far from the middle along the force: a pull at the very end leads away from the structure
+        let pulls = outward / size > 0.3 * (x[1] - x[0]).max(y[1] - y[0]);
         let (from, to) = if pulls { (apart, apart + length) } else { (-apart - length, -apart) };
         let on_line = |distance: f64| (here.0 + distance * c, here.1 + distance * s);
-        drawing.arrow(on_line(from), on_line(to), BLACK);
+        drawing.arrow(on_line(from), on_line(to), colour(arrow.kind));
         for step in 0..=4 {
             drawing.take(on_line(from + (to - from) * f64::from(step) / 4.0), 4.0);
         }
+    }
+}
+
+/// Loads at points are black, line loads and weights have colours of their own.
+pub(super) fn colour(kind: LoadKind) -> &'static str {
+    match kind {
+        LoadKind::Force => BLACK,
+        LoadKind::Line => COLOURS[3],
+        LoadKind::Weight => GREY,
     }
 }
 

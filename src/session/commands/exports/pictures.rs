@@ -8,10 +8,10 @@ use crate::answer::record::OutcomeKind;
 use crate::export::atomic;
 use crate::session::commands::plots::Shape;
 use crate::session::{CommandError, Session};
+use crate::text::number::{short, with_unit};
 use crate::view::members::extremes;
-use crate::view::number::{short, with_unit};
 use crate::view::plot::chart::Chart;
-use crate::view::plot::scene::{Scene, arrows};
+use crate::view::plot::scene::Scene;
 use crate::view::plot::zone::Quantity;
 use crate::view::plot::{diagram, trace, zone};
 use crate::view::status::{class_word, outcome_word};
@@ -66,12 +66,12 @@ impl Session {
     }
 
     fn chart_figure(&self, chart: &Chart, note: &str) -> String {
-        svg::chart::figure(chart, &self.caption(&chart.title), note)
+        svg::chart::figure(chart, &self.about(), note)
     }
 
     fn shape_figure(&self, shape: &Shape<'_>) -> Result<String, CommandError> {
-        let scene = Scene::new(&shape.picture(0), &arrows(shape.structure, &self.now.values));
-        Ok(svg::structure::figure(&scene, self.now.scenario.units.length.as_deref(), &self.caption(&scene.title)))
+        let scene = Scene::new(&shape.picture(0), Some(&self.now.values));
+        Ok(svg::structure::figure(&scene, &self.now.scenario.units, &self.caption(&scene.title)))
     }
 
     /// The forces of one bar over its length, or of all bars on the structure.
@@ -94,13 +94,17 @@ impl Session {
         let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
         let side = if force == Internal::Moment { ", on the tension side" } else { ", > 0 on the +y side of each bar" };
         let caption = self.caption(&format!("{}: {name}{unit}{side}", self.short_name()));
-        let scene = Scene::new(&shape.picture(0), &[]);
+        let scene = Scene::new(&shape.picture(0), None);
         let bars = svg::forces::Bars { structure: shape.structure, members, bars: &bars, force };
         Ok(svg::forces::figure(&scene, &bars, units.length.as_deref(), &caption))
     }
 
-    /// A title, and of what with which parameters.
     fn caption(&self, title: &str) -> Caption {
+        Caption { title: title.to_owned(), about: self.about() }
+    }
+
+    /// Of what a figure is, with which parameters.
+    fn about(&self) -> String {
         let scenario = &self.now.scenario;
         let mut about = vec![scenario.title.clone()];
         let named: Vec<String> = self
@@ -122,6 +126,6 @@ impl Session {
             (Some(ray), OutcomeKind::Ray) => format!("ray: {}", class_word(ray.class)),
             (_, outcome) => outcome_word(outcome).to_owned(),
         }));
-        Caption { title: title.to_owned(), about: about.join(" · ") }
+        about.join(" · ")
     }
 }

@@ -13,8 +13,9 @@ use crate::model::scenario::Source;
 use crate::path::stages::{self, History};
 use crate::session::{CommandError, Output, Session, worker};
 use crate::solve::problem::factors;
+use crate::text::number::short;
 use crate::view;
-use crate::view::number::short;
+use crate::view::combinations::envelope_table;
 use crate::view::report::{Block, Report};
 use crate::view::status::{self, verdict_word};
 use crate::view::style::Style;
@@ -92,9 +93,9 @@ impl Session {
         if prepared.cases.is_empty() || matches!(self.now.scenario.source, Source::Lcp(_)) {
             return;
         }
-        let mut table = Table::new(vec![Column::words("load case"), Column::numbers("factor", None)]);
+        let mut table = Table::new(vec![Column::words("load case"), Column::given("factor", None)]);
         for ((name, _), factor) in prepared.cases.iter().zip(factors(prepared, &self.now.values)) {
-            table.rows.push(Row::new(vec![Cell::from(name.as_str()), Cell::from(short(factor))]));
+            table.rows.push(Row::new(vec![Cell::from(name.as_str()), Cell::number(factor)]));
         }
         blocks.push(Block::Heading("Loads".into()));
         blocks.push(Block::Table(table, ""));
@@ -176,15 +177,15 @@ impl Session {
                     Source::Lcp(lcp) => lcp.names[number - 1].clone(),
                     _ => number.to_string(),
                 };
-                table.rows.push(Row::new([name, short(*z), short(*w)].map(Cell::from).into()));
+                table.rows.push(Row::new(vec![Cell::from(name), Cell::number(*z), Cell::number(*w)]));
             }
             blocks.push(Block::Heading("Solution".into()));
             blocks.push(Block::Table(table, "`export result FILE.json` writes all"));
         }
         if !scenario.probes.is_empty() {
-            let values = report_of(io, |io| self.show(&[], io))?;
+            let values = self.with_facts(io.watch, |facts| self.probed(facts));
             blocks.push(Block::Heading("Probes".into()));
-            blocks.push(Block::Table(probes(&values), ""));
+            blocks.push(Block::Table(view::summary::probes_table(&values, units, false), ""));
         }
         let resultants = self.with_facts(io.watch, |facts| self.resultants(facts));
         if answer.is_answer() && !resultants.is_empty() {
@@ -248,51 +249,20 @@ impl Session {
         }
         blocks.push(Block::Heading("Load combinations".into()));
         blocks.push(Block::Table(table, "`export combinations FILE.csv` writes all"));
-        if self.now.scenario.probes.iter().any(|(_, quantity)| !quantity.is_word()) {
-            let found = report_of(io, |io| self.envelope(&[], io));
-            match found {
-                Ok(found) => blocks.push(Block::Table(envelope(&found), "`export envelope FILE.csv` writes all")),
+        let numbers = self.now.scenario.probes.iter().map(|(_, quantity)| quantity).filter(|q| !q.is_word());
+        let numbers: Vec<_> = numbers.cloned().collect();
+        if !numbers.is_empty() {
+            match self.extremes(numbers, io) {
+                Ok((extremes, _)) => {
+                    let table = envelope_table("in", &extremes, &self.now.scenario.units, false);
+                    blocks.push(Block::Table(table, "`export envelope FILE.csv` writes all"));
+                }
                 Err(error) if error.is_interrupted() => return Err(error),
                 Err(error) => blocks.push(Block::Text(format!("No envelope: {error}"))),
             }
         }
         Ok(())
     }
-}
-
-fn text(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        Value::Number(number) => number.as_f64().map_or_else(|| number.to_string(), short),
-        _ => String::new(),
-    }
-}
-
-fn probes(values: &Value) -> Table {
-    let mut table = Table::new(vec![Column::words("probe"), Column::numbers("value", None), Column::words("unit")]);
-    for one in values.as_array().into_iter().flatten() {
-        let value = if one["value"].is_null() { &one["reason"] } else { &one["value"] };
-        table.rows.push(Row::new([&one["quantity"], value, &one["unit"]].map(|value| Cell::from(text(value))).into()));
-    }
-    table
-}
-
-fn envelope(found: &Value) -> Table {
-    let columns = ["quantity", "least", "in", "largest", "in", "unit"].map(Column::words);
-    let mut table = Table::new(columns.into());
-    for one in found["envelope"].as_array().into_iter().flatten() {
-        let (least, largest) = (&one["least"], &one["largest"]);
-        let cells = [
-            &one["quantity"],
-            &least["value"],
-            &least["combination"],
-            &largest["value"],
-            &largest["combination"],
-            &one["unit"],
-        ];
-        table.rows.push(Row::new(cells.map(|value| Cell::from(text(value))).into()));
-    }
-    table
 }
 
 /// `2026-11-26`, in UTC (civil from days, after Howard Hinnant).

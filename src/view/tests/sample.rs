@@ -52,6 +52,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             reserve_plus: r + x_t,
             reserve_minus: r - x_t,
             position: Some([i as f64, 0.0]),
+            joint: 0,
         });
     }
     let slipping = n as usize;

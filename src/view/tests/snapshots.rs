@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::plot::{diagram, scene, structure, trace, zone};
 use super::sample::{beam, beam_ray, beam_structure, cantilever, plates, scenario, units};
-use super::style::Style;
-use super::*;
 use crate::answer::diagram::Internal;
 use crate::answer::record::*;
+use crate::view::plot::{diagram, scene, structure, trace, zone};
+use crate::view::style::Style;
+use crate::view::*;
 
 /// All reports of a state, one under the other.
 fn everything(style: &Style) -> String {
@@ -75,9 +75,9 @@ fn pictures(style: &Style) -> String {
             magnification: scene::Magnification::Auto,
             height: 16,
         };
-        structure::write(&mut out, &picture, style)?;
+        structure::write(&mut out, &picture, None, style)?;
         let values = [("F2".to_owned(), 130.0)].into();
-        structure::write_with_loads(&mut out, &picture, &values, style)?;
+        structure::write(&mut out, &picture, Some((&values, &units)), style)?;
         let (held, forces, moved) = cantilever();
         for force in [Internal::Shear, Internal::Moment] {
             let drawn = diagram::Drawing { members: &forces, bar: "AF", force, height: 9 };
@@ -91,7 +91,7 @@ fn pictures(style: &Style) -> String {
             magnification: scene::Magnification::Auto,
             height: 16,
         };
-        structure::write_with_loads(&mut out, &picture, &values, style)?;
+        structure::write(&mut out, &picture, Some((&values, &units)), style)?;
         let one = &last.pairs[5..];
         zone::write(&mut out, zone::Quantity::Pressure, &[("", one)], &units, 6, style)?;
         zone::write(&mut out, zone::Quantity::Gap, &states[1..], &units, 6, style)?;
@@ -123,7 +123,7 @@ fn pictures(style: &Style) -> String {
             magnification: scene::Magnification::Auto,
             height: 20,
         };
-        structure::write(&mut out, &picture, style)
+        structure::write(&mut out, &picture, None, style)
     };
     all().expect("a vector takes everything");
     String::from_utf8(out).expect("UTF-8")

@@ -3,14 +3,14 @@
 use proptest::prelude::*;
 use unicode_width::UnicodeWidthStr;
 
-use super::plot::{diagram, structure, trace, zone};
 use super::sample::{beam, beam_ray, beam_structure, plates, scenario, units};
-use super::style::Style;
-use super::*;
 use crate::answer::diagram::Internal;
 use crate::answer::record::*;
 use crate::fem::Piece;
 use crate::model::pair::LawKind;
+use crate::view::plot::{diagram, structure, trace, zone};
+use crate::view::style::Style;
+use crate::view::*;
 
 /// Numbers of every size, and those that are none.
 fn number() -> impl Strategy<Value = f64> {
@@ -43,8 +43,8 @@ fn pair() -> impl Strategy<Value = PairState> {
     let position = prop::option::weighted(0.9, prop::array::uniform2(number()));
     let numbers = prop::array::uniform7(number());
     let held = prop::option::of(state());
-    (name(), law, state(), held, numbers, position).prop_map(
-        |(id, law, state, held, [x_n, x_t, z_n, z_t, bound, plus, minus], position)| PairState {
+    (name(), law, state(), held, numbers, position, 0..4usize).prop_map(
+        |(id, law, state, held, [x_n, x_t, z_n, z_t, bound, plus, minus], position, joint)| PairState {
             id,
             law,
             state,
@@ -57,6 +57,7 @@ fn pair() -> impl Strategy<Value = PairState> {
             reserve_plus: plus,
             reserve_minus: minus,
             position,
+            joint,
         },
     )
 }
@@ -131,9 +132,9 @@ proptest! {
             writeln!(out, "{}", status::line(&answer, Some(&previous), &units, s))
         });
         narrow(s, |out| status::write(out, &answer, &scenario, &values, s));
-        narrow(s, |out| super::pairs::write(out, &answer.pairs, &units, s));
-        narrow(s, |out| super::pivots::write(out, &answer, None, Some(1), &units, s));
-        narrow(s, |out| super::pivots::write(out, &answer, Some(3..=4), None, &units, s));
+        narrow(s, |out| pairs::write(out, &answer.pairs, &units, s));
+        narrow(s, |out| pivots::write(out, &answer, None, Some(1), &units, s));
+        narrow(s, |out| pivots::write(out, &answer, Some(3..=4), None, &units, s));
         narrow(s, |out| parameters::write(out, &scenario, &values, s));
         narrow(s, |out| check::write(out, &answer, s));
         narrow(s, |out| difference::write(out, &previous, &answer, s));
@@ -151,7 +152,7 @@ proptest! {
         }).collect();
         narrow(s, |out| members::write(out, &forces, None, &units, s));
         if let Some(ray) = &answer.ray {
-            narrow(s, |out| super::ray::write(out, ray, &units, s));
+            narrow(s, |out| ray::write(out, ray, &units, s));
             narrow(s, |out| zone::mode(out, ray, &answer.pairs, &units, 8, s));
         }
     }
@@ -202,9 +203,9 @@ proptest! {
                 pairs: Some(&states), height,
                 magnification: factor.map_or(Magnification::Auto, Magnification::Factor),
             };
-            narrow(s, |out| structure::write(out, &picture, s));
+            narrow(s, |out| structure::write(out, &picture, None, s));
             let values = [("F2".to_owned(), u[0][0])].into();
-            narrow(s, |out| structure::write_with_loads(out, &picture, &values, s));
+            narrow(s, |out| structure::write(out, &picture, Some((&values, &units())), s));
             let members: Vec<MemberForces> = (0..5).map(|element| MemberForces {
                 bar: "AF".into(), element,
                 start: EndForces { n: u[element][0], q: u[element][1], m: u[element][2] },
@@ -235,5 +236,5 @@ fn an_empty_structure_draws_nothing() {
         height: 10,
     };
     let style = Style::default();
-    narrow(&style, |out| structure::write(out, &picture, &style));
+    narrow(&style, |out| structure::write(out, &picture, None, &style));
 }

@@ -1,0 +1,385 @@
+//! Arrows of loads in a picture: each kind scaled by its largest, those close together thinned.
+
+use std::collections::HashMap;
+
+use super::canvas::{Canvas, Stroke};
+use crate::model::parameter::ParameterValues;
+use crate::model::scenario::Units;
+use crate::model::structure::{ElementKind, ElementLoad, Load, Structure};
+use crate::text::number::{short, with_unit};
+use crate::view::style::Role;
+use crate::view::{force_unit, length_unit};
+
+/// What a load is: forces, forces per length and weights are not drawn to one scale.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadKind {
+    /// At a point.
+    Force,
+    /// Per length of a bar.
+    Line,
+    /// Of a bar, or of all membranes that hang together, at its centre.
+    Weight,
+}
+
+impl LoadKind {
+    const ALL: [LoadKind; 3] = [LoadKind::Force, LoadKind::Line, LoadKind::Weight];
+}
+
+/// Loads in the plane of a picture, all cases added up.
+#[derive(Clone, Debug, Default)]
+pub struct Loads {
+    /// Point forces and weights.
+    points: Vec<(LoadKind, (f64, f64), [f64; 2])>,
+    /// Line loads: ends and values there.
+    lines: Vec<([(f64, f64); 2], [[f64; 2]; 2])>,
+}
+
+/// An arrow of a load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrow {
+    /// What it is.
+    pub kind: LoadKind,
+    /// Where it acts.
+    pub at: (f64, f64),
+    /// Force, or force per length.
+    pub force: [f64; 2],
+    /// Its size as a share of the largest of its kind.
+    pub share: f64,
+}
+
+/// Arrows that find room.
+#[derive(Clone, Debug, Default)]
+pub struct Arrows {
+    /// The arrows.
+    pub arrows: Vec<Arrow>,
+    /// Whether point forces close together were added up.
+    pub is_added: bool,
+}
+
+fn size(force: [f64; 2]) -> f64 {
+    force[0].hypot(force[1])
+}
+
+impl Loads {
+    /// The loads of a structure whose nodes stand at `at`.
+    pub fn of(structure: &Structure, parameters: &ParameterValues, at: &dyn Fn(usize) -> (f64, f64)) -> Loads {
+        let mut loads = Loads::default();
+        let mut points: Vec<(LoadKind, (f64, f64), [f64; 2])> = Vec::new();
+        let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
+        let mut weights: HashMap<(usize, usize), Weight> = HashMap::new();
+        let owner = owners(structure);
+        let on_bar = |element: usize, distance: f64| {
+            let [a, b] = [0, 1].map(|end| structure.elements[element].nodes[end]);
+            let share = distance / length(structure, element);
+            let ((ax, ay), (bx, by)) = (at(a), at(b));
+            (ax + share * (bx - ax), ay + share * (by - ay))
+        };
+        for case in &structure.load_cases {
+            let factor = case.factor.value(parameters);
+            for load in &case.loads {
+                match *load {
+                    Load::Nodal { node, force, .. } => {
+                        points.push((LoadKind::Force, at(node), force.map(|f| factor * f)));
+                    }
+                    Load::Element { element, load: ElementLoad::Point { distance, force, .. } } => {
+                        points.push((LoadKind::Force, on_bar(element, distance), force.map(|f| factor * f)));
+                    }
+                    Load::Element { element, load: ElementLoad::Line { range, value } } => {
+                        let index = *lines.entry((element, range.map(f64::to_bits))).or_insert_with(|| {
+                            loads.lines.push((range.map(|distance| on_bar(element, distance)), [[0.0; 2]; 2]));
+                            loads.lines.len() - 1
+                        });
+                        for (sum, value) in loads.lines[index].1.iter_mut().zip(value) {
+                            *sum = [sum[0] + factor * value[0], sum[1] + factor * value[1]];
+                        }
+                    }
+                    Load::Element { element, load: ElementLoad::Body(value) } => {
+                        let volume = volume(structure, element);
+                        let nodes = &structure.elements[element].nodes;
+                        let sum = nodes.iter().map(|&node| at(node)).fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
+                        let count = nodes.len().max(1) as f64;
+                        let weight = weights.entry(owner[element]).or_default();
+                        weight.add((sum.0 / count, sum.1 / count), value.map(|b| factor * b * volume));
+                    }
+                    // They have no direction, or are no forces.
+                    Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
+                }
+            }
+        }
+        let mut weights: Vec<_> = weights.into_iter().collect();
+        weights.sort_by_key(|(owner, _)| *owner);
+        points.extend(weights.into_iter().map(|(_, weight)| (LoadKind::Weight, weight.centre(), weight.force)));
+        loads.points = together(points, 0.0).0;
+        loads
+    }
+
+    /// Arrows at least `apart` from one another: point forces nearer than that are added up, line loads have an arrow
+    /// every `apart`. What cancels out has none.
+    pub fn arrows(&self, apart: f64) -> Arrows {
+        let (points, is_added) = together(self.points.clone(), apart);
+        let mut arrows: Vec<Arrow> =
+            points.into_iter().map(|(kind, at, force)| Arrow { kind, at, force, share: 0.0 }).collect();
+        let mut last: Option<(f64, f64)> = None;
+        for ([a, b], [from, to]) in &self.lines {
+            let way = (b.0 - a.0).hypot(b.1 - a.1);
+            let count = (way / apart).floor().clamp(1.0, 1e4) as usize;
+            for step in 0..=count {
+                let t = step as f64 / count as f64;
+                let mix = |x: f64, y: f64| x + t * (y - x);
+                let place = (mix(a.0, b.0), mix(a.1, b.1));
+                if last.is_some_and(|last| (place.0 - last.0).hypot(place.1 - last.1) < 0.8 * apart) {
+                    continue;
+                }
+                last = Some(place);
+                let force = [mix(from[0], to[0]), mix(from[1], to[1])];
+                arrows.push(Arrow { kind: LoadKind::Line, at: place, force, share: 0.0 });
+            }
+        }
+        for kind in LoadKind::ALL {
+            let of_kind = || arrows.iter().filter(|arrow| arrow.kind == kind);
+            let most = of_kind().map(|arrow| size(arrow.force)).fold(0.0, f64::max);
+            for arrow in arrows.iter_mut().filter(|arrow| arrow.kind == kind) {
+                arrow.share = if most > 0.0 { size(arrow.force) / most } else { 0.0 };
+            }
+        }
+        arrows.retain(|arrow| arrow.share > 1e-9 && arrow.share.is_finite());
+        Arrows { arrows, is_added }
+    }
+
+    /// Largest line load: its arrows need not stand where it is.
+    fn largest_line(&self) -> f64 {
+        self.lines.iter().flat_map(|(_, values)| values.map(size)).fold(0.0, f64::max)
+    }
+
+    /// The kinds that occur with their largest value: `load up to 250 kN`.
+    pub fn legend(&self, arrows: &Arrows, units: &Units) -> Vec<(LoadKind, String)> {
+        let force = force_unit(units);
+        let line = force.as_ref().zip(length_unit(units)).map(|(force, length)| format!("{force}/{length}"));
+        let words = |kind: LoadKind| {
+            let of_kind = arrows.arrows.iter().filter(|arrow| arrow.kind == kind);
+            let most = of_kind.map(|arrow| size(arrow.force)).reduce(f64::max)?;
+            let (name, most, unit) = match kind {
+                LoadKind::Force if arrows.is_added => ("load (near ones added)", most, &force),
+                LoadKind::Force => ("load", most, &force),
+                LoadKind::Line => ("line load", most.max(self.largest_line()), &line),
+                LoadKind::Weight => ("weight", most, &force),
+            };
+            Some((kind, format!("{name} up to {}", with_unit(&short(most), unit.as_deref()))))
+        };
+        LoadKind::ALL.into_iter().filter_map(words).collect()
+    }
+}
+
+/// The weight of several elements.
+#[derive(Clone, Debug, Default)]
+struct Weight {
+    force: [f64; 2],
+    /// Σ |force|, and Σ |force|·place.
+    sums: [f64; 3],
+}
+
+impl Weight {
+    fn add(&mut self, (x, y): (f64, f64), force: [f64; 2]) {
+        let own = size(force);
+        self.force = [self.force[0] + force[0], self.force[1] + force[1]];
+        self.sums = [self.sums[0] + own, self.sums[1] + own * x, self.sums[2] + own * y];
+    }
+
+    fn centre(&self) -> (f64, f64) {
+        (self.sums[1] / self.sums[0], self.sums[2] / self.sums[0])
+    }
+}
+
+/// What an element belongs to, for its weight: (0, a node of the membranes that hang together), or (1, a bar).
+fn owners(structure: &Structure) -> Vec<(usize, usize)> {
+    // a tree of nodes for each body: every node points towards the root of its own
+    let mut towards: Vec<usize> = (0..structure.nodes.len()).collect();
+    fn root(towards: &mut [usize], mut node: usize) -> usize {
+        while towards[node] != node {
+            towards[node] = towards[towards[node]];
+            node = towards[node];
+        }
+        node
+    }
+    let membranes = || structure.elements.iter().filter(|element| matches!(element.kind, ElementKind::Membrane { .. }));
+    for element in membranes() {
+        let first = root(&mut towards, element.nodes[0]);
+        for &node in &element.nodes[1..] {
+            let other = root(&mut towards, node);
+            towards[other] = first;
+        }
+    }
+    let mut owner: Vec<(usize, usize)> =
+        structure.elements.iter().map(|element| (0, root(&mut towards, element.nodes[0]))).collect();
+    for (number, bar) in structure.bars.iter().enumerate() {
+        owner[bar.elements.clone()].fill((1, number));
+    }
+    owner
+}
+
+fn length(structure: &Structure, element: usize) -> f64 {
+    let [a, b] = [0, 1].map(|end| structure.nodes[structure.elements[element].nodes[end]].position);
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+/// Volume of an element.
+fn volume(structure: &Structure, index: usize) -> f64 {
+    let element = &structure.elements[index];
+    let extent = match element.kind {
+        ElementKind::Membrane { .. } => {
+            let nodes: Vec<[f64; 2]> = element.nodes.iter().map(|&node| structure.nodes[node].position).collect();
+            element.shape().area(&nodes)
+        }
+        _ => length(structure, index),
+    };
+    extent * element.area()
+}
+
+type Point = (LoadKind, (f64, f64), [f64; 2]);
+
+/// Point loads of one kind nearer than `apart` (or at one place) added up, at the centre of their sizes; whether any were
+/// at different places.
+fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
+    let mut groups: Vec<(LoadKind, (f64, f64), Weight)> = Vec::new();
+    let mut cells: HashMap<(bool, i64, i64), Vec<usize>> = HashMap::new();
+    let cell = |(x, y): (f64, f64)| match apart > 0.0 {
+        true => ((x / apart).floor() as i64, (y / apart).floor() as i64),
+        false => (x.to_bits() as i64, y.to_bits() as i64),
+    };
+    let mut is_added = false;
+    for (kind, at, force) in points {
+        let (i, j) = cell(at);
+        let is_weight = kind == LoadKind::Weight;
+        let reach = if apart > 0.0 { -1..=1 } else { 0..=0 };
+        let around = reach.clone().flat_map(|di| reach.clone().map(move |dj| (di, dj)));
+        let near = around
+            .filter_map(|(di, dj)| cells.get(&(is_weight, i.wrapping_add(di), j.wrapping_add(dj))))
+            .flatten()
+            .copied()
+            .filter(|&group| {
+                let (_, (x, y), _) = groups[group];
+                (x - at.0).hypot(y - at.1) <= 0.8 * apart
+            })
+            .min();
+        let group = near.unwrap_or_else(|| {
+            groups.push((kind, at, Weight::default()));
+            cells.entry((is_weight, i, j)).or_default().push(groups.len() - 1);
+            groups.len() - 1
+        });
+        is_added |= groups[group].1 != at;
+        groups[group].2.add(at, force);
+    }
+    let all = groups.into_iter().filter(|(.., weight)| weight.sums[0] > 0.0);
+    (all.map(|(kind, _, weight)| (kind, weight.centre(), weight.force)).collect(), is_added)
+}
+
+/// Lengths of arrows in dots, of the largest of a kind and of a tiny one.
+const LONGEST: f64 = 15.0;
+const SHORTEST: f64 = 3.0;
+
+/// An arrow in dots: tail, tip.
+pub struct Drawn {
+    tail: (f64, f64),
+    tip: (f64, f64),
+    direction: (f64, f64),
+}
+
+impl Drawn {
+    /// The arrow of a load at `at` (dots): from outside to its place, or away from it where it pulls at the very end of
+    /// the structure, whose middle and size these are.
+    pub fn new(arrow: &Arrow, at: (f64, f64), middle: (f64, f64), extent: f64) -> Drawn {
+        let size = size(arrow.force);
+        let (c, s) = (arrow.force[0] / size, arrow.force[1] / size);
+        let longest = if arrow.kind == LoadKind::Line { 0.6 * LONGEST } else { LONGEST };
+        let length = SHORTEST + (longest - SHORTEST) * arrow.share;
+        // the sign of a node or a pair keeps its character
+        let apart = 2.0 * c.abs() + 4.0 * s.abs();
+        let pulls = (at.0 - middle.0) * c + (at.1 - middle.1) * s > 0.3 * extent;
+        let (tail, tip) = if pulls { (apart, apart + length) } else { (-apart - length, -apart) };
+        let on_line = |distance: f64| (at.0 + distance * c, at.1 + distance * s);
+        Drawn { tail: on_line(tail), tip: on_line(tip), direction: (c, s) }
+    }
+
+    /// Both ends.
+    pub fn ends(&self) -> [(f64, f64); 2] {
+        [self.tail, self.tip]
+    }
+
+    /// The sign at the tip.
+    pub fn sign(&self, ascii: bool) -> char {
+        let (c, s) = self.direction;
+        if ascii {
+            return match (c.abs() > s.abs(), c > 0.0, s > 0.0) {
+                (true, true, _) => '}',
+                (true, false, _) => '{',
+                (false, _, true) => 'U',
+                (false, _, false) => 'V',
+            };
+        }
+        // eighths of a turn from → on, counter-clockwise
+        const SIGNS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
+        let eighth = (s.atan2(c) / std::f64::consts::FRAC_PI_4).round().rem_euclid(8.0);
+        SIGNS[eighth as usize % 8]
+    }
+
+    /// Draws it.
+    pub fn draw(&self, canvas: &mut Canvas, ascii: bool) {
+        canvas.draw_under(Role::Accent, vec![Stroke::Line(vec![self.tail, self.tip])]);
+        canvas.put(self.tip.0, self.tip.1, self.sign(ascii), Role::Accent);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nodal(points: &[((f64, f64), [f64; 2])]) -> Loads {
+        Loads { points: points.iter().map(|&(at, force)| (LoadKind::Force, at, force)).collect(), lines: Vec::new() }
+    }
+
+    #[test]
+    fn near_forces_are_added_up_and_far_ones_scaled() {
+        let loads = nodal(&[((0.0, 0.0), [0.0, -3.0]), ((0.1, 0.0), [0.0, -1.0]), ((5.0, 0.0), [2.0, 0.0])]);
+        let found = loads.arrows(1.0);
+        assert!(found.is_added);
+        let [first, second] = &found.arrows[..] else { panic!("{found:?}") };
+        // 3 at 0 and 1 at 0.1: 4 at 0.025
+        assert_eq!((first.force, first.share), ([0.0, -4.0], 1.0));
+        assert!((first.at.0 - 0.025).abs() < 1e-15 && first.at.1 == 0.0);
+        assert_eq!((second.force, second.share), ([2.0, 0.0], 0.5));
+        let apart = loads.arrows(0.01);
+        assert!(!apart.is_added && apart.arrows.len() == 3);
+    }
+
+    #[test]
+    fn what_cancels_out_has_no_arrow() {
+        let loads = nodal(&[((0.0, 0.0), [1.0, 0.0]), ((0.0, 0.0), [-1.0, 0.0]), ((3.0, 0.0), [1.0, 0.0])]);
+        let places: Vec<_> = loads.arrows(1.0).arrows.iter().map(|arrow| arrow.at).collect();
+        assert_eq!(places, [(3.0, 0.0)]);
+    }
+
+    /// From 0 to 4 over a length of 8, an arrow every 2: 0 (none), 1, 2, 3, 4.
+    #[test]
+    fn a_line_load_has_arrows_as_long_as_its_values() {
+        let line = ([(0.0, 0.0), (8.0, 0.0)], [[0.0, 0.0], [0.0, -4.0]]);
+        let loads = Loads { points: Vec::new(), lines: vec![line] };
+        let found = loads.arrows(2.0);
+        let shares: Vec<f64> = found.arrows.iter().map(|arrow| arrow.share).collect();
+        assert_eq!(shares, [0.25, 0.5, 0.75, 1.0]);
+        let units = Units { length: Some("m".into()), force: Some("kN".into()) };
+        assert_eq!(loads.legend(&found, &units), [(LoadKind::Line, "line load up to 4 kN/m".to_owned())]);
+    }
+
+    #[test]
+    fn an_arrow_points_along_its_force() {
+        for (force, sign, ascii) in
+            [([0.0, -1.0], '↓', 'V'), ([1.0, 0.0], '→', '}'), ([-1.0, 1.0], '↖', 'U'), ([-1.0, 0.0], '←', '{')]
+        {
+            let arrow = Arrow { kind: LoadKind::Force, at: (0.0, 0.0), force, share: 1.0 };
+            let drawn = Drawn::new(&arrow, (0.0, 0.0), (0.0, 0.0), 10.0);
+            assert_eq!((drawn.sign(false), drawn.sign(true)), (sign, ascii));
+            let [tail, tip] = drawn.ends();
+            assert!((tip.0 - tail.0) * force[0] + (tip.1 - tail.1) * force[1] > 0.0);
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! How reports look, and that none breaks, whatever it is given.
+
+mod random;
+pub(crate) mod sample;
+mod snapshots;
