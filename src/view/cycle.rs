@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 
 use super::moment_unit;
-use super::number::{short, with_unit};
 use super::path::exact;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::scenario::Units;
 use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
+use crate::text::number::{short, with_unit};
 
 /// Cycles shown of a longer list, at its beginning and at its end.
 const SHOWN: usize = 6;
