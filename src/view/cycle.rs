@@ -60,8 +60,8 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
     let energy = moment_unit(units);
     let mut table = Table::new(vec![
         Column::count("cycle"),
-        Column::numbers("dissipated there", energy.clone()),
-        Column::numbers("back", energy),
+        Column::numbers("dissipated there", energy.clone()).of(1),
+        Column::numbers("back", energy).of(1),
         Column::numbers("largest net slip", units.length.clone()),
         Column::words("at"),
         Column::numbers("difference", None).droppable(1),
@@ -74,9 +74,9 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
         let (pair, net) = furthest(turn).unwrap_or_default();
         table.rows.push(Row::new(vec![
             Cell::from((index + 1).to_string()),
-            Cell::from(short(turn.dissipated[0])),
-            Cell::from(short(turn.dissipated[1])),
-            Cell::from(short(net)),
+            Cell::number(turn.dissipated[0]),
+            Cell::number(turn.dissipated[1]),
+            Cell::number(net),
             Cell::from(if net == 0.0 { String::new() } else { pair.to_owned() }),
             Cell::from(turn.difference.map_or(String::new(), |difference| format!("{difference:.1e}"))),
         ]));
@@ -95,14 +95,14 @@ fn pairs(out: &mut dyn Write, cycle: &Cycle, units: &Units, style: &Style) -> io
     let length = || units.length.clone();
     let mut table = Table::new(vec![
         Column::words("pair"),
-        Column::numbers("slip there", length()),
-        Column::numbers("back", length()),
-        Column::numbers("net", length()),
-        Column::numbers("total", length()),
+        Column::numbers("slip there", length()).of(1),
+        Column::numbers("back", length()).of(1),
+        Column::numbers("net", length()).of(1),
+        Column::numbers("total", length()).of(1),
     ]);
     for pair in last.pairs.iter().filter(moved) {
         let numbers = [pair.there, pair.back, pair.net, pair.total];
-        let cells = std::iter::once(Cell::from(pair.pair.clone())).chain(numbers.map(|slip| Cell::from(short(slip))));
+        let cells = std::iter::once(Cell::from(pair.pair.clone())).chain(numbers.map(Cell::number));
         table.rows.push(Row::new(cells.collect()));
     }
     if table.rows.is_empty() {
