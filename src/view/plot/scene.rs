@@ -11,7 +11,7 @@ use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
 use crate::answer::rounding::largest;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
-use crate::model::structure::{Bar, Element, ElementKind, Structure};
+use crate::model::structure::{Bar, Component, Element, Structure};
 use crate::text::number::short;
 
 /// By how much displacements are enlarged.
