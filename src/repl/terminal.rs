@@ -88,18 +88,13 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
                     Ok(text) => {
                         // a paste of several lines arrives as one text
                         let mut lines = text.lines().map(ToOwned::to_owned);
-                        let Some(first) = lines.next() else {
-                            continue;
-                        };
+                        let Some(first) = lines.next() else { continue };
                         waiting.extend(lines);
                         let several = !waiting.is_empty();
                         (first, several)
                     }
-                    Err(ReadlineError::Interrupted) => continue,
-                    Err(ReadlineError::Signal(_)) => continue,
-                    Err(ReadlineError::Eof) if io::stdin().is_terminal() => {
-                        return Ok(Ended::with(0));
-                    }
+                    Err(ReadlineError::Interrupted | ReadlineError::Signal(_)) => continue,
+                    Err(ReadlineError::Eof) if io::stdin().is_terminal() => return Ok(Ended::with(0)),
                     // a terminal that hung up reads as an end or an error: the signal may come a moment later
                     Err(_) => {
                         std::thread::sleep(std::time::Duration::from_millis(200));

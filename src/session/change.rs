@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use serde_json::{Value, json};
-
 use crate::answer::record::{OutcomeKind, Start};
 use crate::answer::same::same_answer;
 use crate::model::load::at_values;
@@ -100,36 +98,29 @@ impl Session {
     pub(super) fn say_what_changed(&self, notes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let previous = self.previous_answer();
         let units = &self.now.scenario.units;
-        io.report(
-            || {
-                let mut report = self.status_json();
-                if let Value::Object(map) = &mut report
-                    && !notes.is_empty()
-                {
-                    map.insert("notes".into(), json!(notes));
+        let mut report = self.status_json();
+        if !notes.is_empty() {
+            report["notes"] = notes.into();
+        }
+        io.show(&report, |out, style| {
+            for note in notes {
+                for line in style.wrap(note, style.width.max(1)) {
+                    writeln!(out, "{line}")?;
                 }
-                report
-            },
-            |out, style| {
-                for note in notes {
-                    for line in style.wrap(note, style.width.max(1)) {
-                        writeln!(out, "{line}")?;
-                    }
-                }
-                match self.answer() {
-                    Some(answer) => {
-                        writeln!(out, "{}", status::line(answer, previous, units, style))?;
-                        for note in &answer.notes {
-                            for line in style.wrap(&style.text(note), style.width) {
-                                writeln!(out, "{}", style.paint(Role::Warning, &line))?;
-                            }
+            }
+            match self.answer() {
+                Some(answer) => {
+                    writeln!(out, "{}", status::line(answer, previous, units, style))?;
+                    for note in &answer.notes {
+                        for line in style.wrap(&style.text(note), style.width) {
+                            writeln!(out, "{}", style.paint(Role::Warning, &line))?;
                         }
-                        Ok(())
                     }
-                    None => writeln!(out, "not solved yet: `solve`, or `set auto on`"),
+                    Ok(())
                 }
-            },
-        )?;
+                None => writeln!(out, "not solved yet: `solve`, or `set auto on`"),
+            }
+        })?;
         Ok(())
     }
 

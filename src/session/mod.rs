@@ -40,6 +40,7 @@ use crate::watch::Watch;
 pub use commands::load::write_scenarios;
 pub use commands::side::{AllAnswers, OneAnswer};
 pub use error::CommandError;
+use output::Report;
 pub use output::{Format, Output};
 
 use journal::{Journal, LeftOver};

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use serde::Serialize;
 use serde_json::Value;
 
 use crate::view::style::Style;
@@ -17,6 +18,15 @@ pub enum Format {
     JsonLines,
     /// The same objects, kept in [`Output::answers`] for a face that puts them into its own.
     Values,
+}
+
+/// What a command answers: serialized for programs, written for people.
+pub(super) trait Report: Serialize {
+    /// Writes it as text.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()>;
 }
 
 /// The place a face gives to [`Session::execute`](super::Session::execute).
@@ -65,16 +75,21 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// Reports a result: only the form that is asked for is made.
-    pub(super) fn report(
+    /// Shows a report: only the form that is asked for is made.
+    pub(super) fn report(&mut self, report: &impl Report) -> io::Result<()> {
+        self.show(report, |out, style| report.write(out, style))
+    }
+
+    /// Shows a result that a function of `view` writes.
+    pub(super) fn show(
         &mut self,
-        json: impl FnOnce() -> Value,
-        text: impl FnOnce(&mut dyn Write, &Style) -> io::Result<()>,
+        result: &impl Serialize,
+        write: impl FnOnce(&mut dyn Write, &Style) -> io::Result<()>,
     ) -> io::Result<()> {
         match self.format {
-            Format::Text => text(self.out, &self.style),
+            Format::Text => write(self.out, &self.style),
             Format::JsonLines | Format::Values => {
-                self.report = Some(json());
+                self.report = Some(serde_json::to_value(result)?);
                 Ok(())
             }
         }
@@ -82,6 +97,6 @@ impl<'a> Output<'a> {
 
     /// Reports a sentence.
     pub(super) fn say(&mut self, sentence: &str) -> io::Result<()> {
-        self.report(|| Value::String(sentence.to_owned()), |out, style| writeln!(out, "{}", style.text(sentence)))
+        self.show(&sentence, |out, style| writeln!(out, "{}", style.text(sentence)))
     }
 }

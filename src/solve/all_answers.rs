@@ -62,7 +62,8 @@ pub struct Continuum {
 }
 
 /// A direction in the set of answers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
 pub enum Moving {
     /// Of a contact problem.
     Pairs(Vec<PairDirection>),

@@ -1,6 +1,6 @@
 //! The values of quantities at the places of a path: `trace … of`, `plot path QUANTITY`.
 
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::model::quantity::Quantity;
 use crate::path::quantity::{Facts, NoValue, OnPath};
@@ -66,11 +66,21 @@ impl Session {
 }
 
 /// The values of quantities on a path.
-pub(in crate::session) fn along_json(path: &PathRecord, along: &[OnPath]) -> Value {
-    json!({
-        "values": path.abscissas(None),
-        "quantities": along.iter().map(|(quantity, values)| json!({
-            "quantity": quantity.to_string(), "values": values,
-        })).collect::<Vec<_>>(),
-    })
+#[derive(Serialize)]
+pub(in crate::session) struct Along<'a> {
+    values: Vec<f64>,
+    quantities: Vec<Values<'a>>,
+}
+
+#[derive(Serialize)]
+struct Values<'a> {
+    quantity: String,
+    values: &'a [Option<f64>],
+}
+
+impl<'a> Along<'a> {
+    pub(in crate::session) fn of(path: &PathRecord, along: &'a [OnPath]) -> Self {
+        let values = |(quantity, values): &'a OnPath| Values { quantity: quantity.to_string(), values };
+        Along { values: path.abscissas(None), quantities: along.iter().map(values).collect() }
+    }
 }

@@ -1,12 +1,13 @@
 //! `check`, `check exact`.
 
 use clap::{Args, ValueEnum};
-use serde_json::json;
+use serde::Serialize;
 
 use crate::model::scenario::Source;
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
 use crate::view;
+use crate::view::style::Role;
 
 /// The word of `check exact`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -42,16 +43,19 @@ impl Action for Check {
     }
 }
 
+#[derive(Serialize)]
+struct ExactReport {
+    proved: bool,
+    finding: Vec<String>,
+}
+
 impl Session {
     pub(in crate::session) fn report_check(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_quantities()?;
-        io.report(
-            || json!(answer.check),
-            |out, style| {
-                self.write_place(out, style)?;
-                view::check::write(out, answer, style)
-            },
-        )?;
+        io.show(&answer.check, |out, style| {
+            self.write_place(out, style)?;
+            view::check::write(out, answer, style)
+        })?;
         Ok(())
     }
 
@@ -61,13 +65,9 @@ impl Session {
             Source::Lcp(lcp) => lcp.names.clone(),
             _ => Vec::new(),
         };
-        io.report(
-            || {
-                let (role, lines) = view::exact::sentences(&check, &names);
-                json!({"proved": role == view::style::Role::Good, "finding": lines})
-            },
-            |out, style| view::exact::write(out, &check, &names, style),
-        )?;
+        let (role, finding) = view::exact::sentences(&check, &names);
+        let report = ExactReport { proved: role == Role::Good, finding };
+        io.show(&report, |out, style| view::exact::write(out, &check, &names, style))?;
         Ok(())
     }
 }

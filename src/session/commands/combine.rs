@@ -3,8 +3,11 @@
 use std::sync::Arc;
 
 use clap::Args;
-use serde_json::{Value as Json, json};
+use indexmap::IndexMap;
+use serde::Serialize;
+use serde_json::{Map, Value as Json};
 
+use crate::answer::record::{OutcomeKind, PairState, RayClass};
 use crate::path::quantity::{Facts, NoValue, Value};
 use crate::solve::problem::factors;
 use crate::solve::{Case, Prepared, Solved};
@@ -48,6 +51,22 @@ pub(super) struct Combined {
     prepared: Arc<Prepared>,
     factors: Vec<f64>,
     pub(super) solved: Arc<Solved>,
+}
+
+#[derive(Serialize)]
+struct CombinationsReport<'a> {
+    combinations: Vec<CombinationReport<'a>>,
+}
+
+#[derive(Serialize)]
+struct CombinationReport<'a> {
+    name: &'a str,
+    factors: IndexMap<String, f64>,
+    outcome: OutcomeKind,
+    ray: Option<RayClass>,
+    pivots: usize,
+    pairs: &'a [PairState],
+    probes: Map<String, Json>,
 }
 
 impl Session {
@@ -103,7 +122,7 @@ impl Session {
         let watch = io.watch;
         let probes = &self.now.scenario.probes;
         let units = self.now.scenario.units.clone();
-        let rows: Vec<(Row, Json)> = all
+        let rows: Vec<(Row, CombinationReport<'_>)> = all
             .iter()
             .map(|combined| {
                 let answer = &combined.solved.answer;
@@ -111,17 +130,17 @@ impl Session {
                 let values: Vec<Result<Value, NoValue>> =
                     probes.iter().map(|(_, quantity)| facts.value(quantity)).collect();
                 let cases = combined.prepared.cases.iter().map(|(case, _)| case.clone());
-                let json = json!({
-                    "name": combined.name,
-                    "factors": cases.zip(combined.factors.iter().map(|f| json!(f))).collect::<serde_json::Map<_, _>>(),
-                    "outcome": answer.outcome,
-                    "ray": answer.ray.as_ref().map(|ray| json!(ray.class)),
-                    "pivots": answer.pivot_count,
-                    "pairs": answer.pairs,
-                    "probes": self.probe_values(&facts),
-                });
+                let report = CombinationReport {
+                    name: &combined.name,
+                    factors: cases.zip(combined.factors.iter().copied()).collect(),
+                    outcome: answer.outcome,
+                    ray: answer.ray.as_ref().map(|ray| ray.class),
+                    pivots: answer.pivot_count,
+                    pairs: &answer.pairs,
+                    probes: self.probe_values(&facts),
+                };
                 let line = view::status::line(answer, None, &units, &io.style);
-                (Row { name: combined.name.clone(), line, values }, json)
+                (Row { name: combined.name.clone(), line, values }, report)
             })
             .collect();
         let note = match (name, &all[..]) {
@@ -130,11 +149,10 @@ impl Session {
             }
             _ => None,
         };
-        let (rows, json): (Vec<Row>, Vec<Json>) = rows.into_iter().unzip();
-        io.report(
-            || json!({"combinations": json}),
-            |out, style| view::combinations::write(out, &rows, probes, note.as_deref(), &units, style),
-        )?;
+        let (rows, combinations): (Vec<Row>, Vec<CombinationReport<'_>>) = rows.into_iter().unzip();
+        io.show(&CombinationsReport { combinations }, |out, style| {
+            view::combinations::write(out, &rows, probes, note.as_deref(), &units, style)
+        })?;
         if let (Some(_), [one]) = (name, &all[..]) {
             let (solved, prepared) = (Arc::clone(&one.solved), Arc::clone(&one.prepared));
             self.take_answer(Some(solved));

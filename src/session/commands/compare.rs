@@ -1,7 +1,6 @@
 //! `compare`.
 
 use clap::Args;
-use serde_json::json;
 
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
@@ -29,7 +28,7 @@ impl Session {
     pub(in crate::session) fn compare(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
         let comparison = self.ask(io, move |prepared, _, watch| Ok(prepared.compare(&values, watch)?))?;
-        io.report(|| json!(comparison), |out, style| view::compare::write(out, &comparison, style))?;
+        io.show(&comparison, |out, style| view::compare::write(out, &comparison, style))?;
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! `critical`: the friction above which several answers are possible.
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
 use crate::contact::schemes::critical::Coverage;
 use crate::model::uses::Region;
@@ -29,6 +29,16 @@ impl Action for Critical {
     }
 }
 
+#[derive(Serialize)]
+struct CriticalReport<'a> {
+    parameter: &'a str,
+    value: Option<f64>,
+    scheme: Option<String>,
+    exact: bool,
+    examined: u64,
+    singular: u64,
+}
+
 impl Session {
     pub(in crate::session) fn critical(&self, friction: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
@@ -41,20 +51,15 @@ impl Session {
         let found = self.ask(io, move |prepared, _, watch| prepared.critical_friction(&values, &name, watch))?;
         let pairs = self.pairs();
         let ids: Vec<&str> = pairs.iter().map(|pair| pair.id.as_str()).collect();
-        io.report(
-            || {
-                let scheme = found.scheme.as_ref().map(|scheme| view::critical::scheme_words(&ids, scheme));
-                json!({
-                    "parameter": friction,
-                    "value": found.value,
-                    "scheme": scheme,
-                    "exact": found.coverage == Coverage::Exact,
-                    "examined": found.examined,
-                    "singular": found.singular,
-                })
-            },
-            |out, style| view::critical::write(out, friction, &found, &ids, style),
-        )?;
+        let report = CriticalReport {
+            parameter: friction,
+            value: found.value,
+            scheme: found.scheme.as_ref().map(|scheme| view::critical::scheme_words(&ids, scheme)),
+            exact: found.coverage == Coverage::Exact,
+            examined: found.examined,
+            singular: found.singular,
+        };
+        io.show(&report, |out, style| view::critical::write(out, friction, &found, &ids, style))?;
         Ok(())
     }
 }

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
 use super::find::range;
-use crate::path::cycle::{MOST, cycle, shakedown_limit};
+use crate::answer::record::Ray;
+use crate::path::cycle::{Kind, MOST, Turn, cycle, shakedown_limit};
 use crate::path::record::PathRecord;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
@@ -54,6 +55,26 @@ fn ends(word: &str) -> Result<[f64; 2], CommandError> {
     }
 }
 
+#[derive(Serialize)]
+struct CycleReport<'a> {
+    load: &'a str,
+    from: f64,
+    to: f64,
+    kind: Kind,
+    cycles: &'a [Turn],
+    collapse: Option<&'a Ray>,
+    sentence: &'a str,
+}
+
+#[derive(Serialize)]
+struct ShakedownReport<'a> {
+    load: &'a str,
+    from: f64,
+    shakes_down: f64,
+    beyond: Option<f64>,
+    kind_beyond: Option<Kind>,
+}
+
 impl Session {
     /// `cycle LOAD A..B [N]`.
     pub(in crate::session) fn cycle(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -70,20 +91,16 @@ impl Session {
         let what = name.clone();
         let found = worker::run(io.watch, move |watch| cycle(ground.case(watch), &what, ends, most))??;
         let units = &self.now.scenario.units;
-        io.report(
-            || {
-                json!({
-                    "load": name,
-                    "from": ends[0],
-                    "to": ends[1],
-                    "kind": found.kind,
-                    "cycles": found.turns,
-                    "collapse": found.collapse(),
-                    "sentence": found.sentence,
-                })
-            },
-            |out, style| view::cycle::write(out, &found, self.load_unit(&name), units, style),
-        )?;
+        let report = CycleReport {
+            load: &name,
+            from: ends[0],
+            to: ends[1],
+            kind: found.kind,
+            cycles: &found.turns,
+            collapse: found.collapse(),
+            sentence: &found.sentence,
+        };
+        io.show(&report, |out, style| view::cycle::write(out, &found, self.load_unit(&name), units, style))?;
         self.path = Some(Arc::new(PathRecord::of_history(&found.history)));
         Ok(())
     }
@@ -113,18 +130,14 @@ impl Session {
         let ends = span.unwrap_or([0.0, if present == 0.0 { 1.0 } else { present }]);
         let what = name.clone();
         let found = worker::run(io.watch, move |watch| shakedown_limit(ground.case(watch), &what, ends))??;
-        io.report(
-            || {
-                json!({
-                    "load": name,
-                    "from": found.from,
-                    "shakes_down": found.shakes_down,
-                    "beyond": found.beyond.map(|(value, _)| value),
-                    "kind_beyond": found.beyond.map(|(_, kind)| kind),
-                })
-            },
-            |out, style| view::cycle::write_limit(out, &name, &found, self.load_unit(&name), style),
-        )?;
+        let report = ShakedownReport {
+            load: &name,
+            from: found.from,
+            shakes_down: found.shakes_down,
+            beyond: found.beyond.map(|(value, _)| value),
+            kind_beyond: found.beyond.map(|(_, kind)| kind),
+        };
+        io.show(&report, |out, style| view::cycle::write_limit(out, &name, &found, self.load_unit(&name), style))?;
         Ok(())
     }
 }

@@ -4,10 +4,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde::Serialize;
 
+use crate::answer::record::{PairState, PlainSolution};
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session, worker};
+use crate::solve::Solved;
 use crate::solve::all_answers::{AllAnswers, Continuum, Moving};
 use crate::view;
 
@@ -41,22 +43,59 @@ impl Action for Enumerate {
     }
 }
 
+#[derive(Serialize)]
+struct AnswersReport<'a> {
+    answers: Vec<OneReport<'a>>,
+    continua: Vec<ContinuumReport<'a>>,
+    complete: bool,
+    visited: u64,
+    cut: u64,
+    total: u64,
+    undecided: u64,
+}
+
+#[derive(Serialize)]
+struct OneReport<'a> {
+    pairs: &'a [PairState],
+    solution: &'a Option<PlainSolution>,
+    exact: bool,
+    continuum: bool,
+}
+
 /// A set of answers: its corners, numbered from 1 as the answers are, and the directions in which it has no end.
-fn continuum(all: &AllAnswers, piece: &Continuum) -> Value {
-    let z = |corner: &usize| all.answers[*corner].answer.solution.as_ref().map(|solution| &solution.z);
-    let directions: Vec<Value> = piece
-        .directions
-        .iter()
-        .map(|direction| match direction {
-            Moving::Pairs(pairs) => json!(pairs),
-            Moving::Plain(z) => json!(z),
-        })
-        .collect();
-    json!({
-        "answers": piece.corners.iter().map(|corner| corner + 1).collect::<Vec<_>>(),
-        "corners": piece.corners.iter().map(z).collect::<Option<Vec<_>>>(),
-        "directions": directions,
-    })
+#[derive(Serialize)]
+struct ContinuumReport<'a> {
+    answers: Vec<usize>,
+    /// z at the corners, of a bare LCP.
+    corners: Option<Vec<&'a [f64]>>,
+    directions: &'a [Moving],
+}
+
+impl<'a> AnswersReport<'a> {
+    fn of(all: &'a AllAnswers) -> Self {
+        let flags = all.exact.iter().zip(&all.continuum);
+        let one = |(solved, (exact, continuum)): (&'a Solved, (&bool, &bool))| OneReport {
+            pairs: &solved.answer.pairs,
+            solution: &solved.answer.solution,
+            exact: *exact,
+            continuum: *continuum,
+        };
+        let z = |corner: &usize| all.answers[*corner].answer.solution.as_ref().map(|solution| &solution.z[..]);
+        let continuum = |piece: &'a Continuum| ContinuumReport {
+            answers: piece.corners.iter().map(|corner| corner + 1).collect(),
+            corners: piece.corners.iter().map(z).collect(),
+            directions: &piece.directions,
+        };
+        AnswersReport {
+            answers: all.answers.iter().zip(flags).map(one).collect(),
+            continua: all.continua.iter().map(continuum).collect(),
+            complete: all.complete,
+            visited: all.visited,
+            cut: all.cut,
+            total: all.total,
+            undecided: all.undecided,
+        }
+    }
 }
 
 impl Session {
@@ -83,34 +122,7 @@ impl Session {
             self.take_answer(Some(Arc::new(chosen)));
             return self.report_pairs(&[], io);
         }
-        io.report(
-            || {
-                let answers: Vec<Value> = all
-                    .answers
-                    .iter()
-                    .zip(all.exact.iter().zip(&all.continuum))
-                    .map(|(solved, (exact, continuum))| {
-                        json!({
-                            "pairs": solved.answer.pairs,
-                            "solution": solved.answer.solution,
-                            "exact": exact,
-                            "continuum": continuum,
-                        })
-                    })
-                    .collect();
-                let continua: Vec<Value> = all.continua.iter().map(|piece| continuum(&all, piece)).collect();
-                json!({
-                    "answers": answers,
-                    "continua": continua,
-                    "complete": all.complete,
-                    "visited": all.visited,
-                    "cut": all.cut,
-                    "total": all.total,
-                    "undecided": all.undecided,
-                })
-            },
-            |out, style| view::enumerate::write(out, &all, style),
-        )?;
+        io.show(&AnswersReport::of(&all), |out, style| view::enumerate::write(out, &all, style))?;
         Ok(())
     }
 }

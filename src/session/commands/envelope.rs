@@ -1,7 +1,8 @@
 //! `envelope`: the least and the largest value of quantities, over combinations or ranges of parameters.
 
 use clap::Args;
-use serde_json::{Value as Json, json};
+use indexmap::IndexMap;
+use serde::Serialize;
 
 use crate::model::quantity::Quantity;
 use crate::path::envelope::{Axis, Peak, envelope};
@@ -94,29 +95,23 @@ impl Session {
     fn envelope_of_combinations(&self, quantities: Vec<Quantity>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let (extremes, without) = self.extremes(quantities, io)?;
         let units = &self.now.scenario.units;
-        io.report(
-            || {
-                let end = |end: &Option<(f64, String)>| {
-                    end.as_ref().map(|(value, name)| json!({"value": value, "combination": name}))
-                };
-                json!({
-                    "envelope": extremes.iter().map(|extreme| json!({
-                        "quantity": extreme.quantity.to_string(),
-                        "unit": extreme.quantity.unit(units),
-                        "least": end(&extreme.least),
-                        "largest": end(&extreme.largest),
-                    })).collect::<Vec<_>>(),
-                    "without_answer": without,
-                })
-            },
-            |out, style| {
-                let notes: Vec<String> = match without.is_empty() {
-                    true => Vec::new(),
-                    false => vec![format!("without an answer: {}", without.join(", "))],
-                };
-                view::combinations::write_envelope(out, "in", &extremes, &notes, units, style)
-            },
-        )?;
+        let end = |end: &Option<(f64, String)>| {
+            end.as_ref().map(|(value, name)| InCombination { value: *value, combination: name.clone() })
+        };
+        let row = |extreme: &Extreme| EnvelopeRow {
+            quantity: extreme.quantity.to_string(),
+            unit: extreme.quantity.unit(units),
+            least: end(&extreme.least),
+            largest: end(&extreme.largest),
+        };
+        let report = OverCombinations { envelope: extremes.iter().map(row).collect(), without_answer: &without };
+        io.show(&report, |out, style| {
+            let notes: Vec<String> = match without.is_empty() {
+                true => Vec::new(),
+                false => vec![format!("without an answer: {}", without.join(", "))],
+            };
+            view::combinations::write_envelope(out, "in", &extremes, &notes, units, style)
+        })?;
         Ok(())
     }
 
@@ -155,44 +150,81 @@ impl Session {
         let (over, asked) = (axes.clone(), quantities.clone());
         let found = worker::run(io.watch, move |watch| envelope(ground.case(watch), &over, &asked))??;
         let units = &self.now.scenario.units;
-        let place = |peak: &Peak| -> serde_json::Map<String, Json> {
-            axes.iter().zip(&peak.at).map(|(axis, at)| (axis.name.clone(), json!(at))).collect()
-        };
+        let place = |peak: &Peak| axes.iter().zip(&peak.at).map(|(axis, at)| (axis.name.clone(), *at)).collect();
         let end = |peak: &Option<Peak>| {
-            peak.as_ref().map(|peak| json!({"value": peak.value, "at": place(peak), "change": peak.change}))
+            peak.as_ref().map(|peak| AtPlace { value: peak.value, at: place(peak), change: peak.change.clone() })
         };
         let words = |peak: &Peak| {
             let at = axes.iter().zip(&peak.at).map(|(axis, at)| format!("{} = {}", axis.name, exact(*at)));
             let at = at.collect::<Vec<_>>().join(", ");
             (peak.value, peak.change.as_ref().map_or(at.clone(), |change| format!("{at}: {change}")))
         };
-        io.report(
-            || {
-                json!({
-                    "envelope": quantities.iter().zip(&found.peaks).map(|(quantity, [least, largest])| json!({
-                        "quantity": quantity.to_string(),
-                        "unit": quantity.unit(units),
-                        "least": end(least),
-                        "largest": end(largest),
-                    })).collect::<Vec<_>>(),
-                    "over": axes.iter().map(|axis| json!({
-                        "parameter": axis.name, "from": axis.range[0], "to": axis.range[1],
-                    })).collect::<Vec<_>>(),
-                    "exact": found.exact,
-                    "notes": found.notes,
-                })
-            },
-            |out, style| {
-                let rows = quantities.iter().zip(&found.peaks).map(|(quantity, [least, largest])| Extreme {
-                    quantity: quantity.clone(),
-                    least: least.as_ref().map(words),
-                    largest: largest.as_ref().map(words),
-                });
-                view::combinations::write_envelope(out, "at", &rows.collect::<Vec<_>>(), &found.notes, units, style)
-            },
-        )?;
+        let row = |(quantity, [least, largest]): (&Quantity, &[Option<Peak>; 2])| EnvelopeRow {
+            quantity: quantity.to_string(),
+            unit: quantity.unit(units),
+            least: end(least),
+            largest: end(largest),
+        };
+        let range = |axis: &Axis| Range { parameter: axis.name.clone(), from: axis.range[0], to: axis.range[1] };
+        let report = OverParameters {
+            envelope: quantities.iter().zip(&found.peaks).map(row).collect(),
+            over: axes.iter().map(range).collect(),
+            exact: found.exact,
+            notes: &found.notes,
+        };
+        io.show(&report, |out, style| {
+            let rows = quantities.iter().zip(&found.peaks).map(|(quantity, [least, largest])| Extreme {
+                quantity: quantity.clone(),
+                least: least.as_ref().map(words),
+                largest: largest.as_ref().map(words),
+            });
+            view::combinations::write_envelope(out, "at", &rows.collect::<Vec<_>>(), &found.notes, units, style)
+        })?;
         Ok(())
     }
+}
+
+/// The least and the largest value of a quantity, each with its place `E`.
+#[derive(Serialize)]
+struct EnvelopeRow<E> {
+    quantity: String,
+    unit: Option<String>,
+    least: Option<E>,
+    largest: Option<E>,
+}
+
+#[derive(Serialize)]
+struct InCombination {
+    value: f64,
+    combination: String,
+}
+
+#[derive(Serialize)]
+struct AtPlace {
+    value: f64,
+    at: IndexMap<String, f64>,
+    change: Option<String>,
+}
+
+#[derive(Serialize)]
+struct OverCombinations<'a> {
+    envelope: Vec<EnvelopeRow<InCombination>>,
+    without_answer: &'a [String],
+}
+
+#[derive(Serialize)]
+struct OverParameters<'a> {
+    envelope: Vec<EnvelopeRow<AtPlace>>,
+    over: Vec<Range>,
+    exact: bool,
+    notes: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Range {
+    parameter: String,
+    from: f64,
+    to: f64,
 }
 
 /// The least and the largest value of a quantity, the first of equals.

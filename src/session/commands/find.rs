@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use clap::Args;
-use serde_json::{Value as Json, json};
+use serde::Serialize;
 
 use crate::model::quantity::{OfAnswer, Quantity};
 use crate::path::edge::{Which, edge};
@@ -163,28 +163,16 @@ impl Session {
         let ground = self.ground(io.watch)?;
         let (name, range) = (request.name.clone(), request.range);
         let unit = self.now.scenario.parameters.get(&name).and_then(|parameter| parameter.unit.clone());
-        let head = |extra: Json| {
-            let mut report =
-                json!({"parameter": name, "from": range[0], "to": range[1], "condition": request.condition});
-            if let (Json::Object(report), Json::Object(extra)) = (&mut report, extra) {
-                report.extend(extra);
-            }
-            report
-        };
         let outcome = matches!(&request.quantity, Quantity::Answer(OfAnswer::Outcome))
             && request.wanted == Wanted::Word("answer".to_owned());
         let name = request.name.clone();
         if let (Some(which), true) = (request.which, outcome) {
             let found = worker::run(io.watch, move |watch| edge(ground.case(watch), &name, range, which))??;
             let word = if which == Which::Least { "least" } else { "most" };
-            io.report(
-                || {
-                    let mut report = head(json!(found));
-                    report["which"] = json!(word);
-                    report
-                },
-                |out, style| view::find::write_edge(out, (&request.name, word), unit.as_deref(), &found, style),
-            )?;
+            let report = FindReport::of(&request, &found, Some(word));
+            io.show(&report, |out, style| {
+                view::find::write_edge(out, (&request.name, word), unit.as_deref(), &found, style)
+            })?;
             return Ok(());
         }
         let (quantity, wanted) = (request.quantity.clone(), request.wanted.clone());
@@ -195,8 +183,28 @@ impl Session {
         }
         let asked =
             view::find::Asked { name: &request.name, unit: unit.as_deref(), range, condition: &request.condition };
-        io.report(|| head(json!(found)), |out, style| view::find::write(out, &asked, &found, style))?;
+        io.show(&FindReport::of(&request, &found, None), |out, style| view::find::write(out, &asked, &found, style))?;
         Ok(())
+    }
+}
+
+/// What was asked, and what was found.
+#[derive(Serialize)]
+struct FindReport<'a, F> {
+    parameter: &'a str,
+    from: f64,
+    to: f64,
+    condition: &'a str,
+    #[serde(flatten)]
+    found: &'a F,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    which: Option<&'a str>,
+}
+
+impl<'a, F> FindReport<'a, F> {
+    fn of(request: &'a Request, found: &'a F, which: Option<&'a str>) -> Self {
+        let Request { name, range: [from, to], condition, .. } = request;
+        FindReport { parameter: name, from: *from, to: *to, condition, found, which }
     }
 }
 

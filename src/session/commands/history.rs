@@ -1,7 +1,6 @@
 //! `history`: the commands given so far.
 
 use clap::Args;
-use serde_json::json;
 
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
@@ -22,15 +21,12 @@ impl Action for History {
 
 impl Session {
     pub(in crate::session) fn report_history(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
-        io.report(
-            || json!(self.history),
-            |out, style| {
-                for (index, command) in self.history.iter().enumerate() {
-                    writeln!(out, "{:>5}  {}", index + 1, style.text(command))?;
-                }
-                Ok(())
-            },
-        )?;
+        io.show(&self.history, |out, style| {
+            for (index, command) in self.history.iter().enumerate() {
+                writeln!(out, "{:>5}  {}", index + 1, style.text(command))?;
+            }
+            Ok(())
+        })?;
         Ok(())
     }
 }

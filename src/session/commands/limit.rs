@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
+use crate::answer::record::Ray;
 use crate::path::limit;
 use crate::path::record::PathRecord;
 use crate::session::language::candidates::{Asked, Candidate};
@@ -54,6 +55,18 @@ impl Action for Limit {
     }
 }
 
+#[derive(Serialize)]
+struct LimitReport<'a> {
+    load: &'a str,
+    limit: Option<f64>,
+    present: f64,
+    safety: Option<f64>,
+    collapse: Option<&'a Ray>,
+    confirmed: bool,
+    answer_beyond: Option<f64>,
+    end: String,
+}
+
 impl Session {
     /// `limit LOAD`.
     pub(in crate::session) fn limit(&mut self, name: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -62,21 +75,17 @@ impl Session {
         let what = name.to_owned();
         let found = worker::run(io.watch, move |watch| limit::limit(ground.case(watch), Some(&ground.solved), &what))??;
         let unit = self.now.scenario.parameters.get(name).and_then(|parameter| parameter.unit.clone());
-        io.report(
-            || {
-                json!({
-                    "load": name,
-                    "limit": found.factor,
-                    "present": found.present,
-                    "safety": found.safety,
-                    "collapse": found.collapse,
-                    "confirmed": found.confirmed,
-                    "answer_beyond": found.beyond,
-                    "end": found.end_sentence(),
-                })
-            },
-            |out, style| view::path::write_limit(out, &found, unit.as_deref(), style),
-        )?;
+        let report = LimitReport {
+            load: name,
+            limit: found.factor,
+            present: found.present,
+            safety: found.safety,
+            collapse: found.collapse.as_ref(),
+            confirmed: found.confirmed,
+            answer_beyond: found.beyond,
+            end: found.end_sentence(),
+        };
+        io.show(&report, |out, style| view::path::write_limit(out, &found, unit.as_deref(), style))?;
         let record = PathRecord::of_load(&found.path, &cases);
         // A single place draws no picture: a path that does is kept.
         if record.places.len() > 1 || self.path.is_none() {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
 use crate::model::embedded;
 use crate::session::language::candidates::Candidate;
@@ -59,13 +59,16 @@ impl Action for Scenarios {
     }
 }
 
+#[derive(Serialize)]
+struct Listed {
+    name: &'static str,
+    title: String,
+}
+
 /// Lists the embedded scenarios.
 pub(super) fn scenarios(io: &mut Output<'_>) -> Result<(), CommandError> {
-    let list = embedded::list();
-    io.report(
-        || list.iter().map(|(name, title)| json!({"name": name, "title": title})).collect(),
-        |out, style| write_scenarios(out, style),
-    )?;
+    let list: Vec<Listed> = embedded::list().into_iter().map(|(name, title)| Listed { name, title }).collect();
+    io.show(&list, write_scenarios)?;
     Ok(())
 }
 

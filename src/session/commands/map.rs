@@ -86,10 +86,9 @@ impl Session {
         let asked = quantity.clone();
         let found = worker::run(io.watch, move |watch| map(ground.case(watch), axes, asked.as_ref()))??;
         let drawn = Arc::new(Drawn { map: found, quantity });
-        io.report(
-            || self.map_json(&drawn),
-            |out, style| view::map::write(out, &drawn.map, &self.map_labels(&drawn), style),
-        )?;
+        io.show(&self.map_json(&drawn), |out, style| {
+            view::map::write(out, &drawn.map, &self.map_labels(&drawn), style)
+        })?;
         self.map = Some(drawn);
         Ok(())
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::export::atomic;
 use crate::model::embedded;
@@ -132,8 +132,9 @@ impl Session {
     ) -> Result<(), CommandError> {
         let Some(kind) = kind else {
             let kinds = kinds()?;
-            let json = || kinds.iter().map(|(template, title, choices)| listed(template, title, choices)).collect();
-            io.report(json, |out, style| view::templates::write(out, &kinds, style))?;
+            let listed: Vec<Kind<'_>> =
+                kinds.iter().map(|(template, title, choices)| kind_of(template, title, choices)).collect();
+            io.show(&listed, |out, style| view::templates::write(out, &kinds, style))?;
             return Ok(());
         };
         let (path, scenario) = write(kind, words, io.watch)?;
@@ -149,12 +150,35 @@ impl Session {
     }
 }
 
-fn listed(template: &Template, title: &str, choices: &[Choice]) -> Value {
-    let choices = choices.iter().map(|choice| {
-        json!({
-            "name": choice.name, "value": choice.default, "unit": choice.unit, "count": choice.count,
-            "min": choice.range.map(|range| range.0), "max": choice.range.map(|range| range.1), "about": choice.about,
-        })
-    });
-    json!({ "kind": template.kind, "title": title, "names": choices.collect::<Vec<_>>() })
+/// A kind, as listed for programs.
+#[derive(Serialize)]
+struct Kind<'a> {
+    kind: &'a str,
+    title: &'a str,
+    names: Vec<Named<'a>>,
+}
+
+/// What can be chosen of it.
+#[derive(Serialize)]
+struct Named<'a> {
+    name: &'a str,
+    value: f64,
+    unit: Option<&'a str>,
+    count: bool,
+    min: Option<f64>,
+    max: Option<f64>,
+    about: &'a str,
+}
+
+fn kind_of<'a>(template: &'a Template, title: &'a str, choices: &'a [Choice]) -> Kind<'a> {
+    let named = |choice: &'a Choice| Named {
+        name: &choice.name,
+        value: choice.default,
+        unit: choice.unit.as_deref(),
+        count: choice.count,
+        min: choice.range.map(|range| range.0),
+        max: choice.range.map(|range| range.1),
+        about: &choice.about,
+    };
+    Kind { kind: template.kind, title, names: choices.iter().map(named).collect() }
 }

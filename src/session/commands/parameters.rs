@@ -1,13 +1,16 @@
 //! `params`, `diff`: the parameters, and what differs from the file.
 
+use std::io::{self, Write};
+
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
 use crate::session::language::command::{Action, Command};
 use crate::session::language::setting::RULES;
-use crate::session::{CommandError, Next, Output, Session};
+use crate::session::{CommandError, Next, Output, Report, Session};
 use crate::text::number::with_unit;
 use crate::view;
+use crate::view::style::Style;
 
 /// Show the parameters, their values and ranges
 #[derive(Debug, Args)]
@@ -40,63 +43,85 @@ impl Action for Diff {
 impl Session {
     pub(in crate::session) fn report_parameters(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let scenario = &self.now.scenario;
-        io.report(
-            || {
-                self.now
-                    .values
-                    .iter()
-                    .map(|(name, value)| {
-                        let file = scenario.parameters.get(name);
-                        json!({
-                            "name": name,
-                            "value": value,
-                            "file": file.map(|p| p.value),
-                            "formula": file.and_then(|p| Some(p.formula.as_ref()?.text().to_owned())),
-                            "min": file.and_then(|p| p.min),
-                            "max": file.and_then(|p| p.max),
-                            "step": file.and_then(|p| p.step),
-                            "unit": file.and_then(|p| p.unit.clone()),
-                            "about": file.and_then(|p| p.about.clone()),
-                        })
-                    })
-                    .collect()
-            },
-            |out, style| view::parameters::write(out, scenario, &self.now.values, style),
-        )?;
+        let row = |(name, value): (&String, &f64)| {
+            let file = scenario.parameters.get(name);
+            ParameterRow {
+                name: name.clone(),
+                value: *value,
+                file: file.map(|p| p.value),
+                formula: file.and_then(|p| Some(p.formula.as_ref()?.text().to_owned())),
+                min: file.and_then(|p| p.min),
+                max: file.and_then(|p| p.max),
+                step: file.and_then(|p| p.step),
+                unit: file.and_then(|p| p.unit.clone()),
+                about: file.and_then(|p| p.about.clone()),
+            }
+        };
+        let rows: Vec<ParameterRow> = self.now.values.iter().map(row).collect();
+        io.show(&rows, |out, style| view::parameters::write(out, scenario, &self.now.values, style))?;
         Ok(())
     }
 
     /// `diff`: against the file.
     pub(in crate::session) fn report_difference(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let scenario = &self.now.scenario;
-        let mut rows: Vec<(String, String, String, Option<&str>)> = Vec::new();
+        let mut rows: Vec<Differing<'_>> = Vec::new();
         for (name, value) in &self.now.values {
             let Some(file) = scenario.parameters.get(name) else {
                 continue;
             };
             if file.value.to_bits() != value.to_bits() {
-                rows.push((name.clone(), file.value.to_string(), value.to_string(), file.unit.as_deref()));
+                let (was, now) = (file.value.to_string(), value.to_string());
+                rows.push(Differing { name, file: was, now, unit: file.unit.as_deref() });
             }
         }
         for rule in &RULES {
             let (file, now) = ((rule.shown)(&scenario.rules), (rule.shown)(&self.now.rules));
             if file != now {
-                rows.push((rule.name.to_owned(), file, now, None));
+                rows.push(Differing { name: rule.name, file, now, unit: None });
             }
         }
-        io.report(
-            || rows.iter().map(|(name, file, now, _)| json!({"name": name, "file": file, "now": now})).collect(),
-            |out, style| {
-                if rows.is_empty() {
-                    return writeln!(out, "nothing differs from the file");
-                }
-                for (name, file, now, unit) in &rows {
-                    let line = format!("{name:<14} {} (file: {file})", with_unit(now, *unit));
-                    writeln!(out, "{}", style.text(&line))?;
-                }
-                Ok(())
-            },
-        )?;
+        io.report(&Difference(rows))?;
+        Ok(())
+    }
+}
+
+/// A parameter in `params`.
+#[derive(Serialize)]
+struct ParameterRow {
+    name: String,
+    value: f64,
+    file: Option<f64>,
+    formula: Option<String>,
+    min: Option<f64>,
+    max: Option<f64>,
+    step: Option<f64>,
+    unit: Option<String>,
+    about: Option<String>,
+}
+
+/// What differs from the file.
+#[derive(Serialize)]
+struct Difference<'a>(Vec<Differing<'a>>);
+
+#[derive(Serialize)]
+struct Differing<'a> {
+    name: &'a str,
+    file: String,
+    now: String,
+    #[serde(skip)]
+    unit: Option<&'a str>,
+}
+
+impl Report for Difference<'_> {
+    fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        if self.0.is_empty() {
+            return writeln!(out, "nothing differs from the file");
+        }
+        for Differing { name, file, now, unit } in &self.0 {
+            let line = format!("{name:<14} {} (file: {file})", with_unit(now, *unit));
+            writeln!(out, "{}", style.text(&line))?;
+        }
         Ok(())
     }
 }

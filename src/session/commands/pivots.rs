@@ -1,12 +1,17 @@
 //! `pivots`, `step`.
 
+use std::io::{self, Write};
+
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
+
+use crate::answer::record::PivotRecord;
 
 use crate::session::language::candidates::Candidate;
 use crate::session::language::command::{Action, Command};
-use crate::session::{CommandError, Next, Output, Session};
+use crate::session::{CommandError, Next, Output, Report, Session};
 use crate::view;
+use crate::view::style::Style;
 
 /// List the pivots, each with its sentence
 #[derive(Debug, Args)]
@@ -93,19 +98,11 @@ impl Session {
                 Some(from..=to)
             }
         };
-        io.report(
-            || {
-                answer
-                    .pivots
-                    .iter()
-                    .filter(|pivot| range.as_ref().is_none_or(|range| range.contains(&pivot.step)))
-                    .map(|pivot| json!(pivot))
-                    .collect()
-            },
-            |out, style| {
-                view::pivots::write(out, answer, range.clone(), self.position, &self.now.scenario.units, style)
-            },
-        )?;
+        let inside = |pivot: &&PivotRecord| range.as_ref().is_none_or(|range| range.contains(&pivot.step));
+        let chosen: Vec<&PivotRecord> = answer.pivots.iter().filter(inside).collect();
+        io.show(&chosen, |out, style| {
+            view::pivots::write(out, answer, range.clone(), self.position, &self.now.scenario.units, style)
+        })?;
         Ok(())
     }
 
@@ -166,22 +163,33 @@ impl Session {
     ) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let pivot = answer.pivots.iter().find(|pivot| pivot.step == to);
-        io.report(
-            || json!({"step": to, "last": last, "pivot": pivot}),
-            |out, style| {
-                let sentence = pivot.map_or("", |pivot| pivot.sentence.as_str());
-                let end = match (stayed, to == last, to == 0) {
-                    (true, true, _) => " (the last pivot)",
-                    (true, _, true) => " (the first pivot)",
-                    _ => "",
-                };
-                let label = format!("{} of {last}{end}: ", view::pivots::title(to));
-                for line in style.hanging(&label, &style.text(sentence)) {
-                    writeln!(out, "{line}")?;
-                }
-                Ok(())
-            },
-        )?;
+        io.report(&StepReport { step: to, last, pivot, stayed })?;
+        Ok(())
+    }
+}
+
+/// The pivot that `step` came to.
+#[derive(Serialize)]
+struct StepReport<'a> {
+    step: usize,
+    last: usize,
+    pivot: Option<&'a PivotRecord>,
+    #[serde(skip)]
+    stayed: bool,
+}
+
+impl Report for StepReport<'_> {
+    fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        let sentence = self.pivot.map_or("", |pivot| pivot.sentence.as_str());
+        let end = match (self.stayed, self.step == self.last, self.step == 0) {
+            (true, true, _) => " (the last pivot)",
+            (true, _, true) => " (the first pivot)",
+            _ => "",
+        };
+        let label = format!("{} of {}{end}: ", view::pivots::title(self.step), self.last);
+        for line in style.hanging(&label, &style.text(sentence)) {
+            writeln!(out, "{line}")?;
+        }
         Ok(())
     }
 }

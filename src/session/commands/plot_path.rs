@@ -1,16 +1,17 @@
 //! `plot path`: what was followed last.
 
-use serde_json::json;
+use std::io::Write;
 
 use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
-use crate::session::commands::along::along_json;
+use crate::session::commands::along::Along;
 use crate::session::language::selection::no_such;
 use crate::session::language::suggestion::did_you_mean;
 use crate::session::{CommandError, Output, Session};
 use crate::view;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::zone::Quantity as Zone;
+use crate::view::style::Style;
 use crate::watch::Watch;
 
 impl Session {
@@ -23,8 +24,11 @@ impl Session {
     ) -> Result<(), CommandError> {
         let (chart, along) = self.path_chart(of, io.watch)?;
         let path = self.need_path()?;
-        let report = || along.map_or_else(|| json!(path), |along| along_json(path, &along));
-        io.report(report, |out, style| Chart { height, ..chart }.write(out, style))?;
+        let write = |out: &mut dyn Write, style: &Style| Chart { height, ..chart }.write(out, style);
+        match along {
+            Some(along) => io.show(&Along::of(path, &along), write)?,
+            None => io.show(path, write)?,
+        }
         Ok(())
     }
 

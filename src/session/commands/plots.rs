@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PivotRecord};
@@ -174,13 +174,11 @@ impl Session {
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let states = self.zone_states(at)?;
-        io.report(
-            || states.iter().map(|(label, pairs)| json!({"at": label, "pairs": pairs})).collect(),
-            |out, style| {
-                let chart = zone::drawing(quantity, &borrowed(&states), &self.now.scenario.units);
-                Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)
-            },
-        )?;
+        let shown: Vec<AtPivot<'_>> = states.iter().map(|(at, pairs)| AtPivot { at, pairs }).collect();
+        io.show(&shown, |out, style| {
+            let chart = zone::drawing(quantity, &borrowed(&states), &self.now.scenario.units);
+            Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)
+        })?;
         Ok(())
     }
 
@@ -224,13 +222,11 @@ impl Session {
 
     fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let pivots = self.some_pivots()?;
-        io.report(
-            || pivots.iter().map(|pivot| json!([pivot.step, pivot.p])).collect(),
-            |out, style| {
-                let units = &self.now.scenario.units;
-                trace::write(out, pivots, self.position, units, height.unwrap_or(HEIGHT), style)
-            },
-        )?;
+        let points: Vec<(usize, f64)> = pivots.iter().map(|pivot| (pivot.step, pivot.p)).collect();
+        io.show(&points, |out, style| {
+            let units = &self.now.scenario.units;
+            trace::write(out, pivots, self.position, units, height.unwrap_or(HEIGHT), style)
+        })?;
         Ok(())
     }
 
@@ -246,13 +242,10 @@ impl Session {
         let look = Look::read(of)?;
         let shown = self.shape()?;
         let loads = look.loads.unwrap_or(true).then_some((&self.now.values, &self.now.scenario.units));
-        io.report(
-            || json!({"displacements": shown.displacements, "pairs": shown.pairs}),
-            |out, style| {
-                let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
-                structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
-            },
-        )?;
+        io.show(&shown, |out, style| {
+            let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
+            structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
+        })?;
         Ok(())
     }
 
@@ -261,13 +254,10 @@ impl Session {
         let look = Look::read(of)?;
         let shown = self.mode_shape()?;
         let loads = look.loads.unwrap_or(false).then_some((&self.now.values, &self.now.scenario.units));
-        io.report(
-            || json!({"displacements": shown.displacements}),
-            |out, style| {
-                let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
-                structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
-            },
-        )?;
+        io.show(&shown, |out, style| {
+            let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
+            structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
+        })?;
         Ok(())
     }
 
@@ -349,31 +339,17 @@ impl Session {
             let structure = self.structure().ok_or_else(not_a_structure)?;
             let title = self.shape()?.title;
             let shown = Shape { title, structure, displacements: None, pairs: Some(self.quantity_pairs()) };
-            io.report(
-                || {
-                    let points = |bar: &&str| {
-                        let points = diagram::series(members, bar, force).map(|series| series.points);
-                        json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
-                    };
-                    bars.iter().map(points).collect()
-                },
-                |out, style| {
-                    let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
-                    structure::write_with_diagrams(out, &picture, (members, force), &self.now.scenario.units, style)
-                },
-            )?;
+            let curves: Vec<Curve<'_>> = bars.iter().map(|bar| Curve::of(members, bar, force)).collect();
+            io.show(&curves, |out, style| {
+                let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
+                structure::write_with_diagrams(out, &picture, (members, force), &self.now.scenario.units, style)
+            })?;
             return Ok(());
         };
-        io.report(
-            || {
-                let points = diagram::series(members, bar, force).map(|series| series.points);
-                json!({"bar": bar, "points": points.map_or(Value::Null, |points| json!(points))})
-            },
-            |out, style| {
-                let diagram = diagram::Drawing { members, bar, force, height: height.unwrap_or(HEIGHT) };
-                diagram::write(out, &diagram, &self.now.scenario.units, style)
-            },
-        )?;
+        io.show(&Curve::of(members, bar, force), |out, style| {
+            let diagram = diagram::Drawing { members, bar, force, height: height.unwrap_or(HEIGHT) };
+            diagram::write(out, &diagram, &self.now.scenario.units, style)
+        })?;
         Ok(())
     }
 }
@@ -416,11 +392,35 @@ impl Look {
     }
 }
 
+/// The pairs at a pivot.
+#[derive(Serialize)]
+struct AtPivot<'a> {
+    at: &'a str,
+    pairs: &'a [PairState],
+}
+
+/// An internal force along a bar: distances from its start and values.
+#[derive(Serialize)]
+struct Curve<'a> {
+    bar: &'a str,
+    points: Option<Vec<(f64, f64)>>,
+}
+
+impl<'a> Curve<'a> {
+    fn of(members: &[MemberForces], bar: &'a str, force: Internal) -> Self {
+        Curve { bar, points: diagram::series(members, bar, force).map(|series| series.points) }
+    }
+}
+
 /// A structure with what is shown on it.
+#[derive(Serialize)]
 pub(in crate::session) struct Shape<'a> {
+    #[serde(skip)]
     pub(in crate::session) title: String,
+    #[serde(skip)]
     pub(in crate::session) structure: &'a Structure,
     pub(in crate::session) displacements: Option<Vec<NodeDisplacement>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(in crate::session) pairs: Option<Vec<PairState>>,
 }
 

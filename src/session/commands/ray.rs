@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
+use crate::answer::record;
+use crate::explain::remedy::Remedy;
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Remedies, Session, worker};
 use crate::view;
@@ -26,6 +28,17 @@ impl Action for Ray {
     fn needs_pivots(&self) -> bool {
         true
     }
+}
+
+/// The ray, and what would stop it where that was looked for.
+#[derive(Serialize)]
+struct RayReport<'a> {
+    #[serde(flatten)]
+    ray: &'a record::Ray,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    remedies: Option<&'a [Remedy]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    remedies_complete: Option<bool>,
 }
 
 impl Session {
@@ -62,26 +75,21 @@ impl Session {
         })?;
         let (prepared, solved) = self.both()?;
         let remedies = self.remedies();
-        io.report(
-            || {
-                let mut value = json!(ray);
-                if let Some(found) = &remedies {
-                    value["remedies"] = json!(found.remedies);
-                    value["remedies_complete"] = json!(found.complete);
-                }
-                value
-            },
-            |out, style| {
-                view::ray::write(out, ray, &self.now.scenario.units, style)?;
-                if let (Some(report), Some(system)) = (&solved.ray, prepared.system()) {
-                    view::ray::write_details(out, report, system, style)?;
-                }
-                match &remedies {
-                    Some(found) => view::ray::write_remedies(out, found, style),
-                    None => Ok(()),
-                }
-            },
-        )?;
+        let report = RayReport {
+            ray,
+            remedies: remedies.as_ref().map(|found| &found.remedies[..]),
+            remedies_complete: remedies.as_ref().map(|found| found.complete),
+        };
+        io.show(&report, |out, style| {
+            view::ray::write(out, ray, &self.now.scenario.units, style)?;
+            if let (Some(report), Some(system)) = (&solved.ray, prepared.system()) {
+                view::ray::write_details(out, report, system, style)?;
+            }
+            match &remedies {
+                Some(found) => view::ray::write_remedies(out, found, style),
+                None => Ok(()),
+            }
+        })?;
         Ok(())
     }
 }

@@ -1,7 +1,6 @@
 //! `sensitivity`: derivatives with respect to the parameters.
 
 use clap::Args;
-use serde_json::json;
 
 use crate::path::rate::{fixed_place, place_beside_laws};
 use crate::path::sensitivity::sensitivity;
@@ -58,7 +57,7 @@ impl Session {
             let place = place_beside_laws(&self.now.scenario, name).unwrap_or_default();
             return Err(no_derivatives(name, &format!("the loads are no linear function of it: {place}")));
         }
-        io.report(|| json!(found), |out, style| view::sensitivity::write(out, &found, parameter, style))?;
+        io.show(&found, |out, style| view::sensitivity::write(out, &found, parameter, style))?;
         Ok(())
     }
 }

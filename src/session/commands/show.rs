@@ -1,10 +1,12 @@
 //! `show`: quantities of the present answer; probes and resultants as they stand in results.
 
 use clap::Args;
+use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 use crate::export::{history as history_export, json as json_export};
 use crate::model::quantity::{self, Names, Quantity};
+use crate::model::scenario::Units;
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
 use crate::watch::{Quiet, Watch};
@@ -41,6 +43,26 @@ impl Action for Show {
 
     fn needs_pivots(&self) -> bool {
         self.words.iter().any(|word| word == "pivots")
+    }
+}
+
+/// A quantity with its value, or the reason why it has none.
+#[derive(Serialize)]
+struct Row {
+    quantity: String,
+    value: Json,
+    unit: Option<String>,
+    reason: Option<String>,
+}
+
+impl Row {
+    fn of(quantity: &Quantity, value: &Result<Value, NoValue>, units: &Units) -> Row {
+        Row {
+            quantity: quantity.to_string(),
+            value: value.as_ref().map_or(Json::Null, Value::json),
+            unit: quantity.unit(units),
+            reason: value.as_ref().err().map(|reason| reason.0.clone()),
+        }
     }
 }
 
@@ -83,22 +105,8 @@ impl Session {
             return Err(CommandError::Interrupted);
         }
         let units = &self.now.scenario.units;
-        io.report(
-            || {
-                values
-                    .iter()
-                    .map(|(quantity, value)| {
-                        json!({
-                            "quantity": quantity.to_string(),
-                            "value": value.as_ref().map_or(Json::Null, Value::json),
-                            "unit": quantity.unit(units),
-                            "reason": value.as_ref().err().map(|reason| reason.0.clone()),
-                        })
-                    })
-                    .collect()
-            },
-            |out, style| view::quantities::write(out, &values, units, style),
-        )?;
+        let rows: Vec<Row> = values.iter().map(|(quantity, value)| Row::of(quantity, value, units)).collect();
+        io.show(&rows, |out, style| view::quantities::write(out, &values, units, style))?;
         Ok(())
     }
 

@@ -47,22 +47,19 @@ impl Session {
 
     pub(in crate::session) fn report_status(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
-        io.report(
-            || self.status_json(),
-            |out, style| {
-                view::status::write(out, answer, &self.now.scenario, &self.now.values, style)?;
-                view::status::write_loose(out, &self.loose(), style)?;
-                if !self.auto {
-                    writeln!(out, "auto is off: changes wait for `solve`")?;
+        io.show(&self.status_json(), |out, style| {
+            view::status::write(out, answer, &self.now.scenario, &self.now.values, style)?;
+            view::status::write_loose(out, &self.loose(), style)?;
+            if !self.auto {
+                writeln!(out, "auto is off: changes wait for `solve`")?;
+            }
+            match self.position {
+                Some(step) => {
+                    writeln!(out, "shown at {}: `step last` for the end", view::pivots::title(step))
                 }
-                match self.position {
-                    Some(step) => {
-                        writeln!(out, "shown at {}: `step last` for the end", view::pivots::title(step))
-                    }
-                    None => Ok(()),
-                }
-            },
-        )?;
+                None => Ok(()),
+            }
+        })?;
         Ok(())
     }
 }

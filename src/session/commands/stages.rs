@@ -50,18 +50,14 @@ impl Session {
         };
         let units = &self.now.scenario.units;
         let place = self.history_place().unwrap_or_default();
-        io.report(
-            || history_json(&history),
-            |out, style| {
-                match index {
-                    None => view::stages::write(out, &history, units, style),
-                    Some(index) => view::stages::write_stage(out, &history, index, units, style),
-                }?;
-                let line =
-                    format!("quantities, `expect` and tables now stand {place}, until the next change or `solve`");
-                view::stages::write_line(out, &line, style)
-            },
-        )?;
+        io.show(&history_json(&history), |out, style| {
+            match index {
+                None => view::stages::write(out, &history, units, style),
+                Some(index) => view::stages::write_stage(out, &history, index, units, style),
+            }?;
+            let line = format!("quantities, `expect` and tables now stand {place}, until the next change or `solve`");
+            view::stages::write_line(out, &line, style)
+        })?;
         Ok(())
     }
 }

@@ -1,8 +1,10 @@
 //! `summary`: the answer on one screen.
 
 use clap::Args;
-use serde_json::{Value as Json, json};
+use serde::Serialize;
+use serde_json::{Map, Value as Json};
 
+use crate::answer::record::Reaction;
 use crate::model::quantity::{BarPlace, Internal, Names, OfLoad, OfPair, Over, Quantity};
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
@@ -40,30 +42,24 @@ impl Session {
         if io.watch.stop() {
             return Err(CommandError::Interrupted);
         }
-        io.report(
-            || {
-                let sum = summary.sum_of_reactions();
-                json!({
-                    "status": self.status_json(),
-                    "resultants": summary.resultants.iter().map(resultant).collect::<Vec<_>>(),
-                    "extremes": summary.peaks.iter().map(|peak| json!({
-                        "quantity": peak.what, "value": peak.value, "at": peak.at,
-                    })).collect::<Vec<_>>(),
-                    "reactions": summary.reactions,
-                    "sum_of_reactions": { "fx": sum[0], "fy": sum[1] },
-                    "safety": summary.safety.iter().map(|safety| json!({
-                        "case": safety.case, "limit": safety.limit, "safety": safety.safety, "reason": safety.reason,
-                    })).collect::<Vec<_>>(),
-                    "probes": summary.probes.iter().map(|(name, _, value)| {
-                        (name.clone(), value.as_ref().map_or(Json::Null, |value| value.json()))
-                    }).collect::<serde_json::Map<_, _>>(),
-                })
-            },
-            |out, style| {
-                writeln!(out, "{}", view::status::line(&answer, None, &units, style))?;
-                view::summary::write(out, &summary, &units, style)
-            },
-        )?;
+        let [fx, fy] = summary.sum_of_reactions();
+        let extreme = |peak: &'_ Peak| ExtremeReport { quantity: peak.what, value: peak.value, at: peak.at.clone() };
+        let probe = |(name, _, value): &(String, Quantity, Result<Value, NoValue>)| {
+            (name.clone(), value.as_ref().map_or(Json::Null, |value| value.json()))
+        };
+        let report = SummaryReport {
+            status: self.status_json(),
+            resultants: &summary.resultants,
+            extremes: summary.peaks.iter().map(extreme).collect(),
+            reactions: &summary.reactions,
+            sum_of_reactions: Force { fx, fy },
+            safety: summary.safety.iter().map(SafetyReport::of).collect(),
+            probes: summary.probes.iter().map(probe).collect(),
+        };
+        io.show(&report, |out, style| {
+            writeln!(out, "{}", view::status::line(&answer, None, &units, style))?;
+            view::summary::write(out, &summary, &units, style)
+        })?;
         Ok(())
     }
 
@@ -90,8 +86,43 @@ impl Session {
     }
 }
 
-fn resultant(resultant: &Resultant) -> Json {
-    json!(resultant)
+#[derive(Serialize)]
+struct SummaryReport<'a> {
+    status: Json,
+    resultants: &'a [Resultant],
+    extremes: Vec<ExtremeReport>,
+    reactions: &'a [Reaction],
+    sum_of_reactions: Force,
+    safety: Vec<SafetyReport<'a>>,
+    probes: Map<String, Json>,
+}
+
+#[derive(Serialize)]
+struct ExtremeReport {
+    quantity: &'static str,
+    value: f64,
+    at: String,
+}
+
+#[derive(Serialize)]
+struct Force {
+    fx: f64,
+    fy: f64,
+}
+
+#[derive(Serialize)]
+struct SafetyReport<'a> {
+    case: &'a str,
+    limit: Option<f64>,
+    safety: Option<f64>,
+    reason: Option<&'a str>,
+}
+
+impl<'a> SafetyReport<'a> {
+    fn of(safety: &'a Safety) -> Self {
+        let Safety { case, limit, safety, reason } = safety;
+        SafetyReport { case, limit: *limit, safety: *safety, reason: reason.as_deref() }
+    }
 }
 
 /// The largest of everything, with its place.

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
 use crate::export::atomic;
 use crate::export::table::Table;
@@ -68,6 +69,13 @@ fn keep_negative_ranges(words: &mut [String]) {
     words.iter_mut().filter(below_zero).for_each(|word| word.insert(0, ' '));
 }
 
+#[derive(Serialize)]
+struct SweepReport<'a> {
+    columns: &'a [String],
+    rows: &'a [Vec<Value>],
+    complete: bool,
+}
+
 impl Session {
     /// The quantities of `--columns`.
     fn columns(&self, text: Option<&str>) -> Result<Vec<Quantity>, CommandError> {
@@ -112,16 +120,14 @@ impl Session {
             })
             .collect();
         let table = Arc::new(Table { columns: columns.clone(), rows: rows.clone() });
-        io.report(
-            || json!({"columns": columns, "rows": rows, "complete": done.is_complete()}),
-            |out, style| {
-                view::sweep::write(out, &columns, &rows, grid.axes.len(), style)?;
-                if !done.is_complete() {
-                    writeln!(out, "stopped after {} of {} points", done.written, done.total)?;
-                }
-                Ok(())
-            },
-        )?;
+        let report = SweepReport { columns: &columns, rows: &rows, complete: done.is_complete() };
+        io.show(&report, |out, style| {
+            view::sweep::write(out, &columns, &rows, grid.axes.len(), style)?;
+            if !done.is_complete() {
+                writeln!(out, "stopped after {} of {} points", done.written, done.total)?;
+            }
+            Ok(())
+        })?;
         self.swept = Some(table);
         Ok(())
     }

@@ -1,7 +1,6 @@
 //! `ties`, `tableau`.
 
 use clap::Args;
-use serde_json::json;
 
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
@@ -48,7 +47,7 @@ impl Session {
         let (prepared, solved) = self.both()?;
         let report =
             solved.ties(&prepared).ok_or_else(|| CommandError::Refused("ties: the last vertex is singular".into()))?;
-        io.report(|| json!(report), |out, style| view::ties::write(out, &report, style))?;
+        io.show(&report, |out, style| view::ties::write(out, &report, style))?;
         Ok(())
     }
 
@@ -57,7 +56,7 @@ impl Session {
         let dictionary = solved
             .dictionary_at(&prepared, self.shown_step())
             .map_err(|error| CommandError::Refused(format!("tableau: {error}")))?;
-        io.report(|| json!(dictionary), |out, style| view::tableau::write(out, &dictionary, style))?;
+        io.show(&dictionary, |out, style| view::tableau::write(out, &dictionary, style))?;
         Ok(())
     }
 }

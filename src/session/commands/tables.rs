@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::io::{self, Write};
 
 use clap::Args;
-use serde_json::json;
 
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PlainSolution, Reaction};
@@ -122,24 +121,21 @@ impl Session {
             }
             None => rows.order(&mut chosen, "z_t", |pair, _| pair.z_t.abs()),
         }
-        io.report(
-            || json!(chosen),
-            |out, style| {
-                if let Some(place) = &place {
-                    writeln!(out, "{}", style.paint(Role::Muted, place))?;
-                } else if let Some(step) = self.position {
-                    let p = self.p().map_or(String::new(), |p| format!(", p = {}", short(p)));
-                    writeln!(out, "{}", style.paint(Role::Muted, &format!("at {}{p}", view::pivots::title(step))))?;
-                }
-                view::pairs::write(out, &chosen, &self.now.scenario.units, style)
-            },
-        )?;
+        io.show(&chosen, |out, style| {
+            if let Some(place) = &place {
+                writeln!(out, "{}", style.paint(Role::Muted, place))?;
+            } else if let Some(step) = self.position {
+                let p = self.p().map_or(String::new(), |p| format!(", p = {}", short(p)));
+                writeln!(out, "{}", style.paint(Role::Muted, &format!("at {}{p}", view::pivots::title(step))))?;
+            }
+            view::pairs::write(out, &chosen, &self.now.scenario.units, style)
+        })?;
         Ok(())
     }
 
     /// z and w of a bare LCP, in the place of pairs.
     fn report_solution(&self, solution: &PlainSolution, io: &mut Output<'_>) -> Result<(), CommandError> {
-        io.report(|| json!(solution), |out, style| self.write_solution(solution, out, style))?;
+        io.show(solution, |out, style| self.write_solution(solution, out, style))?;
         Ok(())
     }
 
@@ -189,13 +185,10 @@ impl Session {
             let component = displacement_words().find(|(word, _)| *word == key).and_then(|(_, which)| which.of(node));
             component.map_or(node.ux.hypot(node.uy), f64::abs)
         });
-        io.report(
-            || json!(chosen),
-            |out, style| {
-                self.write_place(out, style)?;
-                view::displacements::write(out, &chosen, &self.now.scenario.units, style)
-            },
-        )?;
+        io.show(&chosen, |out, style| {
+            self.write_place(out, style)?;
+            view::displacements::write(out, &chosen, &self.now.scenario.units, style)
+        })?;
         Ok(())
     }
 
@@ -212,18 +205,15 @@ impl Session {
             let extremes = which.zip(Diagram::of_element(member)).map(|(which, diagram)| diagram.extremes(which));
             extremes.map_or(0.0, |ends| ends.iter().fold(0.0, |size, place| size.max(place.value.abs())))
         });
-        io.report(
-            || chosen.iter().map(json_export::member).collect(),
-            |out, style| {
-                self.write_place(out, style)?;
-                // The extremes of a whole bar are told where only that is shown.
-                let bar = match rows {
-                    Rows { names: [bar], top: None, .. } => bars.iter().find(|known| *known == bar).copied(),
-                    _ => None,
-                };
-                view::members::write(out, &chosen, bar, &self.now.scenario.units, style)
-            },
-        )?;
+        io.show(&chosen.iter().map(json_export::member).collect::<Vec<_>>(), |out, style| {
+            self.write_place(out, style)?;
+            // The extremes of a whole bar are told where only that is shown.
+            let bar = match rows {
+                Rows { names: [bar], top: None, .. } => bars.iter().find(|known| *known == bar).copied(),
+                _ => None,
+            };
+            view::members::write(out, &chosen, bar, &self.now.scenario.units, style)
+        })?;
         Ok(())
     }
 
@@ -242,14 +232,11 @@ impl Session {
     pub(in crate::session) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_quantities()?;
         let reactions = answer.reactions.as_ref().ok_or_else(|| self.none("reactions", answer))?;
-        io.report(
-            || json!(reactions),
-            |out, style| {
-                self.write_place(out, style)?;
-                let moment = self.moment_about_origin(reactions);
-                view::reactions::write(out, reactions, moment, &self.now.scenario.units, style)
-            },
-        )?;
+        io.show(reactions, |out, style| {
+            self.write_place(out, style)?;
+            let moment = self.moment_about_origin(reactions);
+            view::reactions::write(out, reactions, moment, &self.now.scenario.units, style)
+        })?;
         Ok(())
     }
 }

@@ -3,12 +3,16 @@
 use std::sync::Arc;
 
 use clap::Args;
-use serde_json::json;
+use indexmap::IndexMap;
+use serde::Serialize;
 
-use crate::path::friction::{self, is_friction};
-use crate::path::load::{self, LoadReach};
+use crate::answer::record::State;
+use crate::path::change::{Breakpoint, Change};
+use crate::path::friction::{self, FrictionPath, Interval, is_friction};
+use crate::path::load::{self, LoadPath, LoadReach};
+use crate::path::quantity::OnPath;
 use crate::path::record::PathRecord;
-use crate::session::commands::along::along_json;
+use crate::session::commands::along::Along;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::start::case_names;
@@ -104,28 +108,11 @@ impl Session {
             })??;
             let record = PathRecord::of_friction(&path);
             let along = self.report_along(&geometry, &record, &quantities, io.watch)?;
-            io.report(
-                || {
-                    json!({
-                        "along": along_json(&record, &along),
-                        "parameter": path.name,
-                        "intervals": path.intervals.iter().map(|interval| json!({
-                            "from": interval.from,
-                            "to": interval.to,
-                            "states": interval.pairs.iter().map(|pair| (pair.id.clone(), json!(pair.state)))
-                                .collect::<serde_json::Map<_, _>>(),
-                        })).collect::<Vec<_>>(),
-                        "breakpoints": path.breakpoints.iter().map(|at| json!({
-                            "value": at.value, "changes": at.changes, "jump": at.jump, "sentence": at.sentence,
-                        })).collect::<Vec<_>>(),
-                        "end": record.end,
-                    })
-                },
-                |out, style| {
-                    view::path::write_friction(out, &path, &units, style)?;
-                    view::quantities::write_along(out, &record, &along, &units, style)
-                },
-            )?;
+            let report = FrictionReport::of(&path, &record, &along);
+            io.show(&report, |out, style| {
+                view::path::write_friction(out, &path, &units, style)?;
+                view::quantities::write_along(out, &record, &along, &units, style)
+            })?;
             self.path = Some(Arc::new(record));
             return Ok(());
         }
@@ -134,28 +121,99 @@ impl Session {
         })??;
         let record = PathRecord::of_load(&path, &case_names(&geometry));
         let along = self.report_along(&geometry, &record, &quantities, io.watch)?;
-        io.report(
-            || {
-                json!({
-                    "along": along_json(&record, &along),
-                    "load": path.parameter.name,
-                    "start": path.start,
-                    "from_zero": path.from_zero,
-                    "breakpoints": path.breakpoints.iter().map(|at| json!({
-                        "factor": at.value, "changes": at.changes, "sentence": at.sentence,
-                        "at_constant_load": at.jump,
-                    })).collect::<Vec<_>>(),
-                    "limit": path.limit(),
-                    "last": path.factors.last(),
-                    "end": record.end,
-                })
-            },
-            |out, style| {
-                view::path::write_load(out, &path, &units, style)?;
-                view::quantities::write_along(out, &record, &along, &units, style)
-            },
-        )?;
+        let report = LoadReport::of(&path, &record, &along);
+        io.show(&report, |out, style| {
+            view::path::write_load(out, &path, &units, style)?;
+            view::quantities::write_along(out, &record, &along, &units, style)
+        })?;
         self.path = Some(Arc::new(record));
         Ok(())
+    }
+}
+
+/// A path over friction.
+#[derive(Serialize)]
+struct FrictionReport<'a> {
+    along: Along<'a>,
+    parameter: &'a str,
+    intervals: Vec<States<'a>>,
+    breakpoints: Vec<Jump<'a>>,
+    end: &'a str,
+}
+
+/// The states between two breakpoints.
+#[derive(Serialize)]
+struct States<'a> {
+    from: f64,
+    to: f64,
+    states: IndexMap<&'a str, State>,
+}
+
+#[derive(Serialize)]
+struct Jump<'a> {
+    value: f64,
+    changes: &'a [Change],
+    jump: bool,
+    sentence: &'a str,
+}
+
+impl<'a> FrictionReport<'a> {
+    fn of(path: &'a FrictionPath, record: &'a PathRecord, along: &'a [OnPath]) -> Self {
+        let states = |interval: &'a Interval| States {
+            from: interval.from,
+            to: interval.to,
+            states: interval.pairs.iter().map(|pair| (pair.id.as_str(), pair.state)).collect(),
+        };
+        let jump = |at: &'a Breakpoint| {
+            let Breakpoint { value, changes, jump, sentence, .. } = at;
+            Jump { value: *value, changes, jump: *jump, sentence }
+        };
+        FrictionReport {
+            along: Along::of(record, along),
+            parameter: &path.name,
+            intervals: path.intervals.iter().map(states).collect(),
+            breakpoints: path.breakpoints.iter().map(jump).collect(),
+            end: &record.end,
+        }
+    }
+}
+
+/// A path over a load.
+#[derive(Serialize)]
+struct LoadReport<'a> {
+    along: Along<'a>,
+    load: &'a str,
+    start: f64,
+    from_zero: bool,
+    breakpoints: Vec<Turn<'a>>,
+    limit: Option<f64>,
+    last: Option<f64>,
+    end: &'a str,
+}
+
+#[derive(Serialize)]
+struct Turn<'a> {
+    factor: f64,
+    changes: &'a [Change],
+    sentence: &'a str,
+    at_constant_load: bool,
+}
+
+impl<'a> LoadReport<'a> {
+    fn of(path: &'a LoadPath, record: &'a PathRecord, along: &'a [OnPath]) -> Self {
+        let turn = |at: &'a Breakpoint| {
+            let Breakpoint { value, changes, jump, sentence, .. } = at;
+            Turn { factor: *value, changes, sentence, at_constant_load: *jump }
+        };
+        LoadReport {
+            along: Along::of(record, along),
+            load: &path.parameter.name,
+            start: path.start,
+            from_zero: path.from_zero,
+            breakpoints: path.breakpoints.iter().map(turn).collect(),
+            limit: path.limit(),
+            last: path.factors.last().copied(),
+            end: &record.end,
+        }
     }
 }

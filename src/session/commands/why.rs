@@ -1,9 +1,9 @@
 //! `why PAIR`: its state from its numbers, and the pivots that turned it; `why z[NAME]` of a bare LCP.
 
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
-use crate::answer::record::State;
+use crate::answer::record::{PairDirection, PairState, PivotRecord, State};
 use crate::explain::margin::Margin;
 use crate::explain::plain_why::Vertex;
 use crate::solve::prepared::Geometry;
@@ -38,6 +38,15 @@ impl Action for Why {
     fn needs_pivots(&self) -> bool {
         true
     }
+}
+
+#[derive(Serialize)]
+struct WhyReport<'a> {
+    pair: &'a PairState,
+    cause: &'a str,
+    pivots: &'a [&'a PivotRecord],
+    margins: &'a [Margin],
+    ray: Option<&'a PairDirection>,
 }
 
 impl Session {
@@ -108,44 +117,40 @@ impl Session {
             .filter(|pivot| shown.is_none_or(|shown| pivot.step <= shown))
             .filter(|pivot| pivot.turned.as_ref().is_some_and(|turned| turned.pair == id))
             .collect();
-        io.report(
-            || {
-                json!({"pair": pair, "cause": cause, "pivots": turned, "margins": margins,
-                       "ray": moved.as_ref().map(|(direction, _)| direction)})
-            },
-            |out, style| {
-                let label = format!("{id} {state}: ");
-                for line in style.hanging(&style.text(&label), &style.text(&cause)) {
+        let ray = moved.as_ref().map(|(direction, _)| *direction);
+        let report = WhyReport { pair, cause: &cause, pivots: &turned, margins: &margins, ray };
+        io.show(&report, |out, style| {
+            let label = format!("{id} {state}: ");
+            for line in style.hanging(&style.text(&label), &style.text(&cause)) {
+                writeln!(out, "{line}")?;
+            }
+            if let Some((direction, words)) = &moved {
+                let text = match words {
+                    Some(words) => format!(
+                        "it {words}: z̄_n = {}, z̄_τ = {} of the largest displacement",
+                        short(direction.z_n),
+                        short(direction.z_t)
+                    ),
+                    None => "it does not move".to_owned(),
+                };
+                for line in style.hanging("in the ray: ", &style.text(&text)) {
                     writeln!(out, "{line}")?;
                 }
-                if let Some((direction, words)) = &moved {
-                    let text = match words {
-                        Some(words) => format!(
-                            "it {words}: z̄_n = {}, z̄_τ = {} of the largest displacement",
-                            short(direction.z_n),
-                            short(direction.z_t)
-                        ),
-                        None => "it does not move".to_owned(),
-                    };
-                    for line in style.hanging("in the ray: ", &style.text(&text)) {
-                        writeln!(out, "{line}")?;
-                    }
+            }
+            if turned.is_empty() {
+                writeln!(out, "no pivot turned it: it is as in the main system")?;
+            }
+            for pivot in &turned {
+                let label = format!("  pivot {}: ", pivot.step);
+                for line in style.hanging(&label, &style.text(&pivot.sentence)) {
+                    writeln!(out, "{line}")?;
                 }
-                if turned.is_empty() {
-                    writeln!(out, "no pivot turned it: it is as in the main system")?;
-                }
-                for pivot in &turned {
-                    let label = format!("  pivot {}: ", pivot.step);
-                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
-                        writeln!(out, "{line}")?;
-                    }
-                }
-                if !margins.is_empty() {
-                    writeln!(out, "How far the working scheme holds:")?;
-                }
-                view::why::write(out, id, &margins, style)
-            },
-        )?;
+            }
+            if !margins.is_empty() {
+                writeln!(out, "How far the working scheme holds:")?;
+            }
+            view::why::write(out, id, &margins, style)
+        })?;
         Ok(())
     }
 
@@ -168,27 +173,24 @@ impl Session {
             return Err(CommandError::Refused(said));
         };
         let why = vertex.why(letter, row);
-        io.report(
-            || json!(why),
-            |out, style| {
-                for line in style.wrap(&style.text(&why.cause), style.width) {
+        io.show(&why, |out, style| {
+            for line in style.wrap(&style.text(&why.cause), style.width) {
+                writeln!(out, "{line}")?;
+            }
+            for line in style.hanging("  ", &style.text(&why.row)) {
+                writeln!(out, "{line}")?;
+            }
+            if why.pivots.is_empty() {
+                writeln!(out, "no pivot moved it or its complement")?;
+            }
+            for pivot in &why.pivots {
+                let label = format!("  pivot {}: ", pivot.step);
+                for line in style.hanging(&label, &style.text(&pivot.sentence)) {
                     writeln!(out, "{line}")?;
                 }
-                for line in style.hanging("  ", &style.text(&why.row)) {
-                    writeln!(out, "{line}")?;
-                }
-                if why.pivots.is_empty() {
-                    writeln!(out, "no pivot moved it or its complement")?;
-                }
-                for pivot in &why.pivots {
-                    let label = format!("  pivot {}: ", pivot.step);
-                    for line in style.hanging(&label, &style.text(&pivot.sentence)) {
-                        writeln!(out, "{line}")?;
-                    }
-                }
-                Ok(())
-            },
-        )?;
+            }
+            Ok(())
+        })?;
         Ok(())
     }
 }

@@ -1,7 +1,5 @@
 //! Help: the overview by groups and the page of each command, both made from the table of commands.
 
-use serde_json::Value;
-
 use crate::session::commands::GROUPS;
 use crate::session::commands::ray::RAY;
 use crate::session::language::error::GrammarError;
@@ -69,15 +67,12 @@ impl Session {
                 }
             },
         };
-        io.report(
-            || Value::String(text.clone()),
-            |out, style| {
-                for line in text.lines() {
-                    writeln!(out, "{}", style.text(line))?;
-                }
-                Ok(())
-            },
-        )?;
+        io.show(&text, |out, style| {
+            for line in text.lines() {
+                writeln!(out, "{}", style.text(line))?;
+            }
+            Ok(())
+        })?;
         Ok(())
     }
 }
