@@ -35,6 +35,7 @@
 pub mod answer;
 pub mod cli;
 pub mod contact;
+pub mod doubled;
 pub mod explain;
 pub mod export;
 pub mod fem;

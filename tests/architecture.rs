@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What every module may import: they know nothing of ours.
-const GROUND: &[&str] = &["text", "watch"];
+const GROUND: &[&str] = &["text", "watch", "doubled"];
 
 /// Every top module with what it may import besides itself and the ground.
 const ARROWS: &[(&str, &[&str])] = &[
     ("text", &[]),
     ("watch", &[]),
+    ("doubled", &[]),
     ("signals", &[]),
     ("model", &[]),
     ("lcp", &[]),

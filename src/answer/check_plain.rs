@@ -1,7 +1,7 @@
 //! The fresh check of an answer of a bare LCP, from M and q alone.
 
 use super::record::Check;
-use crate::lcp::doubled::Sum;
+use crate::doubled::Sum;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::NOISE;
 

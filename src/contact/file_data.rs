@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::pivoted::PivotedCholesky;
 use super::sum::Sum;
-use crate::lcp::doubled::dot;
+use crate::doubled::dot;
 
 /// Rounds of refinement of a solution whose residual is summed in doubled precision.
 const ROUNDS: usize = 3;

@@ -9,7 +9,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::lcp::doubled::dot;
+use crate::doubled::dot;
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 const DIGITS: f64 = 64.0 * f64::EPSILON;

@@ -13,9 +13,9 @@ use super::sums::{joint_forces, pair_sums};
 use super::system::ContactSystem;
 use crate::contact::rows::{RowId, RowKind};
 use crate::contact::written::ContactLcp;
+use crate::doubled::dot;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::corrected;
-use crate::lcp::doubled::dot;
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::NOISE;
 

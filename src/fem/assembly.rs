@@ -5,11 +5,11 @@
 use nalgebra::DMatrix;
 
 use super::dof::Dofs;
-use super::doubled::Real;
 use super::element::{Number, check_spring, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
+use crate::doubled::Real;
 use crate::model::structure::{Spring, Structure};
 
 /// Terms of one block of work between two looks at the watcher.

@@ -7,12 +7,12 @@ use nalgebra::{DMatrix, DVector};
 use super::assembly::{on_joints, on_masters};
 use super::contrast;
 use super::dof::Dofs;
-use super::doubled::Real;
 use super::error::MainSystemError;
 use super::kernel::{self, RigidKernel};
 use super::loose::Motion;
 use super::main_system::MainSystem;
 use super::refinement::Verdict;
+use crate::doubled::Real;
 use crate::model::structure::Structure;
 use crate::watch::Watch;
 

@@ -1,6 +1,6 @@
 //! Displacements per node.
 
-use super::doubled::Doubled;
+use crate::doubled::Doubled;
 
 /// Displacements per node: [u_x, u_y, θ], θ counter-clockwise and 0 at nodes without one; and, where the main system
 /// is solved in doubled precision, what f64 leaves of them.

@@ -1,6 +1,6 @@
 //! Numbering of the displacement components.
 
-use super::doubled::Real;
+use crate::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 

@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use super::body_rows::{BodyRow, body_rows, over_constraint};
 use super::classes::Classes;
 use super::dof::Dofs;
-use super::doubled::Real;
 use super::error::{DependentJoint, Holder, MainSystemError, OverConstraint};
 use super::joint_rows::{JointReduction, JointRow, holders};
 use super::repeated::{Repeated, by_preference};
+use crate::doubled::Real;
 use crate::model::pair::{Joint, JointDirection};
 use crate::model::structure::Structure;
 

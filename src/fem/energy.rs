@@ -3,9 +3,9 @@
 use nalgebra::DVector;
 
 use super::displacements::Displacements;
-use super::doubled::Real;
 use super::main_system::MainSystem;
 use super::sparse::SymmetricSparse;
+use crate::doubled::Real;
 
 /// A state of the structure with what acts on it.
 #[derive(Clone, Copy, Debug)]

@@ -11,11 +11,11 @@
 use nalgebra::DVector;
 
 use super::displacements::Displacements;
-use super::doubled::Real;
 use super::element::{slots, spring, stiffness};
 use super::kernel::mutual_displacements;
 use super::main_system::MainSystem;
 use super::recovery::own_displacements;
+use crate::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 

@@ -4,9 +4,9 @@ use nalgebra::DVector;
 
 use super::assembly::on_masters;
 use super::displacements::{Displacements, Tail};
-use super::doubled::{Doubled, Real};
 use super::main_system::MainSystem;
 use super::refinement::Refinement;
+use crate::doubled::{Doubled, Real};
 use crate::watch::Quiet;
 
 impl MainSystem {

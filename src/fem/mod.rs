@@ -40,7 +40,6 @@ mod contrast;
 mod dense;
 mod displacements;
 mod dof;
-mod doubled;
 mod element;
 mod elimination;
 mod energy;

@@ -3,11 +3,11 @@
 use nalgebra::DVector;
 
 use super::displacements::Displacements;
-use super::doubled::{Doubled, Real};
 use super::element::bar_load::Piece;
 use super::element::{finite_element, slots, spring};
 use super::loads::ActingLoads;
 use super::main_system::MainSystem;
+use crate::doubled::{Doubled, Real};
 use crate::model::structure::{Component, Structure};
 
 /// Internal forces at one end of an element in bar axes: local x from start to end, local y = x turned +90°.

@@ -14,13 +14,13 @@ use num_traits::Zero;
 
 use super::assembly::{given_entries, on_joints, on_masters};
 use super::dof::Dofs;
-use super::doubled::{Doubled, Real};
 use super::element::{Slot, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::sparse::SymmetricSparse;
 use super::watch::check_stop;
+use crate::doubled::{Doubled, Real};
 use crate::model::structure::Structure;
 use crate::watch::Watch;
 

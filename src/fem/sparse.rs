@@ -3,7 +3,7 @@
 #[cfg(test)]
 use nalgebra::DMatrix;
 
-use super::doubled::Real;
+use crate::doubled::Real;
 
 /// Lower triangle (with diagonal) by columns; rows ascending, none twice.
 #[derive(Clone, Debug, PartialEq)]

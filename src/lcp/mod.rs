@@ -23,7 +23,6 @@ pub mod basis;
 pub mod basis_solution;
 mod dense;
 mod dictionary;
-pub mod doubled;
 pub mod driver;
 pub mod exact;
 pub mod lemke;

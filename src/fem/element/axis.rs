@@ -1,6 +1,6 @@
 //! Length and direction of a bar.
 
-use crate::fem::doubled::Real;
+use crate::doubled::Real;
 
 /// Length and direction of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use super::Stiffness;
 use super::jacobian::{determinant, in_plane};
-use crate::fem::doubled::Real;
+use crate::doubled::Real;
 
 /// Modes, each along x and along y.
 pub const MODES: usize = 2;

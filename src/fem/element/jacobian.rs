@@ -1,6 +1,6 @@
 //! The Jacobian of the map from (ξ, η) to the plane: J = (∂x/∂ξ, ∂y/∂ξ), (∂x/∂η, ∂y/∂η).
 
-use crate::fem::doubled::Real;
+use crate::doubled::Real;
 
 /// det J.
 pub fn determinant<T: Real>(j: &[[T; 2]; 2]) -> T {

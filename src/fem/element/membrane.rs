@@ -13,7 +13,7 @@ use super::incompatible;
 use super::jacobian::{determinant, in_plane};
 use super::shape::{MOST, Shape};
 use super::{Acting, FiniteElement, Stiffness, Stress};
-use crate::fem::doubled::{Doubled, Real};
+use crate::doubled::{Doubled, Real};
 use crate::model::structure::{ElementLoad, Material, Plane};
 
 type Matrix3 = SMatrix<f64, 3, 3>;

@@ -20,8 +20,8 @@ use self::bar_load::BarForces;
 use self::frame::Frame;
 use self::membrane::Membrane;
 use self::truss::Truss;
-use super::doubled::{Doubled, Real};
 use super::error::MainSystemError;
+use crate::doubled::{Doubled, Real};
 use crate::model::structure::{Component, Element, ElementKind, ElementLoad, Spring, Structure};
 
 /// A row of an element's stiffness: node and component.

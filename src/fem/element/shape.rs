@@ -8,7 +8,7 @@
 //! ```
 //! Hughes, *The Finite Element Method*, 1987, §3.2, §3.7, §3.8 and appendix 3.I.
 
-use crate::fem::doubled::Real;
+use crate::doubled::Real;
 
 /// Most nodes of a plane element.
 pub const MOST: usize = 8;

@@ -1,6 +1,6 @@
 //! Linear spring: k = s a aᵀ, with a the factors of the terms that stretch it.
 
-use crate::fem::doubled::Real;
+use crate::doubled::Real;
 use crate::model::structure::Spring;
 
 /// Stiffness between two of its terms.

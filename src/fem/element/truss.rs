@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 use super::axis::Axis;
 use super::bar_load::{BarForces, BarLoad, Internal};
 use super::{Acting, FiniteElement, NO_LENGTH, Stiffness};
-use crate::fem::doubled::{Doubled, Real};
+use crate::doubled::{Doubled, Real};
 use crate::model::structure::Material;
 
 type Matrix4<T = f64> = SMatrix<T, 4, 4>;
