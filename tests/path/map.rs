@@ -129,7 +129,7 @@ fn what_is_no_map_is_refused() {
         ("map f 0..1 F2 0..400 of", "quantity"),
         ("map f 0..1 F2 0..400 of limit pull", "no quantity of a single state"),
         ("export map x.svg", "no map yet"),
-        ("export map x.csv", "must end in"),
+        ("export map x.vtu", "must end in"),
     ] {
         let refusal = report(&mut session, command).unwrap_err();
         assert!(refusal.contains(part), "{command}: {refusal}");

@@ -64,7 +64,7 @@ pub enum Exported {
     Path,
     /// The last `sweep` that was shown
     Sweep,
-    /// The last `map`, as a picture or as JSON
+    /// The last `map`: its regions, or a picture
     Map,
     /// What `summary` shows
     Summary,
@@ -110,8 +110,7 @@ impl Exported {
             Exported::Vtu => &["vtu", "pvd"],
             Exported::Report => &["html", "md"],
             Exported::Lcp | Exported::Stiffness => &["json", "mtx"],
-            Exported::Path => &["csv", "json", "svg"],
-            Exported::Map => &["svg", "json"],
+            Exported::Path | Exported::Map => &["csv", "json", "svg"],
             Exported::Structure
             | Exported::Mode
             | Exported::Slip

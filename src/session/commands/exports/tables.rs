@@ -172,6 +172,17 @@ impl Session {
             Exported::Ties => Table::of(&[list("ties"), list("degenerate")].concat()),
             Exported::Tableau => dictionary(value),
             Exported::Ray => Table::of(&list("direction")),
+            Exported::Map => {
+                let axes = list("axes");
+                let mut regions = without(list("regions"), &["outlines"]);
+                for region in &mut regions {
+                    let at = region["at"].as_array().cloned().unwrap_or_default();
+                    let named =
+                        axes.iter().zip(at).filter_map(|(axis, x)| Some((axis["parameter"].as_str()?.to_owned(), x)));
+                    region["at"] = named.collect::<Map<String, Value>>().into();
+                }
+                Table::of(&regions)
+            }
             Exported::Limit => {
                 let mut row = vec![value.clone()];
                 if let Value::Object(collapse) = &mut row[0]["collapse"] {
