@@ -59,6 +59,8 @@ pub enum Exported {
     Limit,
     /// Stages of the history that `stages` followed
     Stages,
+    /// What a load repeated does, cycle by cycle
+    Cycle,
     /// What the last `trace` or `stages` followed
     #[value(alias = "trace")]
     Path,
@@ -125,7 +127,7 @@ impl Exported {
     /// How many words may stand between it and the file.
     pub fn most_words(self, ending: &str) -> usize {
         match self {
-            Exported::Quantities | Exported::Envelope | Exported::Find => usize::MAX,
+            Exported::Quantities | Exported::Envelope | Exported::Find | Exported::Cycle => usize::MAX,
             Exported::Slip | Exported::Force | Exported::Gap | Exported::Pressure => usize::MAX,
             Exported::Path if ending == "svg" => usize::MAX,
             Exported::Sensitivity | Exported::Critical | Exported::Limit | Exported::Check | Exported::Report => 1,

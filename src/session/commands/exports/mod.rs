@@ -25,7 +25,7 @@ use exported::Exported;
 /// Write tables, pictures, a report, the mesh with its results, or the LCP, to a file
 ///
 /// Tables go to .csv or .json: `export WHAT [OF] FILE`, where OF are the quantities of `quantities` and `envelope`, or
-/// the words that `sensitivity`, `critical`, `find`, `limit` and `check` take. A table is what the command shows, at
+/// the words that `sensitivity`, `critical`, `find`, `cycle`, `limit` and `check` take. A table is what the command shows, at
 /// the pivot chosen by `step`, after `stages` at the end of the history.
 ///
 /// `export report FILE.html` is one file with its figures, `FILE.md` has them beside it as FILE-structure.svg and so

@@ -135,6 +135,7 @@ impl Session {
                 return Err(CommandError::Refused(refusal.to_owned()));
             }
             Exported::Find => report(io, |io| self.find(of, io))?,
+            Exported::Cycle => report(io, |io| self.cycle(of, io))?,
             Exported::Limit => {
                 let load = one("limit", "of which load")?;
                 report(io, |io| self.limit(&load, io))?
@@ -167,6 +168,12 @@ impl Session {
             Exported::Sweep => self.swept.as_deref().cloned().unwrap_or_default(),
             Exported::Combinations => Table::of(&without(list("combinations"), &["pairs"])),
             Exported::Envelope => Table::of(&list("envelope")),
+            Exported::Cycle => {
+                let numbered = list("cycles").into_iter().enumerate().map(|(index, cycle)| {
+                    json!({"cycle": index + 1, "difference": cycle["difference"], "pairs": cycle["pairs"]})
+                });
+                Table::of(&unfolded(&numbered.collect::<Vec<_>>(), "pairs"))
+            }
             Exported::Compare => Table::of(&list("rows")),
             Exported::Sensitivity => Table::of(&unfolded(&list("parameters"), "pairs")),
             Exported::Ties => Table::of(&[list("ties"), list("degenerate")].concat()),
