@@ -107,6 +107,9 @@ pub fn write(kind: &str, words: &[String], watch: &dyn Watch) -> Result<(PathBuf
         }
     }
     let path = file.unwrap_or_else(|| PathBuf::from(format!("{kind}.json")));
+    if path.as_os_str().is_empty() {
+        return Err(CommandError::Refused("new: the name of the file is empty; leave it out for KIND.json".into()));
+    }
     let place = path.clone();
     let scenario = worker::run(watch, move |_| template.scenario(&given, &place))?.map_err(refused)?;
     atomic::create(&path, |out| out.write_all(scenario.text.as_bytes()))
