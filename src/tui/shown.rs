@@ -40,7 +40,7 @@ pub struct Shown {
 
 /// The state at the place shown. It stays the same one until another answer or another pivot is shown, so that what is
 /// drawn of it can be kept.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Moment {
     /// The pairs.
     pub pairs: Vec<PairState>,
@@ -241,20 +241,6 @@ impl Shown {
         moment.changes.clear();
         moment.change_of.clear();
         shown
-    }
-}
-
-impl Default for Moment {
-    fn default() -> Self {
-        Moment {
-            pairs: Vec::new(),
-            changes: Vec::new(),
-            change_of: Vec::new(),
-            solution: None,
-            p: None,
-            motion: Arc::default(),
-            is_behind: false,
-        }
     }
 }
 

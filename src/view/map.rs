@@ -35,7 +35,11 @@ pub fn fill(map: &Map, region: usize, column: usize, row: usize) -> char {
     if found.states.is_none() {
         return '.';
     }
-    if found.has_several() && (column + row) % 2 == 0 { '/' } else { found.letter.chars().last().unwrap_or('?') }
+    if found.has_several() && (column + row).is_multiple_of(2) {
+        '/'
+    } else {
+        found.letter.chars().last().unwrap_or('?')
+    }
 }
 
 /// The picture, line by line from above; each cell with its region.

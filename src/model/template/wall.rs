@@ -22,7 +22,7 @@ struct Brick {
 
 /// The bricks of a course (from 1, at the bottom); every second course begins and ends with a half brick.
 fn course(course: usize, bricks: usize) -> Vec<Brick> {
-    let shifted = course % 2 == 0;
+    let shifted = course.is_multiple_of(2);
     let count = if shifted { bricks + 1 } else { bricks };
     let brick = |k: usize| match shifted {
         false => (2 * k, 2),

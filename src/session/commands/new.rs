@@ -68,11 +68,14 @@ fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
     all
 }
 
-/// Every kind with its title and what can be chosen of it.
+/// A kind with its title and what can be chosen of it.
+pub type Kind = (&'static Template, String, Vec<Choice>);
+
+/// Every kind.
 ///
 /// # Errors
 /// A template is broken, which a test excludes.
-pub fn kinds() -> Result<Vec<(&'static Template, String, Vec<Choice>)>, CommandError> {
+pub fn kinds() -> Result<Vec<Kind>, CommandError> {
     let of = |template: &'static Template| {
         let scenario = template.default_scenario().map_err(refused)?;
         let choices = template.choices(&scenario);

@@ -159,7 +159,7 @@ fn frictions(scenario: &Scenario) -> Vec<String> {
     };
     let mut names: Vec<String> = Vec::new();
     for name in laws.iter().filter_map(|law| law.friction()?.parameter()) {
-        if !names.iter().any(|known| known == name) && !scenario.parameters[name].formula.is_some() {
+        if !names.iter().any(|known| known == name) && scenario.parameters[name].formula.is_none() {
             names.push(name.to_owned());
         }
     }
