@@ -24,8 +24,11 @@ fn session(name: &str) -> Session {
     Session::new(embedded::load(name).expect("embedded"), &Quiet).expect("solved")
 }
 
-/// How the table of a command is exported: what leads there, WHAT and OF, and a column of the CSV; or why it has none.
-const COMMANDS: &[(&str, Result<(&str, &str, &str), &str>)] = &[
+/// What leads there, WHAT and OF, and a column of the CSV; or why there is none.
+type Exported = Result<(&'static str, &'static str, &'static str), &'static str>;
+
+/// How the table of each command is exported.
+const COMMANDS: &[(&str, Exported)] = &[
     ("scenarios", Ok(("load beam", "scenarios", "title"))),
     ("params", Ok(("load beam", "params", "value"))),
     ("diff", Ok(("load beam; set f 0.4", "diff", "now"))),

@@ -69,13 +69,13 @@ fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
 }
 
 /// A kind with its title and what can be chosen of it.
-pub type Kind = (&'static Template, String, Vec<Choice>);
+pub type Offered = (&'static Template, String, Vec<Choice>);
 
 /// Every kind.
 ///
 /// # Errors
 /// A template is broken, which a test excludes.
-pub fn kinds() -> Result<Vec<Kind>, CommandError> {
+pub fn kinds() -> Result<Vec<Offered>, CommandError> {
     let of = |template: &'static Template| {
         let scenario = template.default_scenario().map_err(refused)?;
         let choices = template.choices(&scenario);
