@@ -23,6 +23,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use serde_json::{Value, json};
 
 use common::{Plates, Pull, Ready};
+use stickslip::answer::same::same_answer;
 use stickslip::contact::full_lcp::full_lcp;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::export::lcp::matrix_market;
@@ -33,7 +34,6 @@ use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::model::pair::joints;
 use stickslip::model::rules::TieBreak;
 use stickslip::model::scenario::Source;
-use stickslip::solve::follow::same_answer;
 use stickslip::solve::prepare;
 use stickslip::watch::Quiet;
 
