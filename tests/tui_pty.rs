@@ -15,6 +15,8 @@ const PATIENCE: Duration = Duration::from_secs(30);
 struct Seen {
     parser: vt100::Parser,
     bytes: usize,
+    /// All of them.
+    raw: Vec<u8>,
     /// Whether no code of 256 colours was seen.
     sixteen: bool,
 }
@@ -55,6 +57,7 @@ impl Screen {
         let seen = Arc::new(Mutex::new(Seen {
             parser: vt100::Parser::new(size(height), size(width), 0),
             bytes: 0,
+            raw: Vec::new(),
             sixteen: true,
         }));
         let theirs = Arc::clone(&seen);
@@ -64,6 +67,7 @@ impl Screen {
                 let mut seen = theirs.lock().unwrap();
                 seen.parser.process(&buffer[..count]);
                 seen.bytes += count;
+                seen.raw.extend_from_slice(&buffer[..count]);
                 seen.sixteen &= !buffer[..count].windows(4).any(|code| code == b"8;5;");
             }
         });
@@ -96,6 +100,17 @@ impl Screen {
 
     fn wait(&self, part: &str) {
         self.until(part, |screen| screen.contents().contains(part));
+    }
+
+    fn wait_for_bytes(&self, part: &[u8]) {
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            if self.seen.lock().unwrap().raw.windows(part.len()).any(|window| window == part) {
+                return;
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+        panic!("waited in vain for {}", part.escape_ascii());
     }
 
     /// Waits until nothing has come for a while; gives the number of bytes so far.
@@ -176,9 +191,9 @@ fn start_vary_step_ray_resize_quit() {
     screen.send("u");
     screen.wait("F2 = 250 kN");
     screen.send("\x1b[D\x1b[D");
-    screen.wait("Pivot 2 of 4: pair c5 slips +");
+    screen.wait("Pivot 2 (p enters at 0): pair c5 slips +");
     screen.send("\x1b[F");
-    screen.wait("Pivot 4 of 4");
+    screen.wait("Pivot 4 (p enters at 0)");
     screen.send(":set F2 330\r");
     screen.wait("ray: mechanism");
     screen.wait("mode of the ray");
@@ -379,6 +394,26 @@ fn edit_lends_the_terminal_to_the_editor() {
     screen.is_restored();
     screen.send("x\r");
     screen.until("the panes", |screen| screen.alternate_screen() && screen.contents().contains("0.625"));
+    screen.send("q");
+    assert_eq!(screen.exit(), 0);
+    screen.is_restored();
+}
+
+#[test]
+fn a_load_answers_in_the_last_line_and_y_copies() {
+    let mut screen = Screen::start(&["tui", "beam"], 80, 24);
+    screen.wait("normal");
+    screen.send(":load greco\r");
+    screen.wait("greco · ");
+    // no box stands in the way: the next key acts
+    screen.send(":load no/such.json\r");
+    screen.wait("no/such.json");
+    screen.send(":load beam\r");
+    screen.wait("F2    250");
+    screen.send("2y");
+    screen.wait("copied: 0.5");
+    // "0.5" in base64
+    screen.wait_for_bytes(b"\x1b]52;c;MC41\x07");
     screen.send("q");
     assert_eq!(screen.exit(), 0);
     screen.is_restored();

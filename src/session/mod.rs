@@ -9,6 +9,7 @@ mod change;
 pub mod commands;
 mod error;
 pub mod file_watch;
+mod gauges;
 mod history;
 pub mod journal;
 pub mod language;
@@ -41,6 +42,7 @@ pub use commands::load::write_scenarios;
 pub use commands::side::{AllAnswers, OneAnswer};
 pub use error::CommandError;
 use output::Report;
+pub use gauges::Gauge;
 pub use output::{Format, Output};
 
 use journal::{Journal, LeftOver};
@@ -133,8 +135,8 @@ pub struct Session {
     remedies: Option<(Arc<Solved>, Arc<Remedies>)>,
     /// The load history that quantities mean, until the next change or `solve`.
     followed: Option<Arc<History>>,
-    /// The geometry with the factors of the combination whose answer is shown; `None` for the scenario's own.
-    combination: Option<Arc<Prepared>>,
+    /// The combination whose answer is shown: its name, and the geometry with its factors. `None` for the scenario's own.
+    combination: Option<(String, Arc<Prepared>)>,
 }
 
 impl Session {

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::session::{AllAnswers, Next};
+use crate::model::quantity::Quantity;
+use crate::session::{AllAnswers, Gauge, Next};
 
 use super::entry::Edit;
 use super::pane::Pane;
@@ -64,6 +65,26 @@ pub enum Do {
     PreviousPlot,
     /// All answers side by side.
     Answers,
+    /// Why the selected pair is in its state.
+    Why,
+    /// What was tied at the pivot shown.
+    Ties,
+    /// Open the line of a search.
+    Search,
+    /// The next row that was sought.
+    FindNext,
+    /// The one before.
+    FindPrevious,
+    /// Copy what is under the cursor.
+    CopyValue,
+    /// Copy the command that leads there or shows it.
+    CopyCommand,
+    /// Type a `show`.
+    Ask,
+    /// Ask no longer for the selected quantity.
+    Forget,
+    /// Show what was last printed again.
+    Output,
     /// Let the ray's mode move.
     Mode,
     /// Show or hide the answer before.
@@ -167,8 +188,12 @@ pub enum Job {
     Answers,
     /// The pivots of an answer that was found by a warm start.
     Pivots,
+    /// Show the answer under this loading.
+    Show(Loading),
     /// What moves at the place shown: its states are drawn first.
     Motion,
+    /// Probes, and these quantities, in the state shown.
+    Quantities(Vec<Quantity>),
     /// What would stop the collapse shown.
     Remedies,
 }
@@ -176,8 +201,19 @@ pub enum Job {
 impl Job {
     /// Whether nobody asked for it: it gives way to whatever is asked for.
     pub fn is_background(&self) -> bool {
-        matches!(self, Job::Pivots | Job::Motion | Job::Remedies)
+        matches!(self, Job::Pivots | Job::Motion | Job::Quantities(_) | Job::Remedies)
     }
+}
+
+/// Under which loads an answer is shown.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Loading {
+    /// The factors of the scenario.
+    Own,
+    /// A combination.
+    Combination(String),
+    /// The end of a stage of the history, from 0.
+    Stage(usize),
 }
 
 /// How a job ended.
@@ -197,6 +233,10 @@ pub struct Done {
     pub next: Next,
     /// All answers, if they were asked for.
     pub answers: Option<AllAnswers>,
+    /// Values of the probes and quantities, if they were asked for.
+    pub gauges: Option<Vec<Gauge>>,
+    /// Quantities that a line asked for, to be shown from now on.
+    pub asked: Vec<Quantity>,
 }
 
 impl std::fmt::Debug for Done {
@@ -263,6 +303,8 @@ pub enum Effect {
     Edit(PathBuf),
     /// Draw everything anew.
     Redraw,
+    /// To the clipboard of the terminal.
+    Copy(String),
     /// Take or leave the mouse.
     Mouse(bool),
 }

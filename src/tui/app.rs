@@ -9,12 +9,13 @@ use indexmap::IndexMap;
 use ratatui::text::Line;
 
 use crate::model::parameter::Parameter;
-use crate::session::AllAnswers;
+use crate::model::quantity::Quantity;
 use crate::session::commands::screen::Tour;
 use crate::session::results::PairState;
+use crate::session::{AllAnswers, Gauge};
 use crate::view::style::Role;
 
-use super::action::{Job, Leave};
+use super::action::{Job, Leave, Loading};
 use super::entry::Entry;
 use super::kept::The;
 use super::keymap::Keymap;
@@ -32,6 +33,13 @@ pub enum Input {
     None,
     /// A command behind `:`.
     Command(Entry),
+    /// A part of a row to go to, behind `/`.
+    Search {
+        /// The text.
+        entry: Entry,
+        /// The row it began at.
+        from: usize,
+    },
     /// A value of this parameter.
     Value {
         /// The parameter.
@@ -57,7 +65,7 @@ pub enum Overlay {
         /// The command.
         title: String,
         /// Its output.
-        lines: Vec<Line<'static>>,
+        lines: Rc<Vec<Line<'static>>>,
         /// First line shown.
         scroll: usize,
     },
@@ -102,6 +110,8 @@ pub struct State {
     pub focus: Pane,
     /// The pane shown where there is room for one of several.
     pub tab: Pane,
+    /// Likewise on a large screen, where only Answer, Quantities and Loading share a place.
+    pub side: Pane,
     /// Whether the focused pane has the whole screen.
     pub maximized: bool,
     /// The selected parameter.
@@ -136,6 +146,18 @@ pub struct State {
     pub wanted: IndexMap<String, f64>,
     /// The pivot asked for and not shown yet.
     pub wanted_step: Option<usize>,
+    /// The loading asked for and not shown yet.
+    pub wanted_loading: Option<Loading>,
+    /// The combination that is to be shown again after every change.
+    pub combination: Option<String>,
+    /// Quantities that are shown besides the probes.
+    pub asked: Vec<Quantity>,
+    /// Probes and quantities with their values.
+    pub gauges: Vec<Gauge>,
+    /// The state they belong to.
+    pub gauges_at: Option<The<Moment>>,
+    /// The selected quantity.
+    pub quantity: usize,
     /// The job at work.
     pub running: Option<Job>,
     /// Jobs that wait for it.
@@ -154,6 +176,12 @@ pub struct State {
     pub history: Vec<String>,
     /// What lies over the panes.
     pub overlay: Overlay,
+    /// What was last printed in several lines, to be shown again.
+    pub output: Option<(String, Rc<Vec<Line<'static>>>)>,
+    /// What was searched for last.
+    pub sought: String,
+    /// The line of the overlay that was found.
+    pub found: Option<usize>,
     /// The tour, and its step.
     pub tour: Option<(Tour, usize)>,
     /// Whether the mouse is taken.
@@ -175,6 +203,7 @@ impl State {
             home,
             focus: Pane::Parameters,
             tab: Pane::Structure,
+            side: Pane::Answer,
             maximized: false,
             parameter: 0,
             pair: 0,
@@ -192,6 +221,12 @@ impl State {
             playing: false,
             wanted: IndexMap::new(),
             wanted_step: None,
+            wanted_loading: None,
+            combination: None,
+            asked: Vec::new(),
+            gauges: Vec::new(),
+            gauges_at: None,
+            quantity: 0,
             running: None,
             waiting: VecDeque::new(),
             progress: None,
@@ -201,6 +236,9 @@ impl State {
             input: Input::None,
             history: Vec::new(),
             overlay: Overlay::None,
+            output: None,
+            sought: String::new(),
+            found: None,
             tour: None,
             mouse: true,
             held: None,
@@ -221,6 +259,12 @@ impl State {
         self.phase = PERIOD / 4;
         self.playing = false;
         self.wanted.clear();
+        self.wanted_loading = None;
+        self.combination = None;
+        self.asked.clear();
+        self.gauges.clear();
+        self.gauges_at = None;
+        self.quantity = 0;
         self.sort = SortKey::File;
         self.descending = false;
         self.held = None;
@@ -265,6 +309,10 @@ impl State {
         if members.is_some_and(|members| !members.is_empty()) {
             plots.extend([Plot::Moment, Plot::Shear, Plot::Axial]);
         }
+        if self.shown.stage.is_some() && plots.len() > 1 {
+            // the pivots of a stage's rate problems are not a way to its end
+            plots.retain(|plot| *plot != Plot::P);
+        }
         if self.shown.at_ray() {
             plots.insert(0, Plot::Ray);
         }
@@ -286,6 +334,42 @@ impl State {
     pub fn step(&self) -> Option<usize> {
         let last = self.shown.last_step()?;
         self.wanted_step.or(self.shown.step()).map(|step| step.min(last))
+    }
+
+    /// All loadings that can be shown: the scenario's own factors, its combinations, its stages. Only the first where
+    /// it has neither.
+    pub fn loadings(&self) -> Vec<Loading> {
+        let scenario = &self.shown.scenario;
+        let combinations = scenario.combinations.iter().map(|(name, _)| Loading::Combination(name.clone()));
+        let stages = (0..scenario.stages.len()).map(Loading::Stage);
+        [Loading::Own].into_iter().chain(combinations).chain(stages).collect()
+    }
+
+    /// The loading shown or asked for.
+    pub fn loading(&self) -> Loading {
+        if let Some(wanted) = &self.wanted_loading {
+            return wanted.clone();
+        }
+        match (self.shown.stage, &self.shown.combination) {
+            (Some(stage), _) => Loading::Stage(stage),
+            (None, Some(name)) => Loading::Combination(name.clone()),
+            (None, None) => Loading::Own,
+        }
+    }
+
+    /// Whether a pane has something to say about this scenario that others do not.
+    pub fn offers(&self, pane: Pane) -> bool {
+        match pane {
+            Pane::Quantities => !(self.shown.scenario.probes.is_empty() && self.asked.is_empty()),
+            Pane::Loading => self.loadings().len() > 1,
+            _ => true,
+        }
+    }
+
+    /// How many rows the pairs have: of a bare LCP those of z and w.
+    pub fn pair_count(&self) -> usize {
+        let moment = &self.shown.moment;
+        moment.solution.as_ref().map_or(moment.pairs.len(), |solution| solution.z.len())
     }
 
     /// The pairs in the chosen order.

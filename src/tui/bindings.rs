@@ -23,7 +23,7 @@ pub enum Context {
 
 impl Context {
     /// In the order of the help.
-    pub const ALL: [Context; 10] = [
+    pub const ALL: [Context; 12] = [
         Context::Everywhere,
         Context::Pane(Pane::Structure),
         Context::Pane(Pane::Parameters),
@@ -31,6 +31,8 @@ impl Context {
         Context::Pane(Pane::Pivots),
         Context::Pane(Pane::Plot),
         Context::Pane(Pane::Answer),
+        Context::Pane(Pane::Quantities),
+        Context::Pane(Pane::Loading),
         Context::Tour,
         Context::Overlay,
         Context::Entry,
@@ -42,8 +44,8 @@ impl Context {
             Context::Everywhere => "Everywhere",
             Context::Pane(pane) => pane.title(),
             Context::Tour => "Tour",
-            Context::Overlay => "Help, output, answers",
-            Context::Entry => "Typing a command or a value",
+            Context::Overlay => "Over the panes: keys, output, answers",
+            Context::Entry => "Typing a command, a value, a search",
         }
     }
 }
@@ -80,21 +82,29 @@ use Context::{Entry, Everywhere, Overlay as Over, Tour};
 const STRUCTURE: Context = Context::Pane(Pane::Structure);
 const PARAMETERS: Context = Context::Pane(Pane::Parameters);
 const PAIRS: Context = Context::Pane(Pane::Pairs);
+const PIVOTS: Context = Context::Pane(Pane::Pivots);
+const QUANTITIES: Context = Context::Pane(Pane::Quantities);
 
 /// All keys.
 #[rustfmt::skip]
 pub const BINDINGS: &[Binding] = &[
     row(Everywhere, "help", &["?", "f1"], Do::Help, "show the keys", "help"),
+    row(Everywhere, "leave", &["q"], Do::Leave, "leave: back to where it was started, shell or command line", "quit"),
     row(Everywhere, "next-pane", &["tab"], Do::NextPane, "next pane", "pane"),
     row(Everywhere, "step-back", &["left"], Do::StepBack, "one pivot back: every pane shows it", "step"),
     row(Everywhere, "step-on", &["right"], Do::StepOn, "one pivot on", "step"),
-    row(Everywhere, "up", &["up"], Do::Up, "select the row above; in Pivots one pivot back, in Plots the plot before", "select"),
+    row(Everywhere, "up", &["up"], Do::Up, "select the row above; in Pivots one pivot back, in Plots the plot before, in Loading the loading before", "select"),
     row(Everywhere, "down", &["down"], Do::Down, "select the row below", "select"),
     row(Everywhere, "more", &["+", "="], Do::Vary(10), "selected parameter one step up, solved at once", "vary"),
     row(Everywhere, "less", &["-", "_"], Do::Vary(-10), "one step down", "vary"),
     row(Everywhere, "command", &[":"], Do::Command, "type any command of the REPL; Tab completes", "command"),
-    row(Everywhere, "leave", &["q"], Do::Leave, "leave: back to where it was started, shell or command line", "quit"),
+    row(Everywhere, "search", &["/"], Do::Search, "go to a row that contains a text", "search"),
     row(Everywhere, "maximize", &["z"], Do::Maximize, "give the pane the whole screen, or take it back", "large"),
+    row(Everywhere, "find-next", &["n"], Do::FindNext, "the next row that contains it", ""),
+    row(Everywhere, "find-previous", &["N"], Do::FindPrevious, "the one before", ""),
+    row(Everywhere, "copy-value", &["y"], Do::CopyValue, "copy what is under the cursor (OSC 52: over SSH, too)", ""),
+    row(Everywhere, "copy-command", &["Y"], Do::CopyCommand, "copy the command that sets or shows it", ""),
+    row(Everywhere, "output", &["O"], Do::Output, "show again what was last printed", ""),
     row(Everywhere, "exit", &["Q"], Do::Exit, "end the program", ""),
     row(Everywhere, "to-repl", &["R"], Do::ToRepl, "go on at the command line, same session", ""),
     row(Everywhere, "previous-pane", &["shift-tab"], Do::PreviousPane, "pane before", ""),
@@ -104,6 +114,8 @@ pub const BINDINGS: &[Binding] = &[
     row(Everywhere, "pivots", &["4"], Do::Focus(Pane::Pivots), "go to Pivots", ""),
     row(Everywhere, "plots", &["5"], Do::Focus(Pane::Plot), "go to Plots", ""),
     row(Everywhere, "answer", &["6"], Do::Focus(Pane::Answer), "go to Answer", ""),
+    row(Everywhere, "quantities", &["7"], Do::Focus(Pane::Quantities), "go to Quantities", ""),
+    row(Everywhere, "loading", &["8"], Do::Focus(Pane::Loading), "go to Loading", ""),
     row(Everywhere, "page-up", &["pageup"], Do::PageUp, "ten rows up", ""),
     row(Everywhere, "page-down", &["pagedown"], Do::PageDown, "ten rows down", ""),
     row(Everywhere, "step-first", &["home"], Do::StepFirst, "first pivot: the entry of p", ""),
@@ -140,10 +152,18 @@ pub const BINDINGS: &[Binding] = &[
     row(STRUCTURE, "deform-auto", &["A"], Do::Look(DeformAuto), "displacements at the automatic scale", ""),
     row(STRUCTURE, "loads", &["L"], Do::Look(Loads), "show or hide the loads", "loads"),
 
+    row(STRUCTURE, "why-here", &["enter"], Do::Why, "why the selected pair is in its state", "why"),
+
     row(PARAMETERS, "type-value", &["enter"], Do::TypeValue, "type the value", "type"),
 
+    row(PAIRS, "why", &["enter"], Do::Why, "why the pair is in its state", "why"),
     row(PAIRS, "sort", &["s"], Do::Sort, "sort by the next key", "sort"),
     row(PAIRS, "sort-reverse", &["S"], Do::SortReverse, "turn the order round", ""),
+
+    row(PIVOTS, "ties", &["enter"], Do::Ties, "what was tied at the pivot, and what decided", "ties"),
+
+    row(QUANTITIES, "ask", &["enter"], Do::Ask, "ask for one more quantity: `show …`", "ask"),
+    row(QUANTITIES, "forget", &["x", "delete"], Do::Forget, "ask no longer for the selected one", "forget"),
 
     row(Tour, "tour-next", &["enter"], Do::TourNext, "next step of the tour", ""),
     row(Tour, "tour-back", &["backspace"], Do::TourBack, "step before", ""),
@@ -156,6 +176,11 @@ pub const BINDINGS: &[Binding] = &[
     row(Over, "over-page-down", &["pagedown", "space"], Do::PageDown, "a page down", ""),
     row(Over, "over-top", &["home", "g"], Do::Top, "the top", ""),
     row(Over, "over-bottom", &["end", "G"], Do::Bottom, "the end", ""),
+    row(Over, "over-search", &["/"], Do::Search, "go to a line that contains a text", "search"),
+    row(Over, "over-find-next", &["n"], Do::FindNext, "the next line that contains it", ""),
+    row(Over, "over-find-previous", &["N"], Do::FindPrevious, "the one before", ""),
+    row(Over, "over-copy-value", &["y"], Do::CopyValue, "copy the text", "copy"),
+    row(Over, "over-copy-command", &["Y"], Do::CopyCommand, "copy the command", ""),
     row(Over, "over-command", &[":"], Do::Command, "type another command", "command"),
     row(Over, "over-help", &["?", "f1"], Do::Help, "show the keys", ""),
     row(Over, "over-redraw", &["ctrl-l"], Do::Redraw, "draw everything anew", ""),

@@ -13,12 +13,13 @@ use crate::view::difference::Change;
 use crate::view::status::{class_word, outcome_word, pivot_count};
 use crate::view::style::Role;
 
+use super::action::Loading;
 use super::app::State;
 use super::bindings::Context;
 use super::layout::{self, Places};
 use super::paint::inside;
 use super::pane::Pane;
-use super::{input, overlay, panes, tour};
+use super::{input, overlay, panes, prompt, tour};
 
 /// Draws everything.
 pub fn draw(state: &State, frame: &mut Frame<'_>) {
@@ -48,7 +49,7 @@ pub fn draw_on(state: &State, area: Rect, buffer: &mut Buffer) -> Option<(u16, u
         draw_trouble(state, trouble, places.sentence, buffer);
     }
     overlay::draw(state, area, buffer);
-    match overlay::draw_input(state, places.bottom, buffer) {
+    match prompt::draw(state, places.bottom, buffer) {
         Some(cursor) => Some(cursor),
         None => {
             draw_bottom(state, places.bottom, buffer);
@@ -121,21 +122,28 @@ fn outcome(state: &State) -> (String, Role) {
     let Some(answer) = shown.answer() else {
         return ("not solved yet".into(), Role::Warning);
     };
-    let mut text = match &answer.ray {
-        Some(ray) => format!(
-            "ray: {} · p {}",
-            class_word(ray.class),
-            with_unit(
-                &short(ray.p),
-                crate::view::force_unit(&shown.scenario.units).filter(|_| !shown.pairs().is_empty()).as_deref()
-            )
-        ),
-        None => outcome_word(answer.outcome).to_owned(),
+    let loading = match state.loading() {
+        Loading::Own => String::new(),
+        loading => format!("{} · ", panes::loading::name(state, &loading)),
     };
+    let mut text = loading
+        + &match &answer.ray {
+            Some(ray) => format!(
+                "ray: {} · p {}",
+                class_word(ray.class),
+                with_unit(
+                    &short(ray.p),
+                    crate::view::force_unit(&shown.scenario.units).filter(|_| !shown.pairs().is_empty()).as_deref()
+                )
+            ),
+            None => outcome_word(answer.outcome).to_owned(),
+        };
     if answer.marginal {
         text.push_str(", marginal");
     }
-    text.push_str(&format!(" · {}", pivot_count(answer)));
+    if shown.stage.is_none() {
+        text.push_str(&format!(" · {}", pivot_count(answer)));
+    }
     if !shown.moment.changes.is_empty() {
         let count = shown.moment.changes.len();
         let s = if count == 1 { "" } else { "s" };
@@ -226,7 +234,7 @@ fn draw_about(state: &State, area: Rect, buffer: &mut Buffer) {
     let text = match state.focus {
         Pane::Parameters => panes::parameters::about(state),
         Pane::Pairs | Pane::Structure => panes::pairs::about(state),
-        Pane::Pivots | Pane::Plot | Pane::Answer => changes(state),
+        Pane::Pivots | Pane::Plot | Pane::Answer | Pane::Quantities | Pane::Loading => changes(state),
     };
     if let Some(text) = text {
         let width = usize::from(area.width);

@@ -31,7 +31,14 @@ pub struct Places {
 }
 
 /// Panes that share the large place of a middling screen.
-pub const SHARED: [Pane; 4] = [Pane::Structure, Pane::Plot, Pane::Pairs, Pane::Answer];
+pub const SHARED: [Pane; 6] = [Pane::Structure, Pane::Plot, Pane::Pairs, Pane::Answer, Pane::Quantities, Pane::Loading];
+/// Panes that share a place of a large screen.
+pub const SIDE: [Pane; 3] = [Pane::Answer, Pane::Quantities, Pane::Loading];
+
+/// Those that have something to say, and the one in front.
+fn offered(state: &State, panes: &[Pane], front: Pane) -> Vec<Pane> {
+    panes.iter().copied().filter(|pane| *pane == front || state.offers(*pane)).collect()
+}
 
 /// Divides the screen; `None` if it is too small.
 pub fn places(state: &State) -> Option<Places> {
@@ -68,7 +75,7 @@ pub fn places(state: &State) -> Option<Places> {
     let mut places = Places { title: Rect::new(0, 0, width, 1), sentence, about, bottom, ..Places::default() };
     if state.maximized || width < SEVERAL.0 || height < SEVERAL.1 {
         places.panes.push((state.focus, body));
-        places.tabs = Some((body, Pane::ALL.to_vec()));
+        places.tabs = Some((body, offered(state, &Pane::ALL, state.focus)));
     } else if width < ALL.0 || height < ALL.1 {
         middle(state, body, &mut places);
     } else {
@@ -108,10 +115,10 @@ fn middle(state: &State, body: Rect, places: &mut Places) {
             tab => tab,
         };
         places.panes = vec![(front, rest), (Pane::Structure, structure)];
-        places.tabs = Some((rest, SHARED[1..].to_vec()));
+        places.tabs = Some((rest, offered(state, &SHARED[1..], front)));
     } else {
         places.panes = vec![(state.tab, left)];
-        places.tabs = Some((left, SHARED.to_vec()));
+        places.tabs = Some((left, offered(state, &SHARED, state.tab)));
     }
     places.panes.push((Pane::Parameters, parameters));
     places.panes.push((Pane::Pivots, pivots));
@@ -128,7 +135,9 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
     let (structure, plot) = cut_rows(left, rows.max(5));
     let pivot_rows = state.shown.answer().map_or(0, |answer| answer.pivots.len());
     let (parameters, rest) = cut_rows(right, parameter_rows(state).min(right.height / 3));
-    let (rest, answer) = cut_rows(rest, rest.height - 9.min(rest.height / 4));
+    let sides = offered(state, &SIDE, state.side);
+    let needed = if sides.len() > 1 { 11 } else { 9 };
+    let (rest, side) = cut_rows(rest, rest.height - needed.min(rest.height / 4));
     // the pivots take what they need, at most half; the pairs have more to show
     let needed = u16::try_from(pivot_rows).unwrap_or(u16::MAX).saturating_add(3);
     let (pivots, pairs) = cut_rows(rest, needed.clamp(6, rest.height / 2));
@@ -138,8 +147,9 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
         (Pane::Parameters, parameters),
         (Pane::Pivots, pivots),
         (Pane::Pairs, pairs),
-        (Pane::Answer, answer),
+        (state.side, side),
     ];
+    places.tabs = (sides.len() > 1).then_some((side, sides));
 }
 
 /// Whether a structure is so low that it needs few rows.

@@ -5,12 +5,15 @@
 //! [`worker`], so that the screen answers while it computes. The keys are one table, [`bindings::BINDINGS`].
 
 pub mod action;
+pub mod answers;
 pub mod app;
 pub mod bindings;
+pub mod clipboard;
 pub mod config;
 pub mod draw;
 pub mod entry;
 pub mod frame;
+pub mod help;
 pub mod input;
 pub mod kept;
 pub mod key;
@@ -22,6 +25,7 @@ pub mod paint;
 pub mod pane;
 pub mod panes;
 pub mod pictures;
+pub mod prompt;
 pub mod runtime;
 pub mod shown;
 pub mod terminal;

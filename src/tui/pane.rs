@@ -15,11 +15,24 @@ pub enum Pane {
     Plot,
     /// Outcome, check, rules.
     Answer,
+    /// Probes, and what was asked for.
+    Quantities,
+    /// Combinations of the loads and stages of their history.
+    Loading,
 }
 
 impl Pane {
     /// All panes, in the order of their numbers.
-    pub const ALL: [Pane; 6] = [Pane::Structure, Pane::Parameters, Pane::Pairs, Pane::Pivots, Pane::Plot, Pane::Answer];
+    pub const ALL: [Pane; 8] = [
+        Pane::Structure,
+        Pane::Parameters,
+        Pane::Pairs,
+        Pane::Pivots,
+        Pane::Plot,
+        Pane::Answer,
+        Pane::Quantities,
+        Pane::Loading,
+    ];
 
     /// Its title.
     pub fn title(self) -> &'static str {
@@ -30,6 +43,8 @@ impl Pane {
             Pane::Pivots => "Pivots",
             Pane::Plot => "Plots",
             Pane::Answer => "Answer",
+            Pane::Quantities => "Quantities",
+            Pane::Loading => "Loading",
         }
     }
 
@@ -46,6 +61,8 @@ impl Pane {
             (Pane::Plot, false) => "along the contact; p: the next plot",
             (Pane::Plot, true) => "p falls to 0, or ends in a ray",
             (Pane::Answer, _) => "how the run ended, and its check",
+            (Pane::Quantities, _) => "probes, and what `:show` asks for",
+            (Pane::Loading, _) => "combinations and stages, shown one by one",
         }
     }
 
@@ -76,6 +93,38 @@ pub enum Plot {
     Axial,
     /// Direction of the ray.
     Ray,
+}
+
+impl Plot {
+    /// What it is called.
+    pub fn title(self) -> &'static str {
+        match self {
+            Plot::Slip => "slip",
+            Plot::Force => "force",
+            Plot::Pressure => "pressure",
+            Plot::Gap => "opening gap",
+            Plot::P => "p over the pivots",
+            Plot::Moment => "moment",
+            Plot::Shear => "shear",
+            Plot::Axial => "axial",
+            Plot::Ray => "ray mode",
+        }
+    }
+
+    /// The command that draws it; the ray's direction over the zone has none.
+    pub fn command(self) -> Option<&'static str> {
+        Some(match self {
+            Plot::Slip => "plot slip",
+            Plot::Force => "plot force",
+            Plot::Pressure => "plot pressure",
+            Plot::Gap => "plot gap",
+            Plot::P => "plot p",
+            Plot::Moment => "plot moment",
+            Plot::Shear => "plot shear",
+            Plot::Axial => "plot axial",
+            Plot::Ray => return None,
+        })
+    }
 }
 
 /// Order of the pairs.

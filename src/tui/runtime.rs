@@ -311,6 +311,7 @@ impl Loop {
                     effects.extend(update(&mut self.state, Action::Edited(edited)));
                 }
                 Effect::Redraw => self.redraw()?,
+                Effect::Copy(text) => self.screen.copy(&text)?,
                 Effect::Mouse(mouse) => self.screen.set_mouse(mouse)?,
             }
         }

@@ -4,11 +4,11 @@ use std::sync::{Arc, OnceLock};
 
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
-use crate::model::scenario::{Scenario, Source};
+use crate::model::scenario::{Scenario, Source, Stage};
 use crate::model::structure::Structure;
 use crate::session::language::complete::Vocabulary;
 use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, RayClass, Start};
-use crate::session::{Prepared, Remedies, Session, Solved};
+use crate::session::{History, Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
 
 /// A session at one moment.
@@ -28,6 +28,12 @@ pub struct Shown {
     pub previous: Option<Arc<Solved>>,
     /// The pivot chosen; `None` at the end.
     pub position: Option<usize>,
+    /// The load history that was followed.
+    pub history: Option<Arc<History>>,
+    /// Its stage that is shown, from 0, in the place of the answer; `Some` while there is a history.
+    pub stage: Option<usize>,
+    /// The combination whose answer is shown.
+    pub combination: Option<String>,
     /// The state there.
     pub moment: Arc<Moment>,
     /// Whether the files of the scenario are watched.
@@ -96,15 +102,23 @@ impl Shown {
             solved: session.solved(),
             previous: session.previous(),
             position: session.position(),
+            history: session.history_followed(),
+            stage: None,
+            combination: session.combination().map(str::to_owned),
             moment: Arc::default(),
             watches: session.watched().is_some(),
             remedies: session.remedies(),
             vocabulary: Arc::default(),
         };
+        if let Some(history) = &shown.history {
+            let kept = last.filter(|last| last.history.as_ref().is_some_and(|last| Arc::ptr_eq(last, history)));
+            shown.stage = kept.and_then(|last| last.stage).or(history.stages.len().checked_sub(1));
+            shown.position = None;
+        }
         match last.filter(|last| last.is_same_moment(&shown)) {
             Some(last) => shown.moment = Arc::clone(&last.moment),
             None => {
-                let mut moment = Moment::of(session);
+                let mut moment = Moment::of(session, &shown);
                 match last.filter(|last| Arc::ptr_eq(&last.scenario, &shown.scenario) && shown.needs_motion()) {
                     Some(last) => (moment.motion, moment.is_behind) = (Arc::clone(&last.moment.motion), true),
                     None => moment.motion = Arc::new(Motion::of(session)),
@@ -121,20 +135,32 @@ impl Shown {
     }
 
     fn is_same_moment(&self, other: &Shown) -> bool {
-        let same = |a: &Option<Arc<Solved>>, b: &Option<Arc<Solved>>| match (a, b) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
+        fn same<T>(a: &Option<Arc<T>>, b: &Option<Arc<T>>) -> bool {
+            match (a, b) {
+                (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+                (None, None) => true,
+                _ => false,
+            }
+        }
         self.solved.is_some()
             && same(&self.solved, &other.solved)
             && same(&self.previous, &other.previous)
-            && self.position == other.position
+            && same(&self.history, &other.history)
+            && (self.position, self.stage) == (other.position, other.stage)
     }
 
     /// Whether something moves that the answer does not contain.
     fn needs_motion(&self) -> bool {
         self.structure().is_some() && (self.position.is_some() || self.at_ray())
+    }
+
+    /// The same at the end of another stage, from 0.
+    pub fn at_stage(mut self, stage: usize, session: &Session) -> Shown {
+        if self.stage.is_some() && self.stage != Some(stage) {
+            self.stage = Some(stage);
+            self.moment = Arc::new(Moment::of(session, &self));
+        }
+        self
     }
 
     /// Whether displacements are still to come: see [`Shown::complete`].
@@ -156,14 +182,40 @@ impl Shown {
         self.vocabulary.get_or_init(|| Vocabulary::of(&self.scenario, &self.values))
     }
 
-    /// The answer.
+    /// The answer, or the end of the stage shown.
     pub fn answer(&self) -> Option<&Answer> {
-        self.solved.as_deref().map(|solved| &solved.answer)
+        match self.stage {
+            Some(stage) => self.stage_end(stage),
+            None => self.solved.as_deref().map(|solved| &solved.answer),
+        }
     }
 
-    /// The answer before the last change.
+    fn stage_end(&self, stage: usize) -> Option<&Answer> {
+        Some(&self.history.as_ref()?.stages.get(stage)?.end)
+    }
+
+    /// The answer before the last change; before a stage the one ahead of it.
     pub fn before(&self) -> Option<&Answer> {
-        self.previous.as_deref().map(|solved| &solved.answer)
+        match self.stage {
+            Some(stage) => self.stage_end(stage.checked_sub(1)?),
+            None => self.previous.as_deref().map(|solved| &solved.answer),
+        }
+    }
+
+    /// By which the factor of a load case is multiplied in the loading shown.
+    pub fn multiplier(&self, case: &str) -> f64 {
+        let scenario = &self.scenario;
+        let of = |name: &String| scenario.combinations.iter().find(|(known, _)| known == name);
+        let shown = match (self.stage, &self.combination) {
+            (Some(stage), _) => scenario.stages.get(stage),
+            (None, Some(name)) => of(name).map(|(_, combination)| combination),
+            (None, None) => None,
+        };
+        let named = |stage: &Stage| {
+            let number = stage.multipliers.iter().find(|(known, _)| known == case);
+            number.map_or(0.0, |(_, number)| number.value(&self.values))
+        };
+        shown.map_or(1.0, named)
     }
 
     /// Pairs at the pivot shown.
@@ -199,8 +251,11 @@ impl Shown {
         }
     }
 
-    /// Step of the last pivot.
+    /// Step of the last pivot; a stage has none that led to its end alone.
     pub fn last_step(&self) -> Option<usize> {
+        if self.stage.is_some() {
+            return None;
+        }
         self.answer()?.pivot_count.checked_sub(1)
     }
 
@@ -210,20 +265,20 @@ impl Shown {
         Some(self.position.unwrap_or(last))
     }
 
-    /// Whether the ray itself is shown: its end, not a pivot on the way.
+    /// Whether the ray itself is shown: its end, not a pivot on the way, not a stage that ended in one.
     pub fn at_ray(&self) -> bool {
-        self.position.is_none() && self.answer().is_some_and(|answer| answer.ray.is_some())
+        self.stage.is_none() && self.position.is_none() && self.answer().is_some_and(|answer| answer.ray.is_some())
     }
 
     /// Whether this is a collapse of which it is not known yet what would stop it.
     pub fn lacks_remedies(&self) -> bool {
         let ray = self.answer().and_then(|answer| answer.ray.as_ref());
-        self.remedies.is_none() && ray.is_some_and(|ray| ray.class == RayClass::Mechanism)
+        self.stage.is_none() && self.remedies.is_none() && ray.is_some_and(|ray| ray.class == RayClass::Mechanism)
     }
 
     /// Whether the answer was followed from the last one and has no pivots yet.
     pub fn is_warm(&self) -> bool {
-        self.answer().is_some_and(|answer| answer.start != Start::Cold)
+        self.stage.is_none() && self.answer().is_some_and(|answer| answer.start != Start::Cold)
     }
 
     /// Whether the answer before is worth showing beside the present one.
@@ -245,10 +300,13 @@ impl Shown {
 }
 
 impl Moment {
-    fn of(session: &Session) -> Self {
-        let pairs = session.pairs();
-        let changes = match (session.answer(), session.previous_answer()) {
-            (Some(now), Some(before)) if session.position().is_none() => difference::changes(before, now),
+    fn of(session: &Session, shown: &Shown) -> Self {
+        let pairs = match (shown.stage, shown.answer()) {
+            (Some(_), Some(end)) => end.pairs.clone(),
+            _ => session.pairs(),
+        };
+        let changes = match (shown.answer(), shown.before()) {
+            (Some(now), Some(before)) if shown.position.is_none() => difference::changes(before, now),
             _ => Vec::new(),
         };
         // changes come in the order of the pairs
@@ -257,7 +315,10 @@ impl Moment {
             .iter()
             .map(|pair| rest.next_if(|(_, change)| change.pair == pair.id).map(|(index, _)| index))
             .collect();
-        let (solution, p) = (session.solution(), session.p());
+        let (solution, p) = match shown.stage {
+            Some(_) => (None, None),
+            None => (session.solution(), session.p()),
+        };
         Moment { pairs, changes, change_of, solution, p, ..Moment::default() }
     }
 }

@@ -18,6 +18,7 @@ use ratatui::backend::CrosstermBackend;
 use crate::signals::{self, Signals};
 
 use super::app::State;
+use super::clipboard;
 use super::draw;
 use super::frame::Frame;
 
@@ -138,6 +139,15 @@ impl Screen {
         take(self.mouse)?;
         self.clear()?;
         Ok(result)
+    }
+
+    /// Copies a text into the clipboard of the terminal.
+    ///
+    /// # Errors
+    /// The terminal does not take it.
+    pub fn copy(&mut self, text: &str) -> io::Result<()> {
+        let within_tmux = std::env::var_os("TMUX").is_some_and(|place| !place.is_empty());
+        clipboard::copy(self.terminal.backend_mut(), text, within_tmux)
     }
 
     /// Gives the terminal back and stops the program; goes on after `fg`.

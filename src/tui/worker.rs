@@ -8,11 +8,12 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use std::{io, thread};
 
+use crate::session::language::tokens::quote;
 use crate::session::{CommandError, Next, Output, Session};
 use crate::view::style::Style;
 use crate::watch::Watch;
 
-use super::action::{Action, Done, Job};
+use super::action::{Action, Done, Job, Loading};
 use super::shown::Shown;
 
 /// Shorter work shows no progress.
@@ -23,19 +24,32 @@ const PACE: Duration = Duration::from_millis(250);
 /// Does one job after `last` was shown. The session is as it was if it fails.
 pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watch: &dyn Watch) -> Done {
     let mut output = Vec::new();
-    let mut answers = None;
+    let (mut answers, mut gauges, mut asked) = (None, None, Vec::new());
     let result = match &job {
         Job::Set { name, value } => run(session, &format!("set {name} {value}"), &mut output, style, watch),
         Job::Step(step) => run(session, &format!("step to {step}"), &mut output, style, watch),
         Job::Line { text, .. } => run(session, text, &mut output, style, watch),
         Job::Pivots => session.ensure_pivots(&mut Output::text(&mut output, style, watch)).map(|()| Next::Continue),
+        Job::Show(loading) => show(session, loading, &mut output, style, watch),
         Job::Motion => Ok(Next::Continue),
+        Job::Quantities(asked) => {
+            let values = session.gauges(asked, last.stage, watch);
+            if watch.stop() {
+                Err(CommandError::Interrupted)
+            } else {
+                gauges = Some(values);
+                Ok(Next::Continue)
+            }
+        }
         Job::Remedies => session.ensure_remedies(watch).map(|()| Next::Continue),
         Job::Answers => session.all_answers(watch).map(|found| {
             answers = Some(found);
             Next::Continue
         }),
     };
+    if let (Job::Line { text, .. }, Ok(_)) = (&job, &result) {
+        asked = session.quantities_asked(text);
+    }
     let (next, error, interrupted) = match result {
         Ok(next) => (next, None, false),
         Err(error) => {
@@ -44,8 +58,10 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
         }
     };
     let mut shown = Shown::after(last, session);
-    if job == Job::Motion {
-        shown.complete(session);
+    match job {
+        Job::Motion => shown.complete(session),
+        Job::Show(Loading::Stage(stage)) => shown = shown.at_stage(stage, session),
+        _ => {}
     }
     Done {
         job,
@@ -55,6 +71,28 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
         interrupted,
         next,
         answers,
+        gauges,
+        asked,
+    }
+}
+
+/// The answer under another loading. A history that was followed serves all its stages.
+fn show(
+    session: &mut Session,
+    loading: &Loading,
+    output: &mut Vec<u8>,
+    style: Style,
+    watch: &dyn Watch,
+) -> Result<Next, CommandError> {
+    match loading {
+        Loading::Own => run(session, "solve", output, style, watch),
+        Loading::Combination(name) => run(session, &format!("combine {}", quote(name)), output, style, watch),
+        Loading::Stage(stage) => {
+            if session.history_followed().is_none() {
+                session.follow_stages(watch)?;
+            }
+            session.stage_answer(stage + 1).map(|_| Next::Continue)
+        }
     }
 }
 
@@ -105,6 +143,8 @@ impl Worker {
                     interrupted: false,
                     next: Next::Continue,
                     answers: None,
+                    gauges: None,
+                    asked: Vec::new(),
                 });
                 last = Arc::clone(&done.shown);
                 send(Action::Done(Box::new(done)));

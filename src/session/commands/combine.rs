@@ -156,7 +156,7 @@ impl Session {
         if let (Some(_), [one]) = (name, &all[..]) {
             let (solved, prepared) = (Arc::clone(&one.solved), Arc::clone(&one.prepared));
             self.take_answer(Some(solved));
-            self.combination = Some(prepared);
+            self.combination = Some((one.name.clone(), prepared));
         }
         Ok(())
     }

@@ -78,7 +78,7 @@ impl Session {
         let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
             return read(&Facts::of_nothing(scenario, &self.now.values, watch));
         };
-        let shown = self.combination.as_ref().unwrap_or(prepared);
+        let shown = self.combination.as_ref().map_or(prepared, |(_, combined)| combined);
         let facts = Facts::of_answer(self.now.case(shown, watch), solved);
         if let Some(history) = &self.followed {
             return read(&facts.of_history(history));

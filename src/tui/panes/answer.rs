@@ -13,7 +13,8 @@ use crate::tui::pictures::{AnswerKey, Sheet};
 use crate::view::style::Role;
 use crate::view::{self, status};
 
-fn lines(state: &State, width: usize) -> Rc<Vec<Line<'static>>> {
+/// The answer in words, in lines of `width` columns.
+pub fn lines(state: &State, width: usize) -> Rc<Vec<Line<'static>>> {
     let sheet = Sheet { width, look: state.look };
     let looking = state.running == Some(Job::Remedies);
     let key = AnswerKey::new(&state.shown.moment, state.shown.remedies.as_ref(), looking, sheet);

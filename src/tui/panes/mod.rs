@@ -2,10 +2,12 @@
 
 pub mod answer;
 mod legend;
+pub mod loading;
 pub mod pairs;
 pub mod parameters;
 pub mod pivots;
 pub mod plot;
+pub mod quantities;
 mod strip;
 pub mod structure;
 
@@ -27,6 +29,8 @@ pub fn draw(state: &State, pane: Pane, area: Rect, buffer: &mut Buffer) {
         Pane::Pivots => pivots::draw(state, area, buffer),
         Pane::Plot => plot::draw(state, area, buffer),
         Pane::Answer => answer::draw(state, area, buffer),
+        Pane::Quantities => quantities::draw(state, area, buffer),
+        Pane::Loading => loading::draw(state, area, buffer),
     }
 }
 
@@ -36,6 +40,7 @@ pub fn note(state: &State, pane: Pane) -> String {
         Pane::Structure => structure::note(state),
         Pane::Pairs => pairs::note(state),
         Pane::Pivots => pivots::note(state),
-        Pane::Parameters | Pane::Plot | Pane::Answer => String::new(),
+        Pane::Loading => loading::note(state),
+        Pane::Parameters | Pane::Plot | Pane::Answer | Pane::Quantities => String::new(),
     }
 }

@@ -6,25 +6,30 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
+use crate::model::scenario::Source;
 use crate::session::results::PairState;
 use crate::text::number::{short, with_unit};
 use crate::tui::app::State;
 use crate::tui::kept::The;
 use crate::tui::listing::{GUTTER, Listing};
-use crate::tui::paint::{inside, put_lines, put_text, report};
+use crate::tui::paint::{inside, put_text, report};
 use crate::tui::pane::{Pane, SortKey};
 use crate::tui::pictures::Sheet;
 use crate::view::pairs::{state_words, write};
+use crate::view::pivots::title;
 use crate::view::style::Role;
 use crate::view::{force_unit, length_unit};
 
 /// The order, if it is not that of the file.
 pub fn note(state: &State) -> String {
     if state.sort == SortKey::File && !state.descending {
+        if state.shown.stage.is_some() {
+            return super::loading::note(state);
+        }
         return if state.shown.at_ray() {
             "last vertex before the ray".to_owned()
         } else {
-            state.shown.position.map_or(String::new(), |step| format!("pivot {step}"))
+            state.shown.position.map_or(String::new(), title)
         };
     }
     let arrow = if state.descending { "↓" } else { "↑" };
@@ -63,7 +68,7 @@ pub fn pair_at(state: &State, area: Rect, y: u16) -> Option<usize> {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
     if let Some(solution) = &state.shown.moment.solution {
-        draw_solution(state, &solution.z, &solution.w, area, buffer);
+        draw_solution(state, (&solution.z, &solution.w), area, buffer);
         return;
     }
     let order = state.order();
@@ -76,19 +81,45 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     listing(state, area.width).draw(look, selected, changed, area, buffer);
 }
 
-/// z and w of a bare LCP.
-fn draw_solution(state: &State, z: &[f64], w: &[f64], area: Rect, buffer: &mut Buffer) {
-    let look = state.look;
-    let names: Vec<String> = match &state.shown.scenario.source {
-        crate::model::scenario::Source::Lcp(given) => given.names.clone(),
-        _ => (1..=z.len()).map(|i| i.to_string()).collect(),
-    };
-    let mut lines = vec![Line::styled(format!("{:<8}{:>14}{:>14}", "row", "z", "w"), look.role(Role::Header))];
-    for (i, (z, w)) in z.iter().zip(w).enumerate() {
-        let name = names.get(i).map_or("", String::as_str);
-        lines.push(Line::raw(format!("{:<8}{:>14}{:>14}", look.fit(name, 8), short(*z), short(*w))));
+/// Names of the rows of a bare LCP.
+pub fn names(state: &State) -> Vec<String> {
+    let count = state.shown.moment.solution.as_ref().map_or(0, |solution| solution.z.len());
+    match &state.shown.scenario.source {
+        Source::Lcp(given) if given.names.len() == count => given.names.clone(),
+        _ => (1..=count).map(|row| row.to_string()).collect(),
     }
-    put_lines(&lines, area, buffer);
+}
+
+/// z and w of a bare LCP.
+fn draw_solution(state: &State, (z, w): (&[f64], &[f64]), area: Rect, buffer: &mut Buffer) {
+    let look = state.look;
+    let row = |((name, z), w): ((&String, &f64), &f64)| {
+        Line::raw(format!("{:<8}{:>14}{:>14}", look.fit(name, 8), short(*z), short(*w)))
+    };
+    let listing = Listing {
+        heading: vec![Line::styled(format!("{:<8}{:>14}{:>14}", "row", "z", "w"), look.role(Role::Header))],
+        rows: names(state).iter().zip(z).zip(w).map(row).collect(),
+    };
+    listing.draw(look, (state.pair, state.focus == Pane::Pairs), |_| false, area, buffer);
+}
+
+/// The selected pair with all digits, to be copied.
+pub fn copied(state: &State) -> Option<String> {
+    if let Some(solution) = &state.shown.moment.solution {
+        let (z, w) = (solution.z.get(state.pair)?, solution.w.get(state.pair)?);
+        return Some(format!("{} z {z} w {w}", names(state).get(state.pair)?));
+    }
+    let pair = state.shown.pairs().get(state.pair)?;
+    Some(format!(
+        "{} {} x_n {} x_t {} z_n {} z_t {} bound {}",
+        pair.id,
+        state_words(pair),
+        pair.x_n,
+        pair.x_t,
+        pair.z_n,
+        pair.z_t,
+        pair.bound
+    ))
 }
 
 /// The selected pair in a line.

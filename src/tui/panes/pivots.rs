@@ -14,12 +14,12 @@ use crate::text::number::{short, with_unit};
 use crate::tui::app::State;
 use crate::tui::kept::The;
 use crate::tui::listing::{GUTTER, Listing};
-use crate::tui::paint::{inside, put_text};
+use crate::tui::paint::{inside, put_lines, put_text};
 use crate::tui::pane::Pane;
 use crate::tui::pictures::Sheet;
 use crate::tui::theme::Look;
 use crate::view::force_unit;
-use crate::view::pivots::of_contact;
+use crate::view::pivots::{of_contact, title};
 use crate::view::scale::Scale;
 use crate::view::style::{Role, pad_left, pad_right};
 
@@ -62,6 +62,10 @@ pub fn turned(pivot: &PivotRecord, arrow: &str) -> String {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
     let muted = look.role(Role::Muted);
+    if state.shown.stage.is_some() {
+        put_lines(&events(state, usize::from(area.width)), area, buffer);
+        return;
+    }
     let Some(solved) = &state.shown.solved else {
         put_text(look, "not solved yet", muted, area, buffer);
         return;
@@ -78,6 +82,22 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
     let selected = (at(state, pivots), state.focus == Pane::Pivots);
     listing(state, solved, area.width).draw(look, selected, |_| false, area, buffer);
+}
+
+/// What happened on the way through the stage shown.
+fn events(state: &State, width: usize) -> Vec<Line<'static>> {
+    let look = state.look;
+    let stage = state.shown.history.as_ref().zip(state.shown.stage).and_then(|(all, at)| all.stages.get(at));
+    let moments = stage.into_iter().flat_map(|stage| &stage.moments).filter(|moment| !moment.sentence.is_empty());
+    let mut lines = vec![Line::styled("done    events of the stage", look.role(Role::Header))];
+    for moment in moments {
+        let label = pad_right(&short(moment.t), 8);
+        lines.extend(look.report(width).hanging(&label, &look.text(&moment.sentence)).into_iter().map(Line::raw));
+    }
+    if lines.len() == 1 {
+        lines.push(Line::styled("no pair changes its motion", look.role(Role::Muted)));
+    }
+    lines
 }
 
 /// The columns of the list.
@@ -158,6 +178,12 @@ pub fn sentence(state: &State) -> String {
     let Some(answer) = state.shown.answer() else {
         return "Not solved yet: `:solve`, or `:set auto on`.".to_owned();
     };
+    if let (Some(history), Some(stage)) = (&state.shown.history, state.shown.stage) {
+        let of = state.shown.scenario.stages.len();
+        let end =
+            if stage + 1 == history.stages.len() { history.end_sentence() } else { "it was completed".to_owned() };
+        return format!("Stage {} of {of} of the load history: {end}.", stage + 1);
+    }
     if let Some(failure) = &answer.failure {
         return failure.clone();
     }
@@ -169,20 +195,22 @@ pub fn sentence(state: &State) -> String {
     let step = state.shown.step();
     let Some(pivot) = answer.pivots.iter().find(|pivot| Some(pivot.step) == step) else {
         if let Some(step) = step {
-            return format!(
-                "Pivot {step} of {step}: counted but not recorded, as all after {}.",
-                answer.pivots.len() - 1
-            );
+            let last = answer.pivots.len() - 1;
+            return format!("{}: counted but not recorded, as all after {last}.", capital(&title(step)));
         }
         return "With every joint on no condition is violated: the main system itself is the answer, \
                 without a pivot."
             .to_owned();
     };
-    let last = answer.pivot_count.saturating_sub(1);
-    let mut sentence = format!("Pivot {} of {last}: {}", pivot.step, pivot.sentence);
+    let mut sentence = format!("{}: {}", capital(&title(pivot.step)), pivot.sentence);
     if pivot.ties.len() > 1 && !pivot.sentence.contains("tied") {
         sentence.push_str(&format!(" (tied: {})", pivot.ties.join(", ")));
     }
     sentence.push('.');
     sentence
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -11,6 +11,7 @@ use crate::tui::kept::The;
 use crate::tui::paint::{paste, put_lines, put_text, report};
 use crate::tui::pane::Plot;
 use crate::tui::pictures::PlotKey;
+use crate::view::pivots::title;
 use crate::view::plot::scene::{Magnification, Picture};
 use crate::view::plot::structure::write_with_diagrams;
 use crate::view::plot::trace;
@@ -72,12 +73,12 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         Plot::Axial => return along_bars(state, Internal::Axial, area),
     };
     let now_label = match shown.position {
-        Some(step) => format!("pivot {step}"),
+        Some(step) => title(step),
         None if shown.at_ray() => {
             let p = shown.moment.p.map(crate::text::number::short).unwrap_or_default();
             format!("last vertex, p = {p}")
         }
-        None => String::new(),
+        None => super::loading::note(state),
     };
     let before: Option<&[PairState]> = shown
         .before()

@@ -7,8 +7,8 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::legend::Legend;
-use super::strip;
-use crate::model::structure::Structure;
+use super::{loading, strip};
+use crate::model::structure::{LoadCase, Structure};
 use crate::session::results::{PairDirection, State as PairMotion};
 use crate::text::number::short;
 use crate::tui::app::{PERIOD, State};
@@ -17,6 +17,7 @@ use crate::tui::paint::{paste, put_lines, put_text};
 use crate::tui::pane::Pane;
 use crate::tui::pictures::{Shape, StructureKey, StructurePicture};
 use crate::tui::viewport::View;
+use crate::view::pivots::title;
 use crate::view::plot::canvas::{Canvas, Stroke};
 use crate::view::plot::chart::dotted;
 use crate::view::plot::loads::{Drawn, Loads};
@@ -73,8 +74,12 @@ pub fn note(state: &State) -> String {
     if state.view.zoom > 1.0 {
         note.push_str(&format!(" · zoom {}", short(state.view.zoom)));
     }
+    let loading = loading::note(state);
+    if !loading.is_empty() {
+        note = format!("{loading} · {note}");
+    }
     if let Some(step) = state.shown.position {
-        note = format!("pivot {step} · {note}");
+        note = format!("{} · {note}", title(step));
     }
     note
 }
@@ -235,7 +240,10 @@ impl Painter<'_> {
         let ((left, right), (bottom, top)) = (of(0), of(1));
         let middle = self.view.place((0.5 * (left + right), 0.5 * (bottom + top)));
         let extent = (right - left).max(top - bottom) * self.view.pitch;
-        let loads = Loads::of(self.structure, &state.shown.values, &|node| self.dot(node));
+        // those of the loading shown
+        let shown = &state.shown;
+        let factor = |case: &LoadCase| case.factor.value(&shown.values) * shown.multiplier(&case.name);
+        let loads = Loads::of(self.structure, &factor, &|node| self.dot(node));
         let arrows = loads.arrows(BETWEEN_ARROWS);
         let words = loads.legend(&arrows, &state.shown.scenario.units);
         for arrow in &arrows.arrows {

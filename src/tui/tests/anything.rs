@@ -16,7 +16,7 @@ fn any_action() -> impl Strategy<Value = Action> {
         1 => place().prop_map(|(x, y)| Action::Mouse(Mouse::WheelDown(x, y))),
         2 => (0u16..160, 0u16..60).prop_map(|(x, y)| Action::Resize(x, y)),
         1 => Just(Action::Tick),
-        1 => prop::sample::select(vec!["load gap", "load murty6", "load klarbring", "load beam-ray", "load block", "tour", "set auto off"])
+        1 => prop::sample::select(vec!["load gap", "load murty6", "load klarbring", "load beam-ray", "load block", "load ratchet", "stages", "show max u", "tour", "set auto off"])
             .prop_map(|line| Action::Paste(line.to_owned())),
     ]
 }
@@ -44,7 +44,10 @@ proptest! {
             prop_assert!(state.running.is_none() && state.waiting.is_empty());
             prop_assert!(state.wanted.is_empty() && state.wanted_step.is_none());
             prop_assert_eq!(&state.shown.values, rig.session.values());
-            prop_assert_eq!(state.shown.position, rig.session.position());
+            if state.shown.stage.is_none() {
+                prop_assert_eq!(state.shown.position, rig.session.position());
+            }
+            prop_assert!(state.wanted_loading.is_none());
             prop_assert!(state.parameter < state.shown.values.len().max(1));
             prop_assert!(state.pair < state.shown.pairs().len().max(1));
             prop_assert!(state.plots().contains(&state.plot));

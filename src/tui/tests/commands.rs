@@ -58,3 +58,29 @@ fn everything_typed_is_shown_as_typed() {
     rig.press(&["enter"]);
     assert!(rig.screen().contains("漢"));
 }
+
+#[test]
+fn a_load_answers_in_the_last_line() {
+    let mut rig = Rig::new("beam", 80, 24);
+    rig.command("load greco");
+    assert_eq!(rig.state.overlay, Overlay::None);
+    let said = rig.state.message.clone().unwrap().text;
+    assert!(said.contains("greco") && said.contains("normal"), "{said}");
+    // what is wrong is said there too, and the next key acts
+    rig.command("load no/such/file.json");
+    assert_eq!(rig.state.overlay, Overlay::None);
+    assert!(rig.state.message.clone().unwrap().text.contains("no/such/file.json"));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wrong.json");
+    std::fs::write(&file, r#"{ "format": "stickslip/1", "nodes": { "A": [0, 0] }, "sources": 1, "barz": [] }"#)
+        .unwrap();
+    rig.command(&format!("load {}", file.display()));
+    assert_eq!(rig.state.overlay, Overlay::None);
+    let said = rig.state.message.clone().unwrap().text;
+    assert!(said.ends_with("(O shows all)"), "{said}");
+    assert!(said.chars().count() <= 80, "{said}");
+    rig.press(&["O"]);
+    assert!(rig.screen().contains("barz") && rig.screen().contains("sources"), "{}", rig.screen());
+    rig.press(&["esc", "+"]);
+    assert_eq!(rig.state.shown.scenario.name, "greco");
+}

@@ -4,6 +4,7 @@ mod anything;
 mod commands;
 mod drawings;
 mod keys;
+mod lists;
 mod mouse;
 mod panes;
 mod parameters;

@@ -30,8 +30,8 @@ fn the_mouse_finds_panes_sliders_and_rows() {
     rig.act(Action::Mouse(Mouse::Press(139, 44)));
     // tabs
     let mut rig = Rig::new("plates-free", 80, 24);
-    let area = rig.pane(Pane::Structure);
-    let tabs = layout::tab_names(area, &layout::SHARED, Pane::Structure);
+    let (area, panes) = layout::places(&rig.state).unwrap().tabs.unwrap();
+    let tabs = layout::tab_names(area, &panes, Pane::Structure);
     for (x, pane, _) in tabs {
         rig.act(Action::Mouse(Mouse::Press(x + 1, area.y)));
         assert_eq!((rig.state.focus, rig.state.tab), (pane, pane));

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use crate::session::Next;
 use crate::view::style::Role;
 
-use super::{output, selection, tour};
-use crate::tui::action::{Done, Effect, Job, Leave};
+use super::{output, quantities, selection, tour};
+use crate::tui::action::{Done, Effect, Job, Leave, Loading};
 use crate::tui::app::{Overlay, PERIOD, State};
 use crate::tui::kept::The;
+use crate::tui::layout;
+use crate::tui::pane::Pane;
 use crate::tui::tour::steps;
 
 /// Runs a job now, or after the one at work. Of the same slider only the newest value counts: an older solve is
@@ -20,7 +22,7 @@ pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
         return vec![Effect::Run(job)];
     };
     let mut effects = Vec::new();
-    if *running == Job::Remedies {
+    if matches!(running, Job::Remedies | Job::Quantities(_)) {
         effects.push(Effect::Stop);
     }
     match &job {
@@ -39,7 +41,14 @@ pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
             }
         }
         Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
-        Job::Answers | Job::Line { .. } | Job::Pivots | Job::Motion | Job::Remedies => {}
+        Job::Show(_) => {
+            state.waiting.retain(|waiting| !matches!(waiting, Job::Show(_)));
+            if matches!(running, Job::Show(_)) {
+                effects.push(Effect::Stop);
+            }
+        }
+        Job::Answers | Job::Line { .. } => {}
+        Job::Pivots | Job::Motion | Job::Quantities(_) | Job::Remedies => {}
     }
     state.waiting.push_back(job);
     effects
@@ -65,6 +74,7 @@ pub(super) fn stop(state: &mut State) -> Vec<Effect> {
     state.trouble = None;
     state.waiting.clear();
     state.wanted_step = None;
+    state.wanted_loading = None;
     if state.running.is_some() { vec![Effect::Stop] } else { Vec::new() }
 }
 
@@ -92,8 +102,17 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     if done.job == Job::Remedies && done.interrupted {
         state.remedies_sought = None;
     }
-    let changed = matches!(done.job, Job::Set { .. }) || done.job.is_background();
-    let followed = changed && !done.interrupted && done.error.is_none();
+    let changed = matches!(done.job, Job::Set { .. } | Job::Show(_)) || done.job.is_background();
+    quantities::ask(state, done.asked);
+    match (&done.job, done.gauges) {
+        (_, Some(gauges)) => quantities::take(state, gauges),
+        // whoever types has chosen for himself
+        (Job::Line { shows: true, .. }, None) => state.combination = None,
+        _ => {}
+    }
+    let moved = matches!(done.job, Job::Set { .. } | Job::Line { shows: false, .. });
+    let ended = !done.interrupted && done.error.is_none();
+    let followed = changed && ended;
     if let Some(error) = done.error {
         if done.interrupted {
             // a slider that moved on stops its older solve: nothing to tell
@@ -108,10 +127,14 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         }
     } else if let Some(answers) = done.answers {
         state.overlay = Overlay::Answers { answers, scroll: 0 };
+        state.found = None;
     } else {
         output::show_output(state, &done.job, &done.output);
     }
     let mut effects = Vec::new();
+    if let Some(name) = state.combination.clone().filter(|_| moved && ended && state.shown.combination.is_none()) {
+        effects.extend(order(state, Job::Show(Loading::Combination(name))));
+    }
     match done.next {
         Next::Continue => {}
         Next::Quit => return vec![Effect::Leave(Leave::Quit)],
@@ -143,6 +166,11 @@ pub fn background(state: &mut State) -> Vec<Effect> {
     let here = The::one(&state.shown.moment);
     if state.shown.is_behind() {
         order(state, Job::Motion)
+    } else if state.gauges_at.as_ref() != Some(&here)
+        && state.shown.solved.is_some()
+        && layout::area_of(state, Pane::Quantities).is_some()
+    {
+        order(state, Job::Quantities(state.asked.clone()))
     } else if state.shown.lacks_remedies() && state.remedies_sought.as_ref() != Some(&here) {
         state.remedies_sought = Some(here);
         order(state, Job::Remedies)
@@ -161,7 +189,10 @@ fn settle(state: &mut State, job: &Job) {
     if !state.waiting.iter().any(|job| matches!(job, Job::Step(_))) {
         state.wanted_step = None;
     }
-    let count = state.shown.pairs().len();
+    if !state.waiting.iter().any(|job| matches!(job, Job::Show(_))) {
+        state.wanted_loading = None;
+    }
+    let count = state.pair_count();
     state.pair = state.pair.min(count.saturating_sub(1));
     state.parameter = state.parameter.min(state.shown.values.len().saturating_sub(1));
     if let (Some((of, at)), Job::Line { shows: false, .. }) = (state.tour, job)

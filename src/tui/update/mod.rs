@@ -1,9 +1,12 @@
 //! (state, action) → state and effects. Pure: no terminal, no clock, no thread.
 
+mod copy;
 mod jobs;
 mod mouse;
 mod output;
 mod parameters;
+mod quantities;
+mod search;
 mod selection;
 mod steps;
 mod structure;
@@ -15,7 +18,6 @@ use crate::view::style::Role;
 use super::action::{Action, Do, Effect, Job, Leave};
 use super::app::{Input, Overlay, State};
 use super::entry::Entry;
-use super::pane::Pane;
 
 use jobs::{finish, line, order, stop};
 use mouse::by_mouse;
@@ -38,15 +40,17 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
             if !matches!(what, Do::Redraw) {
                 state.message = None;
             }
-            perform(state, what)
+            let mut effects = perform(state, what);
+            effects.extend(background(state));
+            effects
         }
         Action::Type(c) => {
             typing::insert(state, c.encode_utf8(&mut [0; 4]));
-            Vec::new()
+            search::follow(state)
         }
         Action::Paste(text) => {
             typing::insert(state, text.trim_end_matches(['\n', '\r']));
-            Vec::new()
+            search::follow(state)
         }
         Action::Mouse(mouse) => by_mouse(state, mouse),
         Action::Resize(width, height) => {
@@ -74,13 +78,16 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::Leave => return vec![Effect::Leave(state.home)],
         Do::Exit => return vec![Effect::Leave(Leave::Quit)],
         Do::ToRepl => return vec![Effect::Leave(Leave::Repl)],
-        Do::Help => state.overlay = Overlay::Help { scroll: 0 },
+        Do::Help => {
+            state.overlay = Overlay::Help { scroll: 0 };
+            state.found = None;
+        }
         Do::Command => {
             state.overlay = Overlay::None;
             state.input = Input::Command(Entry::default());
         }
-        Do::NextPane => focus(state, neighbour(state.focus, 1)),
-        Do::PreviousPane => focus(state, neighbour(state.focus, Pane::ALL.len() - 1)),
+        Do::NextPane => focus(state, neighbour(state, 1)),
+        Do::PreviousPane => focus(state, neighbour(state, -1)),
         Do::Focus(pane) => focus(state, pane),
         Do::Maximize => state.maximized = !state.maximized,
         Do::Up => return select(state, -1),
@@ -102,6 +109,16 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::NextPlot => turn_plot(state, 1),
         Do::PreviousPlot => turn_plot(state, -1),
         Do::Answers => return order(state, Job::Answers),
+        Do::Why => return copy::why(state),
+        Do::Ties => return line(state, "ties".into(), true),
+        Do::Search => search::open(state),
+        Do::FindNext => return search::again(state, true),
+        Do::FindPrevious => return search::again(state, false),
+        Do::CopyValue => return copy::value(state),
+        Do::CopyCommand => return copy::command(state),
+        Do::Ask => state.input = Input::Command(Entry::with("show ")),
+        Do::Forget => quantities::forget(state),
+        Do::Output => output::again(state),
         Do::Mode => structure::move_mode(state),
         Do::Before => state.ghost = !state.ghost,
         Do::Explain => state.explains = !state.explains,
@@ -120,13 +137,19 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::TourNext => return tour_by(state, 1),
         Do::TourBack => return tour_by(state, -1),
         Do::TourEnd => state.tour = None,
-        Do::Close => state.overlay = Overlay::None,
+        Do::Close => {
+            state.overlay = Overlay::None;
+            state.found = None;
+        }
         Do::Accept => return accept(state),
-        Do::Cancel => state.input = Input::None,
+        Do::Cancel => return typing::cancel(state),
         Do::Complete => typing::complete(state),
         Do::HistoryBack => recall(state, 1),
         Do::HistoryOn => recall(state, -1),
-        Do::Edit(change) => typing::edit(state, change),
+        Do::Edit(change) => {
+            typing::edit(state, change);
+            return search::follow(state);
+        }
     }
     Vec::new()
 }

@@ -7,7 +7,7 @@ use crate::tui::pane::Pane;
 use crate::tui::{panes, vary};
 
 use super::parameters::set;
-use super::selection::{focus, select};
+use super::selection::{focus, select, show};
 use super::steps::step_to;
 use super::structure::zoom;
 
@@ -85,6 +85,16 @@ fn press(state: &mut State, places: &Places, x: u16, y: u16) -> Vec<Effect> {
         Pane::Pairs => {
             if let Some(pair) = panes::pairs::pair_at(state, area, y) {
                 state.pair = pair;
+            }
+        }
+        Pane::Quantities => {
+            if let Some(row) = panes::quantities::row_at(state, area, y) {
+                state.quantity = row;
+            }
+        }
+        Pane::Loading => {
+            if let Some(loading) = panes::loading::at(state, area, y) {
+                return show(state, loading);
             }
         }
         Pane::Structure | Pane::Plot | Pane::Answer => {}

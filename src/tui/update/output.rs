@@ -1,10 +1,58 @@
 //! What a command printed or why it failed: a line at the bottom, or a box over the panes.
 
+use std::rc::Rc;
+
+use ratatui::text::Line;
+use unicode_width::UnicodeWidthStr;
+
 use crate::view::style::Role;
 
-use crate::tui::action::Job;
+use crate::tui::action::{Do, Job};
 use crate::tui::app::{Overlay, State};
+use crate::tui::bindings::Context;
 use crate::tui::overlay;
+
+/// Shows in several lines what a command printed, and keeps it.
+fn show(state: &mut State, title: String, lines: Vec<Line<'static>>) {
+    state.output = Some((title, Rc::new(lines)));
+    again(state);
+}
+
+/// Shows what was last printed again.
+pub(super) fn again(state: &mut State) {
+    state.found = None;
+    match &state.output {
+        Some((title, lines)) => {
+            state.overlay = Overlay::Output { title: title.clone(), lines: Rc::clone(lines), scroll: 0 };
+        }
+        None => state.say(Role::Warning, "nothing was printed yet: `:` types a command"),
+    }
+}
+
+/// What a `load` says, in the line at the bottom: what was loaded and what came out, or the first problem. The rest can
+/// be shown again, and no box stands in the way of the keys.
+fn say_loaded(state: &mut State, title: &str, lines: Vec<Line<'static>>, role: Role) {
+    let texts: Vec<String> = lines.iter().map(ToString::to_string).filter(|line| !line.trim().is_empty()).collect();
+    let said = match (texts.first(), texts.last()) {
+        (Some(first), Some(last)) if texts.len() > 1 && role != Role::Bad => format!("{first} · {last}"),
+        (Some(first), _) => first.clone(),
+        _ => String::new(),
+    };
+    let keys = state.keys.rows(Context::Everywhere, state.look.ascii);
+    let key = keys.iter().find(|(_, binding)| binding.action == Do::Output).map_or("", |(keys, _)| keys);
+    let whole = texts.len() <= 1 && said.width() <= usize::from(state.size.0);
+    let more = if whole { String::new() } else { format!(" ({key} shows all)") };
+    let room = usize::from(state.size.0).saturating_sub(more.width());
+    let text = format!("{}{more}", state.look.fit(&said, room));
+    state.output = Some((title.to_owned(), Rc::new(lines)));
+    state.say(role, text);
+}
+
+/// Whether a line loads a scenario.
+fn loads(line: &str) -> bool {
+    let word = line.split_whitespace().next().unwrap_or_default();
+    matches!(word, "load" | "reload")
+}
 
 /// What a command printed: one line at the bottom, several over the panes.
 pub(super) fn show_output(state: &mut State, job: &Job, output: &str) {
@@ -13,13 +61,12 @@ pub(super) fn show_output(state: &mut State, job: &Job, output: &str) {
             let lines = state.look.lines(output);
             match lines.as_slice() {
                 [] => state.say(Role::Good, "done"),
+                _ if loads(text) => say_loaded(state, text, lines, Role::Plain),
                 [one] if one.width() + 2 < usize::from(state.size.0) => {
                     let text: String = one.spans.iter().map(|span| span.content.as_ref()).collect();
                     state.say(Role::Plain, text);
                 }
-                _ => {
-                    state.overlay = Overlay::Output { title: text.clone(), lines, scroll: 0 };
-                }
+                _ => show(state, text.clone(), lines),
             }
         }
         Job::Pivots => {
@@ -36,7 +83,7 @@ pub(super) fn show_output(state: &mut State, job: &Job, output: &str) {
                 state.say(Role::Plain, text);
             }
         }
-        Job::Step(_) | Job::Answers | Job::Motion | Job::Remedies => {}
+        Job::Step(_) | Job::Show(_) | Job::Answers | Job::Motion | Job::Quantities(_) | Job::Remedies => {}
     }
 }
 
@@ -55,7 +102,9 @@ pub(super) fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
         Job::Step(_) => "step".into(),
         Job::Answers => "answers".into(),
         Job::Pivots => "pivots".into(),
+        Job::Show(_) => "loading".into(),
         Job::Motion => "displacements".into(),
+        Job::Quantities(_) => "quantities".into(),
         Job::Remedies => "ray".into(),
     };
     let style = state.look.role(role);
@@ -66,7 +115,10 @@ pub(super) fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
             let wrapped = report.wrap(line, report.width);
             if wrapped.is_empty() { vec![String::new()] } else { wrapped }
         })
-        .map(|line| ratatui::text::Line::styled(line, style))
+        .map(|line| Line::styled(line, style))
         .collect();
-    state.overlay = Overlay::Output { title, lines, scroll: 0 };
+    match job {
+        Job::Line { text, .. } if loads(text) => say_loaded(state, &title, lines, role),
+        _ => show(state, title, lines),
+    }
 }

@@ -1,20 +1,40 @@
 //! What has the focus, and what is selected in it.
 
+use super::jobs::order;
 use super::steps::step_by;
-use crate::tui::action::Effect;
+use crate::tui::action::{Effect, Job, Loading};
 use crate::tui::app::{Overlay, State};
 use crate::tui::paint::inside;
 use crate::tui::pane::{Pane, SortKey};
 use crate::tui::{layout, overlay, panes};
 
-pub(super) fn neighbour(pane: Pane, by: usize) -> Pane {
-    Pane::ALL[(pane.index() + by) % Pane::ALL.len()]
+/// The pane `by` places on, among those that have something to say.
+pub(super) fn neighbour(state: &State, by: isize) -> Pane {
+    let panes: Vec<Pane> = Pane::ALL.into_iter().filter(|pane| *pane == state.focus || state.offers(*pane)).collect();
+    let at = panes.iter().position(|pane| *pane == state.focus).unwrap_or_default() as isize;
+    panes[(at + by).rem_euclid(panes.len() as isize) as usize]
+}
+
+/// Shows the answer under a loading; a combination is shown again after every change.
+pub(super) fn show(state: &mut State, loading: Loading) -> Vec<Effect> {
+    if state.loading() == loading {
+        return Vec::new();
+    }
+    state.combination = match &loading {
+        Loading::Combination(name) => Some(name.clone()),
+        Loading::Own | Loading::Stage(_) => None,
+    };
+    state.wanted_loading = Some(loading.clone());
+    order(state, Job::Show(loading))
 }
 
 pub(super) fn focus(state: &mut State, pane: Pane) {
     state.focus = pane;
     if layout::SHARED.contains(&pane) {
         state.tab = pane;
+    }
+    if layout::SIDE.contains(&pane) {
+        state.side = pane;
     }
 }
 
@@ -42,12 +62,20 @@ pub(super) fn select(state: &mut State, by: isize) -> Vec<Effect> {
         Pane::Pairs | Pane::Structure => {
             let order = state.order();
             let to = match state.focus {
-                Pane::Pairs => order.pairs.get(moved(order.place(state.pair), order.pairs.len())).copied(),
-                _ => Some(moved(state.pair, order.pairs.len())),
+                Pane::Pairs if !order.pairs.is_empty() => {
+                    order.pairs.get(moved(order.place(state.pair), order.pairs.len())).copied()
+                }
+                _ => Some(moved(state.pair, state.pair_count())),
             };
             state.pair = to.unwrap_or_default();
         }
         Pane::Pivots => return step_by(state, by),
+        Pane::Quantities => state.quantity = moved(state.quantity, state.gauges.len()),
+        Pane::Loading => {
+            let loadings = state.loadings();
+            let at = loadings.iter().position(|loading| *loading == state.loading()).unwrap_or_default();
+            return show(state, loadings[moved(at, loadings.len())].clone());
+        }
         Pane::Plot => turn_plot(state, by.signum()),
         Pane::Answer => {
             let last = last_answer_line(state);

@@ -6,6 +6,7 @@ use crate::view::style::Role;
 
 use super::jobs::line;
 use super::parameters::NO_PARAMETERS;
+use super::search;
 use crate::tui::action::Effect;
 use crate::tui::app::{Input, State};
 use crate::tui::entry::{Edit, Entry};
@@ -17,7 +18,7 @@ const HISTORY: usize = 1000;
 fn entry(state: &mut State) -> Option<&mut Entry> {
     match &mut state.input {
         Input::None => None,
-        Input::Command(entry) | Input::Value { entry, .. } => Some(entry),
+        Input::Command(entry) | Input::Search { entry, .. } | Input::Value { entry, .. } => Some(entry),
     }
 }
 
@@ -82,6 +83,10 @@ pub(super) fn accept(state: &mut State) -> Vec<Effect> {
             }
             line(state, text, true)
         }
+        Input::Search { entry, from } => {
+            state.sought = entry.text.clone();
+            search::find(state, &entry.text, from, true)
+        }
         Input::Value { name, entry } => {
             let text = entry.text.trim();
             if text.is_empty() {
@@ -90,5 +95,13 @@ pub(super) fn accept(state: &mut State) -> Vec<Effect> {
             let text = format!("set {name} {text}");
             line(state, text, false)
         }
+    }
+}
+
+/// Drops the line; a search goes back to where it began.
+pub(super) fn cancel(state: &mut State) -> Vec<Effect> {
+    match std::mem::take(&mut state.input) {
+        Input::Search { from, .. } => search::go(state, from),
+        _ => Vec::new(),
     }
 }

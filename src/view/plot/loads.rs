@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 
 use super::canvas::{Canvas, Stroke};
-use crate::model::parameter::ParameterValues;
 use crate::model::scenario::Units;
-use crate::model::structure::{ElementKind, ElementLoad, Load, Structure};
+use crate::model::structure::{ElementKind, ElementLoad, Load, LoadCase, Structure};
 use crate::text::number::{short, with_unit};
 use crate::view::style::Role;
 use crate::view::{force_unit, length_unit};
@@ -61,8 +60,8 @@ fn size(force: [f64; 2]) -> f64 {
 }
 
 impl Loads {
-    /// The loads of a structure whose nodes stand at `at`.
-    pub fn of(structure: &Structure, parameters: &ParameterValues, at: &dyn Fn(usize) -> (f64, f64)) -> Loads {
+    /// The loads of a structure under these factors of its cases, where its nodes stand at `at`.
+    pub fn of(structure: &Structure, factor: &dyn Fn(&LoadCase) -> f64, at: &dyn Fn(usize) -> (f64, f64)) -> Loads {
         let mut loads = Loads::default();
         let mut points: Vec<(LoadKind, (f64, f64), [f64; 2])> = Vec::new();
         let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
@@ -75,7 +74,7 @@ impl Loads {
             (ax + share * (bx - ax), ay + share * (by - ay))
         };
         for case in &structure.load_cases {
-            let factor = case.factor.value(parameters);
+            let factor = factor(case);
             for load in &case.loads {
                 match *load {
                     Load::Nodal { node, force, .. } => {

@@ -324,7 +324,9 @@ impl Scene {
             is_deformed: moved.iter().any(|u| *u != [0.0; 3]) && factor != 0.0,
             supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
             pairs: structure.pairs.iter().enumerate().map(mark).collect(),
-            loads: loads.map_or_else(Loads::default, |parameters| Loads::of(structure, parameters, &at)),
+            loads: loads.map_or_else(Loads::default, |parameters| {
+                Loads::of(structure, &|case| case.factor.value(parameters), &at)
+            }),
             diagrams: Vec::new(),
             before,
             now,

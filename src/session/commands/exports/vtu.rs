@@ -42,7 +42,7 @@ impl Session {
         let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
             return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".to_owned()));
         };
-        let shown = self.combination.as_ref().unwrap_or(prepared);
+        let shown = self.combination.as_ref().map_or(prepared, |(_, combined)| combined);
         let pivots = solved.answer.pivots.len();
         few(pivots, "pivots")?;
         for step in 0..pivots {
