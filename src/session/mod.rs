@@ -41,8 +41,8 @@ use crate::watch::Watch;
 pub use commands::load::write_scenarios;
 pub use commands::side::{AllAnswers, OneAnswer};
 pub use error::CommandError;
-use output::Report;
 pub use gauges::Gauge;
+use output::Report;
 pub use output::{Format, Output};
 
 use journal::{Journal, LeftOver};
