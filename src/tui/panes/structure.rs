@@ -248,7 +248,7 @@ impl Painter<'_> {
         let words = loads.legend(&arrows, &state.shown.scenario.units);
         for arrow in &arrows.arrows {
             let drawn = Drawn::new(arrow, arrow.at, middle, extent);
-            if drawn.ends().iter().all(|end| self.view.holds(*end)) {
+            if let Some(drawn) = drawn.cut(|end| self.view.holds(end)) {
                 drawn.draw(&mut self.canvas, look.ascii);
                 let text = words.iter().find(|(kind, _)| *kind == arrow.kind).map_or("load", |(_, text)| text);
                 self.legend.note(drawn.sign(look.ascii), Role::Accent, text);

@@ -18,6 +18,25 @@ fn first_screens() {
     }
 }
 
+/// However low the picture is, the loads are in it: an arrow loses its tail, not itself.
+#[test]
+fn loads_are_seen_on_a_flat_beam() {
+    for (width, height) in [(80, 24), (100, 30), (140, 45), (200, 60)] {
+        let rig = Rig::new("beam", width, height);
+        let area = rig.pane(Pane::Structure);
+        let picture: Vec<String> = rig
+            .screen()
+            .lines()
+            .skip(usize::from(area.y))
+            .take(usize::from(area.height))
+            .map(|line| line.chars().take(usize::from(area.width)).collect())
+            .collect();
+        // five supports and the legend; at the pulled end the two loads are one arrow
+        assert_eq!(picture.concat().matches('↓').count(), 6, "{}", rig.screen());
+        assert!(picture.concat().contains('→') || picture.concat().contains('↘'), "{}", rig.screen());
+    }
+}
+
 #[test]
 fn every_pane_at_both_sizes() {
     for (width, height) in [(80, 24), (140, 45)] {

@@ -60,7 +60,11 @@ fn combinations_and_stages_are_shown_one_by_one() {
     insta::assert_snapshot!("stage", rig.screen());
     rig.press(&["left"]);
     assert!(rig.state.message.as_ref().unwrap().text.contains("a stage is shown"));
-    rig.press(&["pageup"]);
+    // the pivots of the answer explain no stage
+    rig.press(&["3", "enter"]);
+    assert_eq!(rig.state.overlay, Overlay::None);
+    assert!(rig.state.message.as_ref().unwrap().text.contains("why and ties ask the answer"));
+    rig.press(&["8", "pageup"]);
     assert_eq!(rig.state.loading(), Loading::Own);
     near(slip(&rig), 0.0);
     // what is typed stands, too

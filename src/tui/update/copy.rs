@@ -11,8 +11,25 @@ use crate::tui::pane::Pane;
 use crate::tui::panes::{answer, loading, pairs, pivots};
 use crate::tui::{layout, overlay, paint};
 
+/// What is said where the pivots of the answer would be asked, and a stage is shown.
+const OF_THE_ANSWER: &str =
+    "a stage is shown, whose events stand in Pivots; why and ties ask the answer (8 goes back to it)";
+
+/// `ties` of the pivot shown.
+pub(super) fn ties(state: &mut State) -> Vec<Effect> {
+    if state.shown.stage.is_some() {
+        state.say(Role::Warning, OF_THE_ANSWER);
+        return Vec::new();
+    }
+    line(state, "ties".into(), true)
+}
+
 /// `why` of the selected pair.
 pub(super) fn why(state: &mut State) -> Vec<Effect> {
+    if state.shown.stage.is_some() {
+        state.say(Role::Warning, OF_THE_ANSWER);
+        return Vec::new();
+    }
     match why_command(state) {
         Some(text) => line(state, text, true),
         None => {
@@ -22,12 +39,14 @@ pub(super) fn why(state: &mut State) -> Vec<Effect> {
     }
 }
 
+/// The command that tells most of the selected pair.
 fn why_command(state: &State) -> Option<String> {
     if state.shown.moment.solution.is_some() {
         let name = pairs::names(state).get(state.pair)?.clone();
         return Some(format!("why {}", quote(&format!("z[{name}]"))));
     }
-    Some(format!("why {}", quote(&state.shown.pairs().get(state.pair)?.id)))
+    let id = quote(&state.shown.pairs().get(state.pair)?.id);
+    Some(if state.shown.stage.is_some() { format!("pairs {id}") } else { format!("why {id}") })
 }
 
 /// Copies the value.

@@ -110,7 +110,7 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::PreviousPlot => turn_plot(state, -1),
         Do::Answers => return order(state, Job::Answers),
         Do::Why => return copy::why(state),
-        Do::Ties => return line(state, "ties".into(), true),
+        Do::Ties => return copy::ties(state),
         Do::Search => search::open(state),
         Do::FindNext => return search::again(state, true),
         Do::FindPrevious => return search::again(state, false),

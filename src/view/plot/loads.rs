@@ -304,6 +304,20 @@ impl Drawn {
         [self.tail, self.tip]
     }
 
+    /// The same cut to what is in view: the end that stands beside its place stays, the other comes nearer. `None` where
+    /// that end is out of view.
+    pub fn cut(self, is_seen: impl Fn((f64, f64)) -> bool) -> Option<Drawn> {
+        let nearer = |fixed: (f64, f64), far: (f64, f64)| {
+            let on_line = |share: f64| (fixed.0 + share * (far.0 - fixed.0), fixed.1 + share * (far.1 - fixed.1));
+            [1.0, 0.75, 0.5, 0.25, 0.0].into_iter().map(on_line).find(|end| is_seen(*end))
+        };
+        if is_seen(self.tip) {
+            return Some(Drawn { tail: nearer(self.tip, self.tail)?, ..self });
+        }
+        let tip = nearer(self.tail, self.tip)?;
+        Some(Drawn { tip, ..self })
+    }
+
     /// The sign at the tip.
     pub fn sign(&self, ascii: bool) -> char {
         let (c, s) = self.direction;
