@@ -31,6 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 gap: Number::Value(0.0),
             },
             position: None,
+            joint: 0,
             tangential: Some(1),
         }],
         stiffness: DMatrix::from_row_slice(2, 2, &[2.0, 1.5, 1.5, 2.0]),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::end::PathEnd;
 use super::load::{LoadPath, LoadReach, trace};
 use super::start::PathError;
-use crate::answer::record::Ray;
+use crate::answer::record::{Ray, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::explain::ray;
 use crate::model::rules::{Covering, Rules};
@@ -33,11 +33,21 @@ pub struct Limit {
     pub confirmed: bool,
     /// A factor just beyond the end of the path at which there is an answer all the same: that end is no limit.
     pub beyond: Option<f64>,
+    /// A factor before the end of the path at which it is proved that there is no answer: the path was lost in rounding.
+    pub refuted: Option<f64>,
 }
 
 impl Limit {
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
+        if let Some(refuted) = self.refuted {
+            let name = &self.path.parameter.name;
+            return format!(
+                "the path was lost in rounding: it leads beyond {name} = {}, where it is proved that there is no answer; \
+                 `find most {name} A..B where outcome answer` brackets the limit",
+                nine_digits(refuted)
+            );
+        }
         let (Some(beyond), Some(last)) = (self.beyond, self.path.factors.last()) else {
             return self.path.end_sentence();
         };
@@ -71,6 +81,11 @@ fn beside(path: &LoadPath, case: Case<'_>, value: f64) -> Result<(Prepared, Vec<
     Ok((case.prepared.with_factors(&factors), factors))
 }
 
+/// The size of a limit: one of 0 has none of its own.
+fn size(factor: f64, present: f64) -> f64 {
+    [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0)
+}
+
 /// Finds the limit of a load case or load parameter from the present answer (from 0 where there is none): upwards, or
 /// downwards where the present value is negative.
 ///
@@ -81,18 +96,33 @@ pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limi
     let known = prepared.cases.iter().find(|(known, _)| known == name);
     let given = known.map_or_else(|| values.get(name).copied(), |(_, factor)| Some(factor.value(values)));
     let negative = given.is_some_and(|given| given < 0.0);
-    let to = negative.then_some(f64::NEG_INFINITY);
-    let path = trace(case, solved, name, LoadReach { to, through: false })?;
+    let mut to = negative.then_some(f64::NEG_INFINITY);
+    loop {
+        let path = trace(case, solved, name, LoadReach { to, through: false })?;
+        let found = of_path(case, path, negative)?;
+        // A path that leads on for rounding only is followed again to a target before that place.
+        match found.refuted {
+            Some(refuted) if to != Some(refuted) => to = Some(refuted),
+            _ => return Ok(found),
+        }
+    }
+}
+
+/// What the end of a path says of the limit.
+fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, PathError> {
     let present = path.parameter.present;
     let factor = path.limit();
     let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
-    let mut limit = Limit { present, factor, safety, collapse: None, confirmed: false, beyond: None, path };
+    let mut limit =
+        Limit { present, factor, safety, collapse: None, confirmed: false, beyond: None, refuted: None, path };
+    if limit.path.end == PathEnd::Target {
+        // Only a target that has been refuted is ever set.
+        limit.refuted = limit.path.factors.last().copied();
+    }
     let (Some(factor), PathEnd::Limit(direction)) = (factor, &limit.path.end) else {
         return Ok(limit);
     };
-    // A limit of 0 has no size of its own.
-    let size = [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
-    let outwards = if to.is_some() { -BESIDE * size } else { BESIDE * size };
+    let outwards = if negative { -1.0 } else { 1.0 } * BESIDE * size(factor, present);
     let over = factor + outwards;
     let solve = |prepared: &Prepared| Case { prepared, ..case }.under(Rules::default()).solve_briefly();
     let (there, factors) = beside(&limit.path, case, over)?;
@@ -102,8 +132,12 @@ pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limi
         return Ok(Limit { factor: None, safety: None, beyond: Some(over), ..limit });
     }
     if factor != 0.0 && !above.answer.is_answer() {
-        let (there, _) = beside(&limit.path, case, factor - outwards)?;
-        limit.confirmed = solve(&there)?.answer.is_answer();
+        let inside = factor - outwards;
+        let below = solve(&beside(&limit.path, case, inside)?.0)?;
+        limit.confirmed = below.answer.is_answer();
+        if below.ray.is_some_and(|ray| matches!(ray.verdict, Some(Verdict::Certified | Verdict::Proved))) {
+            return Ok(Limit { factor: None, safety: None, refuted: Some(inside), ..limit });
+        }
     }
     let problem = ContactProblem { system: Arc::clone(system), factors, ..limit.path.problem_at(over) };
     let mut collapse = ray::look(&problem, limit.path.contact(), direction, 0.0);
