@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::edge::{Which, edge};
 use super::end::PathEnd;
 use super::load::{LoadPath, LoadReach, trace};
 use super::start::PathError;
-use crate::answer::record::{Ray, Verdict};
+use crate::answer::record::Ray;
 use crate::contact::problem::ContactProblem;
 use crate::explain::ray;
 use crate::model::rules::{Covering, Rules};
@@ -33,19 +34,21 @@ pub struct Limit {
     pub confirmed: bool,
     /// A factor just beyond the end of the path at which there is an answer all the same: that end is no limit.
     pub beyond: Option<f64>,
-    /// A factor before the end of the path at which it is proved that there is no answer: the path was lost in rounding.
-    pub refuted: Option<f64>,
+    /// Where no answer was found just before the end of the path, so that it may have led on for rounding only: the runs of
+    /// their own between which the limit lies, one with an answer, one with a proof that there is none.
+    pub bracket: Option<[f64; 2]>,
+    /// Whether no answer was found just before the end of the path.
+    lost: bool,
 }
 
 impl Limit {
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
-        if let Some(refuted) = self.refuted {
+        if let (None, Some([answer, none])) = (self.factor, self.bracket) {
             let name = &self.path.parameter.name;
             return format!(
-                "the path was lost in rounding: it leads beyond {name} = {}, where it is proved that there is no answer; \
-                 `find most {name} A..B where outcome answer` brackets the limit",
-                nine_digits(refuted)
+                "the path leads on for rounding only; runs of their own find an answer at {name} = {answer} and prove that \
+                 there is none at {name} = {none}"
             );
         }
         let (Some(beyond), Some(last)) = (self.beyond, self.path.factors.last()) else {
@@ -96,16 +99,35 @@ pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limi
     let known = prepared.cases.iter().find(|(known, _)| known == name);
     let given = known.map_or_else(|| values.get(name).copied(), |(_, factor)| Some(factor.value(values)));
     let negative = given.is_some_and(|given| given < 0.0);
-    let mut to = negative.then_some(f64::NEG_INFINITY);
-    loop {
-        let path = trace(case, solved, name, LoadReach { to, through: false })?;
-        let found = of_path(case, path, negative)?;
-        // A path that leads on for rounding only is followed again to a target before that place.
-        match found.refuted {
-            Some(refuted) if to != Some(refuted) => to = Some(refuted),
-            _ => return Ok(found),
-        }
+    let to = negative.then_some(f64::NEG_INFINITY);
+    let path = trace(case, solved, name, LoadReach { to, through: false })?;
+    let found = of_path(case, path, negative)?;
+    match found.factor {
+        Some(factor) if found.lost => bracketed(case, name, factor, found),
+        _ => Ok(found),
     }
+}
+
+/// The limit by runs of their own, where the path led on beyond it for rounding only: an answer on one side, a proved
+/// collapse on the other.
+fn bracketed(case: Case<'_>, name: &str, end: f64, found: Limit) -> Result<Limit, PathError> {
+    let start = found.path.start;
+    let (range, which) = if end < start { ([end, start], Which::Least) } else { ([start, end], Which::Most) };
+    let edge = match edge(case, name, range, which) {
+        Ok(edge) => edge,
+        Err(PathError::Interrupted) => return Err(PathError::Interrupted),
+        // No other answer than the path's own.
+        Err(_) => return Ok(found),
+    };
+    let Some(beyond) = edge.collapse.as_ref().filter(|run| run.is_proved()) else { return Ok(found) };
+    let bracket = Some([edge.answer.value, beyond.value]);
+    if (edge.answer.value - beyond.value).abs() > BESIDE * size(beyond.value, found.present) {
+        // The proof refutes the end of the path, and nothing tells the limit closely.
+        return Ok(Limit { factor: None, safety: None, collapse: None, bracket, ..found });
+    }
+    let collapse = case.at(name, beyond.value)?.case(case).solve()?.answer.ray;
+    let safety = (found.present != 0.0).then(|| edge.value / found.present);
+    Ok(Limit { factor: Some(edge.value), safety, collapse, confirmed: true, bracket, ..found })
 }
 
 /// What the end of a path says of the limit.
@@ -113,12 +135,17 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
     let present = path.parameter.present;
     let factor = path.limit();
     let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
-    let mut limit =
-        Limit { present, factor, safety, collapse: None, confirmed: false, beyond: None, refuted: None, path };
-    if limit.path.end == PathEnd::Target {
-        // Only a target that has been refuted is ever set.
-        limit.refuted = limit.path.factors.last().copied();
-    }
+    let mut limit = Limit {
+        present,
+        factor,
+        safety,
+        collapse: None,
+        confirmed: false,
+        beyond: None,
+        bracket: None,
+        lost: false,
+        path,
+    };
     let (Some(factor), PathEnd::Limit(direction)) = (factor, &limit.path.end) else {
         return Ok(limit);
     };
@@ -132,12 +159,8 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
         return Ok(Limit { factor: None, safety: None, beyond: Some(over), ..limit });
     }
     if factor != 0.0 && !above.answer.is_answer() {
-        let inside = factor - outwards;
-        let below = solve(&beside(&limit.path, case, inside)?.0)?;
-        limit.confirmed = below.answer.is_answer();
-        if below.ray.is_some_and(|ray| matches!(ray.verdict, Some(Verdict::Certified | Verdict::Proved))) {
-            return Ok(Limit { factor: None, safety: None, refuted: Some(inside), ..limit });
-        }
+        limit.confirmed = solve(&beside(&limit.path, case, factor - outwards)?.0)?.answer.is_answer();
+        limit.lost = !limit.confirmed;
     }
     let problem = ContactProblem { system: Arc::clone(system), factors, ..limit.path.problem_at(over) };
     let mut collapse = ray::look(&problem, limit.path.contact(), direction, 0.0);

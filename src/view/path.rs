@@ -151,10 +151,16 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
     if factor == 0.0 {
         return Ok(());
     }
-    let confirmed = if limit.confirmed {
-        "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001"
-    } else {
-        "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer and none"
+    let confirmed = match limit.bracket {
+        Some([answer, none]) if limit.confirmed => {
+            format!("confirmed: runs of their own find an answer at {answer} and prove that there is none at {none}")
+        }
+        _ if limit.confirmed => {
+            "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001".to_owned()
+        }
+        _ => {
+            "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer and none".to_owned()
+        }
     };
-    sentences(out, confirmed, Role::Muted, style)
+    sentences(out, &confirmed, Role::Muted, style)
 }
