@@ -240,6 +240,9 @@ pub struct Check {
     pub complementarity: f64,
     /// ‖K u − F − Bᵀλ‖; `None` where there is no K.
     pub equilibrium: Option<f64>,
+    /// What rounding hides of the forces, as a share of the loads; told where a check fails for it.
+    #[serde(skip)]
+    pub hidden: f64,
     /// Whether all are within bounds.
     pub passed: bool,
 }

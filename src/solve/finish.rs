@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::engines::{PIVOT_LIMIT, kind};
 use super::prepared::{Geometry, Prepared};
-use crate::answer::check::check_contact;
+use crate::answer::check::{HIDDEN, check_contact};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{
     Answer, Attempt, AttemptRules, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, Reaction,
@@ -197,8 +197,14 @@ pub(super) fn judge(answer: &mut Answer, check: Check) {
 
 pub(super) fn fail_check(answer: &mut Answer) {
     answer.outcome = OutcomeKind::CheckFailed;
+    let hidden = match answer.check.hidden {
+        hidden if hidden > HIDDEN => format!(
+            "; its displacements are so large that rounding hides {hidden:.1e} of the loads: a motion that nothing resists"
+        ),
+        _ => String::new(),
+    };
     answer.failure = Some(format!(
-        "the state found does not pass its check from R, RF and f (min w {:.1e}, min z {:.1e}, complementarity {:.1e}{})",
+        "the state found does not pass its check from R, RF and f (min w {:.1e}, min z {:.1e}, complementarity {:.1e}{}){hidden}",
         answer.check.min_w,
         answer.check.min_z,
         answer.check.complementarity,

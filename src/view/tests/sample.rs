@@ -102,7 +102,14 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         }],
         pivot_count: pivots.len(),
         pivots,
-        check: Check { min_w: 0.0, min_z: 0.0, complementarity: 3.1e-17, equilibrium: Some(2.2e-16), passed: true },
+        check: Check {
+            min_w: 0.0,
+            min_z: 0.0,
+            complementarity: 3.1e-17,
+            equilibrium: Some(2.2e-16),
+            hidden: 0.0,
+            passed: true,
+        },
         displacements: Some(
             pairs
                 .iter()
