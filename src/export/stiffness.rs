@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 use crate::fem::matrices::Matrices;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
-use crate::model::scenario::Units;
 use crate::model::structure::{Component, Load, Spring, Structure};
+use crate::model::units::Units;
 
 /// A structure with its matrices and its values.
 pub struct Stiffness<'a> {

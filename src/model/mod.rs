@@ -35,5 +35,6 @@ pub mod structure;
 pub mod superelement;
 pub mod support;
 pub mod template;
+pub mod units;
 pub mod uses;
 mod words;

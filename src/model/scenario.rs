@@ -13,17 +13,9 @@ use super::problem::{Problem, Problems};
 use super::quantity::Quantity;
 use super::rules::Rules;
 use super::structure::{Load, Structure};
+use super::units::Units;
 use super::uses::Uses;
 use crate::text::hash::Hash;
-
-/// Labels of the author's units; nothing is converted.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Units {
-    /// Unit of length, e.g. `m`.
-    pub length: Option<String>,
-    /// Unit of force, e.g. `kN`.
-    pub force: Option<String>,
-}
 
 /// A contact system computed elsewhere (CSM and CLV given).
 #[derive(Clone, Debug, PartialEq)]

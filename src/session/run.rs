@@ -10,6 +10,11 @@ use super::{CommandError, Format, Missing, Next, Output, Session};
 use crate::text::printable;
 
 impl Session {
+    /// Whether a command is `expect error …`: then the one before it may fail.
+    pub(in crate::session) fn lets_fail(&self, next: &str) -> bool {
+        expects_error(next)
+    }
+
     /// Runs the commands of a line; stops at the first that fails (unless `expect error` follows it).
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use super::scale::ByUnit;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row as TableRow, Table};
 use crate::model::quantity::Quantity;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::quantity::{NoValue, Value};
 
 /// A combination as it is shown.

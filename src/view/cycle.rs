@@ -6,7 +6,7 @@ use super::moment_unit;
 use super::path::exact;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
 use crate::text::number::{short, with_unit};
 

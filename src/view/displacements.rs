@@ -6,7 +6,7 @@ use super::length_unit;
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::NodeDisplacement;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 
 /// Writes u_x, u_y and the rotation (where any node has one) of the nodes given.
 pub fn write(out: &mut dyn Write, displacements: &[NodeDisplacement], units: &Units, style: &Style) -> io::Result<()> {

@@ -8,7 +8,7 @@ use super::{force_unit, length_unit, moment_unit};
 use crate::answer::diagram::{Diagram, Internal, Place};
 use crate::answer::record::MemberForces;
 use crate::answer::rounding::{denoised, largest};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
 
 /// Writes N, Q, M at both ends of every element of `bar` (of all bars without one). Tension, and M with tension

@@ -41,7 +41,7 @@ pub mod why;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 
 /// Unit of a displacement, if the author named one.
 pub fn length_unit(units: &Units) -> Option<String> {

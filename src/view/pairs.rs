@@ -6,7 +6,7 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, length_unit};
 use crate::answer::record::{PairState, State};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 
 /// State of a pair in words; an open pair that cohesion (or p) still holds says so: `open (held)`,
 /// `open (slip +)` (method §4).

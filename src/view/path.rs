@@ -7,7 +7,7 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairState, RayClass, Verdict};
 use crate::answer::rounding::largest;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::end::PathEnd;
 use crate::path::friction::FrictionPath;
 use crate::path::limit::Limit;

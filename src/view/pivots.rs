@@ -10,7 +10,7 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{Answer, PivotRecord};
 use crate::answer::rounding::{denoised, largest};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 
 /// Whether the pivots are those of a contact problem, where p is a force; in a bare LCP it has no unit. Told by
 /// the names: `w[1]` and `z[1]` occur in a bare LCP only.

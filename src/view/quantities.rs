@@ -6,7 +6,7 @@ use super::path::exact;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::quantity::Quantity;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::quantity::{NoValue, OnPath, Value};
 use crate::path::record::PathRecord;
 use crate::text::number::{short, with_unit};

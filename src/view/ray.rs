@@ -13,7 +13,7 @@ use crate::explain::mode::{PartMotion, pair_words};
 use crate::explain::proof::Certificate;
 use crate::explain::ray::RayReport;
 use crate::explain::remedy::Remedies;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::solve::explain::REMEDY_TIME;
 use crate::text::number::{short, with_unit};
 

@@ -7,7 +7,7 @@ use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, moment_unit};
 use crate::answer::record::Reaction;
 use crate::answer::rounding::balance;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
 
 /// Writes the forces of supports and springs on the structure, and their totals: the sums, and the moment of all of

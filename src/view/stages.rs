@@ -6,7 +6,7 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{length_unit, moment_unit};
 use crate::answer::rounding::{denoised, largest};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::stages::{History, HistoryEnd};
 use crate::text::number::{residual, short};
 

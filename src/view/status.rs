@@ -9,7 +9,8 @@ use super::{force_unit, length_unit};
 use crate::answer::attempt::Attempt;
 use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, Start, State, Verdict};
 use crate::model::parameter::ParameterValues;
-use crate::model::scenario::{Scenario, Source, Units};
+use crate::model::scenario::{Scenario, Source};
+use crate::model::units::Units;
 use crate::model::uses::Redone;
 use crate::text::number::{in_full, residual, short, with_unit};
 

@@ -10,7 +10,7 @@ use super::{force_unit, length_unit};
 use crate::answer::record::Reaction;
 use crate::answer::rounding::balance;
 use crate::model::quantity::Quantity;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::quantity::{NoValue, Resultant, Value};
 use crate::text::number::short;
 

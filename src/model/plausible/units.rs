@@ -3,7 +3,8 @@
 use serde_json::Value;
 
 use super::{Warning, texts};
-use crate::model::scenario::{Scenario, Units};
+use crate::model::scenario::Scenario;
+use crate::model::units::Units;
 
 /// Lengths in metres, forces in newtons.
 const LENGTHS: &[(&str, f64)] =

@@ -9,7 +9,7 @@ mod words;
 
 use std::fmt;
 
-use super::scenario::Units;
+use super::units::Units;
 
 pub use names::{Names, fits};
 pub use read::{QuantityError, read, read_all, read_text};

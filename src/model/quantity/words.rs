@@ -4,7 +4,7 @@
 //! To add a quantity of a pair, a node, a bar, a stress or an answer: a variant of its family here, its line in
 //! [`WORDS`], and its reader in `path/quantity`, which the compiler asks for.
 
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 
 use Dimension as D;
 use Meaning as M;

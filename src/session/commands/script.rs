@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::session::language::command::{Action, Command};
-use crate::session::language::grammar::expects_error;
 use crate::session::{CommandError, Format, Next, Output, Session, language::tokens, load};
 use crate::view::style::Role;
 
@@ -108,7 +107,7 @@ pub fn run(
             Err(error) if error.is_output() => return Err(error),
             Err(error) => {
                 let interrupted = error.is_interrupted();
-                let asked_for = commands.get(index + 1).is_some_and(|(_, next)| expects_error(next));
+                let asked_for = commands.get(index + 1).is_some_and(|(_, next)| session.lets_fail(next));
                 if asked_for && !interrupted {
                     continue;
                 }

@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::export::{history as history_export, json as json_export};
 use crate::model::quantity::{self, Names, Quantity};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
 use crate::watch::{Quiet, Watch};

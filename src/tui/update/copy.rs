@@ -3,7 +3,7 @@
 use crate::session::language::tokens::quote;
 use crate::view::style::Role;
 
-use super::jobs::line;
+use super::orders::line;
 use crate::tui::action::{Effect, Loading};
 use crate::tui::app::{Overlay, State};
 use crate::tui::clipboard::MOST;

@@ -1,10 +1,11 @@
-//! Work for the session: ordered one job at a time; what comes back is taken over.
+//! Work for the session that ended: what comes back is taken over.
 
 use std::sync::Arc;
 
 use crate::session::Next;
 use crate::view::style::Role;
 
+use super::orders::{RELOAD, order};
 use super::{output, quantities, selection, tour};
 use crate::tui::action::{Done, Effect, Job, Leave, Loading};
 use crate::tui::app::{Overlay, PERIOD, State};
@@ -12,71 +13,6 @@ use crate::tui::kept::The;
 use crate::tui::layout;
 use crate::tui::pane::Pane;
 use crate::tui::tour::steps;
-
-/// Runs a job now, or after the one at work. Of the same slider only the newest value counts: an older solve is
-/// stopped. Of the steps only the last counts.
-pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
-    let Some(running) = &state.running else {
-        state.running = Some(job.clone());
-        state.progress = None;
-        return vec![Effect::Run(job)];
-    };
-    let mut effects = Vec::new();
-    if matches!(running, Job::Remedies | Job::Quantities(_)) {
-        effects.push(Effect::Stop);
-    }
-    match &job {
-        Job::Set { name, .. } => {
-            state.waiting.retain(|waiting| {
-                !matches!(waiting, Job::Set { name: other, .. } if other == name) && !matches!(waiting, Job::Step(_))
-            });
-            state.wanted_step = None;
-            let older = match running {
-                Job::Set { name: other, .. } => other == name,
-                Job::Pivots => true,
-                _ => false,
-            };
-            if older {
-                effects.push(Effect::Stop);
-            }
-        }
-        Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
-        Job::Show(_) => {
-            state.waiting.retain(|waiting| !matches!(waiting, Job::Show(_)));
-            if matches!(running, Job::Show(_)) {
-                effects.push(Effect::Stop);
-            }
-        }
-        Job::Answers | Job::Line { .. } => {}
-        Job::Pivots | Job::Motion | Job::Quantities(_) | Job::Remedies => {}
-    }
-    state.waiting.push_back(job);
-    effects
-}
-
-/// A command line for the session.
-pub(super) fn line(state: &mut State, text: String, shows: bool) -> Vec<Effect> {
-    order(state, Job::Line { text, shows })
-}
-
-/// What [`reload`] orders.
-const RELOAD: &str = "reload";
-
-/// Reads the file again: it was saved. One such job that waits is enough.
-pub(super) fn reload(state: &mut State) -> Vec<Effect> {
-    let job = Job::Line { text: RELOAD.into(), shows: false };
-    if state.waiting.contains(&job) { Vec::new() } else { order(state, job) }
-}
-
-pub(super) fn stop(state: &mut State) -> Vec<Effect> {
-    state.playing = false;
-    state.moving = false;
-    state.trouble = None;
-    state.waiting.clear();
-    state.wanted_step = None;
-    state.wanted_loading = None;
-    if state.running.is_some() { vec![Effect::Stop] } else { Vec::new() }
-}
 
 /// A job ended: its result is shown, the next one begins.
 pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {

@@ -3,6 +3,7 @@
 mod copy;
 mod jobs;
 mod mouse;
+mod orders;
 mod output;
 mod parameters;
 mod quantities;
@@ -19,8 +20,9 @@ use super::action::{Action, Do, Effect, Job, Leave};
 use super::app::{Input, Overlay, State};
 use super::entry::Entry;
 
-use jobs::{finish, line, order, stop};
+use jobs::finish;
 use mouse::by_mouse;
+use orders::{line, order, stop};
 use parameters::vary_by;
 use selection::{focus, neighbour, scroll_to, select, turn_plot};
 use steps::{play, step_by, step_to, tick};
@@ -65,7 +67,7 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         Action::Done(done) => finish(state, *done),
-        Action::Saved | Action::Edited(None) => jobs::reload(state),
+        Action::Saved | Action::Edited(None) => orders::reload(state),
         Action::Edited(Some(error)) => {
             state.say(Role::Bad, error);
             Vec::new()

@@ -2,7 +2,7 @@
 
 use crate::view::style::Role;
 
-use super::jobs::{line, order};
+use super::orders::{line, order};
 use crate::tui::action::{Effect, Job};
 use crate::tui::app::State;
 use crate::tui::vary;

@@ -1,6 +1,6 @@
 //! What has the focus, and what is selected in it.
 
-use super::jobs::order;
+use super::orders::order;
 use super::steps::step_by;
 use crate::tui::action::{Effect, Job, Loading};
 use crate::tui::app::{Overlay, State};

@@ -2,7 +2,7 @@
 
 use crate::view::style::Role;
 
-use super::jobs::order;
+use super::orders::order;
 use crate::tui::action::{Effect, Job};
 use crate::tui::app::{PERIOD, State};
 

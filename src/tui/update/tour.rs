@@ -2,7 +2,7 @@
 
 use crate::view::style::Role;
 
-use super::jobs::line;
+use super::orders::line;
 use super::selection::focus;
 use crate::session::commands::screen::Tour;
 use crate::tui::action::Effect;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::view::style::Role;
 
-use super::jobs::line;
+use super::orders::line;
 use super::parameters::NO_PARAMETERS;
 use super::search;
 use crate::tui::action::Effect;

@@ -7,7 +7,7 @@ use super::chart::{Chart, Curve, Line, Values};
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::MemberForces;
 use crate::answer::rounding::{denoised, largest};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::view::members::extremes;
 use crate::view::style::Style;
 use crate::view::{force_unit, length_unit, moment_unit};

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::canvas::{Canvas, Stroke};
-use crate::model::scenario::Units;
 use crate::model::structure::{ElementKind, ElementLoad, Load, LoadCase, Structure};
+use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
 use crate::view::style::Role;
 use crate::view::{force_unit, length_unit};

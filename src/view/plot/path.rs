@@ -5,7 +5,7 @@ use super::chart::{Chart, Curve, Line, Values};
 use super::zone::Quantity;
 use crate::answer::record::PairState;
 use crate::answer::rounding::{denoised, largest};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
 use crate::view::{force_unit, length_unit};

@@ -11,8 +11,8 @@ use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, State};
 use crate::answer::rounding::largest;
 use crate::model::parameter::ParameterValues;
-use crate::model::scenario::Units;
 use crate::model::structure::Structure;
+use crate::model::units::Units;
 use crate::view::members::extremes;
 use crate::view::style::{Role, Style};
 

@@ -6,7 +6,7 @@ use super::Series;
 use super::chart::{Chart, Curve, Line};
 use crate::answer::record::PivotRecord;
 use crate::answer::rounding::{denoised, largest};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::view::force_unit;
 use crate::view::pivots::of_contact;
 use crate::view::style::Style;

@@ -6,7 +6,7 @@ use super::Series;
 use super::chart::{Chart, Curve, Line, Values};
 use crate::answer::record::{PairState, Ray};
 use crate::answer::rounding::{denoised, largest};
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::view::style::Style;
 use crate::view::{force_unit, length_unit};
 

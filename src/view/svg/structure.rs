@@ -2,7 +2,7 @@
 
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FACE, FAINT, GREY, MARGIN, SMALL, Sign, WIDTH, points};
 use crate::answer::record::State;
-use crate::model::scenario::Units;
+use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
 use crate::view::plot::loads::{Arrow, LoadKind};
 use crate::view::plot::scene::Scene;

@@ -8,8 +8,9 @@ use crate::model::mesh::MeshFiles;
 use crate::model::pair::{Law, LawKind, Pair};
 use crate::model::parameter::{Number, Parameter};
 use crate::model::rules::Rules;
-use crate::model::scenario::{Places, Scenario, Source, Units};
+use crate::model::scenario::{Places, Scenario, Source};
 use crate::model::structure::*;
+use crate::model::units::Units;
 
 /// Metres and kilonewtons.
 pub fn units() -> Units {
