@@ -151,7 +151,9 @@ fn the_patch_test_passes_between_sides_of_every_kind() {
     let bent = |x: f64| if x < 1.0 { 0.2 * x } else { 0.4 - 0.2 * x };
     use Kind::{Quad4, Quad8, Triangle3, Triangle6};
     let uneven = [0.0, 0.1, 0.7, 1.1, 2.0];
-    let cases: [(&str, [Kind; 2], [Vec<f64>; 2], &dyn Fn(f64) -> f64, f64); 10] = [
+    /// Name, kinds of the sides, their nodes, the shape of the joint and its turn.
+    type Pairing<'a> = (&'a str, [Kind; 2], [Vec<f64>; 2], &'a dyn Fn(f64) -> f64, f64);
+    let cases: [Pairing<'_>; 10] = [
         ("6 against 5 corners", [Quad8, Quad8], [even(5, 2.0), even(4, 2.0)], &flat, 0.0),
         ("3 to 2", [Triangle6, Quad8], [even(3, 2.0), even(2, 2.0)], &flat, 0.0),
         ("quadratic on linear", [Quad8, Quad4], [even(5, 2.0), even(4, 2.0)], &flat, 0.0),

@@ -24,13 +24,16 @@ impl LoadKind {
     const ALL: [LoadKind; 3] = [LoadKind::Force, LoadKind::Line, LoadKind::Weight];
 }
 
+/// A line load: both ends of its line, and its force per length at each.
+type LineLoad = ([(f64, f64); 2], [[f64; 2]; 2]);
+
 /// Loads in the plane of a picture, all cases added up.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
     /// Point forces and weights.
     points: Vec<(LoadKind, (f64, f64), [f64; 2])>,
     /// Line loads: ends and values there.
-    lines: Vec<([(f64, f64); 2], [[f64; 2]; 2])>,
+    lines: Vec<LineLoad>,
 }
 
 /// An arrow of a load.
