@@ -102,7 +102,7 @@ impl Session {
         let ground = self.ground(watch)?;
         let history = worker::run(watch, move |watch| stages::follow(ground.case(watch)))??;
         let history = Arc::new(history);
-        self.path = Some(Arc::new(PathRecord::of_history(&history)));
+        self.keep_path(PathRecord::of_history(&history));
         self.followed = Some(Arc::clone(&history));
         Ok(history)
     }

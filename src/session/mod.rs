@@ -30,6 +30,7 @@ use crate::answer::record::{OutcomeKind, RayClass};
 pub use crate::answer::{diagram, record as results};
 pub use crate::explain::remedy::Remedies;
 use crate::export::table::Table;
+use crate::model::parameter::ParameterValues;
 use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 use crate::path::record::PathRecord;
@@ -127,6 +128,8 @@ pub struct Session {
     depth: usize,
     /// What the last `trace` or `stages` followed.
     path: Option<Arc<PathRecord>>,
+    /// The values under which it was followed.
+    path_values: ParameterValues,
     /// The last map.
     map: Option<Arc<commands::map::Drawn>>,
     /// The table of the last `sweep` that was shown.
@@ -185,6 +188,7 @@ impl Session {
             trouble: None,
             depth: 0,
             path: None,
+            path_values: ParameterValues::default(),
             map: None,
             swept: None,
             remedies: None,

@@ -180,3 +180,24 @@ fn a_history_is_drawn_over_the_load_that_goes_to_and_fro() {
     let results = run("pipeline", &["stages 2", "plot path slip c6"]);
     assert!(text(&results[1]).contains("over the factor of hot"), "{}", text(&results[1]));
 }
+
+/// A path that was followed before a change is not shown as one of the present values.
+#[test]
+fn a_path_tells_the_values_it_was_followed_under() {
+    let folder = tempfile::tempdir().expect("a place");
+    let svg = folder.path().join("path.svg");
+    let report = folder.path().join("report.md");
+    let export = [format!("export path {}", svg.display()), format!("export report {}", report.display())];
+    let commands =
+        ["limit pull", "plot path", "set f 0.3", "plot path", &export[0], &export[1], "set f 0.5", "plot path"];
+    let results = run("beam", &commands);
+    assert!(results.iter().all(Result::is_ok), "{results:?}");
+    let stale = "followed under f = 0.5; the present values are others";
+    assert!(text(&results[3]).contains(stale), "{}", text(&results[3]));
+    for index in [1, 7] {
+        assert!(!text(&results[index]).contains("followed under"), "{}", text(&results[index]));
+    }
+    assert!(std::fs::read_to_string(&svg).unwrap().contains("followed under f = 0.5"));
+    // 6 f F = 300 was the limit then, 180 is it now
+    assert!(!std::fs::read_to_string(&report).unwrap().contains("= 300"));
+}

@@ -1,7 +1,5 @@
 //! `cycle` and `limit cycle`: a load that goes to and fro.
 
-use std::sync::Arc;
-
 use clap::Args;
 use serde::Serialize;
 
@@ -101,7 +99,7 @@ impl Session {
             sentence: &found.sentence,
         };
         io.show(&report, |out, style| view::cycle::write(out, &found, self.load_unit(&name), units, style))?;
-        self.path = Some(Arc::new(PathRecord::of_history(&found.history)));
+        self.keep_path(PathRecord::of_history(&found.history));
         Ok(())
     }
 

@@ -1,7 +1,5 @@
 //! `limit`: how far a load can grow.
 
-use std::sync::Arc;
-
 use clap::Args;
 use serde::Serialize;
 
@@ -89,7 +87,7 @@ impl Session {
         let record = PathRecord::of_load(&found.path, &cases);
         // A single place draws no picture: a path that does is kept.
         if record.places.len() > 1 || self.path.is_none() {
-            self.path = Some(Arc::new(record));
+            self.keep_path(record);
         }
         Ok(())
     }

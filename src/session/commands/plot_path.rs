@@ -1,13 +1,14 @@
 //! `plot path`: what was followed last.
 
 use std::io::Write;
+use std::sync::Arc;
 
 use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
 use crate::session::commands::along::Along;
 use crate::session::language::selection::no_such;
 use crate::session::language::suggestion::did_you_mean;
-use crate::session::{CommandError, Output, Session};
+use crate::session::{CommandError, Format, Output, Session};
 use crate::view;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::zone::Quantity as Zone;
@@ -28,6 +29,9 @@ impl Session {
         match along {
             Some(along) => io.show(&Along::of(path, &along), write)?,
             None => io.show(path, write)?,
+        }
+        if let Some(stale) = self.stale_path().filter(|_| io.format == Format::Text) {
+            io.say(&format!("the path was {stale}"))?;
         }
         Ok(())
     }
@@ -75,6 +79,23 @@ impl Session {
             pairs = busiest(path, &ids);
         }
         Ok((view::plot::path::drawing(path, quantity, &pairs, over, units), None))
+    }
+
+    /// Keeps a path that was followed under the present values.
+    pub(in crate::session) fn keep_path(&mut self, record: PathRecord) {
+        self.path = Some(Arc::new(record));
+        self.path_values = self.now.values.clone();
+    }
+
+    /// Says so where the path was followed under other values than the present ones; which, as far as they differ.
+    pub(in crate::session) fn stale_path(&self) -> Option<String> {
+        let then = &self.path_values;
+        let differs =
+            |(name, value): &(&String, f64)| self.now.values.get(name.as_str()).is_some_and(|now| now != value);
+        let free = then.free().filter(|entry| differs(&(entry.0, entry.1)));
+        let named: Vec<String> = free.map(|(name, value)| format!("{name} = {value}")).collect();
+        let stale = self.path.is_some() && !named.is_empty();
+        stale.then(|| format!("followed under {}; the present values are others", named.join(", ")))
     }
 
     pub(in crate::session) fn need_path(&self) -> Result<&PathRecord, CommandError> {

@@ -113,7 +113,7 @@ impl Session {
                 view::path::write_friction(out, &path, &units, style)?;
                 view::quantities::write_along(out, &record, &along, &units, style)
             })?;
-            self.path = Some(Arc::new(record));
+            self.keep_path(record);
             return Ok(());
         }
         let path = worker::run(io.watch, move |watch| {
@@ -126,7 +126,7 @@ impl Session {
             view::path::write_load(out, &path, &units, style)?;
             view::quantities::write_along(out, &record, &along, &units, style)
         })?;
-        self.path = Some(Arc::new(record));
+        self.keep_path(record);
         Ok(())
     }
 }

@@ -49,7 +49,11 @@ impl Session {
             Exported::Gap => zone(Quantity::Gap),
             Exported::Pressure => zone(Quantity::Pressure),
             Exported::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
-            Exported::Path => Ok(self.chart_figure(&self.path_chart(of, watch)?.0, &self.need_path()?.end)),
+            Exported::Path => {
+                let end = &self.need_path()?.end;
+                let note = self.stale_path().map_or(end.clone(), |stale| format!("The path was {stale}. {end}"));
+                Ok(self.chart_figure(&self.path_chart(of, watch)?.0, &note))
+            }
             Exported::Map => {
                 let drawn = self.need_map()?;
                 let [a, b] = &drawn.map.axes;

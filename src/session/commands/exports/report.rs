@@ -143,7 +143,7 @@ impl Session {
             (Exported::Pressure, "pressure", has_pairs),
             (Exported::Moment, "moment", bends),
             (Exported::Axial, "axial", axial),
-            (Exported::Path, "path", self.need_path().is_ok()),
+            (Exported::Path, "path", self.need_path().is_ok() && self.stale_path().is_none()),
         ];
         if wanted.iter().any(|(.., is_there)| *is_there) {
             blocks.push(Block::Heading("Figures".into()));
