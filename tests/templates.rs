@@ -138,6 +138,9 @@ fn portal() {
         let mut frame = Begun::of("portal", &format!("L=8 h={h} b=0.2 q=10 W=1 f={f}"));
         frame.expect("limit wind", 80.0 * f.min(8.2 / 2.0 / h), 0.0, 1e-6);
     }
+    // pushed the other way: a turning point beyond the sliding limit f q L is none
+    let mut pulled = Begun::of("portal", "L=12 h=8 b=0.51 f=0.508 q=10 W=-0.5");
+    pulled.expect("limit W", -0.508 * 120.0, 0.0, 1e-6);
 }
 
 /// Moments over the bearings of a beam by Clapeyron's equation, and its reactions; spans, load, EI, settlements.

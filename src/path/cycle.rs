@@ -12,6 +12,8 @@ use crate::solve::problem::factors;
 
 /// Two states are one where they differ by less than this share of the largest of their kind.
 const SAME: f64 = 1e-12;
+/// What two cycles leave behind is the same where it differs by less than this share of it.
+const SAME_NET: f64 = 1e-6;
 /// Cycles followed first; then twice as many, and so on.
 const FIRST: usize = 4;
 /// Cycles followed at most, where nothing else is said.
@@ -180,14 +182,22 @@ fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
             && lost.iter().all(|lost| *lost <= SAME * force * slips);
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
         turns.push(Turn { dissipated: lost, pairs, difference });
-        if closed <= SAME {
-            kind = match () {
-                () if still => Kind::ShakesDown,
-                () if net <= SAME * slips => Kind::Alternates,
-                () => Kind::Ratchets,
-            };
-            break;
+        if closed > SAME {
+            continue;
         }
+        // What is left behind may be the tail of a convergence: it ratchets only where the next cycle leaves the same.
+        let before = turns.len().checked_sub(2).map(|before| &turns[before].pairs);
+        let same = before.is_some_and(|before| {
+            let now = turns[turns.len() - 1].pairs.iter();
+            now.zip(before).all(|(now, before)| (now.net - before.net).abs() <= SAME_NET * net)
+        });
+        kind = match () {
+            () if still => Kind::ShakesDown,
+            () if net <= SAME * slips => Kind::Alternates,
+            () if same => Kind::Ratchets,
+            () => continue,
+        };
+        break;
     }
     if kind == Kind::Undecided && history.end != HistoryEnd::Complete {
         kind = Kind::Collapses;

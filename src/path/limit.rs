@@ -9,6 +9,7 @@ use super::start::PathError;
 use crate::answer::record::Ray;
 use crate::contact::problem::ContactProblem;
 use crate::explain::ray;
+use crate::lcp::problem::NOISE;
 use crate::model::rules::{Covering, Rules};
 use crate::solve::problem::factors;
 use crate::solve::{Case, Prepared, Solved};
@@ -84,6 +85,12 @@ fn beside(path: &LoadPath, case: Case<'_>, value: f64) -> Result<(Prepared, Vec<
     Ok((case.prepared.with_factors(&factors), factors))
 }
 
+/// Whether a run of its own finds an answer at a value.
+fn beside_answers(path: &LoadPath, case: Case<'_>, value: f64) -> Result<bool, PathError> {
+    let (there, _) = beside(path, case, value)?;
+    Ok(Case { prepared: &there, ..case }.under(Rules::default()).solve_briefly()?.answer.is_answer())
+}
+
 /// The size of a limit: one of 0 has none of its own.
 fn size(factor: f64, present: f64) -> f64 {
     [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0)
@@ -102,8 +109,8 @@ pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limi
     let to = negative.then_some(f64::NEG_INFINITY);
     let path = trace(case, solved, name, LoadReach { to, through: false })?;
     let found = of_path(case, path, negative)?;
-    match found.factor {
-        Some(factor) if found.lost => bracketed(case, name, factor, found),
+    match found.path.factors.last() {
+        Some(&end) if found.lost => bracketed(case, name, end, found),
         _ => Ok(found),
     }
 }
@@ -133,7 +140,8 @@ fn bracketed(case: Case<'_>, name: &str, end: f64, found: Limit) -> Result<Limit
 /// What the end of a path says of the limit.
 fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, PathError> {
     let present = path.parameter.present;
-    let factor = path.limit();
+    // Beside the present value a limit of rounding is one of 0.
+    let factor = path.limit().map(|factor| if factor.abs() <= NOISE * present.abs() { 0.0 } else { factor });
     let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
     let mut limit = Limit {
         present,
@@ -147,6 +155,11 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
         path,
     };
     let (Some(factor), PathEnd::Limit(direction)) = (factor, &limit.path.end) else {
+        // Before a turning point there are answers, unless the path was led there by rounding.
+        if let (PathEnd::Turning, Some(end)) = (&limit.path.end, limit.path.factors.last()) {
+            let inside = end - BESIDE * (end - limit.path.start);
+            limit.lost = !beside_answers(&limit.path, case, inside)?;
+        }
         return Ok(limit);
     };
     let outwards = if negative { -1.0 } else { 1.0 } * BESIDE * size(factor, present);
@@ -159,7 +172,7 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
         return Ok(Limit { factor: None, safety: None, beyond: Some(over), ..limit });
     }
     if factor != 0.0 && !above.answer.is_answer() {
-        limit.confirmed = solve(&beside(&limit.path, case, factor - outwards)?.0)?.answer.is_answer();
+        limit.confirmed = beside_answers(&limit.path, case, factor - outwards)?;
         limit.lost = !limit.confirmed;
     }
     let problem = ContactProblem { system: Arc::clone(system), factors, ..limit.path.problem_at(over) };

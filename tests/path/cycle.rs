@@ -1,6 +1,7 @@
 //! `cycle`: shakedown, slip to and fro, ratcheting, against closed forms.
 
 use stickslip::model::embedded;
+use stickslip::model::load::load_text;
 
 use super::find::{beam, near, number, report, session, text};
 
@@ -87,4 +88,21 @@ fn what_cannot_be_repeated_is_refused() {
         let refusal = report(&mut session, command).unwrap_err();
         assert!(refusal.contains(part), "{command}: {refusal}");
     }
+}
+
+/// Two sliders on R = [[4, −3], [−3, 4]], positive definite, that stay closed: R z = λ − F is bounded by friction, so that no
+/// slip can be left behind for ever. The slips converge to 3/16 to and fro of the first, a little less left each time.
+#[test]
+fn the_tail_of_a_convergence_is_no_ratchet() {
+    let text = r#"{"format": "stickslip/1", "title": "Two sliders", "parameters": {"P": 1},
+        "contact_system": {"pairs": ["a", "b"], "friction": [0.5, 0.5],
+            "stiffness": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 4, -3], [0, 0, -3, 4]],
+            "loads": {"weight": {"factor": 1, "vector": [7, 8, -1, -1]},
+                      "push": {"factor": "P", "vector": [-0.5, 0.5, -1, 0]}}}}"#;
+    let mut session = session(load_text("sliders", text, None).unwrap_or_else(|problems| panic!("{problems}")));
+    let found = report(&mut session, "cycle P -2..5").unwrap();
+    assert_eq!(found["kind"], "alternates");
+    let last = found["cycles"].as_array().unwrap().last().unwrap();
+    near(&last["pairs"][0]["there"], -last["pairs"][0]["back"].as_f64().unwrap(), 1e-12);
+    near(&last["pairs"][0]["there"].as_f64().unwrap().abs().into(), 0.1875, 1e-9);
 }
