@@ -20,11 +20,12 @@ use num_rational::BigRational;
 use num_traits::Zero;
 
 use super::exact_certificate::certify_exactly;
-use super::exact_equations::{Equations, Solved, exact, nearest};
+use super::exact_equations::{Equations, Solved};
 use super::motions::{Entry, FreeMotions, Rounded};
 use super::proof::{BUDGET, Certificate, CertificateSearch};
 use crate::contact::law::FACETS;
 use crate::contact::problem::ContactProblem;
+use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 
 /// A margin below this share of the motion is looked at more closely: the linear program cannot tell it from 0.
@@ -226,7 +227,7 @@ impl MotionProgram<'_> {
         let mut equations = Equations::new(amounts.len(), self.end);
         let held: Vec<usize> = self.held().collect();
         for joint in held {
-            equations.add(self.motions.row(joint).iter().map(|entry| (entry.motion, exact(entry.value))));
+            equations.add(self.motions.row(joint).iter().map(|entry| (entry.motion, rational(entry.value))));
         }
         for slack in tight {
             equations.add(self.exact_terms(slack.pair, slack.side));
@@ -247,15 +248,15 @@ impl MotionProgram<'_> {
 
     /// Terms of ζ_n − side · f ζ_τ as the data have them.
     fn exact_terms(&self, pair: usize, side: f64) -> Vec<(usize, BigRational)> {
-        let f = exact(side * self.problem.laws[pair].friction());
-        let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, exact(entry.value)));
-        let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -exact(entry.value) * &f));
+        let f = rational(side * self.problem.laws[pair].friction());
+        let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, rational(entry.value)));
+        let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -rational(entry.value) * &f));
         normal.chain(tangential).collect()
     }
 
     /// Every sign of the proof: by f64 sums with the bounds of their rounding, exactly where they have no room.
     fn verified(&mut self, amounts: &[f64], exactly: Option<&[BigRational]>) -> Option<Certificate> {
-        let amount = |k: usize| exactly.map_or_else(|| exact(amounts[k]), |exactly| exactly[k].clone());
+        let amount = |k: usize| exactly.map_or_else(|| rational(amounts[k]), |exactly| exactly[k].clone());
         let value = |terms: Vec<(usize, BigRational)>| -> BigRational {
             terms.into_iter().filter(|(k, _)| amounts[*k] != 0.0).map(|(k, a)| a * amount(k)).sum()
         };

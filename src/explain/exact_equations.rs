@@ -6,20 +6,10 @@ use std::time::Instant;
 use num_rational::BigRational;
 use num_traits::Zero;
 
-use crate::lcp::exact::scalar;
+use crate::lcp::exact::dyadic::{nearest, rational};
 
 /// The free unknowns are rounded to this: short numbers stay short.
 const GRID: f64 = (1u64 << 40) as f64;
-
-/// A finite f64 as the rational it is.
-pub fn exact(value: f64) -> BigRational {
-    <BigRational as scalar::Scalar>::from_f64(value)
-}
-
-/// The f64 next to a rational.
-pub fn nearest(value: &BigRational) -> f64 {
-    scalar::Scalar::to_f64(value)
-}
 
 type Row = BTreeMap<usize, BigRational>;
 
@@ -92,7 +82,7 @@ impl Equations {
             }
             solved.insert(lead, row);
         }
-        let mut y: Vec<BigRational> = near.iter().map(|value| exact((value * GRID).round() / GRID)).collect();
+        let mut y: Vec<BigRational> = near.iter().map(|value| rational((value * GRID).round() / GRID)).collect();
         y.resize(self.unknowns, BigRational::zero());
         for (lead, row) in &solved {
             // Rows hold free unknowns only: y[lead] + Σ a y = 0.

@@ -11,9 +11,10 @@ use std::time::Instant;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use super::exact_equations::{Equations, Solved, exact, nearest};
+use super::exact_equations::{Equations, Solved};
 use super::proof::BUDGET;
 use crate::contact::problem::ContactProblem;
+use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::lcp::problem::NOISE;
 
@@ -86,14 +87,14 @@ pub fn misfit(problem: &ContactProblem) -> Option<Misfit> {
     let mut equations = Equations::new(rooms.len(), end);
     let idle = unilateral.iter().filter(|&&joint| pressed(joint) <= TIGHT * largest);
     for &joint in tangential.iter().chain(idle) {
-        equations.add(row(joint).into_iter().map(|(k, s)| (k, exact(s))));
+        equations.add(row(joint).into_iter().map(|(k, s)| (k, rational(s))));
     }
     let amounts: Vec<BigRational> = match equations.nearest(&found.x) {
-        Solved::Free => found.x.iter().map(|x| exact(*x)).collect(),
+        Solved::Free => found.x.iter().map(|x| rational(*x)).collect(),
         Solved::Exactly(amounts) => amounts,
         Solved::OutOfTime => return None,
     };
-    let value = |joint: usize| -> BigRational { row(joint).into_iter().map(|(k, s)| exact(s) * &amounts[k]).sum() };
+    let value = |joint: usize| -> BigRational { row(joint).into_iter().map(|(k, s)| rational(s) * &amounts[k]).sum() };
     let holds = tangential.iter().all(|&joint| value(joint).is_zero())
         && unilateral.iter().all(|&joint| !value(joint).is_negative());
     let (mut room, mut terms) = (0.0, 0.0);

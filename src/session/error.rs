@@ -97,6 +97,11 @@ impl From<PrepareError> for CommandError {
     }
 }
 
+/// A command that cannot be carried out, in a sentence.
+pub(in crate::session) fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
+    Err(CommandError::Refused(text.into()))
+}
+
 impl CommandError {
     /// Exit status of a script that ends with this error.
     pub fn status(&self) -> u8 {

@@ -15,6 +15,7 @@ use crate::contact::written::ContactLcp;
 use crate::explain::kernel::clean;
 use crate::lcp::basis_solution::{direction, vertex};
 use crate::lcp::driver::{Engine, run};
+use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::exact::lemke::Exact;
 use crate::lcp::exact::tableau::Tableau;
 use crate::lcp::lemke::SchemeEngine;
@@ -198,10 +199,6 @@ fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run
     watched(&mut Exact::new(problem, rule, watch), "exact arithmetic", watch)
 }
 
-fn rational(value: f64) -> BigRational {
-    <BigRational as crate::lcp::exact::scalar::Scalar>::from_f64(value)
-}
-
 /// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ; `None` if it was stopped.
 pub fn exact_stiffness(system: &ContactSystem, watch: &dyn Watch) -> Option<Vec<Vec<BigRational>>> {
     let k = system.joint_count();
@@ -316,8 +313,4 @@ fn rounded(run: Run<BigRational>, force: f64, length: f64) -> Run {
         point: Point { z: all(&run.point.z, length), w: all(&run.point.w, force), p: nearest(&run.point.p) / force },
         pivots,
     }
-}
-
-fn nearest(value: &BigRational) -> f64 {
-    crate::lcp::exact::scalar::Scalar::to_f64(value)
 }

@@ -7,8 +7,9 @@ use num_traits::{Signed, Zero};
 use crate::answer::check_plain::{ROUNDING, check_plain, row};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::corrected;
+use crate::lcp::exact::dyadic::rational;
 use crate::lcp::exact::rational_solve::{Quotients, RationalSolution, clear_denominators, solve};
-use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
+use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::problem::NOISE;
@@ -118,8 +119,7 @@ impl<'a> WholeBasis<'a> {
                 Some(Variable::Z(j)) => entry(j),
                 _ => 0.0,
             };
-            let all: Vec<BigRational> =
-                columns.chain([lcp.q[index], enters]).map(<BigRational as Scalar>::from_f64).collect();
+            let all: Vec<BigRational> = columns.chain([lcp.q[index], enters]).map(rational).collect();
             let (mut basic, scale) = clear_denominators(&all);
             let entering = basic.pop().unwrap_or_default();
             let q = basic.pop().unwrap_or_default();

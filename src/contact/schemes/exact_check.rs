@@ -16,8 +16,9 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::rows::tangential_joint;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
+use crate::lcp::exact::dyadic::rational;
 use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution, clear_denominators};
-use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
+use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 
 /// A quantity of a pair that must not be negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -152,27 +153,25 @@ impl<'a> Data<'a> {
 
 /// load − matrix · (g, 0); the normal joint of pair i is row i.
 fn constants(matrix: &DMatrix<f64>, load: &DVector<f64>, problem: &ContactProblem) -> Vec<BigRational> {
-    let exact = <BigRational as Scalar>::from_f64;
     let gaps: Vec<(usize, BigRational)> =
-        problem.gaps().enumerate().filter(|(_, gap)| *gap != 0.0).map(|(k, gap)| (k, exact(gap))).collect();
+        problem.gaps().enumerate().filter(|(_, gap)| *gap != 0.0).map(|(k, gap)| (k, rational(gap))).collect();
     (0..matrix.nrows())
-        .map(|i| gaps.iter().fold(exact(load[i]), |sum, (k, gap)| sum - exact(matrix[(i, *k)]) * gap))
+        .map(|i| gaps.iter().fold(rational(load[i]), |sum, (k, gap)| sum - rational(matrix[(i, *k)]) * gap))
         .collect()
 }
 
 impl Forms<'_> {
     /// Σ factor·λ_row + fixed.
     fn form(&self, terms: &[(usize, f64)], fixed: f64) -> Form {
-        let exact = <BigRational as Scalar>::from_f64;
         let mut row: Vec<BigRational> = vec![Zero::zero(); self.unknown.len() + 1];
         for (joint, factor) in terms {
-            let factor = exact(*factor);
+            let factor = rational(*factor);
             for (entry, k) in row.iter_mut().zip(&self.unknown) {
-                *entry += &factor * exact(self.data.matrix[(*joint, *k)]);
+                *entry += &factor * rational(self.data.matrix[(*joint, *k)]);
             }
             row[self.unknown.len()] += &factor * &self.data.constants[*joint];
         }
-        row[self.unknown.len()] += exact(fixed);
+        row[self.unknown.len()] += rational(fixed);
         let (mut coefficients, scale) = clear_denominators(&row);
         // The row has at least its constant.
         let constant = coefficients.pop().unwrap_or_default();

@@ -14,6 +14,8 @@ const STRAIGHT: f64 = 1e-12;
 const AGREED: f64 = 1e-12;
 /// A strip is halved this often at most.
 const HALVINGS: usize = 8;
+/// Sequences within sequences are looked for this deep at most.
+const NESTED: usize = 64;
 /// Most lines of one map.
 const LINES: usize = 20_000;
 
@@ -66,11 +68,19 @@ impl Panel {
     }
 }
 
+fn too_intricate() -> PathError {
+    PathError::Target(format!(
+        "the map is too intricate: after {LINES} lines across it its regions are not told apart; take smaller ranges"
+    ))
+}
+
 /// Cuts the map into strips.
 pub struct Cutter<'a> {
     lines: &'a Lines<'a>,
     range: [f64; 2],
     count: usize,
+    /// Sequences within sequences that are being looked at.
+    nested: usize,
     /// Whether every line was exact.
     pub exact: bool,
 }
@@ -78,16 +88,13 @@ pub struct Cutter<'a> {
 impl<'a> Cutter<'a> {
     /// `range` of the parameter across.
     pub fn new(lines: &'a Lines<'a>, range: [f64; 2]) -> Cutter<'a> {
-        Cutter { lines, range, count: 0, exact: true }
+        Cutter { lines, range, count: 0, nested: 0, exact: true }
     }
 
     fn line(&mut self, at: f64) -> Result<Line, PathError> {
         self.count += 1;
         if self.count > LINES {
-            return Err(PathError::Target(format!(
-                "the map is too intricate: after {LINES} lines across it its regions are not told apart; take smaller \
-                 ranges"
-            )));
+            return Err(too_intricate());
         }
         if self.lines.case.watch.stop() {
             return Err(PathError::Interrupted);
@@ -115,16 +122,7 @@ impl<'a> Cutter<'a> {
             self.between(end, &mut found)?;
         }
         let mut panels: Vec<Panel> = Vec::new();
-        let mut rest = &found[..];
-        while let Some(first) = rest.first() {
-            let count = rest.iter().take_while(|line| line.same_sequence(first)).count();
-            let (mine, others) = rest.split_at(count);
-            rest = others;
-            let (start, end) = (&mine[0], &mine[count - 1]);
-            if end.at > start.at {
-                self.measure(start.clone(), end.clone(), 0, &mut panels)?;
-            }
-        }
+        self.measure_all(&found, 0, &mut panels)?;
         self.close(&mut panels);
         Ok(panels)
     }
@@ -230,13 +228,21 @@ impl<'a> Cutter<'a> {
         let mut found = vec![start];
         self.between(other, &mut found)?;
         self.between(end, &mut found)?;
-        let mut rest = &found[..];
-        while let Some(first) = rest.first() {
-            let count = rest.iter().take_while(|line| line.same_sequence(first)).count();
-            let (mine, others) = rest.split_at(count);
-            rest = others;
-            if mine[count - 1].at > mine[0].at {
-                self.measure(mine[0].clone(), mine[count - 1].clone(), depth, panels)?;
+        self.nested += 1;
+        if self.nested > NESTED {
+            return Err(too_intricate());
+        }
+        self.measure_all(&found, depth, panels)?;
+        self.nested -= 1;
+        Ok(())
+    }
+
+    /// Panels of the lines, one for every run of the same sequence.
+    fn measure_all(&mut self, found: &[Line], depth: usize, panels: &mut Vec<Panel>) -> Result<(), PathError> {
+        for mine in found.chunk_by(Line::same_sequence) {
+            let (start, end) = (&mine[0], &mine[mine.len() - 1]);
+            if end.at > start.at {
+                self.measure(start.clone(), end.clone(), depth, panels)?;
             }
         }
         Ok(())

@@ -7,6 +7,7 @@ use super::find::range;
 use crate::answer::record::Ray;
 use crate::path::cycle::{Kind, MOST, Turn, cycle, shakedown_limit};
 use crate::path::record::PathRecord;
+use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session, worker};
@@ -37,10 +38,6 @@ impl Action for Repeated {
 
 fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
     if asked.given.is_empty() { asked.varied() } else { Vec::new() }
-}
-
-fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
-    Err(CommandError::Refused(text.into()))
 }
 
 /// `A..B` in any order: from the first to the second.

@@ -10,6 +10,7 @@ use crate::path::edge::{Which, edge};
 use crate::path::find::{Found, Wanted, find};
 use crate::view;
 
+use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::language::expect::{self, Expectation, Operator};
@@ -75,10 +76,6 @@ struct Request {
     wanted: Wanted,
     /// The condition as written.
     condition: String,
-}
-
-fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
-    Err(CommandError::Refused(text.into()))
 }
 
 /// `A..B`, upwards.

@@ -8,6 +8,7 @@ use serde_json::{Value as Json, json};
 use crate::model::quantity::Quantity;
 use crate::path::envelope::Axis;
 use crate::path::map::{self, map};
+use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session, worker};
@@ -47,10 +48,6 @@ fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
         all.extend(Candidate::plain(["of"]));
     }
     all
-}
-
-fn refused<T>(text: impl Into<String>) -> Result<T, CommandError> {
-    Err(CommandError::Refused(text.into()))
 }
 
 /// The last map that was drawn, and of what.
