@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
+use std::time::Duration;
 
 use rustyline::config::Configurer;
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
-use rustyline::{ColorMode, CompletionType, Config, Editor, Event, EventHandler};
+use rustyline::{ColorMode, CompletionType, Config, Editor, Event, EventHandler, ExternalPrinter};
 
 use unicode_width::UnicodeWidthStr;
 
@@ -22,114 +23,41 @@ use super::editor::{Editing, Pace};
 use super::{Ended, pager, show_error};
 use crate::signals::{self, Signals, TerminalWatch};
 
+/// A terminal that hung up reads as an end and fails to be written on a moment before the signal tells it.
+const HANGING_UP: Duration = Duration::from_millis(200);
 /// Lines of history kept.
 const HISTORY: usize = 10_000;
 
-type Line = Editor<Editing, FileHistory>;
+type LineEditor = Editor<Editing, FileHistory>;
 
 /// Runs until `quit`, Ctrl-D or a signal.
 pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result<Ended> {
-    let mut editor = editor(session, style).map_err(io::Error::other)?;
-    let history = History::open(&mut editor);
-    let pace = Pace::default();
-    editor.bind_sequence(Event::Any, EventHandler::Conditional(Box::new(pace.clone())));
-    // an external printer makes the editor wait for more than keys, so that a signal can wake it
-    let printer = editor.create_external_printer();
-    if printer.is_ok() {
-        signals.wake_editor();
-    }
-    let knocking = signals.clone();
-    let files = FileWatch::start(move || knocking.knock()).ok().filter(|_| printer.is_ok());
+    let mut input = Input::open(session, style, signals).map_err(io::Error::other)?;
     let fixed_width = style.width != terminal_width();
     let mut style = style;
-    // lines of a paste or typed ahead, and the beginning of one
-    let mut waiting: VecDeque<String> = VecDeque::new();
-    let mut pasted = false;
-    let mut begun = (String::new(), String::new());
-    let prompt_text = if style.ascii { "> " } else { "› " };
-    let prompt_colour = style.paint(Role::Accent, prompt_text);
     loop {
         if signals.must_end() {
             return Ok(Ended::with(signals.status()));
         }
-        let (line, echoes) = match waiting.pop_front() {
-            Some(line) => (line, true),
-            None => {
-                pasted = false;
-                if let Some(files) = &files {
-                    files.aim(session.watched());
-                }
-                if signals.take_knock() && session.watched().is_some() {
-                    reload(session, style, signals);
-                }
-                if let Some(helper) = editor.helper_mut() {
-                    helper.vocabulary = session.vocabulary();
-                }
-                let prompt = (prompt_text, prompt_colour.as_str());
-                let raw = signals.raw();
-                let read = editor.readline_with_initial(&prompt, (&begun.0, &begun.1));
-                drop(raw);
-                begun = Default::default();
-                signals.take_interrupt();
-                if read.is_err() && signals.has_knocked() {
-                    // the line gives way to what is told, and comes again as it was
-                    begun = editor.helper().map(Editing::last_line).unwrap_or_default();
-                    erase_line(prompt_text, &begun.0)?;
-                    continue;
-                }
-                if signals.take_stop() {
-                    // what was typed so far stands in the line again after `fg`
-                    begun = editor.helper().map(Editing::last_line).unwrap_or_default();
-                    writeln!(io::stdout())?;
-                    signals::stop()?;
-                    continue;
-                }
-                match read {
-                    Ok(text) => {
-                        // a paste of several lines arrives as one text
-                        let mut lines = text.lines().map(ToOwned::to_owned);
-                        let Some(first) = lines.next() else { continue };
-                        waiting.extend(lines);
-                        let several = !waiting.is_empty();
-                        (first, several)
-                    }
-                    Err(ReadlineError::Interrupted | ReadlineError::Signal(_)) => continue,
-                    Err(ReadlineError::Eof) if io::stdin().is_terminal() => return Ok(Ended::with(0)),
-                    // a terminal that hung up reads as an end or an error: the signal may come a moment later
-                    Err(_) => {
-                        std::thread::sleep(std::time::Duration::from_millis(200));
-                        signals.note_hangup();
-                        return Ok(Ended::with(signals.status()));
-                    }
-                }
-            }
+        let line = match input.next(session, style, signals)? {
+            Typed::Line(line) => line,
+            Typed::Nothing => continue,
+            Typed::End(status) => return Ok(Ended::with(status)),
         };
-        if line.trim().is_empty() {
-            continue;
-        }
-        // the history is a comfort: a full disk must not end the session
-        let _ = editor.add_history_entry(line.as_str());
-        history.append(&line);
         if !fixed_width {
             style.width = terminal_width();
         }
-        if echoes {
-            // each answer of a paste stands under its command
-            let _ = writeln!(io::stdout(), "{prompt_colour}{}", printable::line(&line));
-        }
-        // nobody reads while the next lines are there already
-        let by_hand = waiting.is_empty() && !pace.is_burst();
-        pasted |= !by_hand;
-        let (result, typed) = execute(session, &line, style, signals, by_hand, pasted);
-        let mut typed: Vec<&str> = typed.split('\n').collect();
-        begun = (typed.pop().unwrap_or_default().to_owned(), String::new());
-        waiting.extend(typed.into_iter().map(ToOwned::to_owned));
+        input.show(&line);
+        let by_hand = input.is_by_hand();
+        let (result, typed) = execute(session, &line.text, style, signals, by_hand, input.pasted);
+        input.type_ahead(&typed);
         match result {
             Ok(Next::Continue) => {}
             Ok(Next::Quit) => return Ok(Ended::with(0)),
             Ok(Next::Edit) => edit(session, style, signals),
             Ok(next) => return Ok(Ended { status: 0, next }),
             Err(error) if error.is_output() => {
+                std::thread::sleep(HANGING_UP);
                 if signals.must_end() || !io::stdin().is_terminal() {
                     signals.note_hangup();
                     return Ok(Ended::with(signals.status()));
@@ -139,11 +67,162 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
             Err(error) => {
                 if error.is_interrupted() {
                     signals.take_interrupt();
-                    waiting.clear();
+                    input.waiting.clear();
                 }
                 let _ = writeln!(io::stderr(), "{}", show_error(&error, &style));
             }
         }
+    }
+}
+
+/// A line to run.
+struct Line {
+    text: String,
+    /// Whether it came with others: then it is shown above its answer.
+    came_with_others: bool,
+}
+
+/// What the keyboard gave.
+enum Typed {
+    Line(Line),
+    /// No line: a key that ends one, a file that was saved.
+    Nothing,
+    /// The end, with its status.
+    End(u8),
+}
+
+/// The lines of the keyboard, with what was pasted or typed ahead.
+struct Input {
+    editor: LineEditor,
+    history: History,
+    pace: Pace,
+    /// While it lives the editor waits for more than keys, so that a signal can wake it.
+    _printer: Option<Box<dyn ExternalPrinter>>,
+    /// Tells when a watched file was saved.
+    files: Option<FileWatch>,
+    /// Lines of a paste or typed ahead …
+    waiting: VecDeque<String>,
+    /// … and the beginning of one, before and behind the cursor.
+    begun: (String, String),
+    /// Whether a line since the last prompt came without a hand on the keys.
+    pasted: bool,
+    prompt: &'static str,
+    coloured_prompt: String,
+}
+
+impl Input {
+    fn open(session: &Session, style: Style, signals: &Signals) -> rustyline::Result<Input> {
+        let mut editor = editor(session, style)?;
+        let history = History::open(&mut editor);
+        let pace = Pace::default();
+        editor.bind_sequence(Event::Any, EventHandler::Conditional(Box::new(pace.clone())));
+        let printer =
+            editor.create_external_printer().ok().map(|printer| Box::new(printer) as Box<dyn ExternalPrinter>);
+        if printer.is_some() {
+            signals.wake_editor();
+        }
+        let knocking = signals.clone();
+        let files = FileWatch::start(move || knocking.knock()).ok().filter(|_| printer.is_some());
+        let prompt = if style.ascii { "> " } else { "› " };
+        let coloured_prompt = style.paint(Role::Accent, prompt);
+        let (waiting, begun) = Default::default();
+        Ok(Input {
+            editor,
+            history,
+            pace,
+            _printer: printer,
+            files,
+            waiting,
+            begun,
+            pasted: false,
+            prompt,
+            coloured_prompt,
+        })
+    }
+
+    /// The next line: one that waits, or from the keyboard.
+    fn next(&mut self, session: &mut Session, style: Style, signals: &Signals) -> io::Result<Typed> {
+        let typed = match self.waiting.pop_front() {
+            Some(text) => Typed::Line(Line { text, came_with_others: true }),
+            None => self.read(session, style, signals)?,
+        };
+        Ok(match typed {
+            Typed::Line(line) if line.text.trim().is_empty() => Typed::Nothing,
+            typed => typed,
+        })
+    }
+
+    fn read(&mut self, session: &mut Session, style: Style, signals: &Signals) -> io::Result<Typed> {
+        self.pasted = false;
+        if let Some(files) = &self.files {
+            files.aim(session.watched());
+        }
+        if signals.take_knock() && session.watched().is_some() {
+            reload(session, style, signals);
+        }
+        if let Some(helper) = self.editor.helper_mut() {
+            helper.vocabulary = session.vocabulary();
+        }
+        let prompt = (self.prompt, self.coloured_prompt.as_str());
+        let raw = signals.raw();
+        let read = self.editor.readline_with_initial(&prompt, (&self.begun.0, &self.begun.1));
+        drop(raw);
+        self.begun = Default::default();
+        signals.take_interrupt();
+        if read.is_err() && signals.has_knocked() {
+            // the line gives way to what is told, and comes again as it was
+            self.begun = self.editor.helper().map(Editing::last_line).unwrap_or_default();
+            erase_line(self.prompt, &self.begun.0)?;
+            return Ok(Typed::Nothing);
+        }
+        if signals.take_stop() {
+            // what was typed so far stands in the line again after `fg`
+            self.begun = self.editor.helper().map(Editing::last_line).unwrap_or_default();
+            writeln!(io::stdout())?;
+            signals::stop()?;
+            return Ok(Typed::Nothing);
+        }
+        Ok(match read {
+            Ok(text) => {
+                // a paste of several lines arrives as one text
+                let mut lines = text.lines().map(ToOwned::to_owned);
+                let Some(first) = lines.next() else { return Ok(Typed::Nothing) };
+                self.waiting.extend(lines);
+                Typed::Line(Line { text: first, came_with_others: !self.waiting.is_empty() })
+            }
+            Err(ReadlineError::Interrupted | ReadlineError::Signal(_)) => Typed::Nothing,
+            Err(ReadlineError::Eof) if io::stdin().is_terminal() => Typed::End(0),
+            Err(_) => {
+                std::thread::sleep(HANGING_UP);
+                signals.note_hangup();
+                Typed::End(signals.status())
+            }
+        })
+    }
+
+    /// Keeps a line in the history, and shows it where it came with others: each answer of a paste stands under its
+    /// command.
+    fn show(&mut self, line: &Line) {
+        // the history is a comfort: a full disk must not end the session
+        let _ = self.editor.add_history_entry(line.text.as_str());
+        self.history.append(&line.text);
+        if line.came_with_others {
+            let _ = writeln!(io::stdout(), "{}{}", self.coloured_prompt, printable::line(&line.text));
+        }
+    }
+
+    /// Whether somebody reads the answer: nobody does while the next lines are there already.
+    fn is_by_hand(&mut self) -> bool {
+        let by_hand = self.waiting.is_empty() && !self.pace.is_burst();
+        self.pasted |= !by_hand;
+        by_hand
+    }
+
+    /// What was typed while a command ran.
+    fn type_ahead(&mut self, typed: &str) {
+        let mut lines: Vec<&str> = typed.split('\n').collect();
+        self.begun = (lines.pop().unwrap_or_default().to_owned(), String::new());
+        self.waiting.extend(lines.into_iter().map(ToOwned::to_owned));
     }
 }
 
@@ -211,14 +290,14 @@ fn terminal_width() -> usize {
     crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20))
 }
 
-fn editor(session: &Session, style: Style) -> rustyline::Result<Line> {
+fn editor(session: &Session, style: Style) -> rustyline::Result<LineEditor> {
     let config = Config::builder()
         .completion_type(CompletionType::List)
         .completion_show_all_if_ambiguous(true)
         .history_ignore_space(true)
         .max_history_size(HISTORY)?
         .build();
-    let mut editor = Line::with_config(config)?;
+    let mut editor = LineEditor::with_config(config)?;
     editor.set_color_mode(if style.color { ColorMode::Forced } else { ColorMode::Disabled });
     editor.set_helper(Some(Editing::new(session.vocabulary(), style)));
     Ok(editor)
@@ -230,7 +309,7 @@ struct History {
 }
 
 impl History {
-    fn open(editor: &mut Line) -> Self {
+    fn open(editor: &mut LineEditor) -> Self {
         let path = journal::state_directory()
             .filter(|folder| fs::create_dir_all(folder).is_ok())
             .map(|folder| folder.join("history"));

@@ -66,6 +66,7 @@ impl Session {
         if !same_scenario {
             self.previous = None;
             self.path = None;
+            self.map = None;
             self.swept = None;
         }
         Ok(())

@@ -135,3 +135,28 @@ fn what_is_no_map_is_refused() {
         assert!(refusal.contains(part), "{command}: {refusal}");
     }
 }
+
+/// A map is exported as one of the values it was drawn under, and forgotten with its scenario.
+#[test]
+fn a_map_tells_the_values_it_was_drawn_under() {
+    let folder = tempfile::tempdir().expect("a place");
+    let file = folder.path().join("map.svg");
+    let export = format!("export map {}", file.display());
+    let figure = || std::fs::read_to_string(&file).expect("written");
+    let mut session = beam();
+    report(&mut session, "map f 0.2..0.8 F2 100..200").unwrap();
+    // the axes themselves may move
+    for (command, stale) in [("set f 0.3", false), ("set F 90", true)] {
+        report(&mut session, command).unwrap();
+        report(&mut session, &export).unwrap();
+        assert_eq!(figure().contains("drawn under F = 100"), stale, "{command}");
+    }
+    report(&mut session, "load block").unwrap();
+    assert!(report(&mut session, &export).unwrap_err().contains("no map yet"));
+}
+
+#[test]
+fn a_map_of_too_many_axes_is_refused_by_its_own_name() {
+    let refusal = report(&mut beam(), "map f 0..1 F 0..1 F2 0..1 weight 0..1").unwrap_err();
+    assert!(refusal.starts_with("map: expected two"), "{refusal}");
+}

@@ -131,11 +131,6 @@ impl Session {
             axes.push(Axis { name, range });
             rest = after;
         }
-        if axes.is_empty() || axes.len() > 3 {
-            return Err(CommandError::Refused(
-                "envelope: expected `over combinations` or `over PARAMETER A..B`, up to three of them".to_owned(),
-            ));
-        }
         Ok(axes)
     }
 
@@ -146,6 +141,11 @@ impl Session {
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let axes = self.axes(words, "envelope … over")?;
+        if axes.is_empty() || axes.len() > 3 {
+            return Err(CommandError::Refused(
+                "envelope: expected `over combinations` or `over PARAMETER A..B`, up to three of them".to_owned(),
+            ));
+        }
         let ground = self.ground(io.watch)?;
         let (over, asked) = (axes.clone(), quantities.clone());
         let found = worker::run(io.watch, move |watch| envelope(ground.case(watch), &over, &asked))??;

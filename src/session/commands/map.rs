@@ -5,6 +5,7 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::{Value as Json, json};
 
+use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
 use crate::path::envelope::Axis;
 use crate::path::map::{self, map};
@@ -57,6 +58,8 @@ pub struct Drawn {
     pub map: map::Map,
     /// What was read at the marked places.
     pub quantity: Option<Quantity>,
+    /// The values under which it was drawn.
+    values: ParameterValues,
 }
 
 impl Session {
@@ -82,7 +85,7 @@ impl Session {
         let ground = self.ground(io.watch)?;
         let asked = quantity.clone();
         let found = worker::run(io.watch, move |watch| map(ground.case(watch), axes, asked.as_ref()))??;
-        let drawn = Arc::new(Drawn { map: found, quantity });
+        let drawn = Arc::new(Drawn { map: found, quantity, values: self.now.values.clone() });
         io.show(&self.map_json(&drawn), |out, style| {
             view::map::write(out, &drawn.map, &self.map_labels(&drawn), style)
         })?;
@@ -90,15 +93,17 @@ impl Session {
         Ok(())
     }
 
-    /// The last map.
+    /// The last map; where it was drawn under other values than the present ones, its axes aside, a note says so.
     ///
     /// # Errors
     /// None was drawn.
-    pub(in crate::session) fn need_map(&self) -> Result<&Drawn, CommandError> {
-        match &self.map {
-            Some(drawn) => Ok(drawn),
-            None => refused("no map yet: `map P A..B Q C..D` draws one"),
-        }
+    pub(in crate::session) fn need_map(&self) -> Result<Drawn, CommandError> {
+        let Some(drawn) = &self.map else { return refused("no map yet: `map P A..B Q C..D` draws one") };
+        let mut drawn = Drawn::clone(drawn);
+        let axes: Vec<&str> = drawn.map.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let stale = self.other_values(&drawn.values, &axes).map(|stale| format!("The map was drawn {stale}."));
+        drawn.map.notes.extend(stale);
+        Ok(drawn)
     }
 
     /// Units of the axes and of the quantity.
@@ -110,7 +115,7 @@ impl Session {
     }
 
     pub(in crate::session) fn map_json(&self, drawn: &Drawn) -> Json {
-        let Drawn { map, quantity } = drawn;
+        let Drawn { map, quantity, .. } = drawn;
         let axis = |axis: &Axis| json!({"parameter": axis.name, "from": axis.range[0], "to": axis.range[1]});
         let regions = map.regions.iter().enumerate().map(|(index, region)| {
             let mut entry = json!(region);

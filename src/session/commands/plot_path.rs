@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::sync::Arc;
 
+use crate::model::parameter::ParameterValues;
 use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
 use crate::session::commands::along::Along;
@@ -89,13 +90,17 @@ impl Session {
 
     /// Says so where the path was followed under other values than the present ones; which, as far as they differ.
     pub(in crate::session) fn stale_path(&self) -> Option<String> {
-        let then = &self.path_values;
-        let differs =
-            |(name, value): &(&String, f64)| self.now.values.get(name.as_str()).is_some_and(|now| now != value);
-        let free = then.free().filter(|entry| differs(&(entry.0, entry.1)));
-        let named: Vec<String> = free.map(|(name, value)| format!("{name} = {value}")).collect();
-        let stale = self.path.is_some() && !named.is_empty();
-        stale.then(|| format!("followed under {}; the present values are others", named.join(", ")))
+        self.path.as_ref()?;
+        self.other_values(&self.path_values, &[]).map(|stale| format!("followed {stale}"))
+    }
+
+    /// `under f = 0.5; the present values are others`, where they are; parameters in `besides` do not count.
+    pub(in crate::session) fn other_values(&self, then: &ParameterValues, besides: &[&str]) -> Option<String> {
+        let differs = |(name, value): &(&String, f64)| {
+            !besides.contains(&name.as_str()) && self.now.values.get(name.as_str()).is_some_and(|now| now != value)
+        };
+        let named: Vec<String> = then.free().filter(differs).map(|(name, value)| format!("{name} = {value}")).collect();
+        (!named.is_empty()).then(|| format!("under {}; the present values are others", named.join(", ")))
     }
 
     pub(in crate::session) fn need_path(&self) -> Result<&PathRecord, CommandError> {

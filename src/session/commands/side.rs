@@ -5,14 +5,12 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{NodeDisplacement, PairState};
 use crate::answer::same::same_pairs;
-use crate::contact::schemes::enumerate::enumerate;
 use crate::solve::prepared::Geometry;
-use crate::solve::state::RunData;
 use crate::watch::Watch;
 
+use crate::session::error::refused;
 use crate::session::{CommandError, Session, worker};
 
 /// One of several answers.
@@ -70,43 +68,30 @@ impl Session {
     /// # Errors
     /// No contact problem, too many pairs, nothing solved yet, an interruption.
     pub fn all_answers(&self, watch: &dyn Watch) -> Result<AllAnswers, CommandError> {
-        let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
-            return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".into()));
-        };
-        let (solved, prepared) = (Arc::clone(solved), Arc::clone(prepared));
+        let (prepared, solved) = self.both()?;
+        // Where a combination is shown, its factors are in its own geometry.
+        let shown = self.combination.as_ref().map_or(prepared, |(_, there)| Arc::clone(there));
+        let values = self.now.values.clone();
         worker::run(watch, move |watch| {
-            let (RunData::Contact { contact, problem, .. }, Some(system)) = (&solved.run, prepared.system()) else {
-                return Err(CommandError::Refused(
-                    "answers are enumerated for contact problems, this is a bare LCP".into(),
-                ));
+            let Some(system) = shown.system() else {
+                return refused("answers are enumerated for contact problems, this is a bare LCP");
             };
             if system.pair_count() > MOST_PAIRS {
-                return Err(CommandError::Refused(format!(
+                return refused(format!(
                     "{} contact pairs are too many for all answers side by side: at most {MOST_PAIRS}; `enumerate` goes on \
                      until it is stopped",
                     system.pair_count()
-                )));
+                ));
             }
-            let found = enumerate(problem, &mut |progress| {
-                watch.progress("all answers", progress.share);
-                watch.go_on()
+            let found = shown.all_answers(&values, watch)?;
+            let each = found.answers.into_iter().zip(found.exact).zip(found.continuum);
+            let answers = each.map(|((answer, exact), continuum)| OneAnswer {
+                shown: solved.answer.is_answer() && same_pairs(&answer.answer.pairs, &solved.answer.pairs),
+                pairs: answer.answer.pairs,
+                exact,
+                continuum,
             });
-            let answers = found
-                .answers
-                .iter()
-                .map(|answer| {
-                    let state = JointState::at(problem, answer.state.z.clone(), 0.0);
-                    let mut pairs = pair_states(problem, contact, &state);
-                    prepared.add_released_slips(&mut pairs, problem, &state.z);
-                    OneAnswer {
-                        shown: solved.answer.is_answer() && same_pairs(&pairs, &solved.answer.pairs),
-                        pairs,
-                        exact: true,
-                        continuum: answer.continuum,
-                    }
-                })
-                .collect();
-            Ok(AllAnswers { answers, complete: found.complete && found.undecided == 0 })
+            Ok(AllAnswers { answers: answers.collect(), complete: found.complete && found.undecided == 0 })
         })?
     }
 }

@@ -162,16 +162,10 @@ impl Session {
     ) -> Result<Done, CommandError> {
         let axes = request.axes.iter().map(|axis| Axis::parse(axis)).collect::<Result<_, _>>()?;
         let grid = Grid::new(&self.now.scenario, axes)?;
-        let mut setup = self.now.clone();
-        if setup.prepared.is_none() {
-            setup.solve(watch)?;
-        }
-        let prepared = setup
-            .prepared
-            .ok_or_else(|| CommandError::Internal("a solved scenario has no prepared geometry".to_owned()))?;
+        let ground = self.ground(watch)?;
         let quantities = self.columns(request.columns)?;
         let sweep = sweep::Sweep {
-            case: self.now.case(&prepared, watch),
+            case: ground.case(watch),
             grid: &grid,
             shard: request.shard.unwrap_or(Shard::WHOLE),
             format: match (request.format, request.out) {

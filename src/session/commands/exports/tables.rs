@@ -85,7 +85,7 @@ impl Session {
             Exported::Members => json_export::members(&self.shown(what)?),
             Exported::Reactions => json_export::reactions(&self.shown(what)?),
             Exported::Path => json!(self.need_path()?),
-            Exported::Map => self.map_json(self.need_map()?),
+            Exported::Map => self.map_json(&self.need_map()?),
             Exported::Result => {
                 self.need_quantities()?;
                 self.result(false).unwrap_or_default()
