@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use stickslip::model::embedded;
-use stickslip::session::{Format, Output, Session, commands::script};
+use stickslip::session::{Format, Output, Session, script};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 

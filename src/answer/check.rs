@@ -60,7 +60,7 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
         let free = (0..system.joint_count()).filter(|&joint| !system.is_forced(joint));
         check.hidden = free.map(|joint| ROUNDING * forces[joint].magnitude / loads).fold(0.0, f64::max);
     }
-    check.passed = accepted(&check, ROUNDING);
+    check.passed = check.is_within(ROUNDING);
     check
 }
 
@@ -71,11 +71,15 @@ fn load_size(problem: &ContactProblem) -> f64 {
     problem.load_terms.amax().max(closing.amax()).max(bounds)
 }
 
-fn accepted(check: &Check, tolerance: f64) -> bool {
-    // Written so that a NaN anywhere is a failure.
-    check.min_w >= -tolerance
-        && check.min_z >= -tolerance
-        && check.complementarity <= tolerance
-        && check.hidden <= HIDDEN
-        && check.equilibrium.is_none_or(|residual| residual <= TOLERANCE)
+impl Check {
+    /// Whether no law is violated by more than this share of the terms of its row, and what belongs to the whole problem
+    /// is within its own bounds.
+    pub fn is_within(&self, tolerance: f64) -> bool {
+        // Written so that a NaN anywhere is a failure.
+        self.min_w >= -tolerance
+            && self.min_z >= -tolerance
+            && self.complementarity <= tolerance
+            && self.hidden <= HIDDEN
+            && self.equilibrium.is_none_or(|residual| residual <= TOLERANCE)
+    }
 }

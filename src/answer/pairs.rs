@@ -25,8 +25,6 @@ pub struct JointState {
     pub z_terms: DVector<f64>,
     /// What the equations of a file leave over; see [`StateForces`].
     pub left: Vec<Sum>,
-    /// z_τ of the frictionless pairs, where the file tells it.
-    pub slips: Option<DVector<f64>>,
     /// p.
     pub p: f64,
     /// Pairs whose forces the motion leaves undetermined: theirs are those of least norm.
@@ -55,7 +53,7 @@ impl JointState {
             still.iter().for_each(|&joint| z[joint] = 0.0);
             forces = state_forces(problem, &z);
         }
-        let StateForces { joints, left, slips } = forces;
+        let StateForces { joints, left } = forces;
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(joints.len(), joints.iter().map(pick));
         let (mut force, mut terms) = (read(|sum| sum.value), read(|sum| sum.magnitude));
         let mut z_terms = DVector::zeros(z.len());
@@ -65,7 +63,7 @@ impl JointState {
                 (z[joint], known_to(system, &joints, joint).max(z[joint].abs()), terms[joint]);
         }
         forced.into_iter().for_each(|joint| z[joint] = joints[joint].cleaned());
-        JointState { z, force, terms, z_terms, left, slips, p, free: Vec::new() }.against_file(problem)
+        JointState { z, force, terms, z_terms, left, p, free: Vec::new() }.against_file(problem)
     }
 
     /// With what the compliance of a file leaves over, where joints are in force form.

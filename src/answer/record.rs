@@ -26,6 +26,30 @@ pub enum OutcomeKind {
     CheckFailed,
 }
 
+impl OutcomeKind {
+    /// The word used everywhere.
+    pub fn word(self) -> &'static str {
+        match self {
+            OutcomeKind::Trivial => "trivial",
+            OutcomeKind::Normal => "normal",
+            OutcomeKind::Ray => "ray",
+            OutcomeKind::PivotLimit => "pivot-limit",
+            OutcomeKind::Breakdown => "breakdown",
+            OutcomeKind::CheckFailed => "check-failed",
+        }
+    }
+
+    /// Whether it is an answer.
+    pub fn is_answer(self) -> bool {
+        matches!(self, OutcomeKind::Trivial | OutcomeKind::Normal)
+    }
+
+    /// Whether the run failed: neither an answer nor a ray.
+    pub fn is_failure(self) -> bool {
+        matches!(self, OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed)
+    }
+}
+
 /// Class of a ray (method §4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -40,6 +64,18 @@ pub enum RayClass {
     NoEquilibrium,
 }
 
+impl RayClass {
+    /// The word used everywhere.
+    pub fn word(self) -> &'static str {
+        match self {
+            RayClass::Mechanism => "mechanism",
+            RayClass::Artefact => "artefact",
+            RayClass::Fault => "fault",
+            RayClass::NoEquilibrium => "no-equilibrium",
+        }
+    }
+}
+
 /// What has been proved of a mechanism or no equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -50,6 +86,17 @@ pub enum Verdict {
     Proved,
     /// Statically admissible forces exist, but none that obeys the law of slip was found.
     Undecided,
+}
+
+impl Verdict {
+    /// The word used everywhere.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Certified => "certified",
+            Verdict::Proved => "proved",
+            Verdict::Undecided => "undecided",
+        }
+    }
 }
 
 /// Direction of a ray at one pair.
@@ -392,7 +439,7 @@ pub struct Answer {
 impl Answer {
     /// Whether this is an answer (trivial or normal, and checked).
     pub fn is_answer(&self) -> bool {
-        matches!(self.outcome, OutcomeKind::Trivial | OutcomeKind::Normal)
+        self.outcome.is_answer()
     }
 
     /// The last pivot of which there is a record.

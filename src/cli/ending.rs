@@ -45,25 +45,20 @@ pub(super) fn asks_for_json(arguments: &[OsString]) -> bool {
 
 /// The exit status of a result; a failure is told on stderr, and with `json` on stdout as well.
 pub(super) fn status(result: Result<u8, Failure>, json: bool, errors: &Style) -> u8 {
-    let failure = match result {
+    let (status, message, error) = match result {
         Ok(status) | Err(Failure::Told(status)) => return status,
         Err(Failure::Command(error)) if error.is_broken_pipe() => return 0,
-        Err(failure) => failure,
-    };
-    let (status, message) = match &failure {
         // a shell run leaves no session behind
-        Failure::Command(error) if error.is_interrupted() => (error.status(), "interrupted".to_owned()),
-        Failure::Command(error) => (error.status(), error.to_string()),
-        Failure::Status(status, message) => (*status, message.clone()),
-        Failure::Told(status) => (*status, String::new()),
+        Err(Failure::Command(error)) if error.is_interrupted() => (error.status(), "interrupted".to_owned(), None),
+        Err(Failure::Command(error)) => (error.status(), error.to_string(), Some(error)),
+        Err(Failure::Status(status, message)) => (status, message, None),
     };
-    if json && status == 2 && !matches!(&failure, Failure::Command(error) if error.is_output()) {
-        tell_json(&match &failure {
-            Failure::Command(CommandError::Scenario(problems)) => {
-                json_export::no_result(std::slice::from_ref(problems))
-            }
-            _ => json_export::no_result(&[Problems::of_file("", message.as_str(), "")]),
-        });
+    if json && status == 2 && !error.as_ref().is_some_and(CommandError::is_output) {
+        let problems = match error {
+            Some(CommandError::Scenario(problems)) => problems,
+            _ => Problems::of_file("", message.as_str(), ""),
+        };
+        tell_json(&json_export::no_result(&[problems]));
     }
     tell(errors, &message);
     status

@@ -8,7 +8,7 @@ use clap::Args;
 use super::ending::{Failure, tell};
 use super::input::Form;
 use crate::model::embedded;
-use crate::session::commands::script;
+use crate::session::script;
 use crate::session::{Format, Output, Session, load};
 use crate::signals::{Signals, TerminalWatch};
 use crate::view::style::Style;

@@ -11,8 +11,7 @@ use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::MirroredLcp;
-use crate::lcp::ratio_test::TieRule;
-use crate::model::rules::{Covering, TieBreak};
+use crate::model::rules::Covering;
 
 /// Whether all variables of `basis` are ≥ 0 (up to rounding) in this LCP.
 pub fn is_answer(lcp: &MirroredLcp, basis: &Basis) -> bool {
@@ -64,13 +63,4 @@ pub fn path_lcp(problem: &ContactProblem, increment: &DVector<f64>) -> ContactLc
     }
     contact.lcp = Arc::new(lcp);
     contact
-}
-
-/// The order of rows of the lexicographic rule.
-pub fn order(contact: &ContactLcp) -> Vec<usize> {
-    match contact.tie_rule(TieBreak::Lexicographic) {
-        TieRule::Lexicographic(order) => order,
-        // The rule asked for is this one.
-        _ => (0..contact.rows.len()).collect(),
-    }
 }

@@ -30,14 +30,12 @@ pub struct StateForces {
     pub joints: Vec<Sum>,
     /// What the equations of a file leave over: each is zero in a state that obeys them.
     pub left: Vec<Sum>,
-    /// z_τ of the frictionless pairs of a file.
-    pub slips: Option<DVector<f64>>,
 }
 
 /// [`joint_forces`] with what else a file says.
 pub fn state_forces(problem: &ContactProblem, z: &DVector<f64>) -> StateForces {
     let system = &*problem.system;
-    let mut forces = StateForces { joints: condensed_forces(problem, z), left: Vec::new(), slips: None };
+    let mut forces = StateForces { joints: condensed_forces(problem, z), left: Vec::new() };
     if system.force_form.is_some() {
         return forces;
     }
@@ -48,7 +46,7 @@ pub fn state_forces(problem: &ContactProblem, z: &DVector<f64>) -> StateForces {
             let magnitude = if file.compliance { force.magnitude.max(given.magnitude) } else { given.magnitude };
             *force = Sum { value: given.value, magnitude };
         }
-        (forces.left, forces.slips) = (given.left, Some(given.slips));
+        forces.left = given.left;
     }
     forces
 }

@@ -55,14 +55,18 @@ pub fn power_of_two(value: f64) -> f64 {
 impl ContactLcp {
     /// The tie rule over the rows of this LCP.
     pub fn tie_rule(&self, tie_break: TieBreak) -> TieRule {
-        let normals = self.rows.iter().filter(|row| row.couple == RowKind::Normal).count();
-        let n = self.rows.len();
         match tie_break {
-            TieBreak::Lexicographic => TieRule::Lexicographic((normals..n).chain(0..normals).collect()),
-            TieBreak::Natural => TieRule::Lexicographic((0..n).collect()),
+            TieBreak::Lexicographic => TieRule::Lexicographic(self.lexicographic_order()),
+            TieBreak::Natural => TieRule::Lexicographic((0..self.rows.len()).collect()),
             TieBreak::FirstRow => TieRule::FirstRow,
             TieBreak::Random(seed) => TieRule::Random(seed),
         }
+    }
+
+    /// The order of the rows of the lexicographic rule: reserves before contact forces.
+    pub fn lexicographic_order(&self) -> Vec<usize> {
+        let normals = self.rows.iter().filter(|row| row.couple == RowKind::Normal).count();
+        (normals..self.rows.len()).chain(0..normals).collect()
     }
 
     /// Name of a variable: `p`, `x_n[c1]`, `x+[c1]`, `z-[c1]`.

@@ -3,44 +3,21 @@
 use super::remedy::told_apart;
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
 use crate::contact::rows::{Quantity, RowKind};
+use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
 use crate::contact::written::ContactLcp;
 use crate::lcp::pivot::Pivot;
 use crate::lcp::variable::Variable;
 use crate::text::words::{list, short};
 
-/// Tangential joint of a pair in the working scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Tangential {
-    Stick,
-    Plus,
-    Minus,
-}
-
-impl Tangential {
-    fn word(self) -> &'static str {
-        match self {
-            Tangential::Stick => "stick",
-            Tangential::Plus => "slip+",
-            Tangential::Minus => "slip-",
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Scheme {
-    open: bool,
-    tangential: Tangential,
-}
-
 /// The records of a contact run; p in the user's units.
 pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSystem) -> Vec<PivotRecord> {
-    let mut schemes = vec![Scheme { open: false, tangential: Tangential::Stick }; system.pairs.len()];
+    let mut schemes = vec![PairScheme::STICK; system.pairs.len()];
     // What a run starts from: the joints on, those in force form off.
     for meaning in contact.rows.iter().zip(&contact.swapped).filter(|(_, swapped)| **swapped).map(|(row, _)| row) {
         match meaning.couple {
             RowKind::Normal => schemes[meaning.pair].open = true,
-            _ => schemes[meaning.pair].tangential = Tangential::Plus,
+            _ => schemes[meaning.pair].tangential = Tangential::SlipPlus,
         }
     }
     pivots
@@ -70,7 +47,12 @@ pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSys
 }
 
 /// Applies the entering variable to the working scheme.
-fn turn(schemes: &mut [Scheme], entering: Variable, contact: &ContactLcp, system: &ContactSystem) -> Option<Turned> {
+fn turn(
+    schemes: &mut [PairScheme],
+    entering: Variable,
+    contact: &ContactLcp,
+    system: &ContactSystem,
+) -> Option<Turned> {
     let (row, quantity) = contact.quantity(entering)?;
     let released = quantity == Quantity::Displacement;
     let meaning = contact.rows[row];
@@ -89,8 +71,8 @@ fn turn(schemes: &mut [Scheme], entering: Variable, contact: &ContactLcp, system
         (couple, released) => {
             let from = scheme.tangential.word();
             scheme.tangential = match (couple, released) {
-                (RowKind::Plus, true) => Tangential::Plus,
-                (RowKind::Minus, true) => Tangential::Minus,
+                (RowKind::Plus, true) => Tangential::SlipPlus,
+                (RowKind::Minus, true) => Tangential::SlipMinus,
                 _ => Tangential::Stick,
             };
             (TurnedJoint::Tangential, from, scheme.tangential.word())
@@ -108,7 +90,7 @@ struct Sentence<'a> {
 }
 
 impl Sentence<'_> {
-    fn tell(&self, pivot: &Pivot, turned: Option<&Turned>, schemes: &[Scheme]) -> String {
+    fn tell(&self, pivot: &Pivot, turned: Option<&Turned>, schemes: &[PairScheme]) -> String {
         let Some(turned) = turned else {
             let others: Vec<String> = pivot
                 .ties
@@ -151,7 +133,7 @@ impl Sentence<'_> {
     }
 
     /// What happens to the leaving variable.
-    fn limit(&self, leaving: Variable, schemes: &[Scheme]) -> String {
+    fn limit(&self, leaving: Variable, schemes: &[PairScheme]) -> String {
         let Some((row, quantity)) = self.contact.quantity(leaving) else {
             return "nothing more is needed".to_owned();
         };

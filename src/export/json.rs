@@ -54,7 +54,7 @@ pub fn no_result(of_files: &[Problems]) -> Value {
 /// contact system or a bare LCP they always are. `timings` only on request: two runs of one scenario are then
 /// the same to the byte.
 pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues, timings: bool) -> Value {
-    let failed = matches!(answer.outcome, OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed);
+    let failed = answer.outcome.is_failure();
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| {
         object.insert(key.to_owned(), value);

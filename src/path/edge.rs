@@ -43,7 +43,7 @@ pub struct Run {
 
 impl Run {
     fn is_answer(&self) -> bool {
-        matches!(self.outcome, OutcomeKind::Trivial | OutcomeKind::Normal)
+        self.outcome.is_answer()
     }
 
     /// Whether it is proved that there is no answer.

@@ -16,7 +16,6 @@ use super::start::{PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::lcp::contact_lcp;
-use crate::contact::load_path::order;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::RowKind;
 use crate::contact::system::ContactSystem;
@@ -347,7 +346,7 @@ impl Follower<'_> {
     fn scheme_beyond(&self, place: &Place, basis: &Basis) -> Result<Basis, ()> {
         let rates = self.rates(place.value);
         let lcp = rate_lcp(&place.problem, &place.contact, &place.point, &rates, self.sign);
-        let order = order(&place.contact);
+        let order = place.contact.lexicographic_order();
         let mut engine = Parametric::new(Arc::new(lcp), basis, order).ok_or(())?;
         let reach = Reach {
             // Only the changes at the place itself: any step at all reaches this.

@@ -6,7 +6,7 @@ use super::edge::{Which, edge};
 use super::end::PathEnd;
 use super::load::{LoadPath, LoadReach, trace};
 use super::start::PathError;
-use crate::answer::record::Ray;
+use crate::answer::record::{Ray, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::explain::ray;
 use crate::lcp::problem::NOISE;
@@ -56,15 +56,36 @@ impl Limit {
             return self.path.end_sentence();
         };
         let name = &self.path.parameter.name;
-        // As far again, the lower end of the range first.
-        let further = beyond + (beyond - self.path.start);
-        let (from, to) = (nine_digits(beyond.min(further)), nine_digits(beyond.max(further)));
         format!(
             "the path ends at {name} = {}, but an answer exists at {name} = {}: not the largest load that can be carried; \
-             `find {name} {from}..{to} where outcome answer` looks further",
+             {} looks further",
             nine_digits(*last),
-            nine_digits(beyond)
+            nine_digits(beyond),
+            self.search(beyond, beyond - self.path.start)
         )
+    }
+
+    /// What is known of the loads beyond the limit, in a sentence; `None` without a limit.
+    ///
+    /// A motion on which the loads do more work than contact can take just beyond the limit, and do not where there still is
+    /// an answer, is driven harder by every load beyond. Anything else is known of one load only.
+    pub fn beyond_sentence(&self) -> Option<String> {
+        let collapse = self.collapse.as_ref()?;
+        if collapse.verdict == Some(Verdict::Certified) && !collapse.misfit {
+            return Some("no load beyond it can be carried: proved".to_owned());
+        }
+        let factor = self.factor?;
+        let size = size(factor, self.present);
+        let reach = if factor.abs() < size { size.copysign(self.present) } else { factor };
+        let search = self.search(factor + BESIDE * reach, reach);
+        Some(format!("whether loads beyond it can be carried is not proved: {search} looks"))
+    }
+
+    /// The command that looks for answers from a value on, as far as `reach`.
+    fn search(&self, from: f64, reach: f64) -> String {
+        let to = from + reach;
+        let (low, high) = (nine_digits(from.min(to)), nine_digits(from.max(to)));
+        format!("`find {} {low}..{high} where outcome answer`", self.path.parameter.name)
     }
 }
 
@@ -184,10 +205,11 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
     ray::explain(&mut collapse, &problem, there.built());
     let mut collapse = collapse.record(system, Covering::default());
     collapse.p = 0.0;
-    collapse.explanation = format!(
-        "At this load the structure is on the point of moving: {}. Beyond it nothing resists that motion.",
-        collapse.mode
-    );
+    let moving = format!("At this load the structure is on the point of moving: {}", collapse.mode);
     limit.collapse = Some(collapse);
+    let beyond = limit.beyond_sentence().map_or(String::new(), |beyond| format!("; {beyond}"));
+    if let Some(collapse) = &mut limit.collapse {
+        collapse.explanation = format!("{moving}{beyond}.");
+    }
     Ok(limit)
 }

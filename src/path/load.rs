@@ -11,7 +11,7 @@ use super::load_parameter::LoadParameter;
 use super::start::{PIVOTS, PathError, cold, final_basis, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
-use crate::contact::load_path::{is_answer, order, path_lcp};
+use crate::contact::load_path::{is_answer, path_lcp};
 use crate::contact::problem::ContactProblem;
 use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
@@ -169,7 +169,7 @@ fn engine(contact: &ContactLcp, basis: Option<&Basis>) -> Option<Parametric> {
 }
 
 fn engine_of(contact: &ContactLcp, basis: Option<&Basis>) -> Option<Parametric> {
-    Parametric::new(Arc::clone(&contact.lcp), basis?, order(contact))
+    Parametric::new(Arc::clone(&contact.lcp), basis?, contact.lexicographic_order())
 }
 
 /// a + s (b − a), exact at both ends; zero where both are.

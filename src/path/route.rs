@@ -71,12 +71,12 @@ impl<'a> Route<'a> {
         if low < present && present < high {
             starts.push((present, vec![low, high]));
         }
-        let mut how = String::new();
+        let mut how = "";
         for (start, targets) in starts {
             let there = case.at(name, start)?;
             let solved = there.case(case).solve_briefly()?;
             if !solved.answer.is_answer() {
-                how = crate::path::quantity::written(&solved.answer.outcome);
+                how = solved.answer.outcome.word();
                 continue;
             }
             let there = Arc::new(there);

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use super::grid::{Grid, Shard};
 use super::quantity::Facts;
-use crate::answer::record::{Answer, OutcomeKind, State};
+use crate::answer::record::{Answer, State};
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
 use crate::solve::{Case, PrepareError};
@@ -356,7 +356,7 @@ fn cell(value: &Value) -> String {
 
 /// The columns after the parameters.
 fn fields(answer: &Answer) -> Vec<Value> {
-    let is_state = matches!(answer.outcome, OutcomeKind::Trivial | OutcomeKind::Normal | OutcomeKind::Ray);
+    let is_state = !answer.outcome.is_failure();
     let has_pairs = is_state && !answer.pairs.is_empty();
     let count = |state: State| {
         if has_pairs { json!(answer.pairs.iter().filter(|pair| pair.state == state).count()) } else { Value::Null }

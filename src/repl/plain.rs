@@ -4,9 +4,8 @@ use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use crate::session::commands::script;
-use crate::session::language::grammar::expects_error;
-use crate::session::{Next, Output, Session, language::tokens};
+use crate::session::language::{tokens, turn::asks_for_failure};
+use crate::session::{Next, Output, Session, script};
 use crate::text::printable::Printable;
 use crate::view::style::Style;
 
@@ -63,11 +62,11 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
             None => Err(session.refuse_long_line(line_number)),
         };
         watch.clear();
-        let asked_for = tokens::commands(line).first().is_some_and(|first| expects_error(first));
+        // A pipe does not know what comes next: whether a failure was asked for shows in the line after it.
+        let commands = tokens::commands(line);
         match &result {
-            // the failure before was expected
-            Ok(_) if asked_for => pending = 0,
-            Ok(_) if tokens::commands(line).is_empty() => {}
+            Ok(_) if commands.first().is_some_and(|first| asks_for_failure(first)) => pending = 0,
+            Ok(_) if commands.is_empty() => {}
             _ => {
                 if status == 0 {
                     status = pending;

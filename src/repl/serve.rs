@@ -6,10 +6,10 @@ use std::sync::mpsc::RecvTimeoutError;
 use serde_json::{Value, json};
 
 use crate::export::json as json_export;
-use crate::session::commands::script::LONGEST;
-use crate::session::language::grammar::expects_error;
 use crate::session::language::suggestion::did_you_mean;
-use crate::session::{CommandError, Format, Next, Output, Session, language::tokens};
+use crate::session::language::turn::Turn;
+use crate::session::script::LONGEST;
+use crate::session::{CommandError, Format, Next, Output, Session};
 use crate::signals::{Signals, TerminalWatch};
 use crate::text::printable;
 use crate::view::style::Style;
@@ -111,14 +111,13 @@ fn failure(id: Value, error: String, status: u8) -> Value {
 
 /// Runs the commands of a request up to the first that fails (unless `expect error` follows it).
 fn carry_out(session: &mut Session, request: &Request, style: Style, watch: &TerminalWatch) -> (Value, Next) {
-    let commands: Vec<&str> = request.command.lines().flat_map(tokens::commands).collect();
     let mut nowhere = io::sink();
     let mut io = Output::new(&mut nowhere, style, Format::Values, watch);
     io.unattended = true;
     let mut reports = Vec::new();
     let mut next = Next::Continue;
-    for (index, command) in commands.iter().enumerate() {
-        let result = session.execute(command, &mut io);
+    for turn in Turn::of_text(&request.command) {
+        let result = session.run(turn.command, &mut io);
         let mut answers = std::mem::take(&mut io.answers);
         let own = answers.pop().unwrap_or_default();
         match result {
@@ -128,14 +127,8 @@ fn carry_out(session: &mut Session, request: &Request, style: Style, watch: &Ter
                 reports.push(if answers.is_empty() { own } else { Value::Array(answers) });
                 next = then;
             }
-            Err(error) => {
-                let asked_for = commands.get(index + 1).is_some_and(|next| expects_error(next));
-                if asked_for && !error.is_interrupted() {
-                    reports.push(own);
-                    continue;
-                }
-                return (told(request.id.clone(), &error), Next::Continue);
-            }
+            Err(error) if turn.forgives(&error) => reports.push(own),
+            Err(error) => return (told(request.id.clone(), &error), Next::Continue),
         }
         if next != Next::Continue {
             break;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::answer::record::{OutcomeKind, Start};
+use crate::answer::record::Start;
 use crate::answer::same::same_answer;
 use crate::model::load::at_values;
 use crate::model::uses::Redone;
@@ -127,13 +127,7 @@ impl Session {
 
     /// Makes `solved` the present answer, shown at its end.
     pub(super) fn take_answer(&mut self, solved: Option<Arc<Solved>>) {
-        self.trouble = solved
-            .as_ref()
-            .map(|solved| solved.answer.outcome)
-            .filter(|outcome| {
-                matches!(outcome, OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed)
-            })
-            .or(self.trouble);
+        self.trouble |= solved.as_ref().is_some_and(|solved| solved.answer.outcome.is_failure());
         self.previous = self.solved.take().or(self.previous.take());
         self.solved = solved;
         self.position = None;

@@ -19,6 +19,7 @@ mod present;
 mod recorder;
 mod run;
 mod save;
+pub mod script;
 mod setup;
 mod start;
 pub mod worker;
@@ -122,8 +123,8 @@ pub struct Session {
     last_error: Option<String>,
     /// A `load` that failed while lines came by themselves.
     missing: Missing,
-    /// A run that ended without an answer and that no `expect outcome` has asked for.
-    trouble: Option<OutcomeKind>,
+    /// Whether a run failed and no `expect outcome` has asked for that.
+    trouble: bool,
     /// Depth of nested scripts.
     depth: usize,
     /// What the last `trace` or `stages` followed.
@@ -185,7 +186,7 @@ impl Session {
             recorder: None,
             last_error: None,
             missing: Missing::Nothing,
-            trouble: None,
+            trouble: false,
             depth: 0,
             path: None,
             path_values: ParameterValues::default(),

@@ -11,7 +11,6 @@ use crate::model::rules::Rules;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
 use crate::path::record::PathRecord;
-use crate::view::status::outcome_word;
 
 impl Session {
     /// The scenario as loaded.
@@ -139,7 +138,7 @@ impl Session {
 
     /// The exit status a script or pipe has earned by a run without an answer; 0 without one.
     pub fn trouble_status(&self) -> u8 {
-        if self.trouble.is_some() { 4 } else { 0 }
+        if self.trouble { 4 } else { 0 }
     }
 
     /// The present answer.
@@ -154,7 +153,7 @@ impl Session {
     pub(super) fn none(&self, what: &str, answer: &Answer) -> CommandError {
         CommandError::Refused(match self.now.scenario.source {
             Source::Structure(_) if !answer.is_answer() => {
-                format!("no {what}: there is no answer ({})", outcome_word(answer.outcome))
+                format!("no {what}: there is no answer ({})", answer.outcome.word())
             }
             Source::Structure(_) => format!("no {what} at this pivot: `step last`"),
             Source::ContactSystem(_) => {

@@ -4,33 +4,22 @@ use serde_json::json;
 
 use super::language::command::Parsed;
 use super::language::error::GrammarError;
-use super::language::grammar::{self, expects_error};
-use super::language::tokens;
+use super::language::grammar;
+use super::language::turn::Turn;
 use super::{CommandError, Format, Missing, Next, Output, Session};
 use crate::text::printable;
 
 impl Session {
-    /// Whether a command is `expect error …`: then the one before it may fail.
-    pub(in crate::session) fn lets_fail(&self, next: &str) -> bool {
-        expects_error(next)
-    }
-
     /// Runs the commands of a line; stops at the first that fails (unless `expect error` follows it).
     ///
     /// # Errors
     /// [`CommandError`]; the command that failed has left the session as it was.
     pub fn execute(&mut self, line: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
-        let commands = tokens::commands(line);
-        for (index, command) in commands.iter().enumerate() {
-            match self.run(command, io) {
+        for turn in Turn::of_line(line) {
+            match self.run(turn.command, io) {
                 Ok(Next::Continue) => {}
-                Ok(next) => return Ok(next),
-                Err(error) => {
-                    let asked_for = commands.get(index + 1).is_some_and(|next| expects_error(next));
-                    if !asked_for || error.is_output() || error.is_interrupted() {
-                        return Err(error);
-                    }
-                }
+                Err(error) if turn.forgives(&error) => {}
+                ended => return ended,
             }
         }
         Ok(Next::Continue)

@@ -7,7 +7,6 @@ use super::plain_answers::{PlainCheck, check_plain_exactly};
 use super::prepared::Prepared;
 use super::state::{RunData, Solved};
 use crate::answer::attempt::AttemptEngine;
-use crate::answer::check::TOLERANCE;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{OutcomeKind, State};
 use crate::contact::rows::RowKind;
@@ -15,7 +14,7 @@ use crate::contact::schemes::exact_check::{ExactCheck, Finding, exact_check};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::watch::{Budget, Watch};
 
-/// Figures of a failed check up to which an exact proof is tried.
+/// Shares up to which the figures of a failed check are worth an exact proof.
 const EXCUSABLE: f64 = 1e-4;
 
 /// What the exact check says, of a contact problem or a bare LCP.
@@ -31,14 +30,8 @@ impl Prepared {
     /// A state that failed its check has the right working scheme where that holds in exact arithmetic: with great
     /// stiffness contrasts no elimination in f64 gives its z. The exact z, rounded once, is then checked as any other.
     pub(super) fn prove_after_all(&self, solved: &mut Solved, watch: &dyn Watch) {
-        let small = solved.answer.pairs.len() <= EXACT_PAIRS;
-        let check = solved.answer.check;
         // Only figures of the size of rounding are worth the proof.
-        let near = check.min_w >= -EXCUSABLE
-            && check.min_z >= -EXCUSABLE
-            && check.complementarity <= EXCUSABLE
-            && check.equilibrium.is_none_or(|residual| residual <= TOLERANCE);
-        if !small || !near {
+        if solved.answer.pairs.len() > EXACT_PAIRS || !solved.answer.check.is_within(EXCUSABLE) {
             return;
         }
         let budget = Budget::new(watch, EXACT_BUDGET);

@@ -28,30 +28,10 @@ const NAMED: usize = 6;
 const SLIP_ZERO: f64 = 16.0 * f64::EPSILON;
 
 impl Prepared {
-    /// Displacements, members, reactions and the fresh check of an answer.
+    /// Displacements, members, reactions and the fresh check of an answer, and the notes on its state. Whatever an earlier
+    /// state has left of these is replaced.
     pub(super) fn complete(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) {
-        let system = &*problem.system;
-        let otherwise = may_hold_otherwise(problem, &state.z);
-        let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
-        let kinds = [
-            (
-                shared,
-                "the motion does not depend on how they share what they carry, which is undetermined; shown are the \
-                      forces of least norm that obey the laws",
-            ),
-            (
-                otherwise,
-                "the forces shown are those of least norm for the motion shown; with friction in these pairs \
-                         another self-stress may hold another motion",
-            ),
-        ];
-        for (pairs, words) in kinds.iter().filter(|(pairs, _)| !pairs.is_empty()) {
-            let mut ids: Vec<String> = pairs.iter().take(NAMED).map(|&pair| system.pairs[pair].id.clone()).collect();
-            if pairs.len() > NAMED {
-                ids.push(format!("{} more", pairs.len() - NAMED));
-            }
-            answer.notes.push(format!("joints of {} repeat one another: {words}", list(&ids)));
-        }
+        answer.notes = notes_on_shared_forces(problem, state);
         let equilibrium = self.recover(answer, problem, state);
         judge(answer, check_contact(problem, state, equilibrium));
     }
@@ -166,6 +146,33 @@ impl Prepared {
     }
 }
 
+/// What is said of pairs whose joints repeat one another, so that the motion leaves their forces undetermined.
+fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<String> {
+    let otherwise = may_hold_otherwise(problem, &state.z);
+    let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
+    let kinds = [
+        (
+            shared,
+            "the motion does not depend on how they share what they carry, which is undetermined; shown are the forces of \
+             least norm that obey the laws",
+        ),
+        (
+            otherwise,
+            "the forces shown are those of least norm for the motion shown; with friction in these pairs another \
+             self-stress may hold another motion",
+        ),
+    ];
+    let note = |(pairs, words): &(Vec<usize>, &str)| {
+        let mut ids: Vec<String> =
+            pairs.iter().take(NAMED).map(|&pair| problem.system.pairs[pair].id.clone()).collect();
+        if pairs.len() > NAMED {
+            ids.push(format!("{} more", pairs.len() - NAMED));
+        }
+        format!("joints of {} repeat one another: {words}", list(&ids))
+    };
+    kinds.iter().filter(|(pairs, _)| !pairs.is_empty()).map(note).collect()
+}
+
 fn end_forces(ends: crate::fem::EndForces) -> EndForces {
     EndForces { n: ends.normal, q: ends.shear, m: ends.moment }
 }
@@ -254,5 +261,30 @@ pub(super) fn empty_answer(run: &Run, force_unit: f64, rules: AttemptRules, size
         redone: Redone::default(),
         notes: Vec::new(),
         failure,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::answer::pairs::joint_state;
+    use crate::model::load::load_text;
+    use crate::solve::prepare;
+    use crate::solve::state::RunData;
+    use crate::watch::Quiet;
+
+    #[test]
+    fn an_answer_that_is_completed_again_says_everything_once() {
+        // R = 1: z_n = 1 opens the pair, x_t = 0.5 stays below its cohesion of 2.
+        let text = r#"{ "format": "stickslip/1", "title": "held", "contact_system": {
+            "pairs": ["c1"], "friction": [0.5], "cohesion": [2], "stiffness": [[1, 0], [0, 1]],
+            "loads": { "w": { "vector": [-1, 0.5] } } } }"#;
+        let scenario = load_text("held", text, None).expect("read");
+        let prepared = prepare(&scenario, &Quiet).expect("sound");
+        let mut solved = prepared.case(&scenario, &scenario.parameter_values()).solve().expect("solved");
+        let said = solved.answer.notes.clone();
+        assert_eq!(said.iter().filter(|note| note.contains("still held by its cohesion")).count(), 1, "{said:?}");
+        let RunData::Contact { contact, problem, last, .. } = &solved.run else { panic!("no contact") };
+        prepared.complete(&mut solved.answer, problem, &joint_state(problem, contact, last));
+        assert_eq!(solved.answer.notes, said);
     }
 }

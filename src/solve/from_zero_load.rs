@@ -6,7 +6,7 @@ use nalgebra::DVector;
 use crate::answer::attempt::{Attempt, AttemptEngine, AttemptRules};
 use crate::answer::record::OutcomeKind;
 use crate::contact::lcp::contact_lcp_like;
-use crate::contact::load_path::{order, path_lcp};
+use crate::contact::load_path::path_lcp;
 use crate::contact::problem::ContactProblem;
 use crate::lcp::basis::Basis;
 use crate::lcp::outcome::Point;
@@ -46,7 +46,7 @@ impl Prepared {
         rest.set_load(DVector::zeros(system.joint_count()));
         let path = path_lcp(&rest, &problem.load);
         let nothing = Basis { z: Vec::new(), active: Vec::new(), p: false };
-        let Some(mut engine) = Parametric::new(path.lcp.clone(), &nothing, order(&path)) else {
+        let Some(mut engine) = Parametric::new(path.lcp.clone(), &nothing, path.lexicographic_order()) else {
             return Ok(AlongLoad::NotTried);
         };
         let reach = Reach { target: 1.0, through: true, pivots: PIVOTS };

@@ -10,7 +10,7 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::text::number::{short, with_unit};
 use crate::view::difference::Change;
-use crate::view::status::{class_word, outcome_word, pivot_count};
+use crate::view::status::pivot_count;
 use crate::view::style::Role;
 
 use super::action::Loading;
@@ -130,13 +130,13 @@ fn outcome(state: &State) -> (String, Role) {
         + &match &answer.ray {
             Some(ray) => format!(
                 "ray: {} · p {}",
-                class_word(ray.class),
+                ray.class.word(),
                 with_unit(
                     &short(ray.p),
                     crate::view::force_unit(&shown.scenario.units).filter(|_| !shown.pairs().is_empty()).as_deref()
                 )
             ),
-            None => outcome_word(answer.outcome).to_owned(),
+            None => answer.outcome.word().to_owned(),
         };
     if answer.marginal {
         text.push_str(", marginal");

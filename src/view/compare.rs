@@ -3,7 +3,6 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 
-use super::status::{class_word, outcome_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules};
@@ -24,10 +23,8 @@ fn outcome(row: &Compared) -> (String, Role) {
     match (row.outcome, row.class) {
         (None, _) => ("does not fit: f = 0".to_owned(), Role::Muted),
         (Some(_), _) if row.cycled => ("cycles".to_owned(), Role::Bad),
-        (Some(outcome), Some(class)) => {
-            (format!("{}: {}", outcome_word(outcome), class_word(class)), Role::of_outcome(outcome))
-        }
-        (Some(outcome), None) => (outcome_word(outcome).to_owned(), Role::of_outcome(outcome)),
+        (Some(outcome), Some(class)) => (format!("{}: {}", outcome.word(), class.word()), Role::of_outcome(outcome)),
+        (Some(outcome), None) => (outcome.word().to_owned(), Role::of_outcome(outcome)),
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::style::Style;
 use crate::contact::schemes::critical::{Coverage, CriticalFriction};
-use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::contact::schemes::scheme::PairScheme;
 use crate::text::number::short;
 
 /// "c1 open, c2 slip+".
@@ -13,12 +13,7 @@ pub fn scheme_words(ids: &[&str], scheme: &[PairScheme]) -> String {
         .iter()
         .zip(scheme)
         .map(|(id, scheme)| {
-            let state = match (scheme.open, scheme.tangential) {
-                (true, _) => "open",
-                (false, Tangential::Stick) => "stick",
-                (false, Tangential::SlipPlus) => "slip+",
-                (false, Tangential::SlipMinus) => "slip-",
-            };
+            let state = if scheme.open { "open" } else { scheme.tangential.word() };
             format!("{id} {state}")
         })
         .collect();

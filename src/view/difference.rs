@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use super::pairs::state_words;
-use super::status::outcome_word;
 use super::style::{Role, Style};
 use crate::answer::record::{Answer, State};
 
@@ -38,12 +37,7 @@ pub fn changes(previous: &Answer, now: &Answer) -> Vec<Change> {
 pub fn write(out: &mut dyn Write, previous: &Answer, now: &Answer, style: &Style) -> io::Result<()> {
     let mut lines = Vec::new();
     if previous.outcome != now.outcome {
-        lines.push((
-            "outcome".to_owned(),
-            outcome_word(previous.outcome),
-            outcome_word(now.outcome),
-            Role::of_outcome(now.outcome),
-        ));
+        lines.push(("outcome".to_owned(), previous.outcome.word(), now.outcome.word(), Role::of_outcome(now.outcome)));
     }
     for change in changes(previous, now) {
         let role = Role::State(change.state);

@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 
 use super::path::exact;
-use super::status::{class_word, outcome_word, verdict_word};
 use super::style::{Role, Style};
+use crate::answer::record::{RayClass, Verdict};
 use crate::path::edge::{Edge, Run};
 use crate::path::find::{Found, Place};
 use crate::text::number::with_unit;
@@ -76,7 +76,7 @@ pub fn write(out: &mut dyn Write, asked: &Asked<'_>, found: &Found, style: &Styl
 
 /// `f = 0.34: ray, no-equilibrium, certified`.
 fn run(name: &str, run: &Run) -> String {
-    let words = [Some(outcome_word(run.outcome)), run.class.map(class_word), run.verdict.map(verdict_word)];
+    let words = [Some(run.outcome.word()), run.class.map(RayClass::word), run.verdict.map(Verdict::word)];
     let words: Vec<&str> = words.into_iter().flatten().collect();
     format!("{name} = {}: {}", run.value, words.join(", "))
 }

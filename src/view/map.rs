@@ -2,10 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::status::{class_word, verdict_word};
 use super::style::{Role, Style, pad_left};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::State;
+use crate::answer::record::{RayClass, State, Verdict};
 use crate::path::map::{Map, Region};
 use crate::text::number::{short, with_unit};
 
@@ -133,15 +132,9 @@ fn picture(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -
 
 /// `slip+ c5 c6; stick c1 to c4`: the pairs by their states.
 pub fn states(states: &[(String, State)]) -> String {
-    let words = [
-        (State::Open, "open"),
-        (State::Stick, "stick"),
-        (State::SlipPlus, "slip+"),
-        (State::SlipMinus, "slip-"),
-        (State::Closed, "closed"),
-    ];
     let mut parts = Vec::new();
-    for (state, word) in words {
+    for state in [State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Closed] {
+        let word = state.word();
         let ids: Vec<&str> = states.iter().filter(|(_, found)| *found == state).map(|(id, _)| id.as_str()).collect();
         if ids.is_empty() {
             continue;
@@ -169,8 +162,8 @@ pub fn meaning(region: &Region) -> String {
             }
         }
         None => {
-            let class = region.class.map_or("no answer", class_word);
-            let words = [Some(class.to_owned()), region.verdict.map(|verdict| verdict_word(verdict).to_owned())];
+            let class = region.class.map_or("no answer", RayClass::word);
+            let words = [Some(class), region.verdict.map(Verdict::word)];
             let words = words.into_iter().flatten().collect::<Vec<_>>().join(", ");
             region.mode.as_ref().map_or(words.clone(), |mode| format!("{words}: {mode}"))
         }

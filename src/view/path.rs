@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::length_unit;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::{PairState, RayClass, Verdict};
+use crate::answer::record::{PairState, Verdict};
 use crate::answer::rounding::largest;
 use crate::model::units::Units;
 use crate::path::end::PathEnd;
@@ -134,19 +134,12 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
     let text = format!("limit load: {name} = {}{safety}", with_unit(&exact(factor), unit));
     sentences(out, &text, Role::Title, style)?;
     if let Some(collapse) = &limit.collapse {
-        let class = match collapse.class {
-            RayClass::Mechanism => "mechanism",
-            RayClass::NoEquilibrium => "no equilibrium",
-            RayClass::Artefact => "artefact",
-            RayClass::Fault => "fault",
-        };
-        let verdict = match collapse.verdict {
-            Some(Verdict::Certified) => ", certified",
-            Some(Verdict::Proved) => ", proved",
-            Some(Verdict::Undecided) => ", undecided",
-            None => "",
-        };
+        let class = collapse.class.word();
+        let verdict = collapse.verdict.map_or(String::new(), |verdict| format!(", {}", verdict.word()));
         sentences(out, &format!("collapse ({class}{verdict}): {}", collapse.mode), Role::Warning, style)?;
+        if let Some(beyond) = limit.beyond_sentence().filter(|_| collapse.verdict != Some(Verdict::Certified)) {
+            sentences(out, &beyond, Role::Muted, style)?;
+        }
     }
     if factor == 0.0 {
         return Ok(());

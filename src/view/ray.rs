@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use super::force_unit;
-use super::status::{class_word, verdict_word};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairDirection, Ray, RayClass, VariableRate, Verdict};
@@ -58,11 +57,11 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         RayClass::Mechanism | RayClass::NoEquilibrium => Role::Warning,
         RayClass::Artefact | RayClass::Fault => Role::Bad,
     };
-    let head = style.fit(&format!("ray: {}", class_word(ray.class)), style.width);
+    let head = style.fit(&format!("ray: {}", ray.class.word()), style.width);
     writeln!(out, "{}", style.paint(role, &head))?;
     let verdict = match ray.verdict {
-        Some(verdict) if ray.misfit => format!("{}: the parts do not fit together", verdict_word(verdict)),
-        Some(verdict) => format!("{}: {}", verdict_word(verdict), verdict_meaning(ray.verdict)),
+        Some(verdict) if ray.misfit => format!("{}: the parts do not fit together", verdict.word()),
+        Some(verdict) => format!("{}: {}", verdict.word(), verdict_meaning(ray.verdict)),
         None if matches!(ray.class, RayClass::Mechanism | RayClass::NoEquilibrium) => verdict_meaning(None).into(),
         // An artefact or a fault claims nothing about the structure.
         None => String::new(),

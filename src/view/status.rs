@@ -7,43 +7,12 @@ use unicode_width::UnicodeWidthStr;
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
 use crate::answer::attempt::Attempt;
-use crate::answer::record::{Answer, OutcomeKind, PairState, RayClass, Start, State, Verdict};
+use crate::answer::record::{Answer, OutcomeKind, PairState, Start, State};
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::units::Units;
 use crate::model::uses::Redone;
 use crate::text::number::{in_full, residual, short, with_unit};
-
-/// The word of an outcome, as in results.
-pub fn outcome_word(outcome: OutcomeKind) -> &'static str {
-    match outcome {
-        OutcomeKind::Trivial => "trivial",
-        OutcomeKind::Normal => "normal",
-        OutcomeKind::Ray => "ray",
-        OutcomeKind::PivotLimit => "pivot-limit",
-        OutcomeKind::Breakdown => "breakdown",
-        OutcomeKind::CheckFailed => "check-failed",
-    }
-}
-
-/// The word of a class of rays, as in results.
-pub fn class_word(class: RayClass) -> &'static str {
-    match class {
-        RayClass::Mechanism => "mechanism",
-        RayClass::Artefact => "artefact",
-        RayClass::Fault => "fault",
-        RayClass::NoEquilibrium => "no-equilibrium",
-    }
-}
-
-/// The word of a verdict, as in results.
-pub fn verdict_word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Certified => "certified",
-        Verdict::Proved => "proved",
-        Verdict::Undecided => "undecided",
-    }
-}
 
 /// `5 pivots`, `1 pivot`, `no pivot`; `warm start, 2 changes` where the last answer was followed.
 pub fn pivot_count(answer: &Answer) -> String {
@@ -154,7 +123,7 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
                 parts.push(format!("p {p}"));
                 parts.push(counted(answer, previous));
                 if let Some(verdict) = ray.verdict {
-                    parts.push(verdict_word(verdict).into());
+                    parts.push(verdict.word().into());
                 }
                 if !ray.mode.is_empty() {
                     parts.push(ray.mode.clone());
@@ -210,10 +179,10 @@ fn finished((text, head): (String, usize), role: Role, style: &Style) -> String 
 
 /// First words of the line and their colour.
 fn headline(answer: &Answer) -> (String, Role) {
-    let word = outcome_word(answer.outcome);
+    let word = answer.outcome.word();
     let role = Role::of_outcome(answer.outcome);
     match &answer.ray {
-        Some(ray) if answer.outcome == OutcomeKind::Ray => (format!("ray: {}", class_word(ray.class)), role),
+        Some(ray) if answer.outcome == OutcomeKind::Ray => (format!("ray: {}", ray.class.word()), role),
         _ if answer.marginal => (format!("{word} (marginal)"), Role::Warning),
         _ => (word.to_owned(), role),
     }
@@ -355,7 +324,7 @@ fn attempt(attempt: &Attempt) -> String {
         attempt.rules.covering,
         attempt.rules.tie_break,
         attempt.rules.engine,
-        outcome_word(attempt.outcome),
+        attempt.outcome.word(),
         attempt.pivots.map_or(String::new(), |pivots| format!(" · {}", pivots_word(pivots))),
         attempt.why.as_ref().map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')))
     )

@@ -52,9 +52,9 @@ impl Role {
     /// Role of an outcome.
     pub fn of_outcome(outcome: OutcomeKind) -> Role {
         match outcome {
-            OutcomeKind::Trivial | OutcomeKind::Normal => Role::Good,
             OutcomeKind::Ray => Role::Warning,
-            OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => Role::Bad,
+            outcome if outcome.is_answer() => Role::Good,
+            _ => Role::Bad,
         }
     }
 

@@ -14,7 +14,7 @@ use stickslip::model::embedded;
 use stickslip::session::commands;
 use stickslip::session::journal::Journal;
 use stickslip::session::language::help::{help, overview};
-use stickslip::session::{CommandError, Format, Next, Output, Session, commands::script};
+use stickslip::session::{CommandError, Format, Next, Output, Session, script};
 use stickslip::view::style::Style;
 use stickslip::watch::{Quiet, Watch};
 

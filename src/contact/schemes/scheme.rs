@@ -20,6 +20,15 @@ impl Tangential {
             Tangential::SlipMinus => -1.0,
         }
     }
+
+    /// The word of the state of a closed pair.
+    pub fn word(self) -> &'static str {
+        match self {
+            Tangential::Stick => "stick",
+            Tangential::SlipPlus => "slip+",
+            Tangential::SlipMinus => "slip-",
+        }
+    }
 }
 
 /// Joints of a pair. A frictionless pair has no tangential joint: `tangential` is not read. A bound pair is

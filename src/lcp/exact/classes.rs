@@ -32,11 +32,6 @@ impl SolvableClass {
             SolvableClass::NonNegative => "M has no negative entry and a positive diagonal",
         }
     }
-
-    /// Whether there is only one answer.
-    pub fn is_unique(self) -> bool {
-        self != SolvableClass::NonNegative
-    }
 }
 
 /// The class of M, where it is one of these and that is cheap to tell. `go_on` is asked before every step of an

@@ -1,7 +1,7 @@
 //! Of the answer as a whole.
 
 use super::facts::Facts;
-use super::value::{NoValue, Value, none, written};
+use super::value::{NoValue, Value, none};
 use crate::answer::record::Ray;
 use crate::model::quantity::OfAnswer;
 
@@ -10,10 +10,10 @@ impl Facts<'_> {
         let count = |count: usize| Ok(Value::Number(count as f64));
         let size = |size: Option<usize>| size.map_or_else(|| none("the scenario is no structure"), count);
         match which {
-            OfAnswer::Outcome => Ok(Value::Word(written(&self.answer()?.outcome))),
-            OfAnswer::Class => Ok(Value::Word(written(&self.ray()?.class))),
+            OfAnswer::Outcome => Ok(Value::Word(self.answer()?.outcome.word().to_owned())),
+            OfAnswer::Class => Ok(Value::Word(self.ray()?.class.word().to_owned())),
             OfAnswer::Verdict => match self.ray()?.verdict {
-                Some(verdict) => Ok(Value::Word(written(&verdict))),
+                Some(verdict) => Ok(Value::Word(verdict.word().to_owned())),
                 None => none("no verdict"),
             },
             OfAnswer::P => Value::finite(self.p.ok_or_else(|| self.missing())?),
@@ -40,6 +40,6 @@ impl Facts<'_> {
 
     fn ray(&self) -> Result<&Ray, NoValue> {
         let answer = self.answer()?;
-        answer.ray.as_ref().ok_or_else(|| NoValue(format!("outcome {}", written(&answer.outcome))))
+        answer.ray.as_ref().ok_or_else(|| NoValue(format!("outcome {}", answer.outcome.word())))
     }
 }

@@ -16,7 +16,6 @@ use crate::model::quantity::Quantity;
 pub use facts::Facts;
 pub use joint::Resultant;
 pub use stress::Field;
-pub(super) use value::written;
 pub use value::{NoValue, OnPath, Value};
 
 impl Facts<'_> {
@@ -48,30 +47,41 @@ impl Facts<'_> {
 
 #[cfg(test)]
 mod tests {
-    use serde::Serialize;
+    use serde_json::json;
 
     use crate::answer::record::{OutcomeKind, RayClass, State, Verdict};
     use crate::model::quantity::{WORDS, entry};
 
-    /// The words of a line in the table, but for `besides`, are those of results.
-    fn same_words(word: &str, besides: &[&str], all: &[impl Serialize]) {
-        let mut known: Vec<&str> = entry(word).unwrap().choices.to_vec();
+    /// The words of a line in the table, but for `besides`, are those of results, and these are written as they are said.
+    fn same_words<T: Copy + serde::Serialize>(
+        entry_word: &str,
+        besides: &[&str],
+        word: fn(T) -> &'static str,
+        all: &[T],
+    ) {
+        let mut known: Vec<&str> = entry(entry_word).unwrap().choices.to_vec();
         known.retain(|choice| !besides.contains(choice));
-        let mut written: Vec<String> = all.iter().map(super::written).collect();
+        let mut said: Vec<&str> = all.iter().copied().map(word).collect();
+        all.iter().zip(&said).for_each(|(one, said)| assert_eq!(json!(one), json!(said)));
         known.sort_unstable();
-        written.sort_unstable();
-        assert_eq!(known, written, "{word}");
+        said.sort_unstable();
+        assert_eq!(known, said, "{entry_word}");
     }
 
     #[test]
     fn words_of_the_table_are_those_of_results() {
         use OutcomeKind::{Breakdown, CheckFailed, Normal, PivotLimit, Ray, Trivial};
-        same_words("outcome", &["answer"], &[Trivial, Normal, Ray, PivotLimit, Breakdown, CheckFailed]);
+        same_words(
+            "outcome",
+            &["answer"],
+            OutcomeKind::word,
+            &[Trivial, Normal, Ray, PivotLimit, Breakdown, CheckFailed],
+        );
         use RayClass::{Artefact, Fault, Mechanism, NoEquilibrium};
-        same_words("class", &[], &[Mechanism, Artefact, Fault, NoEquilibrium]);
-        same_words("verdict", &[], &[Verdict::Certified, Verdict::Proved, Verdict::Undecided]);
+        same_words("class", &[], RayClass::word, &[Mechanism, Artefact, Fault, NoEquilibrium]);
+        same_words("verdict", &[], Verdict::word, &[Verdict::Certified, Verdict::Proved, Verdict::Undecided]);
         let states = [State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Closed];
-        same_words("state", &[], &states);
+        same_words("state", &[], State::word, &states);
     }
 
     #[test]

@@ -52,8 +52,3 @@ impl fmt::Display for NoValue {
 pub(super) fn none<T>(why: impl Into<String>) -> Result<T, NoValue> {
     Err(NoValue(why.into()))
 }
-
-/// The word of an outcome, class or verdict, as in results.
-pub(in crate::path) fn written(word: &impl serde::Serialize) -> String {
-    serde_json::to_value(word).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
-}

@@ -18,7 +18,7 @@ use super::standing::Laws;
 use super::walk::breakdown;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State};
-use crate::contact::load_path::{is_answer, order, path_lcp};
+use crate::contact::load_path::{is_answer, path_lcp};
 use crate::contact::problem::ContactProblem;
 use crate::contact::written::ContactLcp;
 use crate::explain::ray;
@@ -152,7 +152,9 @@ impl ForcedWalk<'_> {
             if !is_answer(&path.lcp, basis) {
                 continue;
             }
-            let Some(mut engine) = Parametric::new(Arc::clone(&path.lcp), basis, order(&path)) else { continue };
+            let Some(mut engine) = Parametric::new(Arc::clone(&path.lcp), basis, path.lexicographic_order()) else {
+                continue;
+            };
             let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
             let followed = engine.follow(reach, &mut |_| self.place.watch.go_on());
             way.pivots += followed.pivots;

@@ -15,7 +15,6 @@ use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 use crate::view::combinations::Extreme;
 use crate::view::path::exact;
-use crate::view::status::outcome_word;
 
 /// Show the least and the largest value of quantities, over load combinations or ranges of parameters
 ///
@@ -82,7 +81,7 @@ impl Session {
         let without: Vec<String> = all
             .iter()
             .filter(|combined| !combined.solved.answer.is_answer())
-            .map(|combined| format!("{} ({})", combined.name, outcome_word(combined.solved.answer.outcome)))
+            .map(|combined| format!("{} ({})", combined.name, combined.solved.answer.outcome.word()))
             .collect();
         let answered: Vec<(&Combined, Facts<'_>)> = all
             .iter()

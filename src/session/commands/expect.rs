@@ -74,7 +74,7 @@ impl Session {
         let expectation = expect::read(words, &self.names(), &self.now.values)?;
         self.with_facts(io.watch, |facts| expectation.test(facts, self.last_error.as_deref()))?;
         match expectation {
-            expect::Expectation::Word { quantity: Quantity::Answer(OfAnswer::Outcome), .. } => self.trouble = None,
+            expect::Expectation::Word { quantity: Quantity::Answer(OfAnswer::Outcome), .. } => self.trouble = false,
             expect::Expectation::Error(_) => self.last_error = None,
             _ => {}
         }

@@ -70,9 +70,10 @@ impl Session {
             self.ensure_remedies(io.watch)?;
         }
         let answer = self.need_answer()?;
-        let ray = answer.ray.as_ref().ok_or_else(|| {
-            CommandError::Refused(format!("no ray: the run ended {}", view::status::outcome_word(answer.outcome)))
-        })?;
+        let ray = answer
+            .ray
+            .as_ref()
+            .ok_or_else(|| CommandError::Refused(format!("no ray: the run ended {}", answer.outcome.word())))?;
         let (prepared, solved) = self.both()?;
         let remedies = self.remedies();
         let report = RayReport {

@@ -4,7 +4,6 @@ use crate::answer::record::{Direction, Ray, RayClass};
 use crate::model::scenario::{Scenario, Source};
 use crate::session::Session;
 use crate::session::language::{tokens, topics};
-use crate::view::status::{class_word, outcome_word, verdict_word};
 use crate::view::style::Style;
 
 /// More load cases or friction coefficients than that are not gone through.
@@ -23,7 +22,7 @@ impl Session {
         let intro = match (ray, self.answer()) {
             (Some(ray), _) => format!("{name} ends in a ray, {}.", class(ray)),
             (None, Some(answer)) => {
-                format!("{name} has no ray now, its outcome is {}; if it had one:", outcome_word(answer.outcome))
+                format!("{name} has no ray now, its outcome is {}; if it had one:", answer.outcome.word())
             }
             (None, None) => format!("{name} is not solved yet; if it ends in a ray:"),
         };
@@ -124,8 +123,8 @@ impl Session {
 
 fn class(ray: &Ray) -> String {
     match ray.verdict {
-        Some(verdict) => format!("{} ({})", class_word(ray.class), verdict_word(verdict)),
-        None => class_word(ray.class).to_owned(),
+        Some(verdict) => format!("{} ({})", ray.class.word(), verdict.word()),
+        None => ray.class.word().to_owned(),
     }
 }
 

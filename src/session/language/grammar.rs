@@ -51,11 +51,6 @@ pub fn parse(text: &str) -> Result<Option<Parsed>, GrammarError> {
     }
 }
 
-/// Whether a command is `expect error …`: then the one before it may fail.
-pub fn expects_error(text: &str) -> bool {
-    parse(text).ok().flatten().is_some_and(|parsed| parsed.action.expects_error())
-}
-
 /// Clap's message without its `error:`, its layout and its pointer to `--help`.
 fn one_paragraph(error: &clap::Error, name: &str) -> String {
     let text = error.render().to_string();

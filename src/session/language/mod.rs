@@ -14,3 +14,4 @@ pub mod setting;
 pub mod suggestion;
 pub mod tokens;
 pub mod topics;
+pub mod turn;

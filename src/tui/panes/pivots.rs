@@ -190,7 +190,7 @@ pub fn sentence(state: &State) -> String {
     if state.shown.at_ray()
         && let Some(ray) = &answer.ray
     {
-        return format!("Ray ({}): {}. {}", crate::view::status::class_word(ray.class), ray.mode, ray.explanation);
+        return format!("Ray ({}): {}. {}", ray.class.word(), ray.mode, ray.explanation);
     }
     let step = state.shown.step();
     let Some(pivot) = answer.pivots.iter().find(|pivot| Some(pivot.step) == step) else {

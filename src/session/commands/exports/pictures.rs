@@ -14,7 +14,6 @@ use crate::view::plot::chart::Chart;
 use crate::view::plot::scene::Scene;
 use crate::view::plot::zone::Quantity;
 use crate::view::plot::{diagram, trace, zone};
-use crate::view::status::{class_word, outcome_word};
 use crate::view::svg::{self, Caption};
 use crate::watch::Watch;
 
@@ -127,8 +126,8 @@ impl Session {
             about.push(format!("{}{more}", named[..named.len().min(MOST_PARAMETERS)].join(", ")));
         }
         about.extend(self.quantity_answer().map(|answer| match (&answer.ray, answer.outcome) {
-            (Some(ray), OutcomeKind::Ray) => format!("ray: {}", class_word(ray.class)),
-            (_, outcome) => outcome_word(outcome).to_owned(),
+            (Some(ray), OutcomeKind::Ray) => format!("ray: {}", ray.class.word()),
+            (_, outcome) => outcome.word().to_owned(),
         }));
         about.join(" · ")
     }

@@ -17,7 +17,7 @@ use crate::text::number::short;
 use crate::view;
 use crate::view::combinations::envelope_table;
 use crate::view::report::{Block, Report};
-use crate::view::status::{self, verdict_word};
+use crate::view::status;
 use crate::view::style::Style;
 use crate::view::table::{Cell, Column, Row, Table};
 use crate::watch::Watch;
@@ -107,7 +107,7 @@ impl Session {
         blocks.push(Block::Text(status::line(answer, None, &self.now.scenario.units, &style)));
         blocks.extend(answer.failure.clone().map(Block::Text));
         if let Some(ray) = &answer.ray {
-            let verdict = ray.verdict.map_or(String::new(), |verdict| format!(" ({})", verdict_word(verdict)));
+            let verdict = ray.verdict.map_or(String::new(), |verdict| format!(" ({})", verdict.word()));
             blocks.push(Block::Text(format!("Mode{verdict}: {}", ray.mode)));
             blocks.push(Block::Text(ray.explanation.clone()));
         }
