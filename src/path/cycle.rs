@@ -3,8 +3,9 @@
 //! The history is followed by the rate problem ([`super::stages`]). The rates depend on the forces and on the gaps that are
 //! open, not on the slips committed before: where both come back after a cycle, every further cycle is the same.
 
-use super::stages::{History, HistoryEnd, StageResult, follow_factors};
+use super::stages::{Begin, History, HistoryEnd, StageResult, follow_factors};
 use super::start::PathError;
+use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::Ray;
 use crate::solve::case::Case;
 use crate::solve::error::QuestionError;
@@ -27,7 +28,7 @@ const DOUBLINGS: usize = 40;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
-    /// Nothing slips any more.
+    /// Nothing is lost to friction any more: no pair that is pressed slips.
     ShakesDown,
     /// The same slips to and fro in every cycle.
     Alternates,
@@ -37,6 +38,15 @@ pub enum Kind {
     Collapses,
     /// Not told apart within the cycles followed.
     Undecided,
+}
+
+/// A slip of a pair.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct PairSlip {
+    /// Pair id.
+    pub pair: String,
+    /// z_τ.
+    pub slip: f64,
 }
 
 /// One pair over one cycle.
@@ -81,9 +91,17 @@ pub struct Cycle {
     pub history: History,
     /// The proof, or what is missing, in a sentence.
     pub sentence: String,
+    /// What the static theorem says of every start.
+    pub every_start: Static,
 }
 
 impl Cycle {
+    /// The slips with which it begins at the first value.
+    pub fn start(&self) -> Vec<PairSlip> {
+        let pairs = self.history.stages.first().map_or(&[][..], |stage| &stage.end.pairs);
+        pairs.iter().map(|pair| PairSlip { pair: pair.id.clone(), slip: pair.z_t }).collect()
+    }
+
     /// The collapse on the way, where there is one.
     pub fn collapse(&self) -> Option<&Ray> {
         match (&self.history.end, self.kind) {
@@ -94,7 +112,7 @@ impl Cycle {
 }
 
 /// The factors of all load cases at a value of a case or parameter.
-fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>, PathError> {
+pub(super) fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>, PathError> {
     let Case { scenario, prepared, values, watch, .. } = case;
     let there = case.at(name, value)?;
     let found = factors(&there.prepared, &there.values);
@@ -112,11 +130,11 @@ fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>, PathError>
 }
 
 /// Follows a load from the first value to the second and back, until a cycle repeats: the other loads stand at their
-/// present factors.
+/// present factors. It begins at the unloaded structure, or at the first value with slips left behind.
 ///
 /// # Errors
-/// A name that is no load, a bare LCP, a history that breaks down; see [`PathError`].
-pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<Cycle, PathError> {
+/// A name that is no load, a bare LCP, slips that cannot be, a history that breaks down; see [`PathError`].
+pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Begin) -> Result<Cycle, PathError> {
     if case.prepared.system().is_none() {
         return Err(PathError::Plain("cycle"));
     }
@@ -127,8 +145,12 @@ pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<
     loop {
         let mut targets = vec![start.clone()];
         (0..count).for_each(|_| targets.extend([turned.clone(), start.clone()]));
-        let history = follow_factors(case, &targets)?;
-        let found = judged(name, ends, history, softest);
+        let history = follow_factors(case, begin, &targets)?;
+        let mut found = judged(name, ends, history, softest);
+        if found.kind == Kind::ShakesDown || found.kind == Kind::Undecided && count == most {
+            let places = found.history.stages.iter().skip(1).take(2).flat_map(|stage| &stage.moments);
+            found.every_start = static_shakedown(case, places);
+        }
         if found.kind != Kind::Undecided || count == most {
             return Ok(found);
         }
@@ -178,8 +200,8 @@ fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
         let closed = off(back, back - 2);
         let difference = (number > 0).then(|| closed.max(off(there, there - 2)));
         let lost = halves.map(|half| half.dissipated);
-        let still = pairs.iter().all(|pair| pair.there.abs().max(pair.back.abs()) <= SAME * slips)
-            && lost.iter().all(|lost| *lost <= SAME * force * slips);
+        // What moves to and fro without loss is open, or on a bound of 0.
+        let lossless = lost.iter().all(|lost| *lost <= SAME * force * slips);
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
         turns.push(Turn { dissipated: lost, pairs, difference });
         if closed > SAME {
@@ -192,7 +214,7 @@ fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
             now.zip(before).all(|(now, before)| (now.net - before.net).abs() <= SAME_NET * net)
         });
         kind = match () {
-            () if still => Kind::ShakesDown,
+            () if lossless && net <= SAME * slips => Kind::ShakesDown,
             () if net <= SAME * slips => Kind::Alternates,
             () if same => Kind::Ratchets,
             () => continue,
@@ -203,7 +225,7 @@ fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
         kind = Kind::Collapses;
     }
     let sentence = said(kind, &turns, &history);
-    Cycle { name: name.to_owned(), ends, kind, turns, history, sentence }
+    Cycle { name: name.to_owned(), ends, kind, turns, history, sentence, every_start: Static::NotAsked }
 }
 
 fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
@@ -211,7 +233,7 @@ fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
     let proof = "the forces and gaps at its end are those at its beginning, and the rates depend on nothing else: every \
                  further cycle is the same";
     match kind {
-        Kind::ShakesDown => format!("nothing slips in cycle {count}; {proof}"),
+        Kind::ShakesDown => format!("nothing slips under a force in cycle {count}; {proof}"),
         Kind::Alternates => format!("the slips of cycle {count} go to and fro; {proof}"),
         Kind::Ratchets => format!("cycle {count} leaves slips behind; {proof}"),
         Kind::Collapses => format!("in cycle {}: {}", count + 1, history.end_sentence()),
@@ -241,6 +263,8 @@ pub struct ShakedownLimit {
     pub shakes_down: f64,
     /// A value beyond, and what it comes to there; `None` where none was found.
     pub beyond: Option<(f64, Kind)>,
+    /// Up to where the static theorem proves it from every start, and what it says there.
+    pub every_start: (Option<f64>, Static),
 }
 
 /// Brackets the largest second end, away from `from`, at which the structure shakes down; `first` is looked at first.
@@ -248,7 +272,7 @@ pub struct ShakedownLimit {
 /// # Errors
 /// As [`cycle`].
 pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> Result<ShakedownLimit, PathError> {
-    let kind = |to: f64| cycle(case, name, [from, to], MOST).map(|found| found.kind);
+    let kind = |to: f64| cycle(case, name, [from, to], MOST, &Begin::Unloaded).map(|found| found.kind);
     let (mut good, mut bad) = (from, None);
     let mut to = first;
     for round in 0..DOUBLINGS {
@@ -265,7 +289,8 @@ pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> R
         }
     }
     let Some((mut beyond, mut what)) = bad else {
-        return Ok(ShakedownLimit { from, shakes_down: good, beyond: None });
+        let every_start = static_limit(case, name, [from, good])?;
+        return Ok(ShakedownLimit { from, shakes_down: good, beyond: None, every_start });
     };
     while (beyond - good).abs() > NARROW * (beyond - from).abs().max(f64::MIN_POSITIVE) {
         let middle = 0.5 * (good + beyond);
@@ -278,5 +303,6 @@ pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> R
             other => (beyond, what) = (middle, other),
         }
     }
-    Ok(ShakedownLimit { from, shakes_down: good, beyond: Some((beyond, what)) })
+    let every_start = static_limit(case, name, [from, beyond])?;
+    Ok(ShakedownLimit { from, shakes_down: good, beyond: Some((beyond, what)), every_start })
 }

@@ -2,6 +2,7 @@
 
 pub mod change;
 pub mod cycle;
+pub mod cycle_starts;
 pub mod edge;
 pub mod end;
 pub mod envelope;
@@ -22,6 +23,7 @@ pub mod route;
 pub mod sensitivity;
 pub mod stages;
 pub mod start;
+pub mod static_shakedown;
 pub mod sweep;
 pub mod sweep_file;
 pub mod way;

@@ -8,6 +8,8 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::units::Units;
 use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
+use crate::path::cycle_starts::Starts;
+use crate::path::static_shakedown::Static;
 use crate::text::number::{short, with_unit};
 
 /// Cycles shown of a longer list, at its beginning and at its end.
@@ -54,6 +56,9 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
     }
     paragraph(out, role(cycle.kind), &line, style)?;
     paragraph(out, Role::Plain, &cycle.sentence, style)?;
+    if let Some(text) = every_start(&cycle.every_start) {
+        paragraph(out, Role::Muted, &text, style)?;
+    }
     if cycle.turns.is_empty() {
         return Ok(());
     }
@@ -112,6 +117,59 @@ fn pairs(out: &mut dyn Write, cycle: &Cycle, units: &Units, style: &Style) -> io
     table.write(out, style)
 }
 
+/// What the static theorem says of every start; `None` where it was not asked.
+pub fn every_start(found: &Static) -> Option<String> {
+    match found {
+        Static::NotAsked => None,
+        Static::Inapplicable(why) => Some(format!(
+            "another start may do otherwise: {why}, so that the static theorem of shakedown does not hold"
+        )),
+        Static::Nothing => Some("the static theorem of shakedown proves nothing of other starts".to_owned()),
+        Static::Proved(_) => Some(
+            "from every start it shakes down: some slips leave every pair short of its bound all the time".to_owned(),
+        ),
+    }
+}
+
+/// The same cycle after different starts.
+pub fn write_starts(
+    out: &mut dyn Write,
+    found: &Starts,
+    unit: Option<&str>,
+    units: &Units,
+    style: &Style,
+) -> io::Result<()> {
+    let [from, to] = found.ends.map(|end| with_unit(&short(end), unit));
+    let role = if found.decides { Role::Warning } else { Role::Good };
+    paragraph(
+        out,
+        Role::Accent,
+        &format!("{} from {from} to {to} and back, after different slips", found.name),
+        style,
+    )?;
+    paragraph(out, role, &found.sentence(), style)?;
+    if let Some(text) = every_start(&found.every_start) {
+        paragraph(out, Role::Muted, &text, style)?;
+    }
+    let mut table = Table::new(vec![
+        Column::words("start"),
+        Column::words("comes to"),
+        Column::count("cycles"),
+        Column::numbers("dissipated per cycle", moment_unit(units)),
+        Column::numbers("largest net slip", units.length.clone()).droppable(1),
+    ]);
+    for start in &found.starts {
+        table.rows.push(Row::new(vec![
+            Cell::from(start.start.clone()),
+            Cell::from(word(start.kind).to_owned()),
+            Cell::from(start.cycles.to_string()),
+            Cell::number(start.dissipated),
+            Cell::number(start.net),
+        ]));
+    }
+    table.write(out, style)
+}
+
 /// The largest amplitude that shakes down, between two values.
 pub fn write_limit(
     out: &mut dyn Write,
@@ -124,9 +182,28 @@ pub fn write_limit(
     let from = number(found.from);
     let Some((beyond, kind)) = found.beyond else {
         let text = format!("{name} from {from}: shakes down as far as was looked, to {}", number(found.shakes_down));
-        return paragraph(out, Role::Good, &text, style);
+        paragraph(out, Role::Good, &text, style)?;
+        return write_every_start(out, found, &number, style);
     };
     let text = format!("{name} from {from}: the largest end that shakes down is {}", number(found.shakes_down));
     paragraph(out, Role::Accent, &text, style)?;
-    paragraph(out, Role::Plain, &format!("at {} it {}", number(beyond), word(kind)), style)
+    paragraph(out, Role::Plain, &format!("at {} it {}", number(beyond), word(kind)), style)?;
+    write_every_start(out, found, &number, style)
+}
+
+fn write_every_start(
+    out: &mut dyn Write,
+    found: &ShakedownLimit,
+    number: &dyn Fn(f64) -> String,
+    style: &Style,
+) -> io::Result<()> {
+    let text = match (&found.every_start, every_start(&found.every_start.1)) {
+        ((Some(to), _), _) => format!(
+            "up to {} it shakes down from every start: some slips leave every pair short of its bound all the time",
+            number(*to)
+        ),
+        (_, Some(text)) => text,
+        (_, None) => return Ok(()),
+    };
+    paragraph(out, Role::Muted, &text, style)
 }

@@ -14,7 +14,7 @@ use stickslip::model::rules::{Covering, Rules};
 use stickslip::path::end::PathEnd;
 use stickslip::path::limit::limit;
 use stickslip::path::sensitivity::sensitivity;
-use stickslip::path::stages::{History, HistoryEnd, follow_factors};
+use stickslip::path::stages::{Begin, History, HistoryEnd, follow_factors};
 use stickslip::path::{friction, load};
 
 use crate::common::balance::{imbalance, incompatibility, nodal_imbalance};
@@ -370,7 +370,8 @@ fn limit_of_the_corner() {
 fn history(case: &Case, stages: &[[f64; 2]]) -> History {
     let values = case.scenario.parameter_values();
     let targets: Vec<Vec<f64>> = stages.iter().map(|stage| stage.to_vec()).collect();
-    follow_factors(case.prepared.case(&case.scenario, &values), &targets).unwrap_or_else(|error| panic!("{error}"))
+    follow_factors(case.prepared.case(&case.scenario, &values), &Begin::Unloaded, &targets)
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Pressed with P = 1 on its low side, then pulled to and fro. Friction bound r = f (P − k g₁). Pulled by T the tip slips by

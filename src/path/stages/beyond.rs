@@ -107,29 +107,37 @@ impl Walk<'_> {
 
     /// The answer of eq. (8) at a place, in increments from the present slip.
     fn answer_at(&self, course: &Course, to: f64) -> Result<Option<There>, PathError> {
-        let system = &*self.place.laws.problem.system;
         let mut committed = self.standing.z.clone();
-        for i in 0..system.pair_count() {
-            committed[i] = 0.0;
-        }
-        let mut problem = self.problem_at(&course.factors_at(to), &course.gaps_at(to));
-        let shift = &system.stiffness * &committed;
+        committed.rows_mut(0, self.place.laws.problem.system.pair_count()).fill(0.0);
+        Ok(self.answer_behind(committed, &course.factors_at(to), &course.gaps_at(to))?.ok())
+    }
+
+    /// The answer of eq. (8) under these factors and gaps, in increments from committed slips over the joints; how the run
+    /// ended where there is none.
+    pub(super) fn answer_behind(
+        &self,
+        committed: DVector<f64>,
+        factors: &[f64],
+        gaps: &[f64],
+    ) -> Result<Result<There, &'static str>, PathError> {
+        let mut problem = self.problem_at(factors, gaps);
+        let shift = &problem.system.stiffness * &committed;
         problem.add_load(1.0, &shift, &shift.abs());
         let found = cold(&problem, self.place.watch)?;
         if found.basis.is_none() {
-            return Ok(None);
+            return Ok(Err(found.how()));
         }
         let state = state_of(&problem, &found.contact, &found.point);
         let pairs = pair_states(&problem, &found.contact, &state);
         let states = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
-        Ok(Some(There { z: state.z + committed, states }))
+        Ok(Ok(There { z: state.z + committed, states }))
     }
 }
 
 /// A state that was not reached by rates.
-struct There {
+pub(super) struct There {
     /// Total z over the joints.
-    z: DVector<f64>,
+    pub(super) z: DVector<f64>,
     /// What every pair does on the way to it.
-    states: Vec<(State, Option<State>)>,
+    pub(super) states: Vec<(State, Option<State>)>,
 }

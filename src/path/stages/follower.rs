@@ -3,6 +3,7 @@
 
 use nalgebra::DVector;
 
+use super::Begin;
 use super::course::Course;
 use super::energy;
 use super::record::{History, HistoryEnd, Moment, StageResult};
@@ -64,6 +65,28 @@ pub(super) trait Follower<'a> {
 
     /// Goes through one stage.
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError>;
+
+    /// Stands under these factors, gaps closed, after slips over the joints that something before has left behind: the
+    /// answer of eq. (8) in increments from them. How the run ended where there is none.
+    fn stand_behind(&mut self, factors: &[f64], slips: DVector<f64>) -> Result<Option<&'static str>, PathError>;
+
+    /// Goes to where a history begins.
+    fn begin(&mut self, begin: &Begin, targets: &[Vec<f64>]) -> Result<(), PathError> {
+        let (Begin::Slips(slips), Some(factors)) = (begin, targets.first()) else { return self.put_together() };
+        let system = &*self.place().laws.problem.system;
+        let mut over_joints = DVector::zeros(system.joint_count());
+        for (pair, slip) in system.pairs.iter().zip(slips) {
+            if let Some(joint) = pair.tangential {
+                over_joints[joint] = *slip;
+            }
+        }
+        match self.stand_behind(factors, over_joints)? {
+            None => Ok(()),
+            Some(how) => Err(PathError::Missing(format!(
+                "the structure cannot stand under the first loads with these slips behind it: the run ended {how}"
+            ))),
+        }
+    }
 
     /// Puts parts with interference (gaps below 0) together.
     fn put_together(&mut self) -> Result<(), PathError> {

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
+use super::Begin;
 use super::beyond::explanation;
 use super::course::Course;
 use super::follower::{Follower, Limit, Place, Way, recorded};
@@ -60,10 +61,11 @@ enum Ahead {
     Limit(Option<Box<(ContactLcp, RayDirection, f64)>>),
 }
 
-/// Follows the given factors of all load cases, stage by stage, from the unloaded structure.
+/// Follows the given factors of all load cases, stage by stage, from where the history begins.
 pub(super) fn follow<'a>(
     prepared: &'a Prepared,
     laws: Laws<'a>,
+    begin: &Begin,
     targets: &[Vec<f64>],
     watch: &'a dyn Watch,
 ) -> Result<History, PathError> {
@@ -75,14 +77,12 @@ pub(super) fn follow<'a>(
         pairs: Vec::new(),
         last_slip: vec![0.0; laws.problem.system.pair_count()],
     };
-    let problem = walk.problem_at(&walk.place.factors, &walk.place.gaps);
-    let unloaded = cold(&problem, watch)?;
-    if unloaded.basis.is_none() {
+    let (factors, gaps) = (walk.place.factors.clone(), walk.place.gaps.clone());
+    if walk.stand_under(&factors, &gaps)?.is_some() {
         let how = "in a ray: the gaps of the unloaded parts do not fit together".to_owned();
         return Err(PathError::NoStart { name: "interference".to_owned(), at: 0.0, how });
     }
-    walk.stand(&problem, &unloaded.contact, &unloaded.point);
-    walk.put_together()?;
+    walk.begin(begin, targets)?;
     let (stages, end) = walk.stages(targets)?;
     Ok(recorded(&walk.place, stages, end))
 }
@@ -101,6 +101,19 @@ impl ForcedWalk<'_> {
             problem.add_load(1.0, &shift, &shift.abs());
         }
         problem
+    }
+
+    /// Stands under these factors and gaps at the answer in increments from the committed slips; how the run ended where
+    /// there is none.
+    fn stand_under(&mut self, factors: &[f64], gaps: &[f64]) -> Result<Option<&'static str>, PathError> {
+        let problem = self.beyond_slips(factors, gaps);
+        let found = cold(&problem, self.place.watch)?;
+        if found.basis.is_none() {
+            return Ok(Some(found.how()));
+        }
+        (self.place.factors, self.place.gaps) = (factors.to_vec(), gaps.to_vec());
+        self.stand(&problem, &found.contact, &found.point);
+        Ok(None)
     }
 
     /// Stands at a point of an LCP of increments of slip.
@@ -208,12 +221,23 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
         self.place.laws.problem.clone().with_gaps(gaps).with_factors(factors)
     }
 
+    fn stand_behind(&mut self, factors: &[f64], slips: DVector<f64>) -> Result<Option<&'static str>, PathError> {
+        self.slips = slips;
+        let gaps: Vec<f64> = self.place.laws.problem.gaps().collect();
+        self.stand_under(factors, &gaps)
+    }
+
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
         let none = DVector::zeros(self.slips.len());
         let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
         let (mut t, mut events) = (0.0, 0);
         let constants = |at: f64| self.problem_at(&course.factors_at(at), &course.gaps_at(at)).joint_constants();
         let rate = constants(1.0) - constants(0.0);
+        if rate.amax() == 0.0 {
+            self.place.factors = course.factors_at(1.0);
+            way.moments.push(self.moment(1.0, false));
+            return Ok((way, None));
+        }
         while t < 1.0 {
             self.place.watch.progress("stages", report(t));
             events += 1;

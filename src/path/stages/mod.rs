@@ -19,6 +19,8 @@ mod released;
 mod standing;
 mod walk;
 
+pub(in crate::path) use released::loose_motions;
+
 pub use record::{Energy, History, HistoryEnd, Moment, StageResult};
 
 use std::time::Instant;
@@ -55,14 +57,24 @@ pub fn follow(case: Case<'_>) -> Result<History, PathError> {
             target
         })
         .collect();
-    follow_factors(case, &targets)
+    follow_factors(case, &Begin::Unloaded, &targets)
 }
 
-/// Follows the unloaded structure through the given factors of all load cases.
+/// Where a history begins.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Begin {
+    /// At the unloaded structure.
+    Unloaded,
+    /// Under the first factors, with slips of the pairs that something before has left behind: the first stage is the
+    /// standing there.
+    Slips(Vec<f64>),
+}
+
+/// Follows a structure through the given factors of all load cases.
 ///
 /// # Errors
-/// As [`follow`].
-pub fn follow_factors(case: Case<'_>, targets: &[Vec<f64>]) -> Result<History, PathError> {
+/// As [`follow`]; slips behind which there is no answer.
+pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Result<History, PathError> {
     let Case { prepared, values, watch, .. } = case;
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let none = vec![0.0; prepared.cases.len()];
@@ -70,8 +82,8 @@ pub fn follow_factors(case: Case<'_>, targets: &[Vec<f64>]) -> Result<History, P
     let start = Instant::now();
     let laws = Laws { problem: &problem };
     let mut history = match system.force_form {
-        Some(_) => force_form::follow(prepared, laws, targets, watch)?,
-        None => Walk::start(prepared, laws, watch)?.follow(targets)?,
+        Some(_) => force_form::follow(prepared, laws, begin, targets, watch)?,
+        None => Walk::start(prepared, laws, begin, targets, watch)?.follow(targets)?,
     };
     if let Some(stage) = history.stages.last_mut() {
         let timings = &mut stage.end.timings;

@@ -60,7 +60,7 @@ impl Released {
 }
 
 /// Combinations of the kernel of R that move no joint but the given ones, over these; orthonormal.
-fn loose_motions(system: &ContactSystem, joints: &[usize]) -> DMatrix<f64> {
+pub(in crate::path) fn loose_motions(system: &ContactSystem, joints: &[usize]) -> DMatrix<f64> {
     let kernel = &system.kernel;
     let count = kernel.ncols();
     if count == 0 || joints.is_empty() {

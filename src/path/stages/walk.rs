@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
+use super::Begin;
 use super::course::Course;
 use super::event::next_event;
 use super::follower::{Follower, Limit, Place, Way, recorded};
@@ -45,8 +46,14 @@ enum Stretch {
 }
 
 impl<'a> Walk<'a> {
-    /// Stands on the unloaded structure; parts with interference (gaps below 0) are put together first.
-    pub(super) fn start(prepared: &'a Prepared, laws: Laws<'a>, watch: &'a dyn Watch) -> Result<Walk<'a>, PathError> {
+    /// Stands where the history begins; parts with interference (gaps below 0) are put together first.
+    pub(super) fn start(
+        prepared: &'a Prepared,
+        laws: Laws<'a>,
+        begin: &Begin,
+        targets: &[Vec<f64>],
+        watch: &'a dyn Watch,
+    ) -> Result<Walk<'a>, PathError> {
         let mut walk = Walk {
             place: Place::unloaded(prepared, laws, watch),
             standing: Standing::unloaded(laws),
@@ -54,7 +61,7 @@ impl<'a> Walk<'a> {
             lemke_seconds: 0.0,
         };
         walk.place.way = walk.states().iter().map(|pair| (pair.state, pair.held)).collect();
-        walk.put_together()?;
+        walk.begin(begin, targets)?;
         Ok(walk)
     }
 
@@ -218,6 +225,19 @@ impl<'a> Follower<'a> for Walk<'a> {
 
     fn problem_at(&self, factors: &[f64], gaps: &[f64]) -> ContactProblem {
         self.place.laws.problem.clone().with_gaps(gaps).with_factors(factors)
+    }
+
+    fn stand_behind(&mut self, factors: &[f64], slips: DVector<f64>) -> Result<Option<&'static str>, PathError> {
+        let gaps: Vec<f64> = self.place.laws.problem.gaps().collect();
+        match self.answer_behind(slips.clone(), factors, &gaps)? {
+            Err(how) => Ok(Some(how)),
+            Ok(there) => {
+                self.standing.z = slips;
+                let here = Course { factors: [factors.to_vec(), factors.to_vec()], gaps: [gaps.clone(), gaps] };
+                self.stand_at(&here, 1.0, there.z, there.states);
+                Ok(None)
+            }
+        }
     }
 
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {

@@ -5,11 +5,16 @@ use serde::Serialize;
 
 use super::find::range;
 use crate::answer::record::Ray;
-use crate::path::cycle::{Kind, MOST, Turn, cycle, shakedown_limit};
+use crate::model::quantity::fits;
+use crate::path::cycle::{Kind, MOST, PairSlip, Turn, cycle, shakedown_limit};
+use crate::path::cycle_starts::{StartResult, Starts, from_all};
 use crate::path::record::PathRecord;
+use crate::path::stages::Begin;
+use crate::path::static_shakedown::Static;
 use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
+use crate::session::language::selection::no_such;
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 
@@ -19,11 +24,19 @@ use crate::view;
 /// to A until a cycle repeats to 1e-12, at most N (256) times. Where the forces and gaps at the end of a cycle are those
 /// at its beginning, every further cycle is the same. LOAD is a load case or a parameter that factors of load cases
 /// depend on. `plot path` draws the loops.
+///
+/// `… from SLIPS` begins at A with slips that something before has left behind: `PAIR=SLIP …` (others 0; a name of an
+/// edge contact or `*` stands for all its pairs), or one number for each pair. Where these do not stand, pairs slip back at
+/// once. `… from all` begins without slips and with the largest and least slip of each pair at which the structure stands,
+/// to see whether the start decides. Where no slip changes a contact force, Melan's theorem may prove shakedown from
+/// every start; it is asked, and said not to hold elsewhere.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  cycle F2 0..61\n  cycle pull -50..50 20")]
+#[command(
+    after_help = "Example:\n  cycle F2 0..61\n  cycle pull -50..50 20\n  cycle F2 0..61 from c6=0.001 c5=-0.0002\n  cycle F2 0..61 from all"
+)]
 pub struct Repeated {
-    /// The load, its two values, the most cycles
-    #[arg(value_name = "REPEATED", required = true, num_args = 1..=3, allow_hyphen_values = true)]
+    /// The load, its two values, the most cycles, `from` and the slips
+    #[arg(value_name = "REPEATED", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
     words: Vec<String>,
 }
 
@@ -37,7 +50,27 @@ impl Action for Repeated {
 }
 
 fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
-    if asked.given.is_empty() { asked.varied() } else { Vec::new() }
+    match asked.given {
+        [] => asked.varied(),
+        [.., word] if word == "from" => {
+            let mut all = vec![Candidate::new("all", "no slips, and the largest both ways")];
+            all.extend(slips(asked));
+            all
+        }
+        given if given.iter().any(|word| word == "from") => slips(asked),
+        [_] => Vec::new(),
+        _ => vec![Candidate::new("from", "slips to begin with")],
+    }
+}
+
+fn slips(asked: &Asked<'_>) -> Vec<Candidate> {
+    asked.names.pairs.iter().map(|pair| Candidate::new(format!("{pair}="), "slip")).collect()
+}
+
+/// Where a cycle begins.
+enum From {
+    Begin(Begin),
+    All,
 }
 
 /// `A..B` in any order: from the first to the second.
@@ -50,6 +83,40 @@ fn ends(word: &str) -> Result<[f64; 2], CommandError> {
     }
 }
 
+/// What the static theorem says of every start.
+#[derive(Serialize)]
+struct StaticReport {
+    applies: bool,
+    proved: bool,
+    least_reserve: Option<f64>,
+    sentence: String,
+}
+
+impl StaticReport {
+    /// `None` where it was not asked.
+    fn of(found: &Static) -> Option<StaticReport> {
+        let reserve = if let Static::Proved(reserve) = found { Some(*reserve) } else { None };
+        Some(StaticReport {
+            applies: !matches!(found, Static::Inapplicable(_)),
+            proved: reserve.is_some(),
+            least_reserve: reserve,
+            sentence: view::cycle::every_start(found)?,
+        })
+    }
+}
+
+#[derive(Serialize)]
+struct StartsReport<'a> {
+    load: &'a str,
+    from: f64,
+    to: f64,
+    decides: bool,
+    starts: &'a [StartResult],
+    #[serde(rename = "static")]
+    every_start: Option<StaticReport>,
+    sentence: String,
+}
+
 #[derive(Serialize)]
 struct CycleReport<'a> {
     load: &'a str,
@@ -58,6 +125,10 @@ struct CycleReport<'a> {
     kind: Kind,
     cycles: &'a [Turn],
     collapse: Option<&'a Ray>,
+    /// Slips at the first value.
+    start: Vec<PairSlip>,
+    #[serde(rename = "static")]
+    every_start: Option<StaticReport>,
     sentence: &'a str,
 }
 
@@ -68,23 +139,43 @@ struct ShakedownReport<'a> {
     shakes_down: f64,
     beyond: Option<f64>,
     kind_beyond: Option<Kind>,
+    /// Up to where it shakes down from every start.
+    from_every_start: Option<f64>,
+    #[serde(rename = "static")]
+    every_start: Option<StaticReport>,
 }
 
 impl Session {
-    /// `cycle LOAD A..B [N]`.
+    /// `cycle LOAD A..B [N] [from SLIPS | from all]`.
     pub(in crate::session) fn cycle(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        let at = words.iter().position(|word| word == "from");
+        let (words, from) = match at {
+            Some(at) => (&words[..at], self.begin(&words[at + 1..])?),
+            None => (words, From::Begin(Begin::Unloaded)),
+        };
         let (name, span, most) = match words {
             [name, span] => (name, span, MOST),
             [name, span, count] => match count.parse::<usize>() {
                 Ok(most @ 1..=100_000) => (name, span, most),
                 _ => return refused(format!("cycle: `{count}` is no number of cycles; expected 1 to 100000")),
             },
-            _ => return refused("cycle: expected `cycle LOAD A..B [N]`, e.g. `cycle pull 0..61`"),
+            _ => {
+                return refused(
+                    "cycle: expected `cycle LOAD A..B [N] [from SLIPS | from all]`, e.g. `cycle pull 0..61`",
+                );
+            }
         };
         let (name, ends) = (self.varied(name)?.to_owned(), ends(span)?);
         let ground = self.ground(io.watch)?;
         let what = name.clone();
-        let found = worker::run(io.watch, move |watch| cycle(ground.case(watch), &what, ends, most))??;
+        let begin = match from {
+            From::Begin(begin) => begin,
+            From::All => {
+                let found = worker::run(io.watch, move |watch| from_all(ground.case(watch), &what, ends, most))??;
+                return self.show_starts(&found, io);
+            }
+        };
+        let found = worker::run(io.watch, move |watch| cycle(ground.case(watch), &what, ends, most, &begin))??;
         let units = &self.now.scenario.units;
         let report = CycleReport {
             load: &name,
@@ -93,11 +184,67 @@ impl Session {
             kind: found.kind,
             cycles: &found.turns,
             collapse: found.collapse(),
+            start: found.start(),
+            every_start: StaticReport::of(&found.every_start),
             sentence: &found.sentence,
         };
         io.show(&report, |out, style| view::cycle::write(out, &found, self.load_unit(&name), units, style))?;
         self.keep_path(PathRecord::of_history(&found.history));
         Ok(())
+    }
+
+    fn show_starts(&self, found: &Starts, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let report = StartsReport {
+            load: &found.name,
+            from: found.ends[0],
+            to: found.ends[1],
+            decides: found.decides,
+            starts: &found.starts,
+            every_start: StaticReport::of(&found.every_start),
+            sentence: found.sentence(),
+        };
+        let (unit, units) = (self.load_unit(&found.name), &self.now.scenario.units);
+        io.show(&report, |out, style| view::cycle::write_starts(out, found, unit, units, style))?;
+        Ok(())
+    }
+
+    /// What stands behind `from`: `all`, one number for each pair, or `PAIR=SLIP …`.
+    fn begin(&self, words: &[String]) -> Result<From, CommandError> {
+        let text = words.join(" ").replace(['(', ')', ','], " ");
+        let words: Vec<&str> = text.split_whitespace().collect();
+        if words == ["all"] {
+            return Ok(From::All);
+        }
+        let number = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
+        let pairs = self.names().pairs;
+        let named = words.iter().any(|word| word.contains('='));
+        if words.is_empty() || !named && words.iter().all(|word| number(word).is_none()) {
+            return refused("cycle: expected `from all`, `from PAIR=SLIP …` or `from` and a slip for each pair");
+        }
+        if !named {
+            let slips: Vec<f64> = words.iter().filter_map(|word| number(word)).collect();
+            if slips.len() != words.len() || slips.len() != pairs.len() {
+                return refused(format!(
+                    "cycle: expected {} slips behind `from`, one for each pair, found {}; `from PAIR=SLIP …` names some",
+                    pairs.len(),
+                    words.join(" ")
+                ));
+            }
+            return Ok(From::Begin(Begin::Slips(slips)));
+        }
+        let mut slips = vec![0.0; pairs.len()];
+        for word in words {
+            let Some((pattern, slip)) = word.split_once('=').and_then(|(id, slip)| Some((id, number(slip)?))) else {
+                return refused(format!("cycle: `{word}` is no slip; expected PAIR=SLIP, e.g. `c1=0.001`"));
+            };
+            let fitting = pairs.iter().enumerate().filter(|(_, id)| fits(pattern, id));
+            let fitting: Vec<usize> = fitting.map(|(index, _)| index).collect();
+            if fitting.is_empty() {
+                return refused(no_such("pair", pattern, pairs.iter().copied()));
+            }
+            fitting.into_iter().for_each(|index| slips[index] = slip);
+        }
+        Ok(From::Begin(Begin::Slips(slips)))
     }
 
     /// The unit of a parameter.
@@ -131,6 +278,8 @@ impl Session {
             shakes_down: found.shakes_down,
             beyond: found.beyond.map(|(value, _)| value),
             kind_beyond: found.beyond.map(|(_, kind)| kind),
+            from_every_start: found.every_start.0,
+            every_start: StaticReport::of(&found.every_start.1),
         };
         io.show(&report, |out, style| view::cycle::write_limit(out, &name, &found, self.load_unit(&name), style))?;
         Ok(())

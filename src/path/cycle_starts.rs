@@ -1,0 +1,199 @@
+//! One load cycle after different slips: does it depend on the start what it comes to?
+//!
+//! Where slips press pairs on or off (R_nτ ≠ 0) it may. Besides no slips at all those are tried that go as far as they can:
+//! of each pair the largest and the least slip with which the structure stands still under the first load,
+//! ```text
+//!   max ± s_i   over   λ = R z + load,  x_n ≥ 0,  |x_τ| ≤ f x_n + c,   x_n = 0 ≤ z_n in pairs that are open without slips
+//! ```
+//! and at rest in the motions that cost no force.
+
+use nalgebra::DVector;
+
+use super::cycle::{Cycle, Kind, PairSlip, Turn, cycle, target};
+use super::stages::{Begin, loose_motions};
+use super::start::PathError;
+use super::static_shakedown::Static;
+use crate::contact::problem::ContactProblem;
+use crate::contact::system::ContactPair;
+use crate::lcp::linear_program::{LinearProgram, Outcome};
+use crate::solve::Case;
+use crate::solve::problem::contact_problem;
+use crate::text::number::short;
+
+/// Pairs up to which each one's extreme slips are tried.
+pub const MOST_PAIRS: usize = 40;
+/// Seconds for one linear programme.
+const SECONDS: f64 = 10.0;
+/// What two cycles dissipate and leave behind is the same where it differs by less than this share of the largest.
+const SAME: f64 = 1e-9;
+
+/// What a cycle comes to after a start.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct StartResult {
+    /// `no slips`, `most b`, `least b`.
+    pub start: String,
+    /// Slips with which the cycle begins.
+    pub slips: Vec<PairSlip>,
+    /// What it comes to.
+    pub kind: Kind,
+    /// Cycles until it repeats.
+    pub cycles: usize,
+    /// Work lost in the last one.
+    pub dissipated: f64,
+    /// The largest way that it leaves behind; 0 where it does not ratchet.
+    pub net: f64,
+}
+
+/// The same load cycle after different starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Starts {
+    /// The load case or parameter.
+    pub name: String,
+    /// Its values at both ends.
+    pub ends: [f64; 2],
+    /// What was found after each start.
+    pub starts: Vec<StartResult>,
+    /// Whether they come to different cycles.
+    pub decides: bool,
+    /// What is proved of every start.
+    pub every_start: Static,
+}
+
+impl Starts {
+    /// What they show together, in a sentence.
+    pub fn sentence(&self) -> String {
+        let lost = || self.starts.iter().map(|start| start.dissipated);
+        let count = self.starts.len();
+        if !self.decides {
+            return format!("all {count} starts come to the same cycle; starts between them were not followed");
+        }
+        let (least, most) = (lost().fold(f64::INFINITY, f64::min), lost().fold(0.0, f64::max));
+        format!(
+            "the start decides: after {count} starts a cycle dissipates from {} to {}; starts between them were not followed",
+            short(least),
+            short(most)
+        )
+    }
+}
+
+/// Follows a load cycle after no slips and after the largest slips both ways of each pair.
+///
+/// # Errors
+/// As [`cycle`]; too many pairs, joints that repeat one another.
+pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<Starts, PathError> {
+    let Some(system) = case.prepared.system() else { return Err(PathError::Plain("cycle")) };
+    if let Some(refusal) = system.refusal("cycle … from all") {
+        return Err(PathError::Missing(refusal));
+    }
+    let count = system.pair_count();
+    if count > MOST_PAIRS {
+        return Err(PathError::Missing(format!(
+            "cycle … from all: {count} pairs make {} histories; up to {MOST_PAIRS} pairs are followed: give slips with `from \
+             PAIR=SLIP …`",
+            2 * count + 1
+        )));
+    }
+    let zero = cycle(case, name, ends, most, &Begin::Slips(vec![0.0; count]))?;
+    let first = &zero.history.stages[0].end.pairs;
+    let open: Vec<bool> = first.iter().map(|pair| pair.z_n > 0.0).collect();
+    let problem = contact_problem(system, &target(case, name, ends[0])?, case.values);
+    let mut begins = extreme_slips(&problem, &open, case)?;
+    begins.dedup_by(|a, b| close(&a.1, &b.1));
+    let mut starts = vec![StartResult::of("no slips".to_owned(), &zero)];
+    let every_start = zero.every_start;
+    for (index, (label, slips)) in begins.iter().enumerate() {
+        case.watch.progress(&format!("start {label}"), index as f64 / begins.len() as f64);
+        let found = cycle(case, name, ends, most, &Begin::Slips(slips.clone()))?;
+        starts.push(StartResult::of(label.clone(), &found));
+    }
+    let largest = |of: fn(&StartResult) -> f64| starts.iter().map(of).fold(0.0, f64::max);
+    let (lost, net) = (largest(|start| start.dissipated), largest(|start| start.net));
+    let differs = |start: &StartResult| {
+        start.kind != starts[0].kind
+            || (start.dissipated - starts[0].dissipated).abs() > SAME * lost
+            || (start.net - starts[0].net).abs() > SAME * net
+    };
+    let decides = starts.iter().any(differs);
+    Ok(Starts { name: name.to_owned(), ends, starts, decides, every_start })
+}
+
+impl StartResult {
+    fn of(start: String, found: &Cycle) -> StartResult {
+        let last = found.turns.last();
+        let net = |turn: &Turn| turn.pairs.iter().fold(0.0, |most, pair| f64::max(most, pair.net.abs()));
+        StartResult {
+            start,
+            slips: found.start(),
+            kind: found.kind,
+            cycles: found.turns.len(),
+            dissipated: last.map_or(0.0, |turn| turn.dissipated.iter().sum()),
+            net: last.filter(|_| found.kind == Kind::Ratchets).map_or(0.0, net),
+        }
+    }
+}
+
+fn close(a: &[f64], b: &[f64]) -> bool {
+    let size = a.iter().chain(b).fold(0.0, |most: f64, slip| most.max(slip.abs()));
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME * size)
+}
+
+/// The slips of all pairs at which one of them is largest or least, with their names.
+fn extreme_slips(
+    problem: &ContactProblem,
+    open: &[bool],
+    case: Case<'_>,
+) -> Result<Vec<(String, Vec<f64>)>, PathError> {
+    let system = &*problem.system;
+    let mut moving: Vec<usize> = (0..system.pair_count()).filter(|&i| open[i]).collect();
+    moving.extend(system.pairs.iter().filter_map(|pair| pair.tangential));
+    let constants = problem.joint_constants();
+    let stiffness = system.stiffness.diagonal().amax();
+    let force = constants.amax();
+    let force = if force > 0.0 { force } else { 1.0 };
+    let length = if stiffness > 0.0 { force / stiffness } else { 1.0 };
+    let mut program = LinearProgram::default();
+    moving.iter().for_each(|_| _ = program.variable(0.0));
+    let row = |joint: usize, sign: f64| -> Vec<(usize, f64)> {
+        let entry = |&column: &usize| sign * system.stiffness[(joint, column)] / stiffness;
+        moving.iter().map(entry).enumerate().filter(|(_, entry)| *entry != 0.0).collect()
+    };
+    for (i, pair) in system.pairs.iter().enumerate() {
+        let law = &problem.laws[i];
+        if open[i] {
+            program.equal(row(i, 1.0), -constants[i] / force);
+            let place = moving.iter().position(|&joint| joint == i).unwrap_or_default();
+            program.at_most(vec![(place, -1.0)], 0.0);
+        } else if !law.is_bilateral() {
+            program.at_most(row(i, -1.0), constants[i] / force);
+        }
+        let Some(joint) = pair.tangential else { continue };
+        let (f, c) = (if open[i] { 0.0 } else { law.friction() }, law.fixed_bound());
+        for sign in [1.0, -1.0] {
+            let mut terms = row(joint, sign);
+            terms.extend(row(i, -f));
+            program.at_most(terms, (f * constants[i] + c - sign * constants[joint]) / force);
+        }
+    }
+    for motion in loose_motions(system, &moving).column_iter() {
+        program.equal(motion.iter().copied().enumerate().filter(|(_, v)| *v != 0.0).collect(), 0.0);
+    }
+    let mut found = Vec::new();
+    for (place, &joint) in moving.iter().enumerate() {
+        let Some(pair) = system.pairs.iter().position(|pair| pair.tangential == Some(joint)) else { continue };
+        if open[pair] {
+            continue;
+        }
+        for (word, sign) in [("most", -1.0), ("least", 1.0)] {
+            if case.watch.stop() {
+                return Err(PathError::Interrupted);
+            }
+            program.set_costs([(place, sign)]);
+            let Outcome::Optimum(optimum) = program.solve(SECONDS) else { continue };
+            let mut slips = DVector::zeros(system.joint_count());
+            moving.iter().zip(&optimum.x).for_each(|(&joint, x)| slips[joint] = x * length);
+            let of_pair = |pair: &ContactPair| pair.tangential.map_or(0.0, |joint| slips[joint]);
+            found.push((format!("{word} {}", system.pairs[pair].id), system.pairs.iter().map(of_pair).collect()));
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,270 @@
+//! The static theorem of shakedown for friction: where contact forces do not depend on slips, a structure shakes down from
+//! every start if there are slips which, left behind once and for all, keep every pair short of its bound (Klarbring,
+//! Ciavarella & Barber 2007; Melan's theorem).
+//!
+//! With s̃ such slips, ½ (s − s̃)ᵀ R (s − s̃) falls at the rate (x̃_τ − x_τ) ṡ, which the least reserve under s̃ holds above
+//! that reserve times |ṡ|: so much slip in all, and no more. Where slips press pairs on (R_nτ ≠ 0) none of this holds.
+
+use nalgebra::DVector;
+
+use super::cycle::target;
+use super::stages::{Begin, Moment, follow_factors};
+use super::start::PathError;
+use crate::contact::problem::ContactProblem;
+use crate::contact::system::ContactSystem;
+use crate::lcp::linear_program::{LinearProgram, Outcome};
+use crate::lcp::problem::NOISE;
+use crate::solve::Case;
+use crate::solve::problem::{contact_problem, factors};
+
+/// An entry of a condensed R below this share of √(R_ii R_kk) is the rounding of a zero.
+const STORED_ZERO: f64 = 256.0 * f64::EPSILON;
+/// Seconds for one linear programme.
+const SECONDS: f64 = 10.0;
+/// How far before the end of the linear programme the proof is tried, as shares of the way: at the end itself no reserve is
+/// left.
+const BEFORE: [f64; 4] = [1e-9, 1e-8, 1e-7, 1e-6];
+/// Pairs up to which it is looked for.
+const MOST_PAIRS: usize = 500;
+
+/// What the theorem says of every start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Static {
+    /// There was nothing to ask it.
+    NotAsked,
+    /// It does not hold here: why.
+    Inapplicable(String),
+    /// No such slips were found.
+    Nothing,
+    /// Shakes down from every start: the least reserve under slips that were checked.
+    Proved(f64),
+}
+
+/// A place of the cycle: what bounds the pairs there, and what the loads alone do in the tangential joints.
+struct Place {
+    /// By pair; `None` without a tangential joint.
+    bounds: Vec<Option<f64>>,
+    /// By joint.
+    load: DVector<f64>,
+    terms: DVector<f64>,
+}
+
+struct Search<'a> {
+    problem: &'a ContactProblem,
+    /// Pair and joint of every tangential joint.
+    joints: Vec<(usize, usize)>,
+    /// By what forces and displacements are divided in the programmes.
+    units: (f64, f64),
+}
+
+/// Why the theorem does not hold; `None` where it does.
+fn inapplicable(problem: &ContactProblem) -> Option<String> {
+    let system = &*problem.system;
+    if system.pair_count() > MOST_PAIRS {
+        return Some(format!("{} pairs are too many to look for it; up to {MOST_PAIRS} are not", system.pair_count()));
+    }
+    if system.force_form.is_some() {
+        return Some("joints repeat one another, so that contact forces are not unique".to_owned());
+    }
+    let (i, j) = coupled(problem)?;
+    let [pressed, slipping] = [i, j].map(|pair| &system.pairs[pair].id);
+    Some(format!("a slip of {slipping} changes the contact force of {pressed}"))
+}
+
+/// A pair whose contact force depends on the slip of another one.
+fn coupled(problem: &ContactProblem) -> Option<(usize, usize)> {
+    let system: &ContactSystem = &problem.system;
+    let r = &system.stiffness;
+    let floor = if system.rounded { STORED_ZERO } else { 0.0 };
+    let unilateral = (0..system.pair_count()).filter(|&i| !problem.laws[i].is_bilateral());
+    unilateral.into_iter().find_map(|i| {
+        let slips = system.pairs.iter().enumerate().filter_map(|(j, pair)| Some((j, pair.tangential?)));
+        let strong = |t: usize| r[(i, t)].abs() > floor * (r[(i, i)] * r[(t, t)]).max(0.0).sqrt();
+        slips.into_iter().find(|&(_, t)| strong(t)).map(|(j, _)| (i, j))
+    })
+}
+
+impl Place {
+    fn of(problem: &ContactProblem, moment: &Moment) -> Place {
+        let there = problem.clone().with_factors(&moment.factors);
+        let pairs = problem.system.pairs.iter().zip(&moment.pairs);
+        let bounds = pairs.map(|(pair, state)| pair.tangential.map(|_| state.bound)).collect();
+        Place { bounds, load: there.load, terms: there.load_terms }
+    }
+}
+
+impl Search<'_> {
+    fn new<'p>(problem: &'p ContactProblem, places: &[Place]) -> Search<'p> {
+        let pairs = problem.system.pairs.iter().enumerate();
+        let joints: Vec<(usize, usize)> = pairs.filter_map(|(i, pair)| Some((i, pair.tangential?))).collect();
+        let bounds = places.iter().flat_map(|place| place.bounds.iter().flatten());
+        let loads = places.iter().flat_map(|place| joints.iter().map(|&(_, t)| &place.load[t]));
+        let force = bounds.chain(loads).fold(0.0, |most: f64, value| most.max(value.abs()));
+        let force = if force > 0.0 { force } else { 1.0 };
+        let stiffness = joints.iter().map(|&(_, t)| problem.system.stiffness[(t, t)]).fold(0.0, f64::max);
+        let length = if stiffness > 0.0 { force / stiffness } else { 1.0 };
+        Search { problem, joints, units: (force, length) }
+    }
+
+    /// R s of the k-th tangential joint as terms of a programme.
+    fn forces(&self, k: usize, sign: f64) -> Vec<(usize, f64)> {
+        let r = &self.problem.system.stiffness;
+        let (force, length) = self.units;
+        let row = self.joints[k].1;
+        let entry = |&(_, t): &(usize, usize)| sign * r[(row, t)] * length / force;
+        self.joints.iter().map(entry).enumerate().filter(|(_, entry)| *entry != 0.0).collect()
+    }
+
+    /// Variables for the slips.
+    fn program(&self) -> LinearProgram {
+        let mut program = LinearProgram::default();
+        self.joints.iter().for_each(|_| _ = program.variable(0.0));
+        program
+    }
+
+    /// Demands of the slips that no pair is beyond its bound at a place; `extra`: a variable added to both sides of it.
+    fn demand(&self, program: &mut LinearProgram, place: &Place, extra: Option<usize>) {
+        for (k, &(pair, joint)) in self.joints.iter().enumerate() {
+            let Some(bound) = place.bounds[pair] else { continue };
+            for sign in [1.0, -1.0] {
+                let mut terms = self.forces(k, sign);
+                terms.extend(extra.map(|variable| (variable, 1.0)));
+                program.at_most(terms, (bound - sign * place.load[joint]) / self.units.0);
+            }
+        }
+    }
+
+    /// The slips that leave the most reserve at these places.
+    fn most_reserve(&self, places: &[Place]) -> Option<DVector<f64>> {
+        let mut program = self.program();
+        let reserve = program.variable(-1.0);
+        program.at_most(vec![(reserve, 1.0)], 1.0);
+        places.iter().for_each(|place| self.demand(&mut program, place, Some(reserve)));
+        match program.solve(SECONDS) {
+            Outcome::Optimum(found) => Some(self.slips(&found.x)),
+            _ => None,
+        }
+    }
+
+    fn slips(&self, x: &[f64]) -> DVector<f64> {
+        let mut slips = DVector::zeros(self.problem.system.joint_count());
+        self.joints.iter().zip(x).for_each(|(&(_, joint), x)| slips[joint] = x * self.units.1);
+        slips
+    }
+
+    /// The least reserve under slips, less its rounding.
+    fn reserve(&self, slips: &DVector<f64>, places: &[Place]) -> f64 {
+        let r = &self.problem.system.stiffness;
+        let (own, sizes) = (r * slips, r.abs() * slips.abs());
+        let mut least = f64::INFINITY;
+        for place in places {
+            for &(pair, joint) in &self.joints {
+                let Some(bound) = place.bounds[pair] else { continue };
+                let noise = NOISE * (place.terms[joint] + sizes[joint] + bound);
+                least = least.min(bound - (place.load[joint] + own[joint]).abs() - noise);
+            }
+        }
+        least
+    }
+}
+
+fn present(case: Case<'_>) -> Option<ContactProblem> {
+    let Case { prepared, values, .. } = case;
+    Some(contact_problem(prepared.system()?, &factors(prepared, values), values))
+}
+
+/// What the theorem says of a cycle that passes these places.
+pub fn static_shakedown<'m>(case: Case<'_>, moments: impl Iterator<Item = &'m Moment>) -> Static {
+    let Some(problem) = present(case) else { return Static::NotAsked };
+    if let Some(why) = inapplicable(&problem) {
+        return Static::Inapplicable(why);
+    }
+    let places: Vec<Place> = moments.map(|moment| Place::of(&problem, moment)).collect();
+    let search = Search::new(&problem, &places);
+    let reserve = search.most_reserve(&places).map(|slips| search.reserve(&slips, &places));
+    reserve.filter(|reserve| *reserve > 0.0).map_or(Static::Nothing, Static::Proved)
+}
+
+/// Up to where, from the first value towards the second, the theorem proves that the load shakes down from every start.
+///
+/// # Errors
+/// See [`super::cycle::cycle`].
+pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<(Option<f64>, Static), PathError> {
+    let Some(problem) = present(case) else { return Ok((None, Static::NotAsked)) };
+    if let Some(why) = inapplicable(&problem) {
+        return Ok((None, Static::Inapplicable(why)));
+    }
+    let targets = [target(case, name, from)?, target(case, name, to)?];
+    let history = follow_factors(case, &Begin::Unloaded, &targets)?;
+    let Some(stage) = history.stages.get(1) else { return Ok((None, Static::Nothing)) };
+    let places: Vec<(f64, Place)> =
+        stage.moments.iter().map(|moment| (moment.t, Place::of(&problem, moment))).collect();
+    let all: Vec<Place> = stage.moments.iter().map(|moment| Place::of(&problem, moment)).collect();
+    let search = Search::new(&problem, &all);
+    let (Some((t, slips)), Some(first)) = (search.farthest(&places), search.most_reserve(&all[..1])) else {
+        return Ok((None, Static::Nothing));
+    };
+    for share in BEFORE {
+        // Between the slips for the farthest place and those with the most reserve at the first.
+        let (at, slips) = (t * (1.0 - share), &slips * (1.0 - share) + &first * share);
+        let passed: Vec<Place> = passed(&places, at);
+        let reserve = search.reserve(&slips, &passed);
+        if reserve > 0.0 {
+            return Ok((Some(from + at * (to - from)), Static::Proved(reserve)));
+        }
+    }
+    Ok((None, Static::Nothing))
+}
+
+/// Between two places: everything is affine there.
+fn between(places: &[(f64, Place)], k: usize, t: f64) -> Place {
+    let ((a, from), (b, to)) = (&places[k - 1], &places[k]);
+    let share = if b > a { (t - a) / (b - a) } else { 1.0 };
+    let mix = |a: f64, b: f64| a + share * (b - a);
+    let bounds = from.bounds.iter().zip(&to.bounds).map(|(a, b)| Some(mix((*a)?, (*b)?))).collect();
+    let load = from.load.zip_map(&to.load, mix);
+    Place { bounds, load, terms: from.terms.zip_map(&to.terms, f64::max) }
+}
+
+/// The places up to t, t included.
+fn passed(places: &[(f64, Place)], t: f64) -> Vec<Place> {
+    let before = places.iter().take_while(|(at, _)| *at < t).count().clamp(1, places.len() - 1);
+    let mut all: Vec<Place> = (1..before).map(|k| between(places, k, places[k].0)).collect();
+    all.push(between(places, 1, places[0].0));
+    all.push(between(places, before, t));
+    all
+}
+
+impl Search<'_> {
+    /// The farthest place of the way up to which one choice of slips holds all pairs, and that choice.
+    fn farthest(&self, places: &[(f64, Place)]) -> Option<(f64, DVector<f64>)> {
+        let mut best = None;
+        for k in 1..places.len() {
+            let ((a, from), (b, to)) = (&places[k - 1], &places[k]);
+            if b <= a {
+                continue;
+            }
+            let mut program = self.program();
+            let share = program.variable(-1.0);
+            program.at_most(vec![(share, 1.0)], 1.0);
+            program.at_most(vec![(share, -1.0)], 0.0);
+            places[..k].iter().for_each(|(_, place)| self.demand(&mut program, place, None));
+            for (j, &(pair, joint)) in self.joints.iter().enumerate() {
+                let (Some(start), Some(end)) = (from.bounds[pair], to.bounds[pair]) else { continue };
+                for sign in [1.0, -1.0] {
+                    let mut terms = self.forces(j, sign);
+                    let rate = sign * (to.load[joint] - from.load[joint]) - (end - start);
+                    terms.push((share, rate / self.units.0));
+                    program.at_most(terms, (start - sign * from.load[joint]) / self.units.0);
+                }
+            }
+            let Outcome::Optimum(found) = program.solve(SECONDS) else { break };
+            let reached = found.x[share].clamp(0.0, 1.0);
+            best = Some((a + reached * (b - a), self.slips(&found.x)));
+            if reached < 1.0 - 1e-7 {
+                break;
+            }
+        }
+        best
+    }
+}
