@@ -13,6 +13,7 @@ use crate::lcp::problem::NOISE;
 use crate::model::rules::{Covering, Rules};
 use crate::solve::problem::factors;
 use crate::solve::{Case, Prepared, Solved};
+use crate::text::number::short;
 
 /// The limit is confirmed by independent runs at (1 ± this) of it.
 const BESIDE: f64 = 1e-6;
@@ -86,6 +87,22 @@ impl Limit {
         let to = from + reach;
         let (low, high) = (nine_digits(from.min(to)), nine_digits(from.max(to)));
         format!("`find {} {low}..{high} where outcome answer`", self.path.parameter.name)
+    }
+}
+
+impl Limit {
+    /// In a few words: why there is no limit, or that no run of its own confirms it; empty for a confirmed one.
+    pub fn brief(&self) -> String {
+        let at = short(self.path.factors.last().copied().unwrap_or(self.path.start));
+        match (self.factor, self.bracket, self.beyond, &self.path.end) {
+            (Some(factor), ..) if self.confirmed || factor == 0.0 => String::new(),
+            (Some(_), ..) => "not confirmed by a run of its own".to_owned(),
+            (None, Some([answer, none]), ..) => format!("between {} and {}", short(answer), short(none)),
+            (None, None, Some(_), _) => format!("none: the path ends at {at}, with answers beyond"),
+            (None, None, None, PathEnd::Unbounded) => "none, however large the load".to_owned(),
+            (None, None, None, PathEnd::Turning) => format!("none found: the path turns back at {at}"),
+            (None, None, None, _) => format!("none found: the path ends at {at}"),
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use crate::model::rules::{Covering, TieBreak};
 use crate::solve::engines::run_scheme;
 use crate::solve::error::{QuestionError, SolveError};
 use crate::solve::{Solved, state::RunData};
+use crate::text::number::short;
 use crate::watch::Watch;
 
 /// No path makes more pivots than this.
@@ -71,6 +72,18 @@ pub enum PathError {
     /// Stopped from outside.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl PathError {
+    /// In a few words, for a table that names what was followed.
+    pub fn brief(&self) -> String {
+        match self {
+            PathError::Idle(_) => "acts on no contact pair".to_owned(),
+            PathError::NoStart { at, .. } => format!("no answer at {} to start from", short(*at)),
+            PathError::Mixed { why, .. } => format!("cannot be followed: {why}"),
+            error => error.to_string(),
+        }
+    }
 }
 
 impl From<QuestionError> for PathError {

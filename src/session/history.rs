@@ -86,12 +86,31 @@ impl Session {
         })
     }
 
-    /// Writes [`Session::history_place`] ahead of a table, if there is one.
-    pub(super) fn write_place(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        match self.history_place() {
-            Some(place) => view::stages::write_line(out, &place, style),
-            None => Ok(()),
+    /// What the forces and slips shown are where they are not those of an answer: the end of a history, a pivot before
+    /// the last one, a ray, at which p still acts.
+    pub(super) fn place_shown(&self) -> Option<String> {
+        if let Some(place) = self.history_place() {
+            return Some(place);
         }
+        let units = &self.now.scenario.units;
+        let answer = self.answer()?;
+        match self.position {
+            Some(step) => {
+                let p = self.p().map(|p| format!(", p = {}", view::status::weight(p, answer, units)));
+                Some(format!("at {}{}", view::pivots::title(step), p.unwrap_or_default()))
+            }
+            None => view::status::ray_note(answer, units),
+        }
+    }
+
+    /// Writes [`Session::place_shown`] beside a table, if there is one.
+    pub(super) fn write_place_shown(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        self.place_shown().map_or(Ok(()), |place| view::stages::write_line(out, &place, style))
+    }
+
+    /// Writes [`Session::history_place`] ahead of a table that knows no pivots, if there is one.
+    pub(super) fn write_history_place(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        self.history_place().map_or(Ok(()), |place| view::stages::write_line(out, &place, style))
     }
 
     /// Follows the stages of the scenario; from here on they are what quantities mean.

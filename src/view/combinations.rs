@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::scale::ByUnit;
+use super::stages::write_line;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row as TableRow, Table};
 use crate::model::quantity::Quantity;
@@ -34,7 +35,7 @@ pub fn write(
     out: &mut dyn Write,
     rows: &[Row],
     probes: &[(String, Quantity)],
-    note: Option<&str>,
+    notes: &[String],
     units: &Units,
     style: &Style,
 ) -> io::Result<()> {
@@ -60,10 +61,7 @@ pub fn write(
         }
         table.write(out, style)?;
     }
-    match note {
-        Some(note) => writeln!(out, "{}", style.paint(Role::Muted, &style.text(note))),
-        None => Ok(()),
-    }
+    notes.iter().try_for_each(|note| write_line(out, note, style))
 }
 
 /// A row for each quantity; `at` heads what governs.

@@ -6,6 +6,7 @@ pub mod combinations;
 pub mod compare;
 pub mod critical;
 pub mod cycle;
+pub mod data;
 pub mod difference;
 pub mod displacements;
 pub mod enumerate;

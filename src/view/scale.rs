@@ -7,7 +7,7 @@
 //! of its own, in the unit of the column: `2.1e-9` is told apart from `0`, which is nothing or rounding.
 
 use crate::answer::rounding::{denoised, largest};
-use crate::text::number::{DIGITS, figures, placed, simple, third, trimmed};
+use crate::text::number::{DIGITS, figures, placed, short, simple, third, trimmed};
 
 /// What is smaller than this share of the largest has a power of ten of its own.
 pub const APART: f64 = 1e-3;
@@ -104,6 +104,17 @@ impl Scale {
     }
 }
 
+/// Lengths for running text, which share a unit: in metres where all can be read there, else in mm or µm.
+pub fn lengths(values: &[f64], unit: Option<&str>, ascii: bool) -> (Vec<String>, Option<String>) {
+    let is_small = |value: &f64| figures(*value, DIGITS).is_some_and(|(_, exponent)| exponent < -4);
+    let (times, unit) = match largest(values.iter().copied()) {
+        _ if unit != Some("m") || ascii || !values.iter().any(is_small) => (1.0, unit),
+        most if most < 1e-3 => (1e6, Some("µm")),
+        _ => (1e3, Some("mm")),
+    };
+    (values.iter().map(|value| short(times * value)).collect(), unit.map(str::to_owned))
+}
+
 /// Scales of values of several quantities, one for each unit.
 #[derive(Debug, Default)]
 pub struct ByUnit(Vec<(Option<String>, Scale)>);
@@ -173,6 +184,21 @@ mod tests {
         assert_eq!(texts, ["1.0000", "9.9e-7", "0.0000010", "0.0000010", "-2.1e-9", "1.0e-7", "0"]);
         let (texts, _) = written(&[2e-3, 2e-12]);
         assert_eq!(texts, ["2.0000", "2.0e-9"]);
+    }
+
+    #[test]
+    fn lengths_in_a_sentence_share_a_unit_that_can_be_read() {
+        let said = |values: &[f64], unit: &str, ascii: bool| {
+            let (numbers, unit) = lengths(values, Some(unit), ascii);
+            format!("{} {}", numbers.join(", "), unit.unwrap_or_default())
+        };
+        assert_eq!(said(&[0.005, 0.0005], "m", false), "0.005, 0.0005 m");
+        assert_eq!(said(&[33.097e-6], "m", false), "33.097 µm");
+        assert_eq!(said(&[0.005, 33.097e-6], "m", false), "5, 0.033097 mm");
+        assert_eq!(said(&[2.5e-5, 0.0], "m", false), "25, 0 µm");
+        assert_eq!(said(&[33.097e-6], "m", true), "33.097e-6 m");
+        assert_eq!(said(&[33.097e-6], "mm", false), "33.097e-6 mm");
+        assert_eq!(said(&[3.5e-10], "m", false), "0.00035 µm");
     }
 
     #[test]

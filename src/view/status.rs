@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
+use super::scale::lengths;
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
 use crate::answer::attempt::Attempt;
@@ -95,7 +96,7 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
         OutcomeKind::Trivial | OutcomeKind::Normal if !answer.pairs.is_empty() => {
             let count = counted(answer, previous);
             let states = state_counts(&answer.pairs);
-            let (extreme, before) = extreme(answer, previous, units);
+            let (extreme, before) = extreme(answer, previous, units, style.ascii);
             let with_before = match before {
                 Some(before) => format!("{extreme} (was {before})"),
                 None => extreme.clone(),
@@ -119,8 +120,7 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
         OutcomeKind::Ray => {
             let mut parts = Vec::new();
             if let Some(ray) = &answer.ray {
-                let p = with_unit(&short(ray.p), p_unit(answer, units).as_deref());
-                parts.push(format!("p {p}"));
+                parts.push(format!("p {}", weight(ray.p, answer, units)));
                 parts.push(counted(answer, previous));
                 if let Some(verdict) = ray.verdict {
                     parts.push(verdict.word().into());
@@ -189,7 +189,12 @@ fn headline(answer: &Answer) -> (String, Role) {
 }
 
 /// The largest slip, else the largest opening, and what it was before if that was something else.
-fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units) -> (String, Option<String>) {
+fn extreme(
+    answer: &Answer,
+    previous: Option<&Answer>,
+    units: &Units,
+    ascii: bool,
+) -> (String, Option<String>) {
     let unit = length_unit(units);
     let previous = previous.filter(|previous| previous.is_answer());
     let slip_before = previous.map(|p| max_slip(&p.pairs).map_or(0.0, |(slip, _)| slip));
@@ -199,13 +204,29 @@ fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units) -> (String
         let before = previous.map(|p| max_opening(&p.pairs).map_or(0.0, |(gap, _)| gap));
         ("max opening", opening, &pair.id, before)
     } else {
-        let before = slip_before.filter(|slip| *slip > 0.0).map(short);
+        let before = slip_before.filter(|slip| *slip > 0.0).map(|slip| {
+            let (numbers, said) = lengths(&[slip], unit.as_deref(), ascii);
+            with_unit(&numbers.concat(), said.as_deref().filter(|_| said != unit))
+        });
         return ("no slip".into(), before);
     };
-    let now = short(value);
-    let before = before.map(short).filter(|before| *before != now);
-    let text = format!("{what} {} at {at}", with_unit(&now, unit.as_deref()));
+    let values: Vec<f64> = [value].into_iter().chain(before).collect();
+    let (numbers, unit) = lengths(&values, unit.as_deref(), ascii);
+    let text = format!("{what} {} at {at}", with_unit(&numbers[0], unit.as_deref()));
+    let before = numbers.get(1).filter(|before| **before != numbers[0]).cloned();
     (text, before)
+}
+
+/// p with its unit.
+pub fn weight(p: f64, answer: &Answer, units: &Units) -> String {
+    with_unit(&short(p), p_unit(answer, units).as_deref())
+}
+
+/// At a ray: that the forces and slips shown are those under p. `None` elsewhere, and for a bare LCP.
+pub fn ray_note(answer: &Answer, units: &Units) -> Option<String> {
+    let ray = answer.ray.as_ref().filter(|_| !answer.pairs.is_empty())?;
+    let p = weight(ray.p, answer, units);
+    Some(format!("no answer: forces and slips are those at the ray, with the tightening weight p = {p} in them"))
 }
 
 /// p is a force in contact problems and has no unit in a bare LCP.
@@ -236,7 +257,7 @@ pub fn write(
         rows.push(("meaning", ray.explanation.clone()));
     }
     if answer.marginal {
-        let p = with_unit(&short(answer.p), p_unit(answer, units).as_deref());
+        let p = weight(answer.p, answer, units);
         rows.push(("marginal", format!("exactly on a limit: p stopped at {p} instead of 0")));
     }
     rows.push(("size", sizes(answer, scenario)));

@@ -12,7 +12,6 @@ use crate::answer::rounding::balance;
 use crate::model::quantity::Quantity;
 use crate::model::units::Units;
 use crate::path::quantity::{NoValue, Resultant, Value};
-use crate::text::number::short;
 
 /// More reactions than this are only summed.
 const REACTIONS: usize = 10;
@@ -51,6 +50,8 @@ pub struct Safety {
     pub limit: Option<f64>,
     /// Limit over present factor.
     pub safety: Option<f64>,
+    /// In a few words why there is none, or what is not sure of it.
+    pub brief: String,
     /// Why there is no limit.
     pub reason: Option<String>,
 }
@@ -96,23 +97,22 @@ pub fn write(out: &mut dyn Write, summary: &Summary, units: &Units, style: &Styl
     part(out, peaks_table(&summary.peaks, units, style.ascii))?;
     part(out, reactions_table(summary, units))?;
     part(out, probes_table(&summary.probes, units, style.ascii))?;
-    let head = |out: &mut dyn Write, text: &str| writeln!(out, "\n{}", style.paint(Role::Header, text));
-    if !summary.safety.is_empty() {
-        head(out, "safety")?;
-        for safety in &summary.safety {
-            let text = match (safety.limit, safety.safety, &safety.reason) {
-                (Some(limit), Some(factor), _) => format!("{} (limit {})", short(factor), short(limit)),
-                (Some(limit), None, _) => format!("limit {}", short(limit)),
-                (None, _, Some(reason)) => reason.clone(),
-                (None, _, None) => "no limit".to_owned(),
-            };
-            let label = format!("  {:<18} ", safety.case);
-            for line in style.hanging(&label, &style.text(&text)) {
-                writeln!(out, "{line}")?;
-            }
-        }
+    part(out, safety_table(&summary.safety))
+}
+
+/// The limits of the load cases.
+pub fn safety_table(safeties: &[Safety]) -> Table {
+    let mut table = Table::new(vec![
+        Column::words("load case"),
+        Column::plain("safety", None),
+        Column::plain("limit", None),
+        Column::words(""),
+    ]);
+    for Safety { case, limit, safety, brief, .. } in safeties {
+        let cells = vec![case.as_str().into(), Cell::maybe(*safety), Cell::maybe(*limit), Cell::new(brief, Role::Muted)];
+        table.rows.push(Row::new(cells));
     }
-    Ok(())
+    table
 }
 
 /// A value and its unit with their power of ten.

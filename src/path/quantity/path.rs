@@ -3,14 +3,19 @@
 use super::facts::Facts;
 use super::value::{NoValue, Value, none};
 use crate::model::quantity::{OfAnswer, OfLoad, Quantity};
-use crate::path::limit;
+use crate::path::limit::{self, Limit};
 use crate::path::stages::History;
+use crate::path::start::PathError;
 
 impl<'a> Facts<'a> {
+    /// The limit of a load case, or of a parameter in which the loads are linear; `None` before anything is prepared.
+    pub fn limit_of(&self, name: &str) -> Option<Result<Limit, PathError>> {
+        let case = self.prepared?.case(self.scenario, self.values).watched(self.watch);
+        Some(limit::limit(case, self.solved, name))
+    }
+
     pub(super) fn of_load(&self, which: OfLoad, name: &str) -> Result<f64, NoValue> {
-        let prepared = self.prepared.ok_or_else(|| self.missing())?;
-        let case = prepared.case(self.scenario, self.values).watched(self.watch);
-        let found = limit::limit(case, self.solved, name).map_err(|error| NoValue(error.to_string()))?;
+        let found = self.limit_of(name).ok_or_else(|| self.missing())?.map_err(|error| NoValue(error.to_string()))?;
         let value = match which {
             OfLoad::Limit => found.factor,
             OfLoad::Safety => found.safety,

@@ -53,7 +53,7 @@ impl Session {
     pub(in crate::session) fn report_check(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_quantities()?;
         io.show(&answer.check, |out, style| {
-            self.write_place(out, style)?;
+            self.write_history_place(out, style)?;
             view::check::write(out, answer, style)
         })?;
         Ok(())

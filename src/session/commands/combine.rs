@@ -143,15 +143,15 @@ impl Session {
                 (Row { name: combined.name.clone(), line, values }, report)
             })
             .collect();
-        let note = match (name, &all[..]) {
-            (Some(name), [_]) => {
-                Some(format!("the answer of combination {name} is shown until the next change or `solve`"))
-            }
-            _ => None,
-        };
+        let shown = name.map(|name| format!("the answer of combination {name} is shown until the next change or `solve`"));
+        let rays = all.iter().filter(|one| one.solved.answer.ray.is_some() && !probes.is_empty());
+        let notes: Vec<String> = rays
+            .filter_map(|one| Some(format!("{}: {}", one.name, view::status::ray_note(&one.solved.answer, &units)?)))
+            .chain(shown)
+            .collect();
         let (rows, combinations): (Vec<Row>, Vec<CombinationReport<'_>>) = rows.into_iter().unzip();
         io.show(&CombinationsReport { combinations }, |out, style| {
-            view::combinations::write(out, &rows, probes, note.as_deref(), &units, style)
+            view::combinations::write(out, &rows, probes, &notes, &units, style)
         })?;
         if let (Some(_), [one]) = (name, &all[..]) {
             let (solved, prepared) = (Arc::clone(&one.solved), Arc::clone(&one.prepared));

@@ -13,6 +13,7 @@ use crate::view::plot::diagram;
 use crate::view::plot::scene::{self, Magnification};
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
+use crate::view::status::weight;
 
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
@@ -284,7 +285,14 @@ impl Session {
 
     /// Where the state shown stands, if it is not the answer itself.
     fn shown_place(&self) -> Option<String> {
-        self.history_place().or_else(|| Some(crate::view::pivots::title(self.position?)))
+        if let Some(place) = self.history_place() {
+            return Some(place);
+        }
+        let answer = self.answer()?;
+        match self.position {
+            Some(step) => Some(crate::view::pivots::title(step)),
+            None => answer.ray.as_ref().map(|ray| format!("no answer, p = {}", weight(ray.p, answer, &self.now.scenario.units))),
+        }
     }
 
     /// The motion along the ray.

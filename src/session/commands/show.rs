@@ -106,7 +106,10 @@ impl Session {
         }
         let units = &self.now.scenario.units;
         let rows: Vec<Row> = values.iter().map(|(quantity, value)| Row::of(quantity, value, units)).collect();
-        io.show(&rows, |out, style| view::quantities::write(out, &values, units, style))?;
+        io.show(&rows, |out, style| {
+            self.write_place_shown(out, style)?;
+            view::quantities::write(out, &values, units, style)
+        })?;
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use crate::answer::record::Reaction;
-use crate::model::quantity::{BarPlace, Internal, Names, OfLoad, OfPair, Over, Quantity};
+use crate::model::quantity::{BarPlace, Internal, Names, OfPair, Over, Quantity};
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
 use crate::view::summary::{self, Peak, Safety};
@@ -35,7 +35,8 @@ impl Session {
         let summary = self.with_facts(io.watch, |facts| summary::Summary {
             resultants: if answer.is_answer() { self.resultants(facts) } else { Vec::new() },
             peaks: if answer.is_answer() { peaks(facts, &self.names()) } else { Vec::new() },
-            reactions: answer.reactions.clone().unwrap_or_default(),
+            // those of the answer, not of a pivot before it
+            reactions: answer.reactions.clone().filter(|_| self.position.is_none()).unwrap_or_default(),
             safety: self.safeties(facts),
             probes: self.probed(facts),
         });
@@ -58,6 +59,7 @@ impl Session {
         };
         io.show(&report, |out, style| {
             writeln!(out, "{}", view::status::line(&answer, None, &units, style))?;
+            self.write_place_shown(out, style)?;
             view::summary::write(out, &summary, &units, style)
         })?;
         Ok(())
@@ -69,18 +71,20 @@ impl Session {
         probes.map(|(name, quantity)| (name.clone(), quantity.clone(), facts.value(quantity))).collect()
     }
 
-    fn safeties(&self, facts: &Facts<'_>) -> Vec<Safety> {
-        let cases = self.now.prepared.as_ref().map(|prepared| prepared.cases.iter().map(|(case, _)| case.clone()));
-        let value = |which, case: &str| facts.value(&Quantity::Load(which, case.to_owned()));
+    /// How far each load case may grow; nothing where there are no pairs.
+    pub(super) fn safeties(&self, facts: &Facts<'_>) -> Vec<Safety> {
+        let cases = self.now.prepared.iter().flat_map(|prepared| &prepared.cases);
         cases
-            .into_iter()
-            .flatten()
             .filter(|_| !self.names().pairs.is_empty())
-            .map(|case| {
-                let limit = value(OfLoad::Limit, &case);
-                let safety = value(OfLoad::Safety, &case).ok().and_then(|value| value.number());
-                let reason = limit.as_ref().err().map(|reason| reason.0.clone());
-                Safety { limit: limit.ok().and_then(|value| value.number()), safety, reason, case }
+            .filter_map(|(case, _)| {
+                let found = facts.limit_of(case)?;
+                let (limit, safety) = found.as_ref().map_or((None, None), |found| (found.factor, found.safety));
+                let (brief, reason) = match &found {
+                    Ok(found) if limit.is_some() => (found.brief(), None),
+                    Ok(found) => (found.brief(), Some(format!("no limit: {}", found.end_sentence()))),
+                    Err(error) => (error.brief(), Some(error.to_string())),
+                };
+                Some(Safety { case: case.clone(), limit, safety, brief, reason })
             })
             .collect()
     }
@@ -120,7 +124,7 @@ struct SafetyReport<'a> {
 
 impl<'a> SafetyReport<'a> {
     fn of(safety: &'a Safety) -> Self {
-        let Safety { case, limit, safety, reason } = safety;
+        let Safety { case, limit, safety, reason, .. } = safety;
         SafetyReport { case, limit: *limit, safety: *safety, reason: reason.as_deref() }
     }
 }

@@ -106,7 +106,6 @@ impl Session {
             return self.report_solution(&solution, io);
         }
         let rows = Rows::read(words, "pairs", &pair_keys())?;
-        let place = self.history_place();
         let all = self.quantity_pairs();
         let ids: Vec<&str> = all.iter().map(|pair| pair.id.as_str()).collect();
         if let ([], Some(name)) = (&ids[..], rows.names.first()) {
@@ -122,12 +121,7 @@ impl Session {
             None => rows.order(&mut chosen, "z_t", |pair, _| pair.z_t.abs()),
         }
         io.show(&chosen, |out, style| {
-            if let Some(place) = &place {
-                writeln!(out, "{}", style.paint(Role::Muted, place))?;
-            } else if let Some(step) = self.position {
-                let p = self.p().map_or(String::new(), |p| format!(", p = {}", short(p)));
-                writeln!(out, "{}", style.paint(Role::Muted, &format!("at {}{p}", view::pivots::title(step))))?;
-            }
+            self.write_place_shown(out, style)?;
             view::pairs::write(out, &chosen, &self.now.scenario.units, style)
         })?;
         Ok(())
@@ -186,7 +180,7 @@ impl Session {
             component.map_or(node.ux.hypot(node.uy), f64::abs)
         });
         io.show(&chosen, |out, style| {
-            self.write_place(out, style)?;
+            self.write_place_shown(out, style)?;
             view::displacements::write(out, &chosen, &self.now.scenario.units, style)
         })?;
         Ok(())
@@ -206,7 +200,7 @@ impl Session {
             extremes.map_or(0.0, |ends| ends.iter().fold(0.0, |size, place| size.max(place.value.abs())))
         });
         io.show(&chosen.iter().map(json_export::member).collect::<Vec<_>>(), |out, style| {
-            self.write_place(out, style)?;
+            self.write_history_place(out, style)?;
             // The extremes of a whole bar are told where only that is shown.
             let bar = match rows {
                 Rows { names: [bar], top: None, .. } => bars.iter().find(|known| *known == bar).copied(),
@@ -233,7 +227,7 @@ impl Session {
         let answer = self.need_quantities()?;
         let reactions = answer.reactions.as_ref().ok_or_else(|| self.none("reactions", answer))?;
         io.show(reactions, |out, style| {
-            self.write_place(out, style)?;
+            self.write_history_place(out, style)?;
             let moment = self.moment_about_origin(reactions);
             view::reactions::write(out, reactions, moment, &self.now.scenario.units, style)
         })?;

@@ -10,6 +10,7 @@ use super::exported::Exported;
 use crate::answer::record::{Answer, MemberForces};
 use crate::export::atomic;
 use crate::model::scenario::Source;
+use crate::model::units::Units;
 use crate::path::stages::{self, History};
 use crate::session::{CommandError, Output, Session, worker};
 use crate::solve::problem::factors;
@@ -71,15 +72,14 @@ impl Session {
         let mut report = Report { title: scenario.title.clone(), blocks: Vec::new() };
         let blocks = &mut report.blocks;
         blocks.extend(scenario.description.clone().map(Block::Text));
-        let place = self.history_place().map(|place| format!("Forces and slips are those {place}."));
-        blocks.push(Block::Text(format!("Scenario: {}", self.short_name())));
-        blocks.extend(place.map(Block::Text));
+        blocks.push(Block::Text(format!("Scenario: {}.{}", self.short_name(), in_units(&scenario.units))));
         if !scenario.parameters.is_empty() {
             blocks.push(Block::Heading("Parameters".into()));
             blocks.push(Block::Table(view::parameters::table(&scenario, &self.now.values), ""));
         }
-        self.add_loads(blocks);
+        self.add_data(blocks);
         self.add_outcome(&answer, blocks);
+        self.add_safety(io, blocks)?;
         self.add_figures(&answer, io.watch, blocks)?;
         self.add_tables(&answer, io, blocks)?;
         self.add_history(io.watch, blocks)?;
@@ -87,18 +87,49 @@ impl Session {
         Ok(report)
     }
 
-    /// The load cases with their factors.
-    fn add_loads(&self, blocks: &mut Vec<Block>) {
-        let Some(prepared) = &self.now.prepared else { return };
-        if prepared.cases.is_empty() || matches!(self.now.scenario.source, Source::Lcp(_)) {
+    /// What the answer depends on beside the parameters.
+    fn add_data(&self, blocks: &mut Vec<Block>) {
+        for (heading, table) in view::data::tables(&self.now.scenario, &self.now.values) {
+            blocks.push(Block::Heading(heading.into()));
+            blocks.push(Block::Table(table, "see the scenario"));
+        }
+        self.add_factors(blocks);
+    }
+
+    /// The load cases with their factors under the combination that is shown, or where the file does not list them.
+    fn add_factors(&self, blocks: &mut Vec<Block>) {
+        let Some(prepared) = self.combination.as_ref().map(|(_, combined)| combined).or(self.now.prepared.as_ref()) else {
+            return;
+        };
+        let is_superelement = self.structure().is_some_and(|structure| structure.superelement.is_some());
+        if prepared.cases.is_empty() || !(self.combination.is_some() || is_superelement) {
             return;
         }
         let mut table = Table::new(vec![Column::words("load case"), Column::given("factor", None)]);
         for ((name, _), factor) in prepared.cases.iter().zip(factors(prepared, &self.now.values)) {
             table.rows.push(Row::new(vec![Cell::from(name.as_str()), Cell::number(factor)]));
         }
-        blocks.push(Block::Heading("Loads".into()));
+        let heading = match &self.combination {
+            Some((name, _)) => format!("Factors of combination {name}, whose answer follows"),
+            None => "Load factors".to_owned(),
+        };
+        blocks.push(Block::Heading(heading));
         blocks.push(Block::Table(table, ""));
+    }
+
+    /// The limit of each load case.
+    fn add_safety(&self, io: &Output<'_>, blocks: &mut Vec<Block>) -> Result<(), CommandError> {
+        let safeties = self.with_facts(io.watch, |facts| self.safeties(facts));
+        if io.watch.stop() {
+            return Err(CommandError::Interrupted);
+        }
+        if !safeties.is_empty() && self.followed.is_none() && self.combination.is_none() {
+            blocks.push(Block::Heading("Safety".into()));
+            let about = "Each load case grows alone from its factor, the others stay; safety is its limit over its factor.";
+            blocks.push(Block::Text(about.into()));
+            blocks.push(Block::Table(view::summary::safety_table(&safeties), ""));
+        }
+        Ok(())
     }
 
     fn add_outcome(&self, answer: &Answer, blocks: &mut Vec<Block>) {
@@ -166,6 +197,7 @@ impl Session {
         let pairs = self.quantity_pairs();
         if !pairs.is_empty() {
             blocks.push(Block::Heading("Contact pairs".into()));
+            blocks.extend(self.place_shown().map(Block::Text));
             blocks.push(Block::Text(status::state_counts(&pairs)));
             blocks.push(Block::Table(view::pairs::table(&pairs, units), "`export pairs FILE.csv` writes all"));
         }
@@ -249,8 +281,8 @@ impl Session {
         }
         blocks.push(Block::Heading("Load combinations".into()));
         blocks.push(Block::Table(table, "`export combinations FILE.csv` writes all"));
-        let numbers = self.now.scenario.probes.iter().map(|(_, quantity)| quantity).filter(|q| !q.is_word());
-        let numbers: Vec<_> = numbers.cloned().collect();
+        let probes = self.all_probes().unwrap_or_default();
+        let numbers: Vec<_> = probes.into_iter().filter(|quantity| !quantity.is_word()).collect();
         if !numbers.is_empty() {
             match self.extremes(numbers, io) {
                 Ok((extremes, _)) => {
@@ -263,6 +295,12 @@ impl Session {
         }
         Ok(())
     }
+}
+
+/// The units of all numbers, as a sentence.
+fn in_units(units: &Units) -> String {
+    let named: Vec<&str> = [&units.force, &units.length].into_iter().flatten().map(String::as_str).collect();
+    if named.is_empty() { String::new() } else { format!(" Units: {}.", named.join(", ")) }
 }
 
 /// `2026-11-26`, in UTC (civil from days, after Howard Hinnant).
