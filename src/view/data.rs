@@ -34,8 +34,9 @@ const LISTS: &[(&str, &str)] = &[
 
 /// Keys whose strings are names and words, never numbers.
 const WORDS: &[&str] = &[
-    "id", "name", "node", "nodes", "polyline", "material", "section", "kind", "plane", "element", "hinges", "at", "fixed",
-    "on", "edge", "bar", "against", "law", "method", "axes", "about", "between", "case", "file", "pairs", "dofs", "names",
+    "id", "name", "node", "nodes", "polyline", "material", "section", "kind", "plane", "element", "hinges", "at",
+    "fixed", "on", "edge", "bar", "against", "law", "method", "axes", "about", "between", "case", "file", "pairs",
+    "dofs", "names",
 ];
 
 /// Numbers of rows a matrix may have to be shown.

@@ -189,12 +189,7 @@ fn headline(answer: &Answer) -> (String, Role) {
 }
 
 /// The largest slip, else the largest opening, and what it was before if that was something else.
-fn extreme(
-    answer: &Answer,
-    previous: Option<&Answer>,
-    units: &Units,
-    ascii: bool,
-) -> (String, Option<String>) {
+fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units, ascii: bool) -> (String, Option<String>) {
     let unit = length_unit(units);
     let previous = previous.filter(|previous| previous.is_answer());
     let slip_before = previous.map(|p| max_slip(&p.pairs).map_or(0.0, |(slip, _)| slip));

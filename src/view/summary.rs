@@ -109,7 +109,8 @@ pub fn safety_table(safeties: &[Safety]) -> Table {
         Column::words(""),
     ]);
     for Safety { case, limit, safety, brief, .. } in safeties {
-        let cells = vec![case.as_str().into(), Cell::maybe(*safety), Cell::maybe(*limit), Cell::new(brief, Role::Muted)];
+        let cells =
+            vec![case.as_str().into(), Cell::maybe(*safety), Cell::maybe(*limit), Cell::new(brief, Role::Muted)];
         table.rows.push(Row::new(cells));
     }
     table

@@ -291,7 +291,10 @@ impl Session {
         let answer = self.answer()?;
         match self.position {
             Some(step) => Some(crate::view::pivots::title(step)),
-            None => answer.ray.as_ref().map(|ray| format!("no answer, p = {}", weight(ray.p, answer, &self.now.scenario.units))),
+            None => answer
+                .ray
+                .as_ref()
+                .map(|ray| format!("no answer, p = {}", weight(ray.p, answer, &self.now.scenario.units))),
         }
     }
 

@@ -98,7 +98,8 @@ impl Session {
 
     /// The load cases with their factors under the combination that is shown, or where the file does not list them.
     fn add_factors(&self, blocks: &mut Vec<Block>) {
-        let Some(prepared) = self.combination.as_ref().map(|(_, combined)| combined).or(self.now.prepared.as_ref()) else {
+        let Some(prepared) = self.combination.as_ref().map(|(_, combined)| combined).or(self.now.prepared.as_ref())
+        else {
             return;
         };
         let is_superelement = self.structure().is_some_and(|structure| structure.superelement.is_some());
@@ -125,7 +126,8 @@ impl Session {
         }
         if !safeties.is_empty() && self.followed.is_none() && self.combination.is_none() {
             blocks.push(Block::Heading("Safety".into()));
-            let about = "Each load case grows alone from its factor, the others stay; safety is its limit over its factor.";
+            let about =
+                "Each load case grows alone from its factor, the others stay; safety is its limit over its factor.";
             blocks.push(Block::Text(about.into()));
             blocks.push(Block::Table(view::summary::safety_table(&safeties), ""));
         }
