@@ -1,4 +1,4 @@
-//! What every target does with its bytes; `tests/fuzz_seeds.rs` does the same with changed seeds.
+//! What every target does with its bytes; `tests/bad_input/fuzz_seeds.rs` does the same with changed seeds.
 
 use std::fs;
 use std::io;

@@ -3,18 +3,23 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod arches;
 mod balance;
 mod beam;
 mod block;
 mod cantilever_gap;
+mod contact_system;
 mod edge_cases;
+mod elements;
 mod foundation;
 mod foundations;
 mod frame;
 mod greco;
 mod klarbring;
 mod loads;
+mod meshes;
 mod method;
+mod mortar;
 mod plates;
 mod press_fit;
 mod random_structures;
@@ -25,4 +30,7 @@ mod settlements;
 mod slope;
 mod springs;
 mod structures;
+mod superelement;
+mod templates;
 mod unit_square;
+mod units;

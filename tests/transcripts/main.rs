@@ -1,8 +1,21 @@
 //! The language of commands, driven without a terminal: every command and its help, scripts, recordings, journals,
 //! and ten thousand lines of noise.
 
+mod explain_rays;
+mod export;
+mod export_tables;
+mod help;
+mod numbers;
+mod plausibility;
 mod program;
+mod quantities;
 mod references;
+mod reload;
+mod repl_pty;
+mod result_keys;
+mod serve;
+mod tables;
+mod tui_pty;
 mod work;
 
 use std::fs;

@@ -3,7 +3,14 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+
+mod certificates;
+mod enumerate;
+mod explain_engines;
 mod judge;
+mod large;
+mod random_contact;
+mod zoo;
 
 use judge::Problem;
 use rand::{Rng, SeedableRng};

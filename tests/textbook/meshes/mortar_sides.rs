@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use stickslip::answer::record::Answer;
 use stickslip::model::scenario::Source;
 
-use super::common::{Case, balance, close, displacement, is_answer, mechanism, near, of_pairs};
 use super::write::Drawn;
+use crate::common::{Case, balance, close, displacement, is_answer, mechanism, near, of_pairs};
 
 const E: f64 = 1000.0;
 const NU: f64 = 0.3;

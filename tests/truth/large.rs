@@ -22,12 +22,11 @@ use stickslip::lcp::problem::{Lcp, Scale};
 use stickslip::lcp::ratio_test::TieRule;
 use stickslip::model::rules::{Covering, TieBreak};
 
-mod common;
-#[path = "../benches/common/mod.rs"]
+#[path = "../../benches/common/mod.rs"]
 #[allow(dead_code, reason = "the measurements use the rest")]
 mod plates;
 
-use common::systems;
+use crate::common::systems;
 use plates::{Plates, Pull, Ready};
 
 /// Coulomb pairs with a random positive definite R; `whole`: small integers, so that ties are everywhere.

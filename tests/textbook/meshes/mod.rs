@@ -7,9 +7,6 @@ mod mortar_sides;
 mod program;
 mod write;
 
-#[path = "../common/mod.rs"]
-mod common;
-
 use std::fs;
 use std::path::Path;
 
@@ -18,7 +15,7 @@ use stickslip::model::load::load_file;
 use stickslip::solve::prepare;
 use stickslip::watch::Quiet;
 
-use common::{Case, scenario_text};
+use crate::common::{Case, scenario_text};
 use write::Drawn;
 
 /// A scenario beside its meshes.

@@ -1,7 +1,7 @@
 //! The fuzz targets with changed seeds: a bounded run in seconds, the same each time. What does not panic, hang or leave
 //! a failed command's traces is well; `cargo fuzz` looks further.
 
-#[path = "../fuzz/targets/entry.rs"]
+#[path = "../../fuzz/targets/entry.rs"]
 mod entry;
 
 use std::fs;

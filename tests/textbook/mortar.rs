@@ -1,9 +1,7 @@
 //! Contact of edges whose nodes do not match, against closed forms.
 
 #[allow(clippy::duplicate_mod)]
-mod common;
-
-use common::{Case, balance, close, displacement, is_answer, mechanism, near, of_pairs};
+use crate::common::{Case, balance, close, displacement, is_answer, mechanism, near, of_pairs};
 use serde_json::{Value, json};
 use stickslip::answer::record::State;
 use stickslip::model::scenario::Source;

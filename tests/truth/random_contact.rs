@@ -15,6 +15,8 @@ use stickslip::lcp::outcome::Outcome;
 use stickslip::model::pair::Law;
 use stickslip::model::rules::{Covering, TieBreak};
 
+use crate::common;
+
 /// R = A Aᵀ / n + shift·I; with `ties` the entries of A and the loads are small integers.
 pub fn random_system(rng: &mut ChaCha8Rng, m: usize, ties: bool) -> ContactProblem {
     let n = 2 * m;
@@ -84,8 +86,6 @@ fn default_rules_always_answer_where_r_is_positive_definite() {
     }
     println!("worst violation {worst:e}, {pivots} pivots");
 }
-
-mod common;
 
 /// A contact system as a scenario: everything mixed. `loose` motions have no stiffness.
 fn random_scenario(rng: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> String {

@@ -3,6 +3,8 @@
 //! `STICKSLIP_BLESS=1 cargo test --test bad_input` rewrites the `.expected` files from what the program says now:
 //! read the difference before committing it.
 
+mod fuzz_seeds;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

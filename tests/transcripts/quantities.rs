@@ -61,7 +61,7 @@ fn expect(session: &mut Session, text: &str) {
 /// force: exactly 0 in quantities, as in the tables.
 #[test]
 fn what_is_rounding_reads_zero_everywhere() {
-    let mut session = session(include_str!("../scenarios/pipeline.json"));
+    let mut session = session(include_str!("../../scenarios/pipeline.json"));
     run(&mut session, "set f 0").expect("an answer");
     for quantity in ["fx noz", "Q riser start", "max Q riser", "N run end", "M run end", "sum x_t c*", "nozzle_force"] {
         let shown = report(&mut session, &format!("show {quantity}"));

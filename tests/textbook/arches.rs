@@ -8,9 +8,7 @@ use stickslip::answer::record::{OutcomeKind, Verdict};
 use stickslip::model::rules::Rules;
 use stickslip::path::limit::limit;
 
-mod common;
-
-use common::Case;
+use crate::common::Case;
 
 /// A semicircular arch of mean radius 1, cut by radial joints into equal blocks, each joint with two pairs at its ends;
 /// the weight of a block, π / blocks, acts in the centroid of its centreline arc, and as much times H sideways.

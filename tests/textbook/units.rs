@@ -1,9 +1,7 @@
 //! The same structure in N and mm and in MN and km: the same pivots (variables, order, ties) and states, all values
 //! scaled. Nothing in the program may compare a number with a unit to a fixed threshold.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use serde_json::Value;
 use stickslip::model::embedded;
 use stickslip::model::rules::Covering;

@@ -1,11 +1,9 @@
 //! Contact of a body of which only K and F are given, against the same body by elements and against closed forms.
 
 #[allow(clippy::duplicate_mod)]
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{close, displacement, is_answer, mechanism, near, of_pairs};
+use crate::common::{close, displacement, is_answer, mechanism, near, of_pairs};
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, State};
 use stickslip::model::load::load_text;

@@ -1,9 +1,6 @@
 //! What the elements can do in assembled structures: patch tests of every kind of element and bending against the closed
 //! form, the figures of docs/elements.md.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod bars;
 mod bending;
 mod membranes;

@@ -1,9 +1,7 @@
 //! Contact systems from files: what counts as a kernel, what is refused, frictionless pairs, compliances.
 
-mod common;
-
-use common::laws::violation;
-use common::{Case, close, is_answer, near, scenario_text};
+use crate::common::laws::violation;
+use crate::common::{Case, close, is_answer, near, scenario_text};
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
