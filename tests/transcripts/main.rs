@@ -1,6 +1,7 @@
 //! The language of commands, driven without a terminal: every command and its help, scripts, recordings, journals,
 //! and ten thousand lines of noise.
 
+mod book;
 mod explain_rays;
 mod export;
 mod export_tables;

@@ -1,0 +1,147 @@
+//! The README and the pages of `docs/`: what they show to type is typed. Of each page, in a folder of its own beside the
+//! scenarios,
+//!
+//! * blocks ```` ```LANGUAGE file=NAME ```` are written to files,
+//! * the lines of blocks ```` ```sh ```` are run by a shell, `stickslip` being the program under test,
+//! * blocks ```` ```bash ````, which need programs of others, must be understood by a shell,
+//! * blocks ```` ```stickslip ```` are one session, beginning on the beam, that must not fail,
+//! * the lines of blocks ```` ```text output ```` must stand in what all that shows, one after another (a line may be
+//!   the beginning of one that is shown; blanks count as one).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A fenced block of a page: the words behind the fence, and its lines.
+struct Block {
+    words: Vec<String>,
+    text: String,
+}
+
+impl Block {
+    fn language(&self) -> &str {
+        self.words.first().map_or("", String::as_str)
+    }
+
+    fn file(&self) -> Option<&str> {
+        self.words.iter().find_map(|word| word.strip_prefix("file="))
+    }
+}
+
+fn blocks(page: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut open: Option<Block> = None;
+    for line in page.lines() {
+        match (&mut open, line.strip_prefix("```")) {
+            (None, Some(words)) => {
+                open =
+                    Some(Block { words: words.split_whitespace().map(str::to_owned).collect(), text: String::new() });
+            }
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (Some(block), None) => {
+                block.text.push_str(line);
+                block.text.push('\n');
+            }
+            (None, None) => {}
+        }
+    }
+    assert!(open.is_none(), "a block is not closed");
+    blocks
+}
+
+/// Runs a shell in a folder, with the program under test on its path.
+fn shell(folder: &Path, arguments: &[&str], script: &str) -> Output {
+    let program = PathBuf::from(env!("CARGO_BIN_EXE_stickslip"));
+    let mut path = program.parent().unwrap().as_os_str().to_owned();
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let mut command = Command::new("bash");
+    command.args(arguments).args(["-c", script]).current_dir(folder).env("PATH", path).env("HOME", folder);
+    command.env_remove("NO_COLOR").env_remove("COLUMNS").env("TERM", "xterm").output().unwrap()
+}
+
+/// A line with every run of blanks as one.
+fn words(line: &str) -> String {
+    line.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn try_page(page: &Path) {
+    let name = page.file_name().unwrap().to_string_lossy();
+    let blocks = blocks(&fs::read_to_string(page).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    std::os::unix::fs::symlink(scenarios, folder.path().join("scenarios")).unwrap();
+    let mut shown = String::new();
+    for block in &blocks {
+        if let Some(file) = block.file() {
+            fs::write(folder.path().join(file), &block.text).unwrap();
+        }
+    }
+    for block in blocks.iter().filter(|block| block.language() == "bash") {
+        let checked = shell(folder.path(), &["-n"], &block.text);
+        assert!(checked.status.success(), "{name}: {}", String::from_utf8_lossy(&checked.stderr));
+    }
+    for block in blocks.iter().filter(|block| block.language() == "sh") {
+        let run = shell(folder.path(), &["-e"], &block.text);
+        shown.push_str(&String::from_utf8_lossy(&run.stdout));
+        assert!(run.status.success(), "{name}: {}\n{}", block.text, String::from_utf8_lossy(&run.stderr));
+    }
+    let session: String =
+        blocks.iter().filter(|block| block.language() == "stickslip").map(|block| block.text.as_str()).collect();
+    fs::write(folder.path().join("page.stick"), session).unwrap();
+    let run = shell(folder.path(), &[], "stickslip replay page.stick");
+    shown.push_str(&String::from_utf8_lossy(&run.stdout));
+    let last = shown.lines().rev().take(3).collect::<Vec<_>>().join(" < ");
+    assert!(run.status.success(), "{name}: {}after: {last}", String::from_utf8_lossy(&run.stderr));
+
+    let shown: Vec<String> = shown.lines().map(words).collect();
+    let mut from = 0;
+    for block in blocks.iter().filter(|block| block.words == ["text", "output"]) {
+        for line in block.text.lines().map(words) {
+            let found = shown[from..].iter().position(|shown| shown.starts_with(&line));
+            let found = found.unwrap_or_else(|| panic!("{name}: `{line}` is not shown:\n{}", shown.join("\n")));
+            from += found + 1;
+        }
+    }
+}
+
+fn pages() -> Vec<PathBuf> {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let mut pages: Vec<PathBuf> = fs::read_dir(docs).unwrap().map(|entry| entry.unwrap().path()).collect();
+    pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
+    pages.sort();
+    pages.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md"));
+    pages
+}
+
+/// The targets of links `](TARGET)` of a page that lead to files.
+fn links(page: &str) -> Vec<String> {
+    let targets = page.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    let files = targets.map(|(target, _)| target.split('#').next().unwrap_or("").to_owned());
+    files.filter(|target| !target.is_empty() && !target.contains("://")).collect()
+}
+
+#[test]
+fn every_page_is_in_the_contents_and_every_link_leads_somewhere() {
+    let pages = pages();
+    let contents = links(&fs::read_to_string(pages[0].parent().unwrap().join("SUMMARY.md")).unwrap());
+    for page in pages {
+        let name = page.file_name().unwrap().to_string_lossy();
+        assert!(
+            ["SUMMARY.md", "README.md"].contains(&&*name) || contents.contains(&name.to_string()),
+            "{name} is not in SUMMARY.md"
+        );
+        for link in links(&fs::read_to_string(&page).unwrap()) {
+            assert!(page.parent().unwrap().join(&link).exists(), "{name}: {link} is not there");
+        }
+    }
+}
+
+#[test]
+fn what_the_pages_show_is_what_happens() {
+    let pages = pages();
+    assert!(pages.len() >= 15, "{}", pages.len());
+    for page in pages {
+        try_page(&page);
+    }
+}
