@@ -309,6 +309,7 @@ impl MotionProgram<'_> {
             power: power.value / largest,
             dissipation: taken.value / largest,
             exact: needed_exact || exactly.is_some(),
+            amounts: (0..amounts.len()).map(amount).collect(),
         })
     }
 }

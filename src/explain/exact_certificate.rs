@@ -60,6 +60,7 @@ pub(super) fn certify_exactly(problem: &ContactProblem, end: Instant) -> Certifi
         power: nearest(&power) / largest,
         dissipation: dissipation / largest,
         exact: true,
+        amounts: Vec::new(),
     };
     CertificateSearch { certificate: Some(certificate), out_of_time: false }
 }

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use nalgebra::DVector;
+use num_rational::BigRational;
 
 /// Time for all that is tried.
 pub const BUDGET: Duration = Duration::from_secs(5);
@@ -18,6 +19,8 @@ pub struct Certificate {
     pub dissipation: f64,
     /// Whether some sign had no room and was proved in exact arithmetic.
     pub exact: bool,
+    /// How much of each motion ζ is made of, before it was scaled; empty where it was not made of the motions given.
+    pub amounts: Vec<BigRational>,
 }
 
 /// What a search for a certificate found.

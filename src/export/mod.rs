@@ -7,6 +7,7 @@ pub mod json;
 pub mod lcp;
 pub mod mesh;
 pub mod path;
+pub mod proof;
 pub mod stiffness;
 pub mod table;
 pub mod vtu;

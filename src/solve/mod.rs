@@ -33,6 +33,7 @@ mod plain;
 pub mod plain_answers;
 pub mod prepared;
 pub mod problem;
+pub mod prove;
 pub mod retry;
 mod settle;
 pub mod state;

@@ -11,6 +11,7 @@ mod limit;
 mod load;
 mod load_amounts;
 mod map;
+mod prove;
 mod random;
 mod session;
 mod stages;

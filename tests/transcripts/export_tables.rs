@@ -40,6 +40,7 @@ const COMMANDS: &[(&str, Exported)] = &[
     ("summary", Err("several tables: `export summary FILE.json`")),
     ("combine", Ok(("load dam", "combine", "outcome"))),
     ("envelope", Ok(("load beam", "envelope x_t c1 over f 0..1", "least_value"))),
+    ("prove", Err("a file of its own")),
     ("check", Ok(("load beam", "check", "min_w"))),
     ("pivots", Ok(("load beam", "pivots", "entering"))),
     ("ties", Ok(("load cycling", "ties", "tied"))),

@@ -249,7 +249,7 @@ fn with_exact_kernel(system: &ContactSystem, stored: Vec<Vec<BigRational>>) -> V
 }
 
 /// Rows P of Z with a safe inverse, and Z Z_P⁻¹; `None` without a kernel.
-fn telling_joints(kernel: &DMatrix<f64>) -> Option<(Vec<usize>, DMatrix<f64>)> {
+pub(crate) fn telling_joints(kernel: &DMatrix<f64>) -> Option<(Vec<usize>, DMatrix<f64>)> {
     let (k, r) = kernel.shape();
     if r == 0 {
         return None;

@@ -37,6 +37,8 @@ pub struct Farkas {
     pub multipliers: Vec<f64>,
     /// −qᵀy > 0 of it.
     pub gap: f64,
+    /// y as integers, any positive multiple.
+    pub weights: Vec<BigInt>,
 }
 
 /// Looks for the proof; `None`: nothing is proved, there may be a feasible z or not. `go_on` is asked now and then.
@@ -182,7 +184,8 @@ fn verified(whole: &WholeRows, y: &[BigInt]) -> Option<Farkas> {
     let own: Vec<BigInt> = y.iter().zip(&whole.scale).map(|(y, scale)| y * scale).collect();
     let largest = own.iter().max()?;
     let multipliers = own.iter().map(|y| ratio_to_f64(y, largest)).collect();
-    Some(Farkas { multipliers, gap: ratio_to_f64(&gap, largest) })
+    let gap = ratio_to_f64(&gap, largest);
+    Some(Farkas { multipliers, gap, weights: own })
 }
 
 #[cfg(test)]

@@ -8,11 +8,14 @@
 //! [fixed](Polyhedron::fix) at zero: it leaves the dictionary for good. After every change the dictionary is made
 //! feasible again by the least-index rule, which cannot cycle; a row with a negative constant and no positive entry is
 //! the proof that nothing is left. No number is ever rounded, so every such statement is a proof about the data.
+//! To write the proof down its share of the fixed variables is needed too: a dictionary that
+//! [keeps](Polyhedron::keep_fixed) them has it.
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
 use crate::lcp::exact::dyadic::WholeRows;
+use crate::lcp::exact::rational_solve::clear_denominators;
 use crate::lcp::exact::scalar::BigInt;
 
 /// Whether anything is left of the polyhedron.
@@ -44,6 +47,10 @@ pub struct Polyhedron {
     free: Vec<bool>,
     /// Of each variable: what stands in the dictionary is this times the variable (≠ 0).
     scale: Vec<BigInt>,
+    /// Whether fixed variables keep their columns.
+    keeps: bool,
+    /// Of each variable: whether it is fixed and still has a column.
+    fixed: Vec<bool>,
 }
 
 impl Polyhedron {
@@ -62,9 +69,83 @@ impl Polyhedron {
             denominator: BigInt::one(),
             free: is_free,
             scale: std::iter::repeat_n(BigInt::one(), columns).chain(given.scale).collect(),
+            keeps: false,
+            fixed: vec![false; count],
         };
         made.free_to_rows();
         made
+    }
+
+    /// From now on variables that are fixed keep their columns, for [`Polyhedron::contradiction`].
+    #[must_use]
+    pub fn keep_fixed(mut self) -> Self {
+        self.keeps = true;
+        self
+    }
+
+    /// Without the columns of fixed variables, as the search for corners needs it.
+    #[must_use]
+    pub fn without_fixed(mut self) -> Self {
+        while let Some(column) = self.nonbasic.iter().position(|&variable| self.fixed[variable]) {
+            self.drop_column(column);
+        }
+        self
+    }
+
+    /// Of an empty polyhedron: factors of variables (in the user's units) whose sum is a negative number, whatever
+    /// the values. Those of variables ≥ 0 are ≥ 0; fixed variables, where they are kept, may have any. `pinned` is
+    /// the variable whose fixing at zero was refused, if that emptied it.
+    pub fn contradiction(&self, pinned: Option<usize>) -> Option<Vec<(usize, BigInt)>> {
+        let hopeless = self.hopeless_row().map(|row| (row, false));
+        let refused = || {
+            let row = self.row_of(pinned?)?;
+            let sign = self.constant(row).signum();
+            let stuck = !sign.is_zero() && self.towards(row, &sign).is_none();
+            stuck.then_some((row, sign.is_positive()))
+        };
+        let (row, turned) = hopeless.or_else(refused)?;
+        // D · x_row − Σ a x_column = constant, or the same with the other sign.
+        let signed = |value: BigInt| if turned { -value } else { value };
+        let own = (self.basic[row], signed(&self.denominator * &self.scale[self.basic[row]]));
+        let others = self
+            .nonbasic
+            .iter()
+            .enumerate()
+            .map(|(column, &variable)| (variable, signed(-(&self.rows[row][column] * &self.scale[variable]))));
+        Some(std::iter::once(own).chain(others).filter(|(_, factor)| !factor.is_zero()).collect())
+    }
+
+    /// Of a feasible polyhedron: factors ≥ 0 of variables whose sum is 0 whatever the values, > 0 for every column, so
+    /// that all these variables are 0; `None` where it is more than the present point. Columns of fixed variables must be kept.
+    pub fn only_point(&self, go_on: &mut GoOn) -> Option<Vec<(usize, BigInt)>> {
+        let live: Vec<usize> = (0..self.nonbasic.len()).filter(|&c| !self.fixed[self.nonbasic[c]]).collect();
+        if live.iter().any(|&c| self.free[self.nonbasic[c]]) {
+            return None;
+        }
+        let tight: Vec<usize> =
+            (0..self.rows.len()).filter(|&r| !self.free[self.basic[r]] && self.constant(r).is_zero()).collect();
+        // Factors y of these rows with −Σ y a ≥ 1 in every column.
+        let mut rows = WholeRows::default();
+        for &column in &live {
+            rows.rows.push(tight.iter().map(|&r| -&self.rows[r][column]).chain([-BigInt::one()]).collect());
+            rows.scale.push(BigInt::one());
+        }
+        let mut dual = Polyhedron::new(tight.len(), rows, &[]);
+        if dual.restore(go_on) != State::Feasible {
+            return None;
+        }
+        let (factors, common) = clear_denominators(&(0..tight.len()).map(|k| dual.value(k)).collect::<Vec<_>>());
+        debug_assert!(common.is_positive());
+        let mut sum: Vec<(usize, BigInt)> = Vec::new();
+        for (&row, factor) in tight.iter().zip(&factors) {
+            sum.push((self.basic[row], factor * &self.denominator * &self.scale[self.basic[row]]));
+        }
+        for (column, &variable) in self.nonbasic.iter().enumerate() {
+            let entry: BigInt = tight.iter().zip(&factors).map(|(&r, y)| y * &self.rows[r][column]).sum();
+            sum.push((variable, -(entry * &self.scale[variable])));
+        }
+        sum.retain(|(_, factor)| !factor.is_zero());
+        Some(sum)
     }
 
     /// Free variables become basic wherever they can: there they never block and never leave.
@@ -130,11 +211,14 @@ impl Polyhedron {
         self.row_of(variable).is_none_or(|row| self.constant(row).is_zero())
     }
 
-    /// Whether a variable is zero on the whole polyhedron because it left the dictionary or its row is zero.
+    /// Whether a variable is zero on the whole polyhedron because it is fixed or its row is zero.
     pub fn vanishes(&self, variable: usize) -> bool {
         match self.row_of(variable) {
-            Some(row) => self.rows[row].iter().all(Zero::is_zero),
-            None => !self.nonbasic.contains(&variable),
+            Some(row) => {
+                let live = |column: usize| self.nonbasic.get(column).is_none_or(|&variable| !self.fixed[variable]);
+                self.rows[row].iter().enumerate().all(|(column, entry)| entry.is_zero() || !live(column))
+            }
+            None => self.fixed[variable] || !self.nonbasic.contains(&variable),
         }
     }
 
@@ -227,10 +311,16 @@ impl Polyhedron {
 
     /// The column of least index along which the variable of `row` can grow.
     fn helps(&self, row: usize) -> Option<usize> {
+        self.towards(row, &-BigInt::one())
+    }
+
+    /// The column of least index along which the variable of `row`, whose sign this is, gets nearer to zero.
+    fn towards(&self, row: usize, sign: &BigInt) -> Option<usize> {
         (0..self.nonbasic.len())
             .filter(|&c| {
-                let entry = &self.rows[row][c];
-                entry.is_positive() || (self.free[self.nonbasic[c]] && !entry.is_zero())
+                let (entry, variable) = (&self.rows[row][c], self.nonbasic[c]);
+                let nearer = if sign.is_positive() { entry.is_negative() } else { entry.is_positive() };
+                !self.fixed[variable] && (nearer || (self.free[variable] && !entry.is_zero()))
             })
             .min_by_key(|&c| (!self.free[self.nonbasic[c]], self.nonbasic[c]))
     }
@@ -261,14 +351,9 @@ impl Polyhedron {
             let sign = self.constant(row).signum();
             // Any column will do where the variable is zero already: no constant changes.
             let column = if sign.is_zero() {
-                (0..self.nonbasic.len()).find(|&c| !self.rows[row][c].is_zero())
+                (0..self.nonbasic.len()).find(|&c| !self.fixed[self.nonbasic[c]] && !self.rows[row][c].is_zero())
             } else {
-                (0..self.nonbasic.len())
-                    .filter(|&c| {
-                        let towards = (&self.rows[row][c] * &sign).is_negative();
-                        towards || (self.free[self.nonbasic[c]] && !self.rows[row][c].is_zero())
-                    })
-                    .min_by_key(|&c| (!self.free[self.nonbasic[c]], self.nonbasic[c]))
+                self.towards(row, &sign)
             };
             match column {
                 Some(column) => {
@@ -286,7 +371,11 @@ impl Polyhedron {
             }
         }
         if let Some(column) = self.nonbasic.iter().position(|&v| v == variable) {
-            self.drop_column(column);
+            if self.keeps {
+                self.fixed[variable] = true;
+            } else {
+                self.drop_column(column);
+            }
         }
         self.restore(go_on)
     }

@@ -23,6 +23,7 @@ pub(in crate::session) mod parameters;
 pub(in crate::session) mod pivots;
 pub(in crate::session) mod plot_path;
 pub(in crate::session) mod plots;
+pub(in crate::session) mod prove;
 pub(in crate::session) mod quit;
 pub(in crate::session) mod ray;
 pub(in crate::session) mod ray_guide;
@@ -83,6 +84,7 @@ pub static GROUPS: &[(&str, &[Command])] = &[
             combine::COMBINE,
             envelope::ENVELOPE,
             check::CHECK,
+            prove::PROVE,
         ],
     ),
     ("pivots", &[pivots::PIVOTS, pivots::STEP, why::WHY, tableau::TIES, tableau::TABLEAU]),

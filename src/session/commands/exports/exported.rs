@@ -100,6 +100,8 @@ pub enum Exported {
     Axial,
     /// The LCP for other solvers: a scenario of its own (.json) or Matrix Market (.mtx)
     Lcp,
+    /// What proofs are about: the contact system or the bare LCP at the present values, a scenario of its own
+    System,
     /// K and F for other programs, with the scenario that reads them back as a superelement (.json or .mtx)
     Stiffness,
 }
@@ -108,7 +110,7 @@ impl Exported {
     /// Endings of the files it can be written to.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
-            Exported::Result | Exported::Summary => &["json"],
+            Exported::Result | Exported::Summary | Exported::System => &["json"],
             Exported::Vtu => &["vtu", "pvd"],
             Exported::Report => &["html", "md"],
             Exported::Lcp | Exported::Stiffness => &["json", "mtx"],

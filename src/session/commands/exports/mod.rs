@@ -44,6 +44,9 @@ use exported::Exported;
 /// or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a scenario reads M back with
 /// `"M": { "file": "FILE.mtx" }`.
 ///
+/// `export system` writes the contact system, R with the motions in its kernel and the load as they stand, or the bare
+/// LCP, at the present values: what a proof is about (`help prove`), a scenario of its own.
+///
 /// `export stiffness` writes K of the elements to FILE.mtx, F of each load case to FILE.CASE.mtx, and to FILE.json the
 /// scenario that reads them back as a superelement: with the dofs of the rows, and supports, ties, springs and contacts
 /// beside it at the present values.
@@ -121,6 +124,7 @@ impl Session {
         match what {
             Exported::Lcp => return self.export_lcp(path, io),
             Exported::Stiffness => return self.export_stiffness(path, io),
+            Exported::System => self.export_system(path, io),
             Exported::Report => self.export_report(of, path, io),
             Exported::Vtu => self.export_vtu(path, ending == "pvd", io),
             _ if ending == "svg" => self.export_picture(what, of, path, io.watch),
@@ -130,7 +134,7 @@ impl Session {
     }
 
     /// Refuses to write over the scenario.
-    fn spare_scenario(&self, path: &Path) -> Result<(), CommandError> {
+    pub(in crate::session) fn spare_scenario(&self, path: &Path) -> Result<(), CommandError> {
         let scenario = self.now.scenario.path.as_ref().and_then(|path| fs::canonicalize(path).ok());
         if scenario.is_some() && fs::canonicalize(path).ok() == scenario {
             let refusal = format!("{} is the scenario itself: export to another file", path.display());

@@ -1,0 +1,105 @@
+//! A proof as `stickslip-proof/1`, and the system it is about as a scenario (docs/proofs.md).
+
+use num_rational::BigRational;
+use serde_json::{Map, Value, json};
+
+use crate::contact::law::{PairLaw, TangentialJoint};
+use crate::solve::prove::forms::Forms;
+use crate::solve::prove::system::{ProvedContact, ProvedSystem};
+use crate::solve::prove::tree::{Sum, Tree};
+use crate::solve::prove::{Claim, Proof};
+use crate::text::hash::Hash;
+
+/// The system as a `stickslip/1` scenario: it loads and solves as it is.
+pub fn system(system: &ProvedSystem, title: &str) -> Value {
+    let (key, source) = match system {
+        ProvedSystem::Contact(contact) => ("contact_system", of_contact(contact)),
+        ProvedSystem::Plain { matrix, q, names } => {
+            let rows: Vec<Vec<f64>> = matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
+            ("lcp", json!({"names": names, "M": rows, "q": q.as_slice()}))
+        }
+    };
+    json!({"format": "stickslip/1", "title": title, key: source})
+}
+
+fn of_contact(contact: &ProvedContact) -> Value {
+    let rows: Vec<Vec<f64>> = contact.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let laws = || contact.laws.iter();
+    let word = |law: &PairLaw| match law.tangential {
+        TangentialJoint::Free => "frictionless",
+        TangentialJoint::Bounded { .. } if law.is_bilateral() => "bound",
+        TangentialJoint::Bounded { .. } => "coulomb",
+    };
+    let fixed = |law: &PairLaw, bilateral: bool| if law.is_bilateral() == bilateral { law.fixed_bound() } else { 0.0 };
+    let mut value = json!({
+        "pairs": contact.ids,
+        "law": laws().map(word).collect::<Vec<_>>(),
+        "friction": laws().map(PairLaw::friction).collect::<Vec<_>>(),
+        "cohesion": laws().map(|law| fixed(law, false)).collect::<Vec<_>>(),
+        "bound": laws().map(|law| fixed(law, true)).collect::<Vec<_>>(),
+        "gap": laws().map(PairLaw::gap).collect::<Vec<_>>(),
+        "stiffness": rows,
+        "loads": {"all": {"factor": 1.0, "vector": contact.load.as_slice()}},
+    });
+    if !contact.kernel.is_empty() {
+        value["kernel"] = contact.kernel.iter().map(|motion| json!(motion.as_slice())).collect();
+    }
+    value
+}
+
+/// The proof; `system` is the text of its system, by whose hash it names it.
+pub fn proof(proof: &Proof, system: &str) -> Value {
+    let forms = &proof.forms;
+    let mut value = json!({"format": "stickslip-proof/1", "system": Hash::of(system).long()});
+    let mut put = |key: &str, entry: Value| value[key] = entry;
+    match &proof.claim {
+        Claim::Answer(z) => {
+            let values = forms.values(z);
+            let words = forms.scheme(&values).unwrap_or_default();
+            let scheme = forms.groups.iter().zip(words).map(|(group, word)| (group.name.clone(), word.into()));
+            put("claim", "answer".into());
+            put("scheme", Value::Object(scheme.collect()));
+            put("values", named(forms, &values));
+        }
+        Claim::Answers(all) => {
+            put("claim", "answers".into());
+            put("answers", all.answers.iter().map(|z| named(forms, &forms.values(z))).collect());
+            put("tree", tree(forms, &all.tree));
+        }
+        Claim::Collapse(found) => {
+            put("claim", "collapse".into());
+            put("motion", named(forms, &found.motion));
+            put("amounts", found.amounts.iter().map(fraction).collect());
+            put("work", fraction(&found.work));
+            put("bound", fraction(&found.bound));
+        }
+    }
+    value
+}
+
+fn fraction(value: &BigRational) -> Value {
+    value.to_string().into()
+}
+
+/// The first variables with these values.
+fn named(forms: &Forms, values: &[BigRational]) -> Value {
+    Value::Object(forms.names.iter().zip(values).map(|(name, value)| (name.clone(), fraction(value))).collect())
+}
+
+fn tree(forms: &Forms, node: &Tree) -> Value {
+    let sum = |sum: &Sum| -> Map<String, Value> {
+        sum.iter().map(|(variable, factor)| (forms.names[*variable].clone(), fraction(factor))).collect()
+    };
+    match node {
+        Tree::Split { group, below } => {
+            let group = &forms.groups[*group];
+            let branches = group.branches.iter().zip(below);
+            let branches: Map<_, _> =
+                branches.map(|(branch, child)| (branch.name.to_owned(), tree(forms, child))).collect();
+            json!({"of": group.name, "branches": branches})
+        }
+        Tree::Cut(factors) => json!({"cut": sum(factors)}),
+        Tree::Answer { answer, tight } => json!({"answer": answer + 1, "tight": sum(tight)}),
+        Tree::Set { answers } => json!({"set": answers.iter().map(|answer| answer + 1).collect::<Vec<_>>()}),
+    }
+}

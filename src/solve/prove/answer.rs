@@ -1,0 +1,121 @@
+//! The exact z of a working scheme, whose every sign holds.
+
+use std::ops::ControlFlow;
+
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+
+use super::forms::{Branch, Forms};
+use super::tree::impose;
+use crate::lcp::exact::polyhedron::State;
+use crate::lcp::exact::rational_solve::{RationalSolution, clear_denominators, solve};
+use crate::watch::Watch;
+
+/// Most groups whose scheme is completed as a linear program where its equations do not decide alone.
+const MOST_COMPLETED: usize = 30;
+/// Rounds in which branches with a wrong sign are exchanged.
+const ROUNDS: usize = 20;
+
+/// z of an answer in the branches `scheme`, one a group. Where the numbers as stored are just beyond a limit of this
+/// scheme, a branch whose sign fails is exchanged for the next one. `None`: no such answer was found, or it was stopped.
+pub fn answer_of(forms: &Forms, mut scheme: Vec<usize>, watch: &dyn Watch) -> Option<Vec<BigRational>> {
+    for _ in 0..ROUNDS {
+        let Some(z) = solution(forms, &scheme, watch) else {
+            return if forms.groups.len() <= MOST_COMPLETED { completed(forms, &scheme, watch) } else { None };
+        };
+        let values = forms.values(&z);
+        if forms.scheme(&values).is_some() {
+            return Some(z);
+        }
+        let changed = exchange(forms, &mut scheme, &values);
+        if !changed || watch.stop() {
+            return None;
+        }
+    }
+    None
+}
+
+/// The equations of the scheme solved, where they are as many as the unknowns that it leaves and regular.
+fn solution(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<BigRational>> {
+    let n = forms.unknowns;
+    let mut zero = vec![false; forms.names.len()];
+    forms.zero.iter().for_each(|&variable| zero[variable] = true);
+    for branch in chosen(forms, scheme) {
+        // Of an open pair x- follows from x_n and x+.
+        branch.zero.iter().take(2).for_each(|&variable| zero[variable] = true);
+    }
+    let unknown: Vec<usize> = (0..n).filter(|&variable| !zero[variable]).collect();
+    // x_t of a frictionless pair may be 0 as it is.
+    let says = |variable: &usize| !forms.forms[variable - n].iter().all(Zero::is_zero);
+    let rows: Vec<usize> = (n..zero.len()).filter(|&variable| zero[variable]).filter(says).collect();
+    if unknown.len() != rows.len() {
+        return None;
+    }
+    let (mut matrix, mut right) = (Vec::new(), Vec::new());
+    for &row in &rows {
+        let form = &forms.forms[row - n];
+        let picked: Vec<BigRational> = unknown.iter().chain([&n]).map(|&column| form[column].clone()).collect();
+        let (mut whole, _) = clear_denominators(&picked);
+        right.push(-whole.pop().unwrap_or_default());
+        matrix.push(whole);
+    }
+    let mut progress = |share: f64| -> ControlFlow<()> {
+        watch.progress("exact answer", share);
+        watch.go_on()
+    };
+    let RationalSolution::Unique(found) = solve(&matrix, &right, &mut progress) else { return None };
+    let mut z = vec![BigRational::zero(); n];
+    for (&variable, numerator) in unknown.iter().zip(found.numerators) {
+        z[variable] = BigRational::new(numerator, found.denominator.clone());
+    }
+    Some(z)
+}
+
+/// A point of the scheme, all signs kept, as a linear program.
+fn completed(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<BigRational>> {
+    let mut go_on = || !watch.stop();
+    let mut polyhedron = forms.polyhedron();
+    let mut state = polyhedron.restore(&mut go_on);
+    for &variable in &forms.zero {
+        if state == State::Feasible {
+            state = polyhedron.fix(variable, &mut go_on);
+        }
+    }
+    for branch in chosen(forms, scheme) {
+        if state == State::Feasible {
+            (state, _) = impose(&mut polyhedron, branch, &mut go_on);
+        }
+    }
+    (state == State::Feasible).then(|| (0..forms.unknowns).map(|variable| polyhedron.value(variable)).collect())
+}
+
+fn chosen<'a>(forms: &'a Forms, scheme: &'a [usize]) -> impl Iterator<Item = &'a Branch> {
+    forms.groups.iter().zip(scheme).map(|(group, &branch)| &group.branches[branch])
+}
+
+/// Gives every group with a wrong sign the branch in which what is negative is zero; whether any was changed.
+fn exchange(forms: &Forms, scheme: &mut [usize], values: &[BigRational]) -> bool {
+    let mut changed = false;
+    for (group, now) in forms.groups.iter().zip(scheme) {
+        let fails = |branch: &Branch| {
+            let sign = branch.sign.is_some_and(|(variable, up)| match up {
+                true => values[variable].is_negative(),
+                false => values[variable].is_positive(),
+            });
+            sign || branch.zero.iter().any(|&variable| forms.signed[variable] && values[variable].is_negative())
+        };
+        let kept = |branch: &Branch| -> usize {
+            branch.zero.iter().filter(|variable| group.branches[*now].zero.contains(variable)).count()
+        };
+        let slips_wrong = fails(&group.branches[*now]);
+        let candidates = group.branches.iter().enumerate().filter(|(other, branch)| {
+            let leaves = branch.zero.iter().any(|&variable| forms.signed[variable] && values[variable].is_negative());
+            *other != *now && (leaves || slips_wrong && branch.sign.is_none())
+        });
+        if let Some((other, _)) = candidates.max_by_key(|(_, branch)| kept(branch)) {
+            *now = other;
+            changed = true;
+        }
+    }
+    changed
+}

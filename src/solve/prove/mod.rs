@@ -1,0 +1,231 @@
+//! What stands, proved in rationals for somebody else to check: the numbers it is about and every sign.
+//!
+//! A proof is about the f64 numbers of the condensed system, each taken as the rational it is. How far these are from
+//! the structure is a statement of its own (`check`).
+
+mod answer;
+mod collapse;
+pub mod forms;
+pub mod system;
+pub mod tree;
+
+use num_rational::BigRational;
+
+use super::error::QuestionError;
+use super::exact::final_scheme;
+use super::plain_answers::{RayProof, prove_plain_ray};
+use super::prepared::{Geometry, Prepared};
+use super::state::{RunData, Solved};
+use crate::answer::attempt::AttemptEngine;
+use crate::answer::record::{OutcomeKind, RayClass};
+use crate::contact::law::PairLaw;
+use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::watch::Watch;
+use answer::answer_of;
+pub use collapse::Collapse;
+use forms::{Forms, Group};
+use system::{ProvedContact, ProvedSystem};
+use tree::{AllAnswers, MOST_NODES, NoTree, Tree, grow};
+
+/// Most pairs of an answer whose proof is written.
+pub const MOST_PAIRS: usize = 120;
+/// Most rows of an LCP whose proof is written.
+pub const MOST_ROWS: usize = 240;
+/// Most motions without energy of a structure whose answer is proved.
+pub const MOST_MOTIONS: usize = 15;
+/// Most pairs whose answers are all proved.
+pub const MOST_PAIRS_OF_ALL: usize = 12;
+/// Most rows of an LCP whose answers are all proved.
+pub const MOST_ROWS_OF_ALL: usize = 30;
+
+/// What is proved.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Claim {
+    /// These unknowns are an answer.
+    Answer(Vec<BigRational>),
+    /// No contact forces balance the loads.
+    Collapse(Collapse),
+    /// These are all answers; none: there is no answer.
+    Answers(AllAnswers),
+}
+
+/// A proof and what it is about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// The numbers.
+    pub system: ProvedSystem,
+    /// The forms that the claim speaks of.
+    pub forms: Forms,
+    /// The claim with all that proves it.
+    pub claim: Claim,
+}
+
+fn refused<T>(text: impl Into<String>) -> Result<T, QuestionError> {
+    Err(QuestionError::Refused(text.into()))
+}
+
+fn too_many(what: &str, found: usize, most: usize) -> Result<(), QuestionError> {
+    if found <= most { Ok(()) } else { refused(format!("prove: {found} {what} are too many, at most {most}")) }
+}
+
+impl Prepared {
+    /// The numbers that proofs of a solved state are about.
+    ///
+    /// # Errors
+    /// Joints that repeat one another, no contact pairs.
+    pub fn proved_system(&self, solved: &Solved) -> Result<ProvedSystem, QuestionError> {
+        match (&solved.run, &*self.geometry) {
+            (RunData::Plain { lcp, .. }, Geometry::Plain { names, .. }) => Ok(ProvedSystem::of_plain(lcp, names)),
+            (RunData::Contact { problem, .. }, _) => {
+                if let Some(refusal) = problem.system.refusal("prove") {
+                    return refused(format!(
+                        "{refusal}; `export lcp FILE.json` writes an LCP of which answers can be proved"
+                    ));
+                }
+                Ok(ProvedSystem::Contact(ProvedContact::of(problem, self.built())))
+            }
+            (RunData::Plain { .. }, _) => refused("nothing to prove: there are no contact pairs"),
+        }
+    }
+
+    /// The proof of what stands: the answer, the collapse, or that there is no answer.
+    ///
+    /// # Errors
+    /// Nothing is proved of it, it is too large, it was stopped.
+    pub fn prove(&self, solved: &Solved, watch: &dyn Watch) -> Result<Proof, QuestionError> {
+        let system = self.proved_system(solved)?;
+        if solved.answer.is_answer() || solved.answer.outcome == OutcomeKind::CheckFailed {
+            return prove_answer(system, solved, watch);
+        }
+        let ray = solved.answer.ray.as_ref().filter(|_| solved.answer.outcome == OutcomeKind::Ray);
+        let Some(ray) = ray else {
+            return refused("prove: the run was given up, which says nothing about answers");
+        };
+        if matches!(ray.class, RayClass::Artefact | RayClass::Fault) {
+            return refused("prove: this ray is one of the rules, not of the problem: `help ray` says what to try");
+        }
+        // A motion needs no form, and with many motions in the kernel the forms are long.
+        let found = match (&system, &solved.run) {
+            (ProvedSystem::Contact(contact), RunData::Contact { problem, .. }) => {
+                let found = collapse::collapse(problem, self.built(), contact, watch);
+                found.map(|found| (Claim::Collapse(found), Forms::unknowns_of(contact)))
+            }
+            (_, RunData::Plain { lcp, .. }) => match prove_plain_ray(lcp, watch) {
+                Some(RayProof::Infeasible(farkas)) => {
+                    let forms = Forms::of(&system);
+                    let weights: Vec<_> = farkas.weights.into_iter().map(BigRational::from_integer).collect();
+                    let tree = Tree::Cut(tree::of_farkas(&forms, &weights));
+                    let all = AllAnswers { tree, answers: Vec::new(), sets: 0, nodes: 1 };
+                    Some((Claim::Answers(all), forms))
+                }
+                _ => None,
+            },
+            _ => None,
+        };
+        if let Some((claim, forms)) = found {
+            return Ok(Proof { system, forms, claim });
+        }
+        if watch.stop() {
+            return Err(QuestionError::Interrupted);
+        }
+        match self.prove_all(solved, watch) {
+            Err(QuestionError::Refused(why)) => {
+                let why = why.trim_start_matches("prove: ");
+                refused(format!("prove: no proof was found that there is no answer ({why})"))
+            }
+            Ok(Proof { claim: Claim::Answers(all), .. }) if !all.answers.is_empty() => refused(
+                "prove: the run ended in a ray, but there is an answer: `enumerate` shows it, `prove all FILE` proves it",
+            ),
+            other => other,
+        }
+    }
+
+    /// The proof of what all answers are.
+    ///
+    /// # Errors
+    /// It is too large, or it was stopped.
+    pub fn prove_all(&self, solved: &Solved, watch: &dyn Watch) -> Result<Proof, QuestionError> {
+        let system = self.proved_system(solved)?;
+        match &system {
+            ProvedSystem::Contact(contact) => {
+                too_many("contact pairs for a proof of all answers", contact.ids.len(), MOST_PAIRS_OF_ALL)?;
+                too_many("motions that only contact holds", contact.kernel.len(), MOST_MOTIONS)?;
+            }
+            ProvedSystem::Plain { q, .. } => too_many("rows for a proof of all answers", q.len(), MOST_ROWS_OF_ALL)?,
+        }
+        let forms = Forms::of(&system);
+        let mut steps = 0u64;
+        let grown = grow(&forms, &mut |nodes, share| {
+            steps += 1;
+            if steps.is_multiple_of(64) {
+                watch.progress(&format!("{nodes} branches"), share);
+            }
+            !watch.stop()
+        });
+        match grown {
+            Ok(all) => Ok(Proof { system, forms, claim: Claim::Answers(all) }),
+            Err(NoTree::Stopped) => Err(QuestionError::Interrupted),
+            Err(NoTree::TooLarge) => refused(format!(
+                "prove: the tree has more than {MOST_NODES} branches, too many to be checked by anyone; `enumerate` goes \
+                 through them all without writing them down"
+            )),
+        }
+    }
+}
+
+fn prove_answer(system: ProvedSystem, solved: &Solved, watch: &dyn Watch) -> Result<Proof, QuestionError> {
+    match &system {
+        ProvedSystem::Contact(contact) => {
+            too_many("contact pairs", contact.ids.len(), MOST_PAIRS)?;
+            too_many("motions that only contact holds", contact.kernel.len(), MOST_MOTIONS)?;
+        }
+        ProvedSystem::Plain { q, .. } => too_many("rows", q.len(), MOST_ROWS)?,
+    }
+    let forms = Forms::of(&system);
+    let scheme = match (&system, &solved.run) {
+        (ProvedSystem::Contact(contact), _) => {
+            let schemes = final_scheme(solved);
+            let branch = |((group, law), scheme): ((&Group, &PairLaw), &PairScheme)| branch_of(group, law, *scheme);
+            forms.groups.iter().zip(&contact.laws).zip(&schemes).map(branch).collect()
+        }
+        (ProvedSystem::Plain { .. }, run) => plain_scheme(forms.groups.len(), solved, run),
+    };
+    match answer_of(&forms, scheme, watch) {
+        Some(z) => Ok(Proof { system, forms, claim: Claim::Answer(z) }),
+        None if watch.stop() => Err(QuestionError::Interrupted),
+        None => refused(
+            "prove: the answer holds to rounding only, no scheme near it is an answer of the numbers as they are stored: \
+             `check exact` says which sign fails",
+        ),
+    }
+}
+
+/// The branch that a working scheme means; 0 where it names none.
+fn branch_of(group: &Group, law: &PairLaw, scheme: PairScheme) -> usize {
+    let slips = match scheme.tangential {
+        Tangential::Stick => "stick",
+        Tangential::SlipPlus => "slip+",
+        Tangential::SlipMinus => "slip-",
+    };
+    let open = scheme.open && !law.is_bilateral();
+    let word = match open {
+        true => format!("open {slips}"),
+        false => slips.to_owned(),
+    };
+    let named = |name: &str| group.branches.iter().position(|branch| branch.name == name);
+    named(&word).or_else(|| named(if open { "open" } else { "closed" })).unwrap_or_default()
+}
+
+/// Branch `w` (w = 0) where z is basic.
+fn plain_scheme(rows: usize, solved: &Solved, run: &RunData) -> Vec<usize> {
+    let mut scheme = vec![0; rows];
+    let RunData::Plain { pivots, .. } = run else { return scheme };
+    let basic: Vec<usize> = match &solved.answer.solution {
+        Some(solution) if solved.answer.rules.engine == AttemptEngine::Enumeration => {
+            solution.z.iter().enumerate().filter(|(_, z)| **z > 0.0).map(|(i, _)| i).collect()
+        }
+        _ => pivots.basis().z,
+    };
+    basic.into_iter().for_each(|row| scheme[row] = 1);
+    scheme
+}

@@ -1,0 +1,177 @@
+//! The numbers that a proof is about: a contact system or a bare LCP in f64, each number taken as the rational it is.
+//!
+//! ```text
+//!   contact   λ = R (z − (g, 0)) + load over all 2m joints; where motions Z are given, R means Πᵀ R Π with Π Z = 0
+//!   LCP       w = M z + q
+//! ```
+//! A frictionless pair has λ_τ = 0, and z_τ = 0 where its row of R is zero.
+
+use nalgebra::{DMatrix, DVector};
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+
+use crate::contact::law::PairLaw;
+use crate::contact::problem::ContactProblem;
+use crate::contact::schemes::exact_system::telling_joints;
+use crate::explain::motions::FreeMotions;
+use crate::explain::ray::Built;
+use crate::lcp::exact::dyadic::{WholeRows, rational};
+use crate::lcp::exact::rational_solve::rank_modulo_prime;
+use crate::lcp::mirrored::MirroredLcp;
+
+/// A contact system under one set of values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProvedContact {
+    /// Ids of the m pairs.
+    pub ids: Vec<String>,
+    /// Their laws.
+    pub laws: Vec<PairLaw>,
+    /// R, 2m × 2m: all normals, then all tangentials.
+    pub stiffness: DMatrix<f64>,
+    /// Motions Z with R Z = 0, each 2m; none where R is meant as it stands.
+    pub kernel: Vec<DVector<f64>>,
+    /// Σ factor·RF, 2m.
+    pub load: DVector<f64>,
+}
+
+/// What a proof is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ProvedSystem {
+    /// A contact system.
+    Contact(ProvedContact),
+    /// A bare LCP.
+    Plain {
+        /// M.
+        matrix: DMatrix<f64>,
+        /// q.
+        q: DVector<f64>,
+        /// Names of the rows.
+        names: Vec<String>,
+    },
+}
+
+impl ProvedSystem {
+    /// Of a bare LCP.
+    pub fn of_plain(lcp: &MirroredLcp, names: &[String]) -> ProvedSystem {
+        ProvedSystem::Plain { matrix: lcp.matrix(), q: lcp.q.clone(), names: names.to_vec() }
+    }
+}
+
+impl ProvedContact {
+    /// Of a contact problem whose joints are independent; of a file with frictionless pairs its own matrix.
+    pub fn of(problem: &ContactProblem, built: Built<'_>) -> ProvedContact {
+        let system = &*problem.system;
+        let m = system.pair_count();
+        let ids = system.pairs.iter().map(|pair| pair.id.clone()).collect();
+        let laws = problem.laws.clone();
+        if let (Some(file), Some(load), 0) = (&system.file, &problem.file_load, system.kernel.ncols())
+            && !file.compliance
+        {
+            let (stiffness, load) = (file.matrix.clone(), load.vector.clone());
+            return ProvedContact { ids, laws, stiffness, kernel: Vec::new(), load };
+        }
+        let place = |joint: usize| -> usize {
+            if joint < m {
+                return joint;
+            }
+            // Every joint beyond the normals is the tangential one of a pair.
+            m + system.pairs.iter().position(|pair| pair.tangential == Some(joint)).unwrap_or_default()
+        };
+        let places: Vec<usize> = (0..system.joint_count()).map(place).collect();
+        let spread = |of: &dyn Fn(usize) -> f64| {
+            let mut all = DVector::zeros(2 * m);
+            places.iter().enumerate().for_each(|(joint, &at)| all[at] = of(joint));
+            all
+        };
+        let mut stiffness = DMatrix::zeros(2 * m, 2 * m);
+        for (i, &at) in places.iter().enumerate() {
+            places.iter().enumerate().for_each(|(j, &column)| stiffness[(at, column)] = system.stiffness[(i, j)]);
+        }
+        let kernel = kernel(problem, built).iter().map(|motion| spread(&|joint| motion[joint])).collect();
+        ProvedContact { ids, laws, stiffness, kernel, load: spread(&|joint| problem.load[joint]) }
+    }
+
+    /// R with its kernel exact.
+    pub fn exact_stiffness(&self) -> Vec<Vec<BigRational>> {
+        let entry = |i: usize, j: usize| rational(self.stiffness[(i, j)]);
+        let k = self.load.len();
+        let (telling, motions) = reduced(&self.kernel);
+        let others: Vec<usize> = (0..k).filter(|joint| !telling.contains(joint)).collect();
+        let mut exact: Vec<Vec<BigRational>> = (0..k).map(|i| (0..k).map(|j| entry(i, j)).collect()).collect();
+        // Z = [G; 1] over the others N and the telling joints P: R_NP = −R_NN G, R_PP = Gᵀ R_NN G.
+        let sum = |terms: &mut dyn Iterator<Item = (&BigRational, &BigRational)>| -> BigRational {
+            terms.filter(|(a, b)| !a.is_zero() && !b.is_zero()).map(|(a, b)| a * b).sum()
+        };
+        for (motion, &p) in motions.iter().zip(&telling) {
+            for &n in &others {
+                let entry = -sum(&mut others.iter().map(|&j| (&exact[n][j], &motion[j])));
+                (exact[n][p], exact[p][n]) = (entry.clone(), entry);
+            }
+        }
+        for (motion, &p) in motions.iter().zip(&telling) {
+            for &other in &telling {
+                exact[p][other] = -sum(&mut others.iter().map(|&j| (&motion[j], &exact[j][other])));
+            }
+        }
+        exact
+    }
+}
+
+/// The motions that cost nothing, over the joints: those of the parts of a structure, else a basis in which each has a
+/// joint of its own.
+fn kernel(problem: &ContactProblem, built: Built<'_>) -> Vec<DVector<f64>> {
+    let system = &*problem.system;
+    let k = system.joint_count();
+    if built.is_some() && system.kernel.ncols() > 0 {
+        let motions = FreeMotions::new(system, built);
+        let mut columns = vec![DVector::zeros(k); motions.count()];
+        for joint in 0..k {
+            motions.row(joint).iter().for_each(|entry| columns[entry.motion][joint] = entry.value);
+        }
+        return columns;
+    }
+    // The digits of a file may have the kernel already.
+    let mut whole = WholeRows::default();
+    system.stiffness.row_iter().for_each(|row| whole.push(&row.iter().copied().collect::<Vec<_>>()));
+    if rank_modulo_prime(&whole.rows) + system.kernel.ncols() <= k {
+        return Vec::new();
+    }
+    let basis = telling_joints(&system.kernel).map(|(_, basis)| basis);
+    basis.iter().flat_map(|basis| basis.column_iter().map(|column| column.into_owned())).collect()
+}
+
+/// Joints that tell the motions, and the motions in which each of these moves one of them by 1 and no other. The joint
+/// of each motion is where it is largest, the first of such.
+fn reduced(kernel: &[DVector<f64>]) -> (Vec<usize>, Vec<Vec<BigRational>>) {
+    let mut telling: Vec<usize> = Vec::new();
+    let mut motions: Vec<Vec<BigRational>> = Vec::new();
+    for column in kernel {
+        let mut motion: Vec<BigRational> = column.iter().map(|entry| rational(*entry)).collect();
+        for (known, &p) in motions.iter().zip(&telling) {
+            subtract(&mut motion, known, p);
+        }
+        let free = (0..motion.len()).filter(|joint| !telling.contains(joint));
+        // The last of equal ones would win.
+        let Some(p) = free.rev().max_by(|&a, &b| motion[a].abs().cmp(&motion[b].abs())) else { break };
+        if motion[p].is_zero() {
+            continue;
+        }
+        let pivot = motion[p].clone();
+        motion.iter_mut().filter(|entry| !entry.is_zero()).for_each(|entry| *entry /= &pivot);
+        motions.iter_mut().for_each(|known| subtract(known, &motion, p));
+        telling.push(p);
+        motions.push(motion);
+    }
+    (telling, motions)
+}
+
+/// Takes as much of `other`, whose entry at `p` is 1, from `motion` as leaves nothing there.
+fn subtract(motion: &mut [BigRational], other: &[BigRational], p: usize) {
+    let factor = motion[p].clone();
+    if factor.is_zero() {
+        return;
+    }
+    for (entry, other) in motion.iter_mut().zip(other).filter(|(_, other)| !other.is_zero()) {
+        *entry -= &factor * other;
+    }
+}
