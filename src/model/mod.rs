@@ -16,6 +16,7 @@ pub mod joints;
 pub mod load;
 pub mod load_case;
 pub mod locate;
+pub mod measurement;
 pub(crate) mod memory;
 pub mod mesh;
 pub mod mortar;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::locate::Document;
+use super::measurement::Measurement;
 use super::mesh::MeshFiles;
 use super::pair::Law;
 use super::parameter::{Formulas, Number, Parameter, ParameterValues};
@@ -141,6 +142,8 @@ pub struct Scenario {
     pub combinations: Vec<(String, Stage)>,
     /// Names for quantities, in the order of the file.
     pub probes: Vec<(String, Quantity)>,
+    /// What was measured on the real structure, in the order of the file.
+    pub measured: Vec<Measurement>,
     /// Covering, tie-break and engine the file asks for.
     pub rules: Rules,
     /// Where its parts stand in `text`.

@@ -1,5 +1,6 @@
 //! Paths: how the answer changes with the load, with friction and with history, breakpoint by breakpoint.
 
+pub mod calibrate;
 pub mod change;
 pub mod cycle;
 pub mod cycle_starts;

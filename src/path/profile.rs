@@ -62,15 +62,19 @@ pub fn number(route: &Route<'_>, stretch: &Stretch, at: f64, quantity: &Quantity
 }
 
 fn curve(route: &Route<'_>, stretch: &Stretch, quantity: &Quantity) -> Option<Vec<(f64, f64)>> {
-    let value = |at: f64| number(route, stretch, at, quantity);
+    curve_of(&|at: f64| number(route, stretch, at, quantity), stretch)
+}
+
+/// Places and values of a smooth function over a stretch, so closely that between neighbours it rises or falls.
+pub fn curve_of(value: &dyn Fn(f64) -> Option<f64>, stretch: &Stretch) -> Option<Vec<(f64, f64)>> {
     // At an end the value may be missing where it is there on the way: a resultant without force has no place.
     let inside = 1e-9 * (stretch.to - stretch.from);
     let end = |at: f64, beside: f64| Some((at, value(at).or_else(|| value(beside))?));
     let a = end(stretch.from, stretch.from + inside)?;
     let b = end(stretch.to, stretch.to - inside)?;
     let mut points = vec![a];
-    refine(&value, a, b, 0, &mut points)?;
-    with_extremes(&value, &mut points);
+    refine(value, a, b, 0, &mut points)?;
+    with_extremes(value, &mut points);
     Some(points)
 }
 

@@ -1,6 +1,7 @@
 //! Reports: from records to text on any `dyn Write`. Nothing here knows a terminal; width, colour and the set of
 //! characters come in as a [`style::Style`].
 
+pub mod calibrate;
 pub mod check;
 pub mod combinations;
 pub mod compare;

@@ -1,5 +1,6 @@
 //! Paths: loads, friction, history, sweeps, and the commands that follow them.
 
+mod calibrate;
 #[path = "../common/mod.rs"]
 mod common;
 mod cycle;

@@ -56,6 +56,7 @@ const COMMANDS: &[(&str, Exported)] = &[
     ("stages", Ok(("load pipeline; stages", "stages", "stage"))),
     ("sweep", Ok(("load beam; sweep f 0..1 3", "sweep", "outcome"))),
     ("map", Ok(("load beam; map f 0.1..0.9 F2 50..400", "map", "at_F2"))),
+    ("calibrate", Ok(("load beam", "calibrate f where z_t c6 = 0.004", "computed"))),
     ("cycle", Ok(("load beam", "cycle F2 0..61", "difference"))),
     ("status", Err("one sentence: `export result FILE.json`")),
     ("why", Err("sentences about one pair")),

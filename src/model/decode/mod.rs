@@ -14,6 +14,7 @@ mod lcp;
 mod loads;
 mod matrix_file;
 mod matrix_market;
+mod measured;
 mod mesh_elements;
 mod mesh_names;
 mod meshes;
@@ -43,7 +44,6 @@ use super::locate::{Document, position};
 use super::mesh::MeshFiles;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
-use super::quantity::{self, Names, Quantity};
 use super::rules::{Covering, Engine, Rules, TieBreak, UnknownChoice};
 use super::scenario::{Places, Scenario, Source};
 use super::units::Units;
@@ -54,8 +54,19 @@ use reader::{Cursor, Entry, Fields, Reading};
 const FORMAT: &str = "stickslip/1";
 
 /// Keys of any scenario.
-const COMMON: [&str; 10] =
-    ["$schema", "format", "title", "description", "units", "parameters", "stages", "combinations", "probes", "solver"];
+const COMMON: [&str; 11] = [
+    "$schema",
+    "format",
+    "title",
+    "description",
+    "units",
+    "parameters",
+    "stages",
+    "combinations",
+    "probes",
+    "measured",
+    "solver",
+];
 
 /// Keys of the source *structure*.
 const STRUCTURE: [&str; 17] = [
@@ -186,6 +197,7 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         stages: stages?,
         combinations: combinations?,
         probes: Vec::new(),
+        measured: Vec::new(),
         rules,
         places,
         formulas: Arc::new(root.parameters().formulas().clone()),
@@ -194,7 +206,11 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         notes,
     };
     scenario.probes = match fields.optional("probes") {
-        Some(cursor) => probes(cursor, &scenario)?,
+        Some(cursor) => measured::probes(cursor, &scenario)?,
+        None => Vec::new(),
+    };
+    scenario.measured = match fields.optional("measured") {
+        Some(cursor) => measured::measured(cursor, &scenario)?,
         None => Vec::new(),
     };
     Some(scenario)
@@ -215,40 +231,6 @@ fn with_cases<'d, T>(
             None
         }
     }
-}
-
-/// Names for quantities.
-fn probes(cursor: Cursor<'_>, scenario: &Scenario) -> Option<Vec<(String, Quantity)>> {
-    let names = Names::of(scenario);
-    let mut probes = Vec::new();
-    let mut is_right = true;
-    for entry in cursor.entries()? {
-        let name = entry.name();
-        let plain =
-            !name.trim().is_empty() && name.trim() == name && !name.contains(|c: char| c.is_control() || c == '"');
-        if quantity::entry(name).is_some() || !plain {
-            let why = if plain { "is a quantity itself" } else { "cannot be a name" };
-            entry.key_problem(format!("a probe cannot be named {}: it {why}", quoted(name)), "choose another name");
-            is_right = false;
-        }
-        let Some(text) = entry.value().string() else {
-            is_right = false;
-            continue;
-        };
-        match quantity::read_text(text, &names).map(<[Quantity; 1]>::try_from) {
-            Ok(Ok([quantity])) => probes.push((name.to_owned(), quantity)),
-            Ok(Err(found)) => {
-                let message = format!("a probe is one quantity, found {} in {}", found.len(), quoted(text));
-                entry.value().problem(message, "write e.g. \"M AB start\" or \"z_n c1\"");
-                is_right = false;
-            }
-            Err(error) => {
-                entry.value().problem(error.to_string(), "quantities are listed by `help show`");
-                is_right = false;
-            }
-        }
-    }
-    is_right.then_some(probes)
 }
 
 fn format(fields: &Fields<'_>) {

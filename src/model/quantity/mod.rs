@@ -121,7 +121,8 @@ impl Quantity {
         }
     }
 
-    fn dimension(&self) -> Dimension {
+    /// Its dimension.
+    pub fn dimension(&self) -> Dimension {
         match self.innermost() {
             Quantity::Resultant(_, ResultantPart::Eccentricity) => Dimension::Length,
             Quantity::Resultant(..) => Dimension::Force,

@@ -136,7 +136,7 @@ impl Session {
             _ => return refused(form),
         };
         let read = expect::read(condition, &self.names(), &self.now.values)
-            .map_err(|error| CommandError::Refused(error.to_string().replace("expect", "find")))?;
+            .map_err(|error| CommandError::Refused(error.said_by("find")))?;
         let (quantity, wanted) = match read {
             Expectation::Word { quantity, word, equal: true } => (quantity, Wanted::Word(word)),
             Expectation::Number { quantity, bound } => {

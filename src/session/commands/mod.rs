@@ -2,6 +2,7 @@
 //! lists them; a new command is a file and its name here.
 
 pub(in crate::session) mod along;
+pub(in crate::session) mod calibrate;
 pub(in crate::session) mod check;
 pub(in crate::session) mod combine;
 pub(in crate::session) mod compare;
@@ -100,6 +101,7 @@ pub static GROUPS: &[(&str, &[Command])] = &[
             sensitivity::SENSITIVITY,
             stages::STAGES,
             cycle::CYCLE,
+            calibrate::CALIBRATE,
         ],
     ),
     ("pictures", &[plots::PLOT, screen::TUI]),

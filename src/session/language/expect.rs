@@ -70,6 +70,13 @@ pub struct ExpectationSyntax {
     what: String,
 }
 
+impl ExpectationSyntax {
+    /// The same said by another command that takes such words.
+    pub fn said_by(&self, command: &str) -> String {
+        format!("{command}: {}; see `help {command}`", self.what)
+    }
+}
+
 /// An expectation that does not hold.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("expected {expected}, found {found}")]

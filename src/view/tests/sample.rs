@@ -337,6 +337,7 @@ pub fn scenario() -> Scenario {
         stages: Vec::new(),
         combinations: Vec::new(),
         probes: Vec::new(),
+        measured: Vec::new(),
         places: Places::default(),
         meshes: MeshFiles::default(),
         notes: Vec::new(),

@@ -61,6 +61,8 @@ pub enum Exported {
     Stages,
     /// What a load repeated does, cycle by cycle
     Cycle,
+    /// What was measured, beside what the friction found for it gives
+    Calibrate,
     /// What the last `trace` or `stages` followed
     #[value(alias = "trace")]
     Path,
@@ -129,7 +131,8 @@ impl Exported {
     /// How many words may stand between it and the file.
     pub fn most_words(self, ending: &str) -> usize {
         match self {
-            Exported::Quantities | Exported::Envelope | Exported::Find | Exported::Cycle => usize::MAX,
+            Exported::Quantities | Exported::Envelope | Exported::Find => usize::MAX,
+            Exported::Cycle | Exported::Calibrate => usize::MAX,
             Exported::Slip | Exported::Force | Exported::Gap | Exported::Pressure => usize::MAX,
             Exported::Path if ending == "svg" => usize::MAX,
             Exported::Sensitivity | Exported::Critical | Exported::Limit | Exported::Check | Exported::Report => 1,

@@ -136,6 +136,7 @@ impl Session {
             }
             Exported::Find => report(io, |io| self.find(of, io))?,
             Exported::Cycle => report(io, |io| self.cycle(of, io))?,
+            Exported::Calibrate => report(io, |io| self.calibrate(of, io))?,
             Exported::Limit => {
                 let load = one("limit", "of which load")?;
                 report(io, |io| self.limit(&load, io))?
@@ -168,6 +169,8 @@ impl Session {
             Exported::Sweep => self.swept.as_deref().cloned().unwrap_or_default(),
             Exported::Combinations => Table::of(&without(list("combinations"), &["pairs"])),
             Exported::Envelope => Table::of(&list("envelope")),
+            Exported::Calibrate => Table::of(&list("measurements")),
+            Exported::Cycle if value.get("starts").is_some() => Table::of(&unfolded(&list("starts"), "slips")),
             Exported::Cycle => {
                 let numbered = list("cycles").into_iter().enumerate().map(|(index, cycle)| {
                     json!({"cycle": index + 1, "difference": cycle["difference"], "pairs": cycle["pairs"]})

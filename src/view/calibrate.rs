@@ -1,0 +1,88 @@
+//! Friction that explains measurements, and how well.
+
+use std::io::{self, Write};
+
+use super::path::exact;
+use super::style::{Role, Style};
+use super::table::{Cell, Column, Row, Table};
+use crate::path::calibrate::{Calibration, Group};
+use crate::text::number::{short, with_unit};
+
+/// Most sensitivities that stand in a row.
+const COLUMNS: usize = 4;
+
+fn paragraph(out: &mut dyn Write, role: Role, text: &str, style: &Style) -> io::Result<()> {
+    for line in style.wrap(&style.text(text), style.width) {
+        writeln!(out, "{}", style.paint(role, &line))?;
+    }
+    Ok(())
+}
+
+/// `f = 0.3 ± 0.002: 2 pairs slip, 1 sticks`.
+fn group(found: &Group) -> String {
+    let mut text = match found.interval {
+        Some([from, to]) if !found.identifiable && to > from => {
+            format!("{}: anything from {} to {} explains as much", found.parameter, exact(from), exact(to))
+        }
+        _ if !found.identifiable => format!("{} is not determined (here {})", found.parameter, exact(found.value)),
+        _ => format!("{} = {}", found.parameter, exact(found.value)),
+    };
+    if let Some(error) = found.standard_error {
+        text.push_str(&format!(" ± {}", short(error)));
+    }
+    if found.at_end && found.identifiable {
+        text.push_str(", the end of its range");
+    }
+    let states = [(found.slip, "slip"), (found.stick, "stick"), (found.open, "open")];
+    let states: Vec<String> =
+        states.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
+    if !states.is_empty() {
+        text.push_str(&format!(" (of its pairs {})", states.join(", ")));
+    }
+    if let Some(why) = &found.why {
+        text.push_str(&format!("; {why}"));
+    }
+    text
+}
+
+/// The groups, the measurements beside what is computed, what was looked at.
+pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Result<()> {
+    for each in &found.groups {
+        let role = if each.identifiable { Role::Accent } else { Role::Warning };
+        paragraph(out, role, &group(each), style)?;
+    }
+    let mut columns = vec![
+        Column::words("quantity"),
+        Column::words("measured"),
+        Column::words("computed"),
+        Column::words("residual"),
+    ];
+    let shown = &found.groups[..found.groups.len().min(COLUMNS)];
+    columns.extend(shown.iter().map(|group| Column::given(&format!("per {}", group.parameter), None).droppable(1)));
+    let mut table = Table::new(columns);
+    for row in &found.measurements {
+        let number = |value: f64| Cell::from(with_unit(&short(value), row.unit.as_deref()));
+        let error = row.error.map_or(String::new(), |error| format!(" ± {}", short(error)));
+        let measured = Cell::from(with_unit(&format!("{}{error}", short(row.measured)), row.unit.as_deref()));
+        let mut cells = vec![Cell::from(row.quantity.clone()), measured, number(row.computed), number(row.residual)];
+        cells.extend(row.sensitivity[..shown.len()].iter().map(|slope| Cell::number(*slope)));
+        table.rows.push(Row::new(cells));
+    }
+    table.write(out, style)?;
+    let spare = match found.degrees_of_freedom {
+        0 => "as many measurements as frictions: nothing is left to judge the fit by".to_owned(),
+        spare => format!("{spare} more than frictions"),
+    };
+    paragraph(out, Role::Plain, &format!("sum of squares {}; {spare}", short(found.squares)), style)?;
+    for [value, squares] in &found.other_minima {
+        let text = format!(
+            "also least nearby: {} = {}, sum of squares {}",
+            found.groups[0].parameter,
+            exact(*value),
+            short(*squares)
+        );
+        paragraph(out, Role::Warning, &text, style)?;
+    }
+    let role = if found.global { Role::Plain } else { Role::Muted };
+    paragraph(out, role, &found.sentence, style)
+}
