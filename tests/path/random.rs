@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stickslip::contact::law::PairLaw;
 use stickslip::contact::lcp::contact_lcp;
-use stickslip::contact::load_path::{order, path_lcp};
+use stickslip::contact::load_path::path_lcp;
 use stickslip::contact::problem::ContactProblem;
 use stickslip::lcp::basis::Basis;
 use stickslip::lcp::driver::run;
@@ -70,7 +70,8 @@ fn paths_and_warm_starts_end_in_the_answers_of_cold_runs() {
             });
             let increment = &next.load - &problem.load;
             let contact = path_lcp(&problem, &increment);
-            let mut engine = Parametric::new(Arc::clone(&contact.lcp), &basis, order(&contact)).expect("regular");
+            let mut engine =
+                Parametric::new(Arc::clone(&contact.lcp), &basis, contact.lexicographic_order()).expect("regular");
             let reach = Reach { target: 1.0, through: false, pivots: 10_000 };
             let path = engine.follow(reach, &mut |_| ControlFlow::Continue(()));
             assert_eq!(path.end, End::Target, "problem {k}.{step}, m = {m}");
