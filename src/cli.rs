@@ -7,6 +7,7 @@ mod input;
 mod look;
 mod new;
 mod order;
+mod prompt;
 mod replay;
 mod settings;
 mod solve;
@@ -37,7 +38,8 @@ use crate::view::style::Style;
     name = "stickslip",
     version,
     args_conflicts_with_subcommands = true,
-    after_help = "Exit status: 0 an answer, or the command did its job; 1 an `expect` failed; 2 bad usage or input;\n\
+    after_help = "`stickslip help WORD` also knows the commands of the prompt and the quantities.\n\n\
+                  Exit status: 0 an answer, or the command did its job; 1 an `expect` failed; 2 bad usage or input;\n\
                   3 no answer: a mechanism or no equilibrium; 4 no answer: an artefact or fault, a failed check or a \
                   limit; 130 interrupted."
 )]
@@ -80,6 +82,11 @@ pub fn main() -> Next {
         return Next::Exit(finish(Err(error), &Style::default()));
     }
     let arguments = order::command_first(&Cli::command(), std::env::args_os().collect());
+    if let Some((word, look)) = prompt::asked_help(&arguments) {
+        let style = look.style(&io::stdout());
+        let written = prompt::write_help(&word, &style, &mut Printable::new(io::stdout(), style.color));
+        return Next::Exit(status(written, false, &look.style(&io::stderr())));
+    }
     let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
         Err(error) => return Next::Exit(usage(&error, &arguments)),
@@ -137,6 +144,11 @@ fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
         tell_json(&json_export::problems(&[Problems::of_file("", message, "")]));
     }
     let printed = match shown {
+        _ if status != 0
+            && let Some(hint) = prompt::hint(arguments) =>
+        {
+            writeln!(io::stderr(), "error: {hint}")
+        }
         Some(shown) => shown.print(),
         None => io::stderr().write_all(printable::text(&error.render().to_string(), false).as_bytes()),
     };

@@ -40,11 +40,10 @@ impl New {
         let file = new::typed(&path);
         let open = format!("  stickslip {file}");
         let wide = open.chars().count() + 4;
-        let lines = [
-            format!("wrote {}: {}", path.display(), scenario.title),
-            format!("{open:<wide$}  opens it at the prompt, solved"),
-            format!("  stickslip tui {file}  shows it in the full screen, to vary it"),
-        ];
+        let mut lines = vec![format!("wrote {}: {}", path.display(), scenario.title)];
+        lines.extend(new::beyond_range(kind, &scenario)?);
+        lines.push(format!("{open:<wide$}  opens it at the prompt, solved"));
+        lines.push(format!("  stickslip tui {file}  shows it in the full screen, to vary it"));
         for line in lines {
             writeln!(out, "{}", style.text(&line))?;
         }

@@ -149,7 +149,8 @@ impl LoadParameter {
 /// The names that `trace` takes.
 pub fn known(prepared: &Prepared, scenario: &Scenario) -> String {
     let cases: Vec<&str> = prepared.cases.iter().map(|(name, _)| name.as_str()).collect();
-    let parameters: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
+    let free = scenario.parameters.iter().filter(|(_, parameter)| parameter.formula.is_none());
+    let parameters: Vec<&str> = free.map(|(name, _)| name.as_str()).collect();
     let mut text =
         if cases.is_empty() { "no load cases".to_owned() } else { format!("load cases {}", cases.join(", ")) };
     if !parameters.is_empty() {

@@ -87,6 +87,9 @@ impl Done {
     }
 }
 
+/// Name of the last column of a file.
+pub const CHECKSUM: &str = "checksum";
+
 /// Names of the columns between the parameters and the checksum.
 const COLUMNS: [&str; 16] = [
     "outcome",
@@ -265,7 +268,7 @@ impl Header {
         let axes = self.grid.iter().map(|range| range.split('=').next().unwrap_or_default().to_owned());
         axes.chain(COLUMNS.map(str::to_owned))
             .chain(self.quantities.iter().cloned())
-            .chain(["checksum".to_owned()])
+            .chain([CHECKSUM.to_owned()])
             .collect()
     }
 

@@ -156,9 +156,10 @@ impl Input {
         self.pasted = false;
         if let Some(files) = &self.files {
             files.aim(session.watched());
-        }
-        if signals.take_knock() && session.watched().is_some() {
-            reload(session, style, signals);
+            if signals.take_knock() && files.take_news() {
+                reload(session, style, signals);
+                files.aim(session.watched());
+            }
         }
         if let Some(helper) = self.editor.helper_mut() {
             helper.vocabulary = session.vocabulary();
@@ -253,7 +254,16 @@ fn reload(session: &mut Session, style: Style, signals: &Signals) {
     let (result, _) = execute(session, "reload", style, signals, false, false);
     if let Err(error) = result {
         signals.take_interrupt();
-        let _ = writeln!(io::stderr(), "{}", show_error(&error, &style));
+        let gone = session.watched().filter(|watched| watched.path.as_ref().is_some_and(|path| !path.exists()));
+        let told = match gone {
+            Some(watched) => {
+                let gone =
+                    format!("{} is gone: the last answer stays; it is read when it is there again", watched.name);
+                style.paint(Role::Warning, &style.text(&gone))
+            }
+            None => show_error(&error, &style),
+        };
+        let _ = writeln!(io::stderr(), "{told}");
     }
 }
 

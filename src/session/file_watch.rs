@@ -1,7 +1,8 @@
 //! The files of a scenario, looked at now and then: whoever saves one in another window sees it here.
 //!
 //! Looking again and again works over any file system, also where the machine that writes is another one. A file counts as
-//! changed when its bytes do; one that is being written is left alone until it rests.
+//! changed when its bytes do; one that is being written is left alone until it rests, and an empty or missing one, which
+//! an editor may be about to write, for longer.
 
 use std::fs;
 use std::io;
@@ -13,8 +14,12 @@ use crate::model::scenario::Scenario;
 use crate::text::file;
 use crate::text::hash::Hash;
 
-/// Between two looks: a change is seen, and seen to rest, within a tenth of a second.
+/// Between two looks: a change is seen, and seen to rest, within 0.15 s.
 const LOOK: Duration = Duration::from_millis(50);
+/// So many looks alike are rest.
+const REST: u32 = 2;
+/// So many of a file without bytes, or without a file: half a second.
+const LONG_REST: u32 = 10;
 /// A file system may date two changes within this time alike.
 const COARSE: Duration = Duration::from_secs(2);
 /// Files that are read at every look while their date is that young.
@@ -54,25 +59,34 @@ struct Look {
     /// The bytes that the session has, or was told of; `None` until the first look.
     known: Option<Hash>,
     stamp: Option<Stamp>,
+    /// How many looks found the stamp as it was.
+    rested: u32,
     /// Whether the stamp changed since the bytes were read.
     moved: bool,
+    /// Whether it was told that there is no file.
+    is_gone: bool,
 }
 
 impl Look {
     fn new(path: &Path, known: Option<Hash>) -> Look {
-        Look { path: path.to_owned(), known, stamp: None, moved: true }
+        Look { path: path.to_owned(), known, stamp: None, rested: 0, moved: true, is_gone: false }
     }
 
-    /// Whether the file has come to rest with bytes that were not known.
+    /// Whether the file has come to rest with bytes that were not known, or is gone, or has come back.
     fn is_news(&mut self) -> bool {
         let stamp = Stamp::of(&self.path);
         if stamp != self.stamp {
-            (self.stamp, self.moved) = (stamp, true);
+            (self.stamp, self.rested, self.moved) = (stamp, 0, true);
+        }
+        self.rested = self.rested.saturating_add(1);
+        let Some(stamp) = stamp else {
+            // told once
+            return self.rested > LONG_REST && !std::mem::replace(&mut self.is_gone, true);
+        };
+        let rest = if stamp.length == 0 { LONG_REST } else { REST };
+        if self.rested <= rest || !(self.moved || stamp.is_coarse()) {
             return false;
         }
-        let Some(stamp) = stamp.filter(|stamp| self.moved || stamp.is_coarse()) else {
-            return false;
-        };
         let Ok(bytes) = file::read(&self.path) else {
             return false;
         };
@@ -83,7 +97,8 @@ impl Look {
         self.moved = false;
         let hash = Hash::default().and(&bytes);
         let before = self.known.replace(hash);
-        before.is_some_and(|before| before != hash)
+        let came_back = std::mem::take(&mut self.is_gone);
+        came_back || before.is_some_and(|before| before != hash)
     }
 }
 
@@ -97,6 +112,8 @@ struct Shared {
 struct Aim {
     scenario: Option<Arc<Scenario>>,
     looks: Vec<Look>,
+    /// Whether there is news of this scenario that nobody has taken.
+    news: bool,
     ends: bool,
 }
 
@@ -120,6 +137,7 @@ impl FileWatch {
                 }
                 // each of them is looked at, also where the first one is news
                 if aim.looks.iter_mut().fold(false, |news, look| look.is_news() | news) {
+                    aim.news = true;
                     tell();
                 }
                 aim = theirs.wake.wait_timeout(aim, LOOK).unwrap_or_else(PoisonError::into_inner).0;
@@ -142,7 +160,15 @@ impl FileWatch {
         }
         aim.looks = scenario.as_deref().map(looks).unwrap_or_default();
         aim.scenario = scenario;
+        // what was told of the one before may stand in this one already
+        aim.news = false;
         self.0.wake.notify_one();
+    }
+
+    /// Whether there is news of the scenario aimed at; asked once, it is none any more.
+    pub fn take_news(&self) -> bool {
+        let mut aim = self.0.aim.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut aim.news)
     }
 }
 
@@ -169,9 +195,9 @@ mod tests {
     use super::*;
     use std::fs::write;
 
-    /// News within a few looks: the first sees a change, the next that it rests.
+    /// News within a few looks: the first sees a change, the next ones that it rests.
     fn news(look: &mut Look) -> bool {
-        (0..3).any(|_| look.is_news())
+        (0..=REST + 1).any(|_| look.is_news())
     }
 
     #[test]
@@ -194,6 +220,36 @@ mod tests {
         // back to what it was before is news too: the screen may show the error of what was between
         write(&path, "one").unwrap();
         assert!(news(&mut look));
+    }
+
+    /// An editor that writes in place first cuts the file to nothing.
+    #[test]
+    fn an_empty_file_is_news_only_when_it_stays_empty() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        write(&path, "one").unwrap();
+        let mut look = Look::new(&path, Some(Hash::of("one")));
+        assert!(!news(&mut look));
+        write(&path, "").unwrap();
+        assert!(!(0..LONG_REST).any(|_| look.is_news()));
+        write(&path, "two").unwrap();
+        assert!(news(&mut look) && !news(&mut look));
+        write(&path, "").unwrap();
+        assert_eq!((0..3 * LONG_REST).filter(|_| look.is_news()).count(), 1);
+    }
+
+    #[test]
+    fn a_file_that_is_gone_is_news_once_and_so_is_its_return() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        write(&path, "one").unwrap();
+        let mut look = Look::new(&path, Some(Hash::of("one")));
+        assert!(!news(&mut look));
+        fs::remove_file(&path).unwrap();
+        assert_eq!((0..3 * LONG_REST).filter(|_| look.is_news()).count(), 1);
+        // with the same bytes: what was said of it holds no longer
+        write(&path, "one").unwrap();
+        assert!(news(&mut look) && !news(&mut look));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::{Answer, Check};
+use crate::answer::record::Answer;
 use crate::text::number::residual;
 
 /// Writes the figures of the check and what each means; without an answer it says that nothing was checked.
@@ -14,13 +14,19 @@ pub fn write(out: &mut dyn Write, answer: &Answer, style: &Style) -> io::Result<
         let text = style.fit("nothing to check: there is no answer", style.width);
         return writeln!(out, "{text}");
     }
-    table(&answer.check).write(out, style)?;
+    table(answer).write(out, style)?;
     let (word, role) = if answer.check.passed { ("passed", Role::Good) } else { ("FAILED", Role::Bad) };
     writeln!(out, "{}", style.paint(role, word))
 }
 
 /// The table that is written.
-pub fn table(check: &Check) -> Table {
+pub fn table(answer: &Answer) -> Table {
+    let check = &answer.check;
+    // a bare LCP knows no contact
+    let [of_w, of_z] = match &answer.solution {
+        Some(_) => ["smallest w", "smallest z"],
+        None => ["smallest contact force or reserve", "smallest opening or slip"],
+    };
     let mut table = Table::new(vec![
         Column::words("check"),
         Column::numbers("relative", None),
@@ -29,8 +35,8 @@ pub fn table(check: &Check) -> Table {
     let mut push = |name: &str, value: f64, meaning: &str| {
         table.rows.push(Row::new(vec![Cell::from(name), Cell::from(residual(value)), Cell::new(meaning, Role::Muted)]));
     };
-    push("min w", check.min_w, "smallest contact force or reserve");
-    push("min z", check.min_z, "smallest opening or slip");
+    push("min w", check.min_w, of_w);
+    push("min z", check.min_z, of_z);
     push("w·z", check.complementarity, "the lesser of a couple, max");
     if let Some(equilibrium) = check.equilibrium {
         push("equilibrium", equilibrium, "residual of K u = F + Bᵀλ");

@@ -76,6 +76,12 @@ impl Scale {
         if self.is_short { trimmed(text) } else { text }
     }
 
+    /// A number with its power, for running text: `3.80952381`, `2.5e-6`.
+    pub fn in_line(&self, value: f64) -> String {
+        let number = self.number(value);
+        if self.power == 0 { number } else { format!("{number}e{}", self.power) }
+    }
+
     /// A number without its power, 0 where it is rounding beside the largest.
     pub fn measured(&self, value: f64) -> String {
         self.number(denoised(value, self.largest))

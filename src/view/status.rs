@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::scale::lengths;
+use super::scale::{Scale, lengths};
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
 use crate::answer::attempt::Attempt;
@@ -277,7 +277,10 @@ pub fn write(
     if !parameters.is_empty() {
         let value = |(name, value): (&String, &f64)| {
             let unit = scenario.parameters.get(name).and_then(|p| p.unit.as_deref());
-            format!("{name} = {}", with_unit(&in_full(*value), unit))
+            // what is computed has no digits that a user gave
+            let computed = parameters.formula(name).is_some();
+            let text = if computed { Scale::given([*value]).in_line(*value) } else { in_full(*value) };
+            format!("{name} = {}", with_unit(&text, unit))
         };
         rows.push(("parameters", parameters.iter().map(value).collect::<Vec<_>>().join(", ")));
     }
@@ -346,9 +349,16 @@ fn attempt(attempt: &Attempt) -> String {
     )
 }
 
+/// So many parts that only contact holds are told one by one.
+const LOOSE: usize = 3;
+
 /// Writes a line for every part that only contact holds; nothing where there are none.
 pub fn write_loose(out: &mut dyn Write, sentences: &[String], style: &Style) -> io::Result<()> {
-    for sentence in sentences {
+    let shown = if sentences.len() > LOOSE + 1 { LOOSE } else { sentences.len() };
+    let more = sentences.len() - shown;
+    let rest = (more > 0)
+        .then(|| format!("{more} more parts that only contact holds: `stickslip check FILE --format json` lists them"));
+    for sentence in sentences[..shown].iter().chain(&rest) {
         for line in style.hanging("loose: ", &style.text(sentence)) {
             writeln!(out, "{}", style.paint(Role::Muted, &line))?;
         }

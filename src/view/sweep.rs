@@ -6,35 +6,54 @@ use serde_json::Value;
 
 use super::style::Style;
 use super::table::{Cell, Column, Row, Table};
+use super::{force_unit, length_unit};
+use crate::model::units::Units;
+use crate::path::sweep::CHECKSUM;
 
 /// Columns that go first where the table is too wide.
 const LESS: [&str; 7] = ["failure", "max_x_n_pair", "max_x_n", "max_gap_pair", "max_gap", "closed", "class"];
 
-/// Writes the columns that hold anything; the first `axes` of them are the parameters.
+/// Unit of a column that every sweep of contact pairs has.
+pub fn unit_of(column: &str, units: &Units) -> Option<String> {
+    match column {
+        "p" | "max_x_n" => force_unit(units),
+        "max_slip" | "max_gap" => length_unit(units),
+        _ => None,
+    }
+}
+
+/// Writes the columns that hold anything, each with its unit; the first `axes` of them are the parameters. The checksum
+/// is for files.
 pub fn write(
     out: &mut dyn Write,
-    columns: &[String],
+    columns: &[(String, Option<String>)],
     rows: &[Vec<Value>],
     axes: usize,
     style: &Style,
 ) -> io::Result<()> {
-    let used: Vec<usize> = (0..columns.len())
-        .filter(|&k| k < axes || rows.iter().any(|row| !matches!(&row[k], Value::Null) && row[k] != 0 && row[k] != 0.0))
-        .collect();
+    let holds = |k: usize| rows.iter().any(|row| !matches!(&row[k], Value::Null) && row[k] != 0 && row[k] != 0.0);
+    // the place of a largest value that is 0 everywhere says nothing
+    let of_nothing = |name: &str| {
+        name.strip_suffix("_pair")
+            .is_some_and(|of| columns.iter().position(|(known, _)| known == of).is_some_and(|k| !holds(k)))
+    };
+    let is_shown = |k: usize| columns[k].0 != CHECKSUM && holds(k) && !of_nothing(&columns[k].0);
+    let used: Vec<usize> = (0..columns.len()).filter(|&k| k < axes || is_shown(k)).collect();
     let is_words = |k: usize| rows.iter().any(|row| row[k].is_string());
     let is_count = |k: usize| rows.iter().all(|row| row[k].is_u64() || row[k].is_null());
     let mut table = Table::new(
         used.iter()
             .map(|&k| {
-                let rank = LESS.iter().position(|name| *name == columns[k]).map_or(0, |at| (LESS.len() - at) as u8);
+                let (name, unit) = &columns[k];
+                let rank = LESS.iter().position(|less| less == name).map_or(0, |at| (LESS.len() - at) as u8);
                 let column = if is_words(k) {
-                    Column::words(&columns[k])
+                    Column::words(name)
                 } else if k < axes {
-                    Column::given(&columns[k], None)
+                    Column::given(name, unit.clone())
                 } else if is_count(k) {
-                    Column::count(&columns[k])
+                    Column::count(name)
                 } else {
-                    Column::numbers(&columns[k], None)
+                    Column::numbers(name, unit.clone())
                 };
                 if k < axes { column } else { column.droppable(rank) }
             })

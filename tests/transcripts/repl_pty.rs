@@ -444,7 +444,19 @@ fn a_watched_file_is_solved_when_it_is_saved_and_the_line_stays() {
     // an editor that writes beside the file and renames; what was set does not fit any more
     block(folder.path(), "three", "0.7");
     terminal.wait("right again", |screen| screen.matches("b.json read again").count() == 2);
-    terminal.ask("watch off", "no file is watched");
+    // one that is taken away is told once, and read when it comes back, also as it was
+    std::fs::rename(folder.path().join("b.json"), folder.path().join("away.json")).unwrap();
+    terminal.wait("that it is gone", |screen| screen.contains("b.json is gone: the last answer stays"));
+    terminal.ask("params", "0.7");
+    std::fs::rename(folder.path().join("away.json"), folder.path().join("b.json")).unwrap();
+    terminal.wait("that it is back", |screen| screen.contains("b.json is as it was"));
+    // an editor that cuts the file and writes it a moment later: one answer, no error
+    std::fs::write(folder.path().join("b.json"), "").unwrap();
+    std::thread::sleep(Duration::from_millis(200));
+    block(folder.path(), "four", "0.8");
+    terminal.wait("the one answer", |screen| screen.matches("b.json read again").count() == 3);
+    let screen = terminal.ask("watch off", "no file is watched");
+    assert_eq!(screen.matches("the file is empty").count(), 0, "{screen}");
     terminal.send("quit\r");
     assert_eq!(terminal.end(), 0);
 }

@@ -5,7 +5,9 @@ use serde::Serialize;
 
 use crate::answer::record::Ray;
 use crate::path::limit;
+use crate::path::load_parameter::known;
 use crate::path::record::PathRecord;
+use crate::path::start::PathError;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::start::case_names;
@@ -21,7 +23,7 @@ use crate::view;
 #[command(after_help = "Example:\n  limit pull\n  limit F2\n  limit cycle F2 0..100")]
 pub struct Limit {
     /// Load case, or a parameter in which the loads are linear; `cycle` before it
-    #[arg(value_name = "LOAD", required = true, num_args = 1..=3, allow_hyphen_values = true)]
+    #[arg(value_name = "LOAD", num_args = 0..=3, allow_hyphen_values = true)]
     words: Vec<String>,
 }
 
@@ -40,10 +42,7 @@ impl Action for Limit {
         match &self.words[..] {
             [first, rest @ ..] if first == "cycle" && !rest.is_empty() => session.limit_cycle(rest, io)?,
             [name] => session.limit(name, io)?,
-            _ => {
-                let refusal = "limit: expected one load: `limit LOAD`, or `limit cycle LOAD [A..B]`";
-                return Err(CommandError::Refused(refusal.to_owned()));
-            }
+            _ => return Err(session.no_load()),
         }
         Ok(Next::Continue)
     }
@@ -66,12 +65,29 @@ struct LimitReport<'a> {
 }
 
 impl Session {
+    /// That one load is expected, and which ones there are.
+    fn no_load(&self) -> CommandError {
+        let known = self.now.prepared.as_ref().map_or_else(String::new, |prepared| known(prepared, &self.now.scenario));
+        CommandError::Refused(format!(
+            "limit: of which load? `limit LOAD`, or `limit cycle LOAD [A..B]`; there are {known}"
+        ))
+    }
+
     /// `limit LOAD`.
     pub(in crate::session) fn limit(&mut self, name: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let ground = self.ground(io.watch)?;
         let cases = case_names(&ground.prepared);
         let what = name.to_owned();
-        let found = worker::run(io.watch, move |watch| limit::limit(ground.case(watch), Some(&ground.solved), &what))??;
+        let found = worker::run(io.watch, move |watch| limit::limit(ground.case(watch), Some(&ground.solved), &what))?;
+        let found = found.map_err(|error| match error {
+            // no exact path leads over it, but runs of their own can bracket it
+            PathError::Mixed { name, why } => {
+                let why =
+                    format!("{why}; `find least|most {name} A..B where outcome answer` brackets where answers end");
+                PathError::Mixed { name, why }
+            }
+            error => error,
+        })?;
         let unit = self.now.scenario.parameters.get(name).and_then(|parameter| parameter.unit.clone());
         let report = LimitReport {
             load: name,

@@ -120,6 +120,21 @@ pub fn write(kind: &str, words: &[String], watch: &dyn Watch) -> Result<(PathBuf
     Ok((path, scenario))
 }
 
+/// A note for each value that lies outside the range its kind has for it: the slider was widened, the kind was not made
+/// for that.
+///
+/// # Errors
+/// The template is broken, which a test excludes.
+pub fn beyond_range(kind: &str, scenario: &Scenario) -> Result<Vec<String>, CommandError> {
+    let usual = template::find(kind).and_then(Template::default_scenario).map_err(refused)?;
+    let outside = scenario.parameters.iter().filter_map(|(name, parameter)| {
+        let (min, max) = usual.parameters.get(name).and_then(|usual| usual.min.zip(usual.max))?;
+        let is_outside = parameter.formula.is_none() && !(min..=max).contains(&parameter.value);
+        is_outside.then(|| format!("{name} = {} lies outside {min} … {max}, the usual range", parameter.value))
+    });
+    Ok(outside.collect())
+}
+
 /// How a file is named in a command: one that would be taken for an embedded scenario or an option has its folder.
 pub fn typed(path: &Path) -> String {
     let name = path.display().to_string();
@@ -145,6 +160,7 @@ impl Session {
         };
         let (path, scenario) = write(kind, words, io.watch)?;
         let mut notes = vec![format!("wrote {}", path.display())];
+        notes.extend(beyond_range(kind, &scenario)?);
         notes.push(format!("{}: {}", scenario.name, scenario.title));
         notes.extend(scenario.description.clone());
         let changed = self.change_noting(Setup::of(scenario), text, &notes, io);

@@ -23,6 +23,7 @@ const EXAMPLE: &str = "Example:\n  show x_n c1, z_t c6\n  show sum x_n *, count 
 /// `expect`, in probes, in `envelope`, `sweep --columns`, `trace … of` and `plot path`.
 #[derive(Debug, Args)]
 #[command(
+    visible_alias = "probes",
     after_help = EXAMPLE,
     after_long_help = format!("{}\n\n{EXAMPLE}", quantities::help())
 )]
@@ -32,8 +33,12 @@ pub struct Show {
     words: Vec<String>,
 }
 
-pub const SHOW: Command =
-    Command { in_0_1: false, complete: |asked| asked.quantities(asked.given), ..Command::of::<Show>("show") };
+pub const SHOW: Command = Command {
+    in_0_1: false,
+    alias: Some("probes"),
+    complete: |asked| asked.quantities(asked.given),
+    ..Command::of::<Show>("show")
+};
 
 impl Action for Show {
     fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {

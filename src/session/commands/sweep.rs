@@ -11,6 +11,7 @@ use serde_json::Value;
 use crate::export::atomic;
 use crate::export::table::Table;
 use crate::model::quantity::{self, Quantity};
+use crate::model::scenario::{Scenario, Source};
 use crate::path::grid::{Axis, Grid, POINTS};
 use crate::path::merge::Shards;
 use crate::path::sweep;
@@ -83,6 +84,19 @@ impl Session {
         found.map_err(|error| CommandError::Refused(format!("sweep: {error}")))
     }
 
+    /// The columns of a sweep with their units: parameters, what every sweep has, quantities.
+    fn with_units(&self, columns: &[String], grid: &Grid, quantities: &[Quantity]) -> Vec<(String, Option<String>)> {
+        let Scenario { parameters, units, .. } = &*self.now.scenario;
+        let is_plain = matches!(self.now.scenario.source, Source::Lcp(_));
+        let unit = |(k, name): (usize, &String)| match quantities.iter().find(|one| one.to_string() == *name) {
+            _ if k < grid.axes.len() => parameters.get(name).and_then(|parameter| parameter.unit.clone()),
+            Some(quantity) => quantity.unit(units),
+            None if is_plain => None,
+            None => view::sweep::unit_of(name, units),
+        };
+        columns.iter().enumerate().map(|(k, name)| (name.clone(), unit((k, name)))).collect()
+    }
+
     fn run_sweep(&mut self, asked: &Sweep, io: &mut Output<'_>) -> Result<(), CommandError> {
         let axes = axes(&asked.words)?;
         let grid = Grid::new(&self.now.scenario, axes)?;
@@ -122,7 +136,7 @@ impl Session {
         let table = Arc::new(Table { columns: columns.clone(), rows: rows.clone() });
         let report = SweepReport { columns: &columns, rows: &rows, complete: done.is_complete() };
         io.show(&report, |out, style| {
-            view::sweep::write(out, &columns, &rows, grid.axes.len(), style)?;
+            view::sweep::write(out, &self.with_units(&columns, &grid, &quantities), &rows, grid.axes.len(), style)?;
             if !done.is_complete() {
                 writeln!(out, "stopped after {} of {} points", done.written, done.total)?;
             }

@@ -1,18 +1,24 @@
 //! The words of a line → a command, by the table of commands.
 
+use crate::model::quantity;
 use crate::session::commands;
 use crate::session::language::command::{Command, Parsed};
 use crate::session::language::error::GrammarError;
 use crate::session::language::suggestion::near;
 use crate::session::language::tokens;
 
+/// The command of a name or an alias.
+pub fn exact(word: &str) -> Option<&'static Command> {
+    commands::all().find(|command| command.name == word || command.alias == Some(word))
+}
+
 /// The command of a name, an alias, or a prefix that only one command has.
 ///
 /// # Errors
 /// Unknown or ambiguous.
 pub fn resolve(word: &str) -> Result<&'static Command, GrammarError> {
-    if let Some(exact) = commands::all().find(|command| command.name == word || command.alias == Some(word)) {
-        return Ok(exact);
+    if let Some(command) = exact(word) {
+        return Ok(command);
     }
     let fitting: Vec<&Command> =
         commands::all().filter(|command| !word.is_empty() && command.name.starts_with(word)).collect();
@@ -22,7 +28,11 @@ pub fn resolve(word: &str) -> Result<&'static Command, GrammarError> {
         ([one], _) | (_, [one]) => Ok(*one),
         ([], _) => Err(GrammarError::Unknown {
             word: word.to_owned(),
-            near: near(word, commands::all().map(|command| command.name)),
+            // a quantity is asked for by its exact word
+            near: match quantity::entry(word) {
+                Some(entry) => vec![format!("show {} {}", entry.word, entry.meaning.arguments()).trim_end().to_owned()],
+                None => near(word, commands::all().map(|command| command.name)),
+            },
         }),
         _ => Err(GrammarError::Ambiguous {
             word: word.to_owned(),

@@ -3,9 +3,11 @@
 use crate::session::commands::GROUPS;
 use crate::session::commands::ray::RAY;
 use crate::session::language::error::GrammarError;
-use crate::session::language::grammar::resolve;
+use crate::session::language::grammar::{exact, resolve};
+use crate::session::language::quantities;
 use crate::session::language::topics::{self, TOPICS};
 use crate::session::{CommandError, Output, Session};
+use crate::text::number::{in_full, with_unit};
 use crate::view::style::Style;
 
 /// The overview of all commands, by group.
@@ -32,8 +34,23 @@ pub fn overview(style: &Style) -> String {
     }
     add("  ray            ", "also how to find out what a ray means, step by step");
     add("", "");
-    add("", "`help COMMAND` says more, with an example.");
+    add("", "`help WORD` says more: of a command with an example, of a quantity, a parameter or a load case.");
     text
+}
+
+/// What there is to say of a word: a topic, a command, a quantity, or both of these.
+///
+/// # Errors
+/// It is nothing of these, or may be several commands.
+pub fn page(word: &str, style: &Style) -> Result<String, GrammarError> {
+    if let Some(topic) = topics::find(word) {
+        return Ok(topic.text(style));
+    }
+    match (quantities::about(word, style), exact(word)) {
+        (Some(text), None) => Ok(text),
+        (Some(text), Some(command)) => Ok(format!("{}\n{text}", help(command.name, style.width)?)),
+        (None, _) => help(word, style.width),
+    }
 }
 
 /// The help of one command, wrapped at `width` columns.
@@ -58,13 +75,13 @@ impl Session {
     pub(in crate::session) fn show_help(&self, word: Option<&str>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let text = match word {
             None => overview(&io.style),
-            Some(word) => match topics::find(word) {
-                Some(topic) => topic.text(&io.style),
-                None => {
-                    let text = help(word, io.style.width)?;
-                    let is_ray = resolve(word).is_ok_and(|command| command.name == RAY.name);
-                    if is_ray { format!("{text}\n{}", self.ray_guide(&io.style)) } else { text }
+            Some(word) => match (page(word, &io.style), self.about_name(word)) {
+                (Ok(text), _) if resolve(word).is_ok_and(|command| command.name == RAY.name) => {
+                    format!("{text}\n{}", self.ray_guide(&io.style))
                 }
+                (Ok(text), Some(about)) => format!("{text}\n{about}"),
+                (Err(_), Some(about)) => about,
+                (page, None) => page?,
             },
         };
         io.show(&text, |out, style| {
@@ -74,6 +91,26 @@ impl Session {
             Ok(())
         })?;
         Ok(())
+    }
+
+    /// What a parameter or a load case of the scenario is, and what can be done with it.
+    fn about_name(&self, word: &str) -> Option<String> {
+        if let Some(parameter) = self.now.scenario.parameters.get(word) {
+            let value = with_unit(&in_full(self.now.values[word]), parameter.unit.as_deref());
+            let about = parameter.about.as_ref().map_or_else(String::new, |about| format!(": {about}"));
+            return Some(match &parameter.formula {
+                Some(formula) => format!("parameter {word} = {} = {value}{about}; computed, not set\n", formula.text()),
+                None => format!(
+                    "parameter {word} = {value}{about}\n`set {word} VALUE`, `sweep {word} A..B`, `find {word} A..B where …`\n"
+                ),
+            });
+        }
+        let prepared = self.now.prepared.as_ref()?;
+        let (_, factor) = prepared.cases.iter().find(|(case, _)| case == word)?;
+        let factor = in_full(factor.value(&self.now.values));
+        Some(format!(
+            "load case {word}, factor {factor}\n`limit {word}`, `trace {word} to F`, `find {word} A..B where …`\n"
+        ))
     }
 }
 

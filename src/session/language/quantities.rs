@@ -20,6 +20,22 @@ pub fn help() -> String {
     )
 }
 
+/// What the word of a quantity means and how it is asked for; `None` for any other word.
+pub fn about(word: &str, style: &Style) -> Option<String> {
+    let entry = quantity::entry(word)?;
+    let usage = format!("{} {}", entry.word, entry.meaning.arguments());
+    let usage = usage.trim_end();
+    let mut lines = style.hanging(&format!("{usage}  "), entry.about);
+    let choices = entry.choices.join(", ");
+    lines.extend(style.wrap(&choices, style.width));
+    let where_used = format!(
+        "a quantity: `show {usage}`, `expect {usage} = …`, and in probes, `find`, `envelope`, `sweep --columns`, `plot path`; \
+         `help show` lists all of them"
+    );
+    lines.extend(style.wrap(&where_used, style.width));
+    Some(lines.join("\n") + "\n")
+}
+
 impl Asked<'_> {
     /// What may follow `given`, the words of quantities: the next argument of the last one, or another.
     pub fn quantities(&self, given: &[String]) -> Vec<Candidate> {

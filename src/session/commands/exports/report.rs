@@ -152,7 +152,7 @@ impl Session {
         blocks.extend(answer.notes.iter().cloned().map(Block::Text));
         if answer.is_answer() {
             blocks.push(Block::Heading("Check".into()));
-            blocks.push(Block::Table(view::check::table(&answer.check), ""));
+            blocks.push(Block::Table(view::check::table(answer), ""));
             let word = if answer.check.passed { "passed" } else { "failed" };
             blocks.push(Block::Text(format!("The check from R, RF, the laws and K has {word}.")));
         }

@@ -1,0 +1,54 @@
+//! The commands of the prompt, where the shell is asked for them: their help, and how to give them.
+
+use std::ffi::OsString;
+use std::io::Write;
+
+use clap::{CommandFactory, Parser};
+
+use super::Cli;
+use super::ending::Failure;
+use super::look::Look;
+use crate::session::language::grammar::exact;
+use crate::session::language::help;
+use crate::text::printable;
+use crate::view::style::Style;
+
+/// The word of `stickslip help WORD`, where that is no command of the shell, and how its help is to look.
+pub fn asked_help(arguments: &[OsString]) -> Option<(String, Look)> {
+    let (program, rest) = arguments.split_first()?;
+    let (help, rest) = rest.split_first()?;
+    let is_word = |word: &&OsString| word.to_str().is_some_and(|word| !word.starts_with('-'));
+    // options stand on one side of the word
+    let (word, options) = match rest.split_first()? {
+        (first, options) if is_word(&first) => (first, options),
+        _ => rest.split_last()?,
+    };
+    let word = word.to_str().filter(|_| help == "help")?;
+    let is_of_the_shell = word == "help" || Cli::command().find_subcommand(word).is_some();
+    let look = Cli::try_parse_from(std::iter::once(program).chain(options)).ok()?;
+    (!is_of_the_shell && look.command.is_none()).then(|| (word.to_owned(), look.look))
+}
+
+/// Writes what the prompt says of a command, a topic or a quantity.
+///
+/// # Errors
+/// A word that is none of these.
+pub fn write_help(word: &str, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
+    let unknown = |error| Failure::Status(2, format!("{error}; `stickslip --help` lists those of the shell"));
+    let text = help::page(word, style).map_err(unknown)?;
+    for line in text.lines() {
+        writeln!(out, "{}", style.text(line))?;
+    }
+    Ok(0)
+}
+
+/// How to give a command of the prompt that was given to the shell; `None` where the arguments begin with none.
+pub fn hint(arguments: &[OsString]) -> Option<String> {
+    let words: Vec<String> = arguments.get(1..)?.iter().map(|word| printable::line(&word.to_string_lossy())).collect();
+    let command = exact(words.first()?)?;
+    let line = command.name;
+    Some(format!(
+        "`{line}` is a command of the prompt: `stickslip SCENARIO`, then `{line} …`, or `echo '{line} …' | stickslip \
+         SCENARIO`; `stickslip help {line}` says more"
+    ))
+}
