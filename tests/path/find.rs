@@ -167,6 +167,28 @@ fn overturning_against_sliding() {
     assert_eq!(found["exact"], true);
 }
 
+/// The dam slides where the water is f N/T times as heavy as water, and turns over its toe where the moments about that are
+/// in balance; from the friction on at which both are the same its limit is that of turning.
+#[test]
+fn the_dam_turns_over_where_it_would_slide_later() {
+    let (z, h, b, crest, drain) = (28.0, 30.0, 24.0, 4.0, 0.6);
+    let (weight, uplift, thrust) = (24.0 * h * (b + crest) / 2.0, drain * 9.81 * z * b / 2.0, 9.81 * z * z / 2.0);
+    // rectangle and triangle of the section, the triangle of uplift with its largest at the heel
+    let about_toe = 24.0 * h * (crest * (b - crest / 2.0) + (b - crest) / 2.0 * (b - crest) * 2.0 / 3.0);
+    let turning = (about_toe - uplift * 2.0 * b / 3.0) / (thrust * z / 3.0);
+    let sliding = (weight - uplift) / thrust;
+    let mut session = session(embedded::load("dam").expect("embedded"));
+    let found = report(&mut session, &format!("find f 1..2 where limit water < {}", turning - 1e-9)).unwrap();
+    let (places, holds) = places(&found);
+    assert_eq!((places.len(), holds.len()), (1, 1), "{found}");
+    assert!((places[0] - turning / sliding).abs() < 1e-6, "{found}, not {}", turning / sliding);
+    for (f, limit, mode) in [(1.6, 1.6 * sliding, "translation"), (1.8, turning, "rotation")] {
+        let found = text(&mut session, &format!("set f {f}; limit water"));
+        assert!(found.contains(&format!("rigid {mode}")) || found.contains(&format!("{mode} of the whole")), "{found}");
+        near(&report(&mut session, "limit water").unwrap()["limit"], limit, 1e-6);
+    }
+}
+
 #[test]
 fn envelopes_tell_the_place_that_governs() {
     let mut session = beam();

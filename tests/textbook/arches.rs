@@ -7,6 +7,9 @@ use serde_json::{Map, Value, json};
 use stickslip::answer::record::{OutcomeKind, Verdict};
 use stickslip::model::rules::Rules;
 use stickslip::path::limit::limit;
+use stickslip::session::{Format, Output, Session};
+use stickslip::view::style::Style;
+use stickslip::watch::Quiet;
 
 use crate::common::Case;
 
@@ -79,6 +82,52 @@ fn limits_of_arches_are_those_of_an_independent_linear_program() {
         assert_eq!(collapse.verdict, Some(Verdict::Certified), "{blocks}: {}", collapse.explanation);
         assert!(confirmed);
     }
+}
+
+/// The least friction with which an odd number of rigid blocks stands under its weight, from statics. Half the arch, its
+/// weight per radian 1, is pushed by a thrust h in the middle of the keystone, level by symmetry and at a height y. At the
+/// joint at the angle a from there N = h cos a + a sin a and T = h sin a − a cos a; moments about the centre put N at the
+/// radius (h y + 1 − cos a)/N, which must lie in the joint. T/N grows with h at every joint, so that the largest |T/N|
+/// falls and then rises.
+fn least_friction(blocks: usize, thickness: f64) -> f64 {
+    let joints: Vec<f64> = (0..=blocks / 2).map(|k| (k as f64 + 0.5) * PI / blocks as f64).collect();
+    let normal = |h: f64, a: f64| h * a.cos() + a * a.sin();
+    let friction =
+        |h: f64| joints.iter().map(|&a| ((h * a.sin() - a * a.cos()) / normal(h, a)).abs()).fold(0.0, f64::max);
+    // Whether one h y suits every joint.
+    let stands = |h: f64| {
+        let moment = |radius: f64| joints.iter().map(move |&a| radius * normal(h, a) - (1.0 - a.cos()));
+        let lower = moment(1.0 - thickness / 2.0).fold(f64::NEG_INFINITY, f64::max);
+        lower <= moment(1.0 + thickness / 2.0).fold(f64::INFINITY, f64::min)
+    };
+    let grid = (1..=20_000).map(|i| f64::from(i) * 1e-4);
+    let best = grid.filter(|&h| stands(h)).min_by(|a, b| friction(*a).total_cmp(&friction(*b))).expect("it stands");
+    // A finer look around it; thrusts at which it does not stand are worse than any.
+    let cost = |h: f64| if stands(h) { friction(h) } else { f64::INFINITY };
+    let (mut best, mut step) = (best, 1e-4);
+    while step > 1e-14 {
+        step /= 10.0;
+        best =
+            (-10..=10).map(|i| best + f64::from(i) * step).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).expect("some");
+    }
+    friction(best)
+}
+
+/// With t/R = 0.15 and 21 blocks the linear program finds 0.350458429 as well.
+#[test]
+fn the_least_friction_of_an_arch_is_that_of_statics() {
+    for (blocks, thickness) in [(21, 0.15), (9, 0.2)] {
+        let expected = least_friction(blocks, thickness);
+        let mut session = Session::new(arch(blocks, thickness, 0.7).scenario, &Quiet).unwrap();
+        let mut text = Vec::new();
+        let mut io = Output::new(&mut text, Style::default(), Format::JsonLines, &Quiet);
+        session.execute("find least f 0..1 where outcome answer", &mut io).unwrap();
+        let found = &serde_json::from_slice::<Value>(&text).unwrap()["report"];
+        let value = found["value"].as_f64().unwrap();
+        assert!((value - expected).abs() < 2e-8, "{blocks}: {value}, not {expected}");
+        assert_eq!(found["collapse"]["verdict"], "certified", "{found}");
+    }
+    assert!((least_friction(21, 0.15) - 0.350458429).abs() < 2e-8);
 }
 
 /// Displacements (u_x, u_y) of the nodes of a proof's motion, judged from the user's data: every block stays rigid, every
