@@ -36,6 +36,7 @@ pub mod structure;
 pub mod superelement;
 pub mod support;
 pub mod template;
+pub mod tributary;
 pub mod units;
 pub mod uses;
 mod words;

@@ -512,6 +512,12 @@ fn footing() {
         // and those are near the continuous bed: a triangle beyond the kern, by the square of the mesh
         let edge = if e > b / 6.0 { 2.0 * n / (3.0 * (b / 2.0 - e)) } else { n / b * (1.0 + 6.0 * e / b) };
         footing.expect("edge_settlement", -edge / k, 0.0, 2e-3);
+        // and so is what the ground presses with, force per length: the nodal forces dip at the last node, it does not
+        let traction = footing.report("plot traction");
+        let loaded = traction[0]["pairs"].as_array().unwrap().last().unwrap();
+        assert_eq!(loaded["id"], "soil[60]");
+        let pressed = loaded["normal"].as_f64().unwrap();
+        assert!((pressed - edge).abs() <= 2e-3 * edge, "{pressed}, not {edge}");
         let told = footing.parameter("edge");
         assert!((told - edge).abs() <= 1e-12 * edge, "edge = {told}, not {edge}");
     }

@@ -20,7 +20,7 @@ use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
 
 /// Lines of a plot if the user names none.
-const HEIGHT: usize = 14;
+pub(super) const HEIGHT: usize = 14;
 /// Lines of the picture of a structure if the user names none.
 const STRUCTURE_HEIGHT: usize = 20;
 
@@ -35,6 +35,8 @@ pub enum Picture {
     Gap,
     /// Compressive force x_n
     Pressure,
+    /// x_n and x_τ of edges per length
+    Traction,
     /// p over the pivots
     P,
     /// The structure with the states of its pairs, and its deformed shape
@@ -151,8 +153,9 @@ impl Session {
                 Picture::Force => self.plot_zone(Quantity::Force, at, height, io),
                 Picture::Gap => self.plot_zone(Quantity::Gap, at, height, io),
                 Picture::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
+                Picture::Traction => self.plot_traction(at, height, io),
                 _ if !at.is_empty() => Err(CommandError::Refused(
-                    "plot: `--at` belongs to slip, force, gap and pressure; use `step` for the others".into(),
+                    "plot: `--at` belongs to slip, force, gap, pressure and traction; use `step` for the others".into(),
                 )),
                 Picture::P => self.plot_p(height, io),
                 Picture::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
@@ -449,7 +452,7 @@ impl Shape<'_> {
     }
 }
 
-fn borrowed(states: &[(String, Vec<PairState>)]) -> Vec<(&str, &[PairState])> {
+pub(super) fn borrowed(states: &[(String, Vec<PairState>)]) -> Vec<(&str, &[PairState])> {
     states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect()
 }
 

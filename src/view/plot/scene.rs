@@ -43,8 +43,10 @@ pub struct Picture<'a> {
 
 /// The largest ordinate of a diagram as a share of the model.
 const ORDINATE: f64 = 0.125;
-/// Straight pieces of a bent frame element.
-const PIECES: usize = 8;
+/// Straight pieces of a bent frame element where there are many of them, and where there are few.
+const PIECES: [usize; 2] = [8, 32];
+/// So many pieces of all bent elements are enough: the more elements, the fewer pieces of each.
+const ALL_PIECES: usize = 512;
 
 /// u of every node of the structure: (u_x, u_y, rotation), 0 where the list has no such node.
 pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[f64; 3]> {
@@ -104,13 +106,16 @@ pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
     for elements in plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)) {
         in_plate[elements.clone()].fill(true);
     }
+    let [many, few] = PIECES;
+    let bending = structure.elements.iter().filter(|element| element.bends()).count();
+    let pieces = (ALL_PIECES / bending.max(1)).clamp(many, few);
     let mut faces = Vec::new();
     for (index, element) in structure.elements.iter().enumerate() {
         if element.shape().is_area() {
             faces.push(element.ring().map(at).collect());
         }
         if element.bends() {
-            outline.push(bent(structure, element, u, factor));
+            outline.push(bent(structure, element, u, factor, pieces));
         } else if !element.shape().is_area() {
             outline.push(element.nodes.iter().map(|&node| at(node)).collect());
         } else if !in_plate[index] {
@@ -207,7 +212,7 @@ fn hull(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 }
 
 /// Shape of a frame element: linear along it, cubic across it; at a hinge its end turns freely.
-fn bent(structure: &Structure, element: &Element, u: &[[f64; 3]], factor: f64) -> Vec<(f64, f64)> {
+fn bent(structure: &Structure, element: &Element, u: &[[f64; 3]], factor: f64, pieces: usize) -> Vec<(f64, f64)> {
     let &[a, b] = &element.nodes[..] else {
         return Vec::new();
     };
@@ -232,7 +237,7 @@ fn bent(structure: &Structure, element: &Element, u: &[[f64; 3]], factor: f64) -
         [true, true] => (chord, chord),
     };
     let straight = (across(ua), across(ub), turn_a, turn_b) == (0.0, 0.0, 0.0, 0.0);
-    let pieces = if straight { 1 } else { PIECES };
+    let pieces = if straight { 1 } else { pieces };
     (0..=pieces)
         .map(|i| {
             let t = i as f64 / pieces as f64;

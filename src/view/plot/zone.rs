@@ -185,6 +185,43 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
     chart
 }
 
+/// The chart of x_n and x_τ per length of edge, for states of pairs that all lie on edges; `lengths` are those of the
+/// pairs.
+pub fn traction(states: &[(&str, &[PairState])], lengths: &[f64], units: &Units) -> Chart {
+    let spread = |pairs: &[PairState]| -> Vec<PairState> {
+        let over = |(pair, length): (&PairState, &f64)| {
+            let (x_n, x_t, bound) = (pair.x_n / length, pair.x_t / length, pair.bound / length);
+            PairState { x_n, x_t, bound, ..pair.clone() }
+        };
+        pairs.iter().zip(lengths).map(over).collect()
+    };
+    let friction = states.iter().any(|(_, pairs)| pairs.iter().any(|pair| pair.law.has_tangential_joint()));
+    let mut curves = Vec::new();
+    let mut push = |series: Vec<Series>| {
+        let number = curves.last().map_or(0, |curve: &Curve| curve.number + 1);
+        curves.extend(series.into_iter().map(|series| Curve { series, number, line: Line::Marked }));
+    };
+    for (label, pairs) in states {
+        let pairs = spread(pairs);
+        let named = |word: &str| if states.len() > 1 { format!("{label}: {word}") } else { word.to_owned() };
+        push(pressure_series(&named("normal, x_n/a"), &pairs));
+        if friction {
+            let [force, ..] = force_series(&named("tangential, x_τ/a"), &pairs);
+            push(force);
+        }
+    }
+    let pairs = states.first().map_or(&[][..], |(_, pairs)| pairs);
+    let unit = force_unit(units).zip(length_unit(units)).map(|(force, length)| format!("{force}/{length}"));
+    let mut chart =
+        Chart { ordinate: unit, ..chart("Contact traction, force per length a of the edge", curves, pairs, units) };
+    if let [(label, _)] = states
+        && !label.is_empty()
+    {
+        chart.about = format!(" · {label}");
+    }
+    chart
+}
+
 /// Draws the direction of a ray, z̄_n and z̄_τ (largest 1), over the zone of `pairs`.
 pub fn mode(
     out: &mut dyn Write,

@@ -92,6 +92,8 @@ pub enum Exported {
     Gap,
     /// Picture: compressive force
     Pressure,
+    /// Forces of edge contacts per length
+    Traction,
     /// Picture: p over the pivots
     P,
     /// Picture: bending moments
@@ -122,7 +124,8 @@ impl Exported {
             | Exported::Slip
             | Exported::Force
             | Exported::Gap
-            | Exported::Pressure => &["svg"],
+            | Exported::Pressure
+            | Exported::Traction => &["svg"],
             Exported::P | Exported::Moment | Exported::Shear | Exported::Axial => &["svg"],
             _ => &["csv", "json"],
         }
@@ -133,7 +136,7 @@ impl Exported {
         match self {
             Exported::Quantities | Exported::Envelope | Exported::Find => usize::MAX,
             Exported::Cycle | Exported::Calibrate => usize::MAX,
-            Exported::Slip | Exported::Force | Exported::Gap | Exported::Pressure => usize::MAX,
+            Exported::Slip | Exported::Force | Exported::Gap | Exported::Pressure | Exported::Traction => usize::MAX,
             Exported::Path if ending == "svg" => usize::MAX,
             Exported::Sensitivity | Exported::Critical | Exported::Limit | Exported::Check | Exported::Report => 1,
             Exported::Moment | Exported::Shear | Exported::Axial => 1,

@@ -36,7 +36,7 @@ use exported::Exported;
 /// 4 closed) and the vectors of force, friction and slip. `export vtu FILE.pvd` is a series, of the moments of the
 /// history after `stages`, else of the pivots: FILE-0000.vtu, FILE-0001.vtu … stand beside it.
 ///
-/// Pictures go to .svg: `slip`, `force`, `gap` and `pressure` of the state shown or at pivots that are named; `moment`,
+/// Pictures go to .svg: `slip`, `force`, `gap`, `pressure` and `traction` of the state shown or at pivots that are named; `moment`,
 /// `shear` and `axial` of all bars on the structure, or of the bar that is named; `path` as `plot path` draws it, with
 /// the same words.
 ///
@@ -90,7 +90,7 @@ fn words(asked: &Asked<'_>) -> Vec<Candidate> {
         "find" => find::words(&Asked { given: of, ..*asked }),
         "check" => Candidate::plain(["exact"]),
         "moment" | "shear" | "axial" => Candidate::plain(&asked.names.bars),
-        "slip" | "force" | "gap" | "pressure" => Candidate::plain(["first", "last"]),
+        "slip" | "force" | "gap" | "pressure" | "traction" => Candidate::plain(["first", "last"]),
         "path" => of_path(asked, of),
         _ => Vec::new(),
     });

@@ -47,6 +47,11 @@ impl Session {
             Exported::Force => zone(Quantity::Force),
             Exported::Gap => zone(Quantity::Gap),
             Exported::Pressure => zone(Quantity::Pressure),
+            Exported::Traction => {
+                let (states, lengths) = self.traction_states(of)?;
+                let borrowed: Vec<_> = states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect();
+                Ok(self.chart_figure(&zone::traction(&borrowed, &lengths, units), ""))
+            }
             Exported::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
             Exported::Path => {
                 let end = &self.need_path()?.end;

@@ -174,6 +174,7 @@ impl Session {
             (Exported::Slip, "slip", has_pairs),
             (Exported::Force, "force", has_pairs),
             (Exported::Pressure, "pressure", has_pairs),
+            (Exported::Traction, "traction", self.traction_states(&[]).is_ok()),
             (Exported::Moment, "moment", bends),
             (Exported::Axial, "axial", axial),
             (Exported::Path, "path", self.need_path().is_ok() && self.stale_path().is_none()),
