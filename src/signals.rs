@@ -255,3 +255,8 @@ impl Watch for TerminalWatch {
 pub fn is_dumb() -> bool {
     std::env::var_os("TERM").is_none_or(|term| term.is_empty() || term == "dumb")
 }
+
+/// Columns of the terminal now; 80 where it does not say.
+pub fn terminal_width() -> usize {
+    crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20))
+}

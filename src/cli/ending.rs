@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::export::json as json_export;
 use crate::model::problem::Problems;
 use crate::session::CommandError;
-use crate::view::style::{Role, Style};
+use crate::view::style::Style;
 
 /// What ends the program early.
 pub enum Failure {
@@ -71,6 +71,5 @@ pub(super) fn tell_json(error: &Value) {
 
 /// An error on stderr; if nobody can read it, so be it.
 pub(super) fn tell(style: &Style, message: &str) {
-    let lines: Vec<String> = message.lines().map(|line| style.text(line)).collect();
-    let _ = writeln!(io::stderr(), "{} {}", style.paint(Role::Bad, "error:"), lines.join("\n"));
+    let _ = writeln!(io::stderr(), "{}", style.error(message));
 }

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 
 use clap::{Args, ValueEnum};
 
-use crate::signals::is_dumb;
+use crate::signals::{is_dumb, terminal_width};
 use crate::view::style::Style;
 
 /// How the output looks.
@@ -39,7 +39,7 @@ impl Look {
         };
         let width = match self.width {
             Some(width) => usize::from(width),
-            None if terminal => crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20)),
+            None if terminal => terminal_width(),
             None => 80,
         };
         Style { width, color, ascii: self.ascii || is_ascii_terminal(&variable) }

@@ -12,7 +12,7 @@ use crate::model::embedded;
 use crate::session::{Answer, History, Session, exit_status};
 use crate::signals::{Signals, TerminalWatch};
 use crate::view;
-use crate::view::style::Style;
+use crate::view::style::{Role, Style};
 
 /// Solve a scenario and print the answer
 #[derive(Args, Debug)]
@@ -77,11 +77,11 @@ fn write_history(
         writeln!(out, "{}", json_export::pretty(&result)?)?;
     } else {
         let note = "the load history was followed, this is its end (`--at-once`: all load cases at once)";
-        view::stages::write_line(out, note, style)?;
+        style.paragraph(out, Role::Muted, note)?;
         if arguments.settings.has_rules() {
             let note = "the covering, the tie-break and the engine chosen do not reach its rate problems: they are solved \
                         under the default rules";
-            view::stages::write_line(out, note, style)?;
+            style.paragraph(out, Role::Muted, note)?;
         }
         view::status::write(out, answer, scenario, session.values(), style)?;
         writeln!(out)?;

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::dof::{Dofs, root};
+use super::dof::Dofs;
+use crate::model::groups::Groups;
 use crate::model::structure::{Component, Load, Structure};
 
 /// What supports and ties make of the base dofs: classes of equal components.
@@ -21,25 +22,16 @@ pub struct Classes {
 impl Classes {
     /// Of all base dofs; the displacements imposed on supports are numbered behind the joints.
     pub fn new(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
-        let mut parent: Vec<u32> = (0..dofs.count() as u32).collect();
+        let mut groups = Groups::new(dofs.count());
         for tie in &structure.ties {
             for &component in &tie.components {
-                let mut tied = tie.nodes.iter().filter_map(|&n| dofs.of(n, component));
-                let Some(first) = tied.next() else { continue };
-                for other in tied {
-                    let (a, b) = (root(&mut parent, first), root(&mut parent, other));
-                    parent[a.max(b)] = a.min(b) as u32;
-                }
+                groups.join_all(tie.nodes.iter().filter_map(|&node| dofs.of(node, component)));
             }
         }
         for body in &structure.rigid {
-            let turning = body.nodes.iter().filter_map(|&node| dofs.of(node, Component::R));
-            for (first, other) in turning.clone().zip(turning.skip(1)) {
-                let (a, b) = (root(&mut parent, first), root(&mut parent, other));
-                parent[a.max(b)] = a.min(b) as u32;
-            }
+            groups.join_all(body.nodes.iter().filter_map(|&node| dofs.of(node, Component::R)));
         }
-        let class: Vec<u32> = (0..dofs.count()).map(|dof| root(&mut parent, dof) as u32).collect();
+        let class: Vec<u32> = (0..dofs.count()).map(|dof| groups.of(dof) as u32).collect();
         let mut held_class = vec![false; dofs.count()];
         for support in &structure.supports {
             // A support of a rotation that does not exist holds nothing.

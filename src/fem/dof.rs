@@ -105,15 +105,6 @@ impl Dofs {
     }
 }
 
-/// Root of a union-find tree, with path halving.
-pub(super) fn root(parent: &mut [u32], mut at: usize) -> usize {
-    while parent[at] as usize != at {
-        parent[at] = parent[parent[at] as usize];
-        at = parent[at] as usize;
-    }
-    at
-}
-
 /// The (side, (base dof, coefficient)) of a joint, zero coefficients left out; side 0 is `node`.
 pub fn joint_dofs<'a>(joint: &'a Joint, dofs: &'a Dofs) -> impl Iterator<Item = (usize, (usize, f64))> + 'a {
     joint

@@ -9,9 +9,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::dof::{Dofs, root};
+use super::dof::Dofs;
 use super::null_space::{DENSE, Terms, null_basis};
 use super::parts::{Parts, superelement_parts};
+use crate::model::groups::Groups;
 use crate::model::structure::{Component, Structure};
 use crate::model::superelement::Part;
 
@@ -52,34 +53,16 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> Vec<Motion> {
 impl Parts {
     /// Parts linked by pins, ties and springs.
     fn clusters(&self, structure: &Structure) -> Vec<Cluster> {
-        let mut parent: Vec<u32> = (0..self.turns.len() as u32).collect();
-        let mut join = |a: u32, b: u32| {
-            let (a, b) = (root(&mut parent, a as usize), root(&mut parent, b as usize));
-            parent[a.max(b)] = a.min(b) as u32;
-        };
-        for parts in &self.at_node {
-            parts[1..].iter().for_each(|&other| join(parts[0], other));
-        }
-        for tie in &structure.ties {
-            for nodes in tie.nodes.windows(2) {
-                join(self.at_node[nodes[0]][0], self.at_node[nodes[1]][0]);
-            }
-        }
-        for spring in &structure.springs {
-            for nodes in spring.nodes().windows(2) {
-                join(self.at_node[nodes[0]][0], self.at_node[nodes[1]][0]);
-            }
-        }
-        let mut cluster_of = vec![usize::MAX; self.turns.len()];
-        let mut clusters: Vec<Cluster> = Vec::new();
-        for part in 0..self.turns.len() {
-            let first = root(&mut parent, part);
-            if cluster_of[first] == usize::MAX {
-                cluster_of[first] = clusters.len();
-                clusters.push(Cluster::default());
-            }
-            cluster_of[part] = cluster_of[first];
-            clusters[cluster_of[part]].parts.push(part as u32);
+        let mut groups = Groups::new(self.turns.len());
+        let first = |node: &usize| self.at_node[*node][0] as usize;
+        self.at_node.iter().for_each(|parts| groups.join_all(parts.iter().map(|&part| part as usize)));
+        structure.ties.iter().for_each(|tie| groups.join_all(tie.nodes.iter().map(first)));
+        structure.springs.iter().for_each(|spring| groups.join_all(spring.nodes().iter().map(first)));
+        let cluster_of = groups.numbers(0..self.turns.len());
+        let count = cluster_of.iter().max().map_or(0, |last| last + 1);
+        let mut clusters: Vec<Cluster> = (0..count).map(|_| Cluster::default()).collect();
+        for (part, &cluster) in cluster_of.iter().enumerate() {
+            clusters[cluster].parts.push(part as u32);
         }
         for (node, parts) in self.at_node.iter().enumerate() {
             clusters[cluster_of[parts[0] as usize]].nodes.push(node);
@@ -113,22 +96,19 @@ struct Cluster {
 impl Cluster {
     /// This cluster with one part per group of elements joined by common nodes; tied groups stay apart.
     fn with_whole_groups(self, structure: &Structure) -> (Parts, Cluster) {
-        let mut parent: Vec<u32> = (0..structure.nodes.len() as u32).collect();
+        let mut groups = Groups::new(structure.nodes.len());
         let elements = structure.elements.iter().map(|element| &element.nodes);
         let given = superelement_parts(structure);
         let bodies = structure.rigid.iter().map(|body| &body.nodes).chain(given.iter().map(|part| &part.nodes));
         for nodes in elements.chain(bodies) {
-            for nodes in nodes.windows(2) {
-                let (a, b) = (root(&mut parent, nodes[0]), root(&mut parent, nodes[1]));
-                parent[a.max(b)] = a.min(b) as u32;
-            }
+            groups.join_all(nodes.iter().copied());
         }
         let mut number = vec![u32::MAX; structure.nodes.len()];
         let mut turns: Vec<bool> = Vec::new();
         let mut at_node = vec![Vec::new(); structure.nodes.len()];
         let mut turning = vec![None; structure.nodes.len()];
         for &node in &self.nodes {
-            let group = root(&mut parent, node);
+            let group = groups.of(node);
             if number[group] == u32::MAX {
                 number[group] = turns.len() as u32;
                 turns.push(false);

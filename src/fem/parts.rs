@@ -4,7 +4,7 @@
 //! node is a part without rotation. A part of a superelement moves as its stiffness lets it. Parts that share a node are
 //! pinned there.
 
-use super::dof::root;
+use crate::model::groups::Groups;
 use crate::model::structure::{Component, Structure};
 use crate::model::superelement::Part;
 
@@ -32,11 +32,8 @@ impl Parts {
         let elements = structure.elements.len();
         let beyond = elements + structure.rigid.len();
         let given = superelement_parts(structure);
-        let mut parent: Vec<u32> = (0..(beyond + given.len()) as u32).collect();
-        let mut join = |a: u32, b: u32| {
-            let (a, b) = (root(&mut parent, a as usize), root(&mut parent, b as usize));
-            parent[a.max(b)] = a.min(b) as u32;
-        };
+        let mut groups = Groups::new(beyond + given.len());
+        let mut join = |a: u32, b: u32| groups.join(a as usize, b as usize);
         // Elements that share an edge.
         let mut edges = Vec::new();
         for (index, element) in structure.elements.iter().enumerate() {
@@ -84,10 +81,10 @@ impl Parts {
             }
         }
         // Number the parts; lone nodes come last.
-        let mut number = vec![u32::MAX; parent.len()];
+        let mut number = vec![u32::MAX; beyond + given.len()];
         let mut turns = Vec::new();
-        let mut part_of = |parent: &mut Vec<u32>, element: usize| {
-            let element = root(parent, element);
+        let mut part_of = |element: usize| {
+            let element = groups.of(element);
             if number[element] == u32::MAX {
                 number[element] = turns.len() as u32;
                 turns.push(true);
@@ -99,7 +96,7 @@ impl Parts {
         let bodies = structure.rigid.iter().map(|body| &body.nodes);
         let parts = given.iter().map(|part| &part.nodes);
         for (index, nodes) in elements.chain(bodies).chain(parts).enumerate() {
-            let part = part_of(&mut parent, index);
+            let part = part_of(index);
             for &node in nodes {
                 if !at_node[node].contains(&part) {
                     at_node[node].push(part);
@@ -107,9 +104,9 @@ impl Parts {
             }
         }
         for turning in turning.iter_mut().flatten() {
-            *turning = part_of(&mut parent, *turning as usize);
+            *turning = part_of(*turning as usize);
         }
-        let of_superelement = (0..given.len()).map(|part| part_of(&mut parent, beyond + part)).collect();
+        let of_superelement = (0..given.len()).map(|part| part_of(beyond + part)).collect();
         for parts in at_node.iter_mut().filter(|parts| parts.is_empty()) {
             parts.push(turns.len() as u32);
             turns.push(false);

@@ -206,6 +206,11 @@ impl Scenario {
         problems
     }
 
+    /// The unit of a parameter; `None` where it has none, and of what is no parameter.
+    pub fn unit_of(&self, parameter: &str) -> Option<&str> {
+        self.parameters.get(parameter)?.unit.as_deref()
+    }
+
     /// Why the parameter cannot take this value whatever the others are: a formula, a value that is not finite, a
     /// negative friction, cohesion or bound. `None` if it can.
     pub fn refusal(&self, parameter: &str, value: f64) -> Option<String> {

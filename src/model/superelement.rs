@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::groups::Groups;
 use super::node::{Component, Node};
 
 /// A row of K u below this share of its terms is zero by the digits of K.
@@ -73,27 +74,14 @@ impl Superelement {
 
     /// The part of every node that has a row, counted from 0.
     fn part_of_nodes(&self, nodes: usize) -> Vec<Option<usize>> {
-        let mut parent: Vec<usize> = (0..nodes).collect();
-        fn root(parent: &mut [usize], mut at: usize) -> usize {
-            while parent[at] != at {
-                parent[at] = parent[parent[at]];
-                at = parent[at];
-            }
-            at
-        }
+        let mut groups = Groups::new(nodes);
         for &(i, j, _) in self.entries.iter().filter(|(_, _, value)| *value != 0.0) {
-            let (a, b) = (root(&mut parent, self.dofs[i].0), root(&mut parent, self.dofs[j].0));
-            parent[a.max(b)] = a.min(b);
+            groups.join(self.dofs[i].0, self.dofs[j].0);
         }
-        let mut number = vec![None; nodes];
         let mut part_of = vec![None; nodes];
-        let mut count = 0;
-        for &(node, _) in &self.dofs {
-            let first = root(&mut parent, node);
-            part_of[node] = Some(*number[first].get_or_insert_with(|| {
-                count += 1;
-                count - 1
-            }));
+        let numbers = groups.numbers(self.dofs.iter().map(|&(node, _)| node));
+        for (&(node, _), part) in self.dofs.iter().zip(numbers) {
+            part_of[node] = Some(part);
         }
         part_of
     }

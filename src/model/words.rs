@@ -21,31 +21,68 @@ pub fn listed(names: &[&str]) -> String {
     }
 }
 
-/// ": did you mean "…"?" for the nearest known name, or nothing if none is near.
+/// ` (did you mean "a" or "b"?)` for the known names nearest to a word of a file, or nothing if none is near.
 pub fn did_you_mean<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> String {
-    match nearest(word, known) {
-        Some(name) => format!(": did you mean \"{name}\"?"),
-        None => String::new(),
+    suggestion(&near(word, known), '"')
+}
+
+/// The same of a word of a command, in the marks in which such words stand.
+pub fn did_you_mean_typed<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> String {
+    suggestion(&near(word, known), '`')
+}
+
+/// "no pair `jiont[0]` (did you mean `joint[0]`?): the pairs are c1, c2".
+pub fn no_such<'n>(what: &str, id: &str, known: impl IntoIterator<Item = &'n str>) -> String {
+    let names: Vec<&str> = known.into_iter().collect();
+    // Of two letters any other two are near.
+    let near = if id.chars().count() > 2 { did_you_mean_typed(id, names.iter().copied()) } else { String::new() };
+    match names.as_slice() {
+        [] => format!("no {what} `{id}`: there is none"),
+        [only] => format!("no {what} `{id}`{near}: the only {what} is {only}"),
+        [first, .., last] if names.len() > 8 => format!("no {what} `{id}`{near}: the {what}s are {first} … {last}"),
+        names => format!("no {what} `{id}`{near}: the {what}s are {}", names.join(", ")),
     }
 }
 
-/// The known name nearest to a mistyped one.
-pub fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+fn suggestion(near: &[&str], mark: char) -> String {
+    let names: Vec<String> = near.iter().map(|name| format!("{mark}{name}{mark}")).collect();
+    if names.is_empty() { String::new() } else { format!(" (did you mean {}?)", names.join(" or ")) }
+}
+
+/// The known names that a mistyped one may stand for, all as near to it; else those that it begins. In alphabetical
+/// order; none where there are more than three, which would tell nothing.
+pub fn near<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Vec<&'n str> {
+    const MOST: usize = 3;
     let length = word.chars().count();
     if length > 60 {
-        return None;
+        return Vec::new();
     }
+    let word = word.to_lowercase();
     let allowed = (length / 3).max(1);
-    known
-        .into_iter()
-        .filter(|name| name.len().abs_diff(word.len()) <= 4 * allowed)
-        .map(|name| {
-            let distance = strsim::osa_distance(&word.to_lowercase(), &name.to_lowercase());
-            (distance, name)
-        })
-        .filter(|(distance, name)| *distance <= allowed && *distance < length.min(name.chars().count()))
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, name)| name)
+    let mut best = allowed;
+    let (mut nearest, mut begun) = (Vec::new(), Vec::new());
+    for name in known {
+        let lower = name.to_lowercase();
+        if length > 1 && lower.starts_with(&word) {
+            begun.push(name);
+        }
+        if lower.len().abs_diff(word.len()) > 4 * best {
+            continue;
+        }
+        let distance = strsim::osa_distance(&word, &lower);
+        if distance > best || distance >= length.min(name.chars().count()) {
+            continue;
+        }
+        if distance < best {
+            best = distance;
+            nearest.clear();
+        }
+        nearest.push(name);
+    }
+    let mut found = if nearest.is_empty() { begun } else { nearest };
+    found.sort_unstable();
+    found.dedup();
+    if found.len() > MOST { Vec::new() } else { found }
 }
 
 /// `1 entry`, `2 entries`.
@@ -68,5 +105,21 @@ pub fn shortened(literal: &str) -> String {
     } else {
         // JSON numbers are ASCII, so any byte is a boundary.
         format!("{}…", &literal[..27])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_that_are_as_near_are_named() {
+        assert_eq!(did_you_mean("lode", ["load", "bar", "node", "mode"]), r#" (did you mean "mode" or "node"?)"#);
+        assert_eq!(did_you_mean_typed("piars", ["pairs", "params"]), " (did you mean `pairs`?)");
+        assert_eq!(did_you_mean("F3", ["F2", "f", "F1"]), r#" (did you mean "F1" or "F2"?)"#);
+        assert_eq!(did_you_mean("F3", ["F2", "F1", "F4", "F5"]), "");
+        assert_eq!(near("fric", ["friction", "free"]), ["friction"]);
+        assert!(near("x", ["y", "xyz"]).is_empty());
+        assert!(near("", ["", "a"]).is_empty());
     }
 }

@@ -140,10 +140,7 @@ fn size(factor: f64, present: f64) -> f64 {
 /// # Errors
 /// See [`PathError`].
 pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limit, PathError> {
-    let Case { prepared, values, .. } = case;
-    let known = prepared.cases.iter().find(|(known, _)| known == name);
-    let given = known.map_or_else(|| values.get(name).copied(), |(_, factor)| Some(factor.value(values)));
-    let negative = given.is_some_and(|given| given < 0.0);
+    let negative = case.present(name).is_some_and(|present| present < 0.0);
     let to = negative.then_some(f64::NEG_INFINITY);
     let path = trace(case, solved, name, LoadReach { to, through: false })?;
     let found = of_path(case, path, negative)?;

@@ -59,10 +59,7 @@ impl<'a> Route<'a> {
     /// As [`Route::new`].
     pub fn from_end(case: Case<'a>, name: &str, range: [f64; 2], upper: bool) -> Result<Option<Route<'a>>, PathError> {
         let mut route = Route { case, name: name.to_owned(), legs: Vec::new(), stretches: Vec::new() };
-        let present = match case.prepared.cases.iter().find(|(known, _)| known == name) {
-            Some((_, factor)) => factor.value(case.values),
-            None => case.values.get(name).copied().unwrap_or_default(),
-        };
+        let present = case.present(name).unwrap_or_default();
         let [low, high] = range;
         let mut starts = vec![(low, vec![high]), (high, vec![low])];
         if upper {

@@ -9,7 +9,7 @@ mod terminal;
 use std::io::{self, IsTerminal, Write};
 
 use crate::session::journal::{self, Journal};
-use crate::session::{CommandError, Next, Session};
+use crate::session::{Next, Session};
 use crate::view::status;
 use crate::view::style::Style;
 
@@ -84,12 +84,4 @@ fn greet(session: &Session, style: &Style, out: &mut dyn Write) -> io::Result<()
         )?;
     }
     out.flush()
-}
-
-/// An error as it is shown.
-fn show_error(error: &CommandError, style: &Style) -> String {
-    use crate::view::style::Role;
-    let text = error.to_string();
-    let lines: Vec<String> = text.lines().map(|line| style.text(line)).collect();
-    format!("{} {}", style.paint(Role::Bad, "error:"), lines.join("\n"))
 }

@@ -9,7 +9,7 @@ use crate::session::{Next, Output, Session, script};
 use crate::text::printable::Printable;
 use crate::view::style::Style;
 
-use super::{Ended, show_error};
+use super::Ended;
 use crate::signals::{Signals, TerminalWatch};
 
 /// Between two looks at the signals while nothing comes in.
@@ -82,7 +82,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
             Err(error) if error.is_output() => return Err(error.into_output()),
             Err(error) => {
                 // a stderr that is closed is no reason to stop
-                let _ = writeln!(io::stderr(), "{}", show_error(&error, &error_style(style)));
+                let _ = writeln!(io::stderr(), "{}", error_style(style).error(&error.to_string()));
                 if error.is_interrupted() {
                     signals.take_interrupt();
                     if signals.must_end() || !prompt {

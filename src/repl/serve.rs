@@ -6,7 +6,7 @@ use std::sync::mpsc::RecvTimeoutError;
 use serde_json::{Value, json};
 
 use crate::export::json as json_export;
-use crate::session::language::suggestion::did_you_mean;
+use crate::model::words::did_you_mean_typed;
 use crate::session::language::turn::Turn;
 use crate::session::script::LONGEST;
 use crate::session::{CommandError, Format, Next, Output, Session};
@@ -96,7 +96,7 @@ fn request(bytes: &[u8]) -> Result<Request, BadRequest> {
     let id = map.get("id").cloned().unwrap_or_default();
     let bad = |message: String| Err(BadRequest::new(&id, message));
     if let Some(key) = map.keys().find(|key| !KEYS.contains(&key.as_str())) {
-        return bad(format!("unknown key {:?}{}", key, did_you_mean(key, KEYS)));
+        return bad(format!("unknown key `{}`{}", key, did_you_mean_typed(key, KEYS)));
     }
     match map.get("command") {
         Some(Value::String(command)) => Ok(Request { id: id.clone(), command: command.clone() }),

@@ -20,8 +20,8 @@ use crate::text::printable;
 use crate::view::style::{Role, Style};
 
 use super::editor::{Editing, Pace};
-use super::{Ended, pager, show_error};
-use crate::signals::{self, Signals, TerminalWatch};
+use super::{Ended, pager};
+use crate::signals::{self, Signals, TerminalWatch, terminal_width};
 
 /// A terminal that hung up reads as an end and fails to be written on a moment before the signal tells it.
 const HANGING_UP: Duration = Duration::from_millis(200);
@@ -69,7 +69,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
                     signals.take_interrupt();
                     input.waiting.clear();
                 }
-                let _ = writeln!(io::stderr(), "{}", show_error(&error, &style));
+                let _ = writeln!(io::stderr(), "{}", style.error(&error.to_string()));
             }
         }
     }
@@ -244,7 +244,7 @@ fn edit(session: &mut Session, style: Style, signals: &Signals) {
     match edited {
         Ok(()) => reload(session, style, signals),
         Err(error) => {
-            let _ = writeln!(io::stderr(), "{}", show_error(&error, &style));
+            let _ = writeln!(io::stderr(), "{}", style.error(&error.to_string()));
         }
     }
 }
@@ -261,7 +261,7 @@ fn reload(session: &mut Session, style: Style, signals: &Signals) {
                     format!("{} is gone: the last answer stays; it is read when it is there again", watched.name);
                 style.paint(Role::Warning, &style.text(&gone))
             }
-            None => show_error(&error, &style),
+            None => style.error(&error.to_string()),
         };
         let _ = writeln!(io::stderr(), "{told}");
     }
@@ -293,11 +293,6 @@ fn execute(
         Ok(typed) => (result, typed),
         Err(error) => (result.and(Err(error.into())), String::new()),
     }
-}
-
-/// Columns of the terminal now.
-fn terminal_width() -> usize {
-    crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20))
 }
 
 fn editor(session: &Session, style: Style) -> rustyline::Result<LineEditor> {

@@ -105,17 +105,13 @@ impl Session {
         }
         io.show(&report, |out, style| {
             for note in notes {
-                for line in style.wrap(note, style.width.max(1)) {
-                    writeln!(out, "{line}")?;
-                }
+                style.paragraph(out, Role::Plain, note)?;
             }
             match self.answer() {
                 Some(answer) => {
                     writeln!(out, "{}", status::line(answer, previous, units, style))?;
                     for note in &answer.notes {
-                        for line in style.wrap(&style.text(note), style.width) {
-                            writeln!(out, "{}", style.paint(Role::Warning, &line))?;
-                        }
+                        style.paragraph(out, Role::Warning, note)?;
                     }
                     Ok(())
                 }

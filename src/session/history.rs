@@ -9,7 +9,7 @@ use crate::path::record::PathRecord;
 use crate::path::stages::{self, History, HistoryEnd};
 use crate::text::number::short;
 use crate::view;
-use crate::view::style::Style;
+use crate::view::style::{Role, Style};
 use crate::watch::Watch;
 
 use super::{CommandError, Session, worker};
@@ -105,12 +105,12 @@ impl Session {
 
     /// Writes [`Session::place_shown`] beside a table, if there is one.
     pub(super) fn write_place_shown(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        self.place_shown().map_or(Ok(()), |place| view::stages::write_line(out, &place, style))
+        self.place_shown().map_or(Ok(()), |place| style.paragraph(out, Role::Muted, &place))
     }
 
     /// Writes [`Session::history_place`] ahead of a table that knows no pivots, if there is one.
     pub(super) fn write_history_place(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        self.history_place().map_or(Ok(()), |place| view::stages::write_line(out, &place, style))
+        self.history_place().map_or(Ok(()), |place| style.paragraph(out, Role::Muted, &place))
     }
 
     /// Follows the stages of the scenario; from here on they are what quantities mean.

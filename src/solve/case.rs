@@ -53,6 +53,14 @@ impl<'a> Case<'a> {
         Case { watch, ..self }
     }
 
+    /// The value of a parameter, or the factor of a load case.
+    pub fn present(self, name: &str) -> Option<f64> {
+        match self.prepared.cases.iter().find(|(known, _)| known == name) {
+            Some((_, factor)) => Some(factor.value(self.values)),
+            None => self.values.get(name).copied(),
+        }
+    }
+
     /// The scenario with a parameter, or the factor of a load case, at another value.
     ///
     /// # Errors

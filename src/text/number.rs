@@ -40,6 +40,14 @@ pub fn with_unit(number: &str, unit: Option<&str>) -> String {
     }
 }
 
+/// A name and its unit as they stand over a column or beside an axis: `x_n [kN]`.
+pub fn heading(name: &str, unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) if !unit.is_empty() => format!("{name} [{unit}]"),
+        _ => name.to_owned(),
+    }
+}
+
 /// Zero and what is no number.
 pub fn simple(value: f64) -> String {
     if value == 0.0 { "0" } else { "n/a" }.to_owned()

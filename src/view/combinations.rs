@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use super::scale::ByUnit;
-use super::stages::write_line;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row as TableRow, Table};
 use crate::model::quantity::Quantity;
@@ -61,7 +60,7 @@ pub fn write(
         }
         table.write(out, style)?;
     }
-    notes.iter().try_for_each(|note| write_line(out, note, style))
+    notes.iter().try_for_each(|note| style.paragraph(out, Role::Muted, note))
 }
 
 /// A row for each quantity; `at` heads what governs.
@@ -75,9 +74,7 @@ pub fn write_envelope(
 ) -> io::Result<()> {
     envelope_table(at, extremes, units, style.ascii).write(out, style)?;
     for note in notes {
-        for line in style.wrap(&style.text(note), style.width) {
-            writeln!(out, "{}", style.paint(Role::Warning, &line))?;
-        }
+        style.paragraph(out, Role::Warning, note)?;
     }
     Ok(())
 }

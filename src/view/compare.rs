@@ -123,8 +123,5 @@ pub fn write(out: &mut dyn Write, comparison: &Comparison, style: &Style) -> io:
         n => format!("; {n} came back to a working scheme they had met (a cycle)"),
     };
     let text = format!("{answers}{cycles}");
-    for line in style.wrap(&style.text(&text), style.width) {
-        writeln!(out, "{line}")?;
-    }
-    Ok(())
+    style.paragraph(out, Role::Plain, &text)
 }

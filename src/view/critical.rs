@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::style::Style;
+use super::style::{Role, Style};
 use crate::contact::schemes::critical::{Coverage, CriticalFriction};
 use crate::contact::schemes::scheme::PairScheme;
 use crate::text::number::short;
@@ -69,9 +69,7 @@ pub fn write(
     };
     let how = format!("{} determinants examined{singular}", found.examined);
     for text in [sentence(parameter, found, ids), how] {
-        for line in style.wrap(&style.text(&text), style.width) {
-            writeln!(out, "{line}")?;
-        }
+        style.paragraph(out, Role::Plain, &text)?;
     }
     Ok(())
 }

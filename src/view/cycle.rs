@@ -34,13 +34,6 @@ fn role(kind: Kind) -> Role {
     }
 }
 
-fn paragraph(out: &mut dyn Write, role: Role, text: &str, style: &Style) -> io::Result<()> {
-    for line in style.wrap(&style.text(text), style.width) {
-        writeln!(out, "{}", style.paint(role, &line))?;
-    }
-    Ok(())
-}
-
 /// The largest net slip of a cycle and its pair.
 fn furthest(turn: &Turn) -> Option<(&str, f64)> {
     let pairs = turn.pairs.iter().map(|pair| (pair.pair.as_str(), pair.net));
@@ -54,10 +47,10 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
     if let (Kind::Ratchets, Some((pair, net))) = (cycle.kind, cycle.turns.last().and_then(furthest)) {
         line.push_str(&format!(", {} per cycle at {pair}", with_unit(&exact(net), units.length.as_deref())));
     }
-    paragraph(out, role(cycle.kind), &line, style)?;
-    paragraph(out, Role::Plain, &cycle.sentence, style)?;
+    style.paragraph(out, role(cycle.kind), &line)?;
+    style.paragraph(out, Role::Plain, &cycle.sentence)?;
     if let Some(text) = every_start(&cycle.every_start) {
-        paragraph(out, Role::Muted, &text, style)?;
+        style.paragraph(out, Role::Muted, &text)?;
     }
     if cycle.turns.is_empty() {
         return Ok(());
@@ -88,7 +81,7 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
     }
     table.write(out, style)?;
     if count > 2 * SHOWN {
-        paragraph(out, Role::Muted, &format!("the first and the last {SHOWN} of {count} cycles"), style)?;
+        style.paragraph(out, Role::Muted, &format!("the first and the last {SHOWN} of {count} cycles"))?;
     }
     pairs(out, cycle, units, style)
 }
@@ -141,15 +134,14 @@ pub fn write_starts(
 ) -> io::Result<()> {
     let [from, to] = found.ends.map(|end| with_unit(&short(end), unit));
     let role = if found.decides { Role::Warning } else { Role::Good };
-    paragraph(
+    style.paragraph(
         out,
         Role::Accent,
         &format!("{} from {from} to {to} and back, after different slips", found.name),
-        style,
     )?;
-    paragraph(out, role, &found.sentence(), style)?;
+    style.paragraph(out, role, &found.sentence())?;
     if let Some(text) = every_start(&found.every_start) {
-        paragraph(out, Role::Muted, &text, style)?;
+        style.paragraph(out, Role::Muted, &text)?;
     }
     let mut table = Table::new(vec![
         Column::words("start"),
@@ -182,12 +174,12 @@ pub fn write_limit(
     let from = number(found.from);
     let Some((beyond, kind)) = found.beyond else {
         let text = format!("{name} from {from}: shakes down as far as was looked, to {}", number(found.shakes_down));
-        paragraph(out, Role::Good, &text, style)?;
+        style.paragraph(out, Role::Good, &text)?;
         return write_every_start(out, found, &number, style);
     };
     let text = format!("{name} from {from}: the largest end that shakes down is {}", number(found.shakes_down));
-    paragraph(out, Role::Accent, &text, style)?;
-    paragraph(out, Role::Plain, &format!("at {} it {}", number(beyond), word(kind)), style)?;
+    style.paragraph(out, Role::Accent, &text)?;
+    style.paragraph(out, Role::Plain, &format!("at {} it {}", number(beyond), word(kind)))?;
     write_every_start(out, found, &number, style)
 }
 
@@ -205,5 +197,5 @@ fn write_every_start(
         (_, Some(text)) => text,
         (_, None) => return Ok(()),
     };
-    paragraph(out, Role::Muted, &text, style)
+    style.paragraph(out, Role::Muted, &text)
 }

@@ -110,9 +110,7 @@ pub fn write(out: &mut dyn Write, all: &AllAnswers, style: &Style) -> io::Result
     if !all.complete {
         text = format!("stopped: there may be more. So far {text}");
     }
-    for line in style.wrap(&style.text(&text), style.width) {
-        writeln!(out, "{}", style.paint(Role::Muted, &line))?;
-    }
+    style.paragraph(out, Role::Muted, &text)?;
     if all.answers.len() > 1 {
         let text = "`enumerate K` shows the Kth; `solve` goes back to Lemke's";
         writeln!(out, "{}", style.paint(Role::Muted, text))?;

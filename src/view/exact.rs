@@ -78,9 +78,7 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
 pub fn write(out: &mut dyn Write, check: &Exactly, names: &[String], style: &Style) -> io::Result<()> {
     let (role, lines) = sentences(check, names);
     for text in lines {
-        for line in style.wrap(&style.text(&text), style.width) {
-            writeln!(out, "{}", style.paint(role, &line))?;
-        }
+        style.paragraph(out, role, &text)?;
     }
     Ok(())
 }

@@ -21,13 +21,6 @@ pub struct Asked<'a> {
     pub condition: &'a str,
 }
 
-fn sentence(out: &mut dyn Write, text: &str, role: Role, style: &Style) -> io::Result<()> {
-    for line in style.wrap(&style.text(text), style.width) {
-        writeln!(out, "{}", style.paint(role, &line))?;
-    }
-    Ok(())
-}
-
 /// `F2 = 200 kN`; with a bracket what it lies between.
 fn place(asked: &Asked<'_>, place: &Place) -> String {
     let Asked { name, unit, .. } = asked;
@@ -56,20 +49,20 @@ pub fn write(out: &mut dyn Write, asked: &Asked<'_>, found: &Found, style: &Styl
     let number = |value: f64| with_unit(&exact(value), *unit);
     for [from, to] in &found.holds {
         let text = format!("{condition} for {name} from {} to {}", number(*from), number(*to));
-        sentence(out, &text, Role::Accent, style)?;
+        style.paragraph(out, Role::Accent, &text)?;
     }
     if found.holds.is_empty() && found.places.is_empty() {
         let [a, b] = found.covered;
         let text =
             format!("{condition} nowhere for {name} from {} to {}", number(a.max(range[0])), number(b.min(range[1])));
-        sentence(out, &text, Role::Warning, style)?;
+        style.paragraph(out, Role::Warning, &text)?;
     }
     for at in &found.places {
         let role = if found.holds.is_empty() { Role::Accent } else { Role::Plain };
-        sentence(out, &place(asked, at), role, style)?;
+        style.paragraph(out, role, &place(asked, at))?;
     }
     for note in &found.notes {
-        sentence(out, note, Role::Muted, style)?;
+        style.paragraph(out, Role::Muted, note)?;
     }
     Ok(())
 }
@@ -92,16 +85,16 @@ pub fn write_edge(
     let value = with_unit(&exact(found.value), unit);
     let Some(collapse) = &found.collapse else {
         let text = format!("there is an answer at the end of the range already: {name} = {value}");
-        return sentence(out, &text, Role::Accent, style);
+        return style.paragraph(out, Role::Accent, &text);
     };
     let how = if found.exact { ", where the path ends" } else { "" };
-    sentence(out, &format!("{which} {name} with an answer: {value}{how}"), Role::Accent, style)?;
+    style.paragraph(out, Role::Accent, &format!("{which} {name} with an answer: {value}{how}"))?;
     let proved = if collapse.is_proved() { "" } else { " (not proved that there is none)" };
-    sentence(out, &format!("an answer at {}, freshly checked", run(name, &found.answer)), Role::Plain, style)?;
-    sentence(out, &format!("no answer at {}{proved}", run(name, collapse)), Role::Plain, style)?;
+    style.paragraph(out, Role::Plain, &format!("an answer at {}, freshly checked", run(name, &found.answer)))?;
+    style.paragraph(out, Role::Plain, &format!("no answer at {}{proved}", run(name, collapse)))?;
     if found.beyond {
         let text = "the proof holds for every smaller value: less friction bears no more";
-        sentence(out, text, Role::Muted, style)?;
+        style.paragraph(out, Role::Muted, text)?;
     }
     Ok(())
 }

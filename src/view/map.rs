@@ -6,7 +6,7 @@ use super::style::{Role, Style, pad_left};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{RayClass, State, Verdict};
 use crate::path::map::{Map, Region};
-use crate::text::number::{short, with_unit};
+use crate::text::number::{heading, short, with_unit};
 
 /// Rows of the picture.
 const HEIGHT: usize = 18;
@@ -69,23 +69,16 @@ pub fn write(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style)
     writeln!(out)?;
     regions(out, map, labels, style)?;
     for note in &map.notes {
-        for line in style.wrap(&style.text(note), style.width) {
-            writeln!(out, "{}", style.paint(Role::Muted, &line))?;
-        }
+        style.paragraph(out, Role::Muted, note)?;
     }
     Ok(())
-}
-
-fn named(map: &Map, labels: &Labels<'_>, axis: usize) -> String {
-    let unit = labels.units[axis].map_or(String::new(), |unit| format!(" [{unit}]"));
-    format!("{}{unit}", map.axes[axis].name)
 }
 
 fn picture(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -> io::Result<()> {
     let [low, high] = map.axes[1].range.map(short);
     let gutter = low.len().max(high.len());
     let width = style.width.saturating_sub(gutter + 4).clamp(8, WIDEST);
-    writeln!(out, "{}", style.paint(Role::Header, &style.text(&named(map, labels, 1))))?;
+    writeln!(out, "{}", style.paint(Role::Header, &style.text(&heading(&map.axes[1].name, labels.units[1]))))?;
     let rows = cells(map, width, HEIGHT);
     let marks: Vec<(usize, usize)> = (0..map.regions.len()).map(|region| mark(map, region, width, HEIGHT)).collect();
     for (row, regions) in rows.iter().enumerate() {
@@ -118,7 +111,7 @@ fn picture(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -
     let [low, high] = map.axes[0].range.map(short);
     let line = if style.ascii { "-" } else { "─" };
     writeln!(out, "{} {}{}", " ".repeat(gutter), if style.ascii { '+' } else { '└' }, line.repeat(width))?;
-    let name = style.text(&named(map, labels, 0));
+    let name = style.text(&heading(&map.axes[0].name, labels.units[0]));
     let gap = width.saturating_sub(low.len() + high.len() + name.chars().count());
     writeln!(
         out,

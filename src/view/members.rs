@@ -31,9 +31,7 @@ pub fn write(
     table(&chosen, units).write(out, style)?;
     let Some(diagram) = bar.and_then(|bar| Diagram::of(members, bar)) else { return Ok(()) };
     for which in Internal::ALL {
-        for line in style.wrap(&extremes(&diagram, which, units), style.width) {
-            writeln!(out, "{line}")?;
-        }
+        style.paragraph(out, Role::Plain, &extremes(&diagram, which, units))?;
     }
     Ok(())
 }

@@ -10,12 +10,7 @@ use crate::text::number::short;
 
 /// Writes nodes, elements, groups with their lengths and areas, the boundary by direction, and the worst element.
 pub fn write(out: &mut dyn Write, name: &str, mesh: &Mesh, overview: &Overview, style: &Style) -> io::Result<()> {
-    let mut say = |text: String| -> io::Result<()> {
-        for line in style.wrap(&style.text(&text), style.width) {
-            writeln!(out, "{line}")?;
-        }
-        Ok(())
-    };
+    let mut say = |text: String| -> io::Result<()> { style.paragraph(out, Role::Plain, &text) };
     say(format!("{name}: no problems found ({})", mesh.format))?;
     let unused = match overview.unused_nodes {
         0 => String::new(),

@@ -33,13 +33,6 @@ fn max_slip(pairs: &[PairState]) -> f64 {
     largest(pairs.iter().map(|pair| pair.z_t))
 }
 
-fn sentences(out: &mut dyn Write, text: &str, role: Role, style: &Style) -> io::Result<()> {
-    for line in style.wrap(&style.text(text), style.width) {
-        writeln!(out, "{}", style.paint(role, &line))?;
-    }
-    Ok(())
-}
-
 fn breakpoints(
     out: &mut dyn Write,
     name: &str,
@@ -70,11 +63,11 @@ pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &S
     let name = &path.parameter.name;
     if path.from_zero {
         let text = format!("there is no answer at the present load: the path starts from {name} = 0");
-        sentences(out, &text, Role::Muted, style)?;
+        style.paragraph(out, Role::Muted, &text)?;
     }
     if path.breakpoints.is_empty() {
         let text = format!("no breakpoints from {name} = {}", exact(path.start));
-        sentences(out, &text, Role::Plain, style)?;
+        style.paragraph(out, Role::Plain, &text)?;
     } else {
         let rows: Vec<_> = path
             .breakpoints
@@ -90,7 +83,7 @@ pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &S
             .collect();
         breakpoints(out, name, &rows, units, style)?;
     }
-    sentences(out, &path.end_sentence(), role_of(&path.end), style)
+    style.paragraph(out, role_of(&path.end), &path.end_sentence())
 }
 
 /// Writes the breakpoints of a friction path, its intervals and how it ended.
@@ -100,7 +93,7 @@ pub fn write_friction(out: &mut dyn Write, path: &FrictionPath, units: &Units, s
     {
         let text =
             format!("one scheme from {} = {} to {}: nothing changes", path.name, exact(only.from), exact(only.to));
-        sentences(out, &text, Role::Plain, style)?;
+        style.paragraph(out, Role::Plain, &text)?;
     } else {
         let rows: Vec<_> = path
             .breakpoints
@@ -117,7 +110,7 @@ pub fn write_friction(out: &mut dyn Write, path: &FrictionPath, units: &Units, s
             .collect();
         breakpoints(out, &path.name, &rows, units, style)?;
     }
-    sentences(out, &path.end_sentence(), role_of(&path.end), style)
+    style.paragraph(out, role_of(&path.end), &path.end_sentence())
 }
 
 /// Writes the limit load, the safety and the collapse.
@@ -125,20 +118,20 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
     let name = &limit.path.parameter.name;
     let Some(factor) = limit.factor else {
         let text = format!("no limit was found: {}", limit.end_sentence());
-        return sentences(out, &text, Role::Plain, style);
+        return style.paragraph(out, Role::Plain, &text);
     };
     let safety = match limit.safety {
         Some(safety) => format!(", {} times the present {}", exact(safety), with_unit(&short(limit.present), unit)),
         None => format!(" (present {})", with_unit(&short(limit.present), unit)),
     };
     let text = format!("limit load: {name} = {}{safety}", with_unit(&exact(factor), unit));
-    sentences(out, &text, Role::Title, style)?;
+    style.paragraph(out, Role::Title, &text)?;
     if let Some(collapse) = &limit.collapse {
         let class = collapse.class.word();
         let verdict = collapse.verdict.map_or(String::new(), |verdict| format!(", {}", verdict.word()));
-        sentences(out, &format!("collapse ({class}{verdict}): {}", collapse.mode), Role::Warning, style)?;
+        style.paragraph(out, Role::Warning, &format!("collapse ({class}{verdict}): {}", collapse.mode))?;
         if let Some(beyond) = limit.beyond_sentence().filter(|_| collapse.verdict != Some(Verdict::Certified)) {
-            sentences(out, &beyond, Role::Muted, style)?;
+            style.paragraph(out, Role::Muted, &beyond)?;
         }
     }
     if factor == 0.0 {
@@ -155,5 +148,5 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
             "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer and none".to_owned()
         }
     };
-    sentences(out, &confirmed, Role::Muted, style)
+    style.paragraph(out, Role::Muted, &confirmed)
 }

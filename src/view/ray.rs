@@ -211,9 +211,7 @@ pub fn write_remedies(out: &mut dyn Write, found: &Remedies, style: &Style) -> i
     }
     if !found.complete {
         let text = format!("not every remedy could be decided (at most {} s are spent on them)", REMEDY_TIME.as_secs());
-        for line in style.wrap(&text, style.width) {
-            writeln!(out, "{}", style.paint(Role::Muted, &line))?;
-        }
+        style.paragraph(out, Role::Muted, &text)?;
     }
     Ok(())
 }

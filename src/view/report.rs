@@ -1,8 +1,8 @@
 //! A report as a list of blocks, written as Markdown or as one file of HTML.
 
 use super::style::Style;
-use super::table::{Align, Printed, Table};
-use crate::text::number::DIGITS;
+use super::table::{Align, Table};
+use crate::text::number::{DIGITS, heading};
 use crate::text::printable::{is_unprintable, xml as escaped};
 
 /// Longer tables show so many rows of their beginning and of their end.
@@ -41,11 +41,7 @@ pub struct Report {
 fn shown(table: &Table) -> (Vec<String>, Vec<Option<Vec<String>>>) {
     let columns = table.printed(DIGITS, &Style::default());
     let row = |index: usize| Some(columns.iter().map(|column| column.cells[index].trim().to_owned()).collect());
-    let head = |column: &Printed| match column.unit.as_str() {
-        "" => column.head.clone(),
-        unit => format!("{} [{unit}]", column.head),
-    };
-    let heads = columns.iter().map(head).collect();
+    let heads = columns.iter().map(|column| heading(&column.head, Some(&column.unit))).collect();
     let count = table.rows.len();
     // leaving out two rows and saying so saves nothing
     if count <= 2 * ENDS + 2 {

@@ -41,9 +41,7 @@ pub fn write(out: &mut dyn Write, sensitivity: &Sensitivity, parameter: Option<&
             "exactly on a limit: {}; there these derivatives hold to one side only",
             sensitivity.on_limit.join(", ")
         );
-        for line in style.wrap(&style.text(&text), style.width) {
-            writeln!(out, "{}", style.paint(Role::Warning, &line))?;
-        }
+        style.paragraph(out, Role::Warning, &text)?;
     }
     Ok(())
 }

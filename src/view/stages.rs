@@ -17,9 +17,7 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
         HistoryEnd::Complete => Role::Muted,
         HistoryEnd::Limit { .. } => Role::Warning,
     };
-    for line in style.wrap(&style.text(&history.end_sentence()), style.width) {
-        writeln!(out, "{}", style.paint(role, &line))?;
-    }
+    style.paragraph(out, role, &history.end_sentence())?;
     for (index, stage) in history.stages.iter().enumerate() {
         for moment in stage.moments.iter().filter(|moment| moment.jump) {
             let text = format!(
@@ -27,9 +25,7 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
                 index + 1,
                 short(moment.t)
             );
-            for line in style.wrap(&text, style.width) {
-                writeln!(out, "{}", style.paint(Role::Warning, &line))?;
-            }
+            style.paragraph(out, Role::Warning, &text)?;
         }
     }
     Ok(())
@@ -112,12 +108,4 @@ pub fn write_stage(
         Some(end) => super::pairs::write(out, &end.pairs, units, style),
         None => Ok(()),
     }
-}
-
-/// Writes a remark about the history.
-pub fn write_line(out: &mut dyn Write, text: &str, style: &Style) -> io::Result<()> {
-    style
-        .wrap(&style.text(text), style.width)
-        .iter()
-        .try_for_each(|line| writeln!(out, "{}", style.paint(Role::Muted, line)))
 }

@@ -276,11 +276,10 @@ pub fn write(
     rows.extend(labelled("notes", answer.notes.iter().cloned()));
     if !parameters.is_empty() {
         let value = |(name, value): (&String, &f64)| {
-            let unit = scenario.parameters.get(name).and_then(|p| p.unit.as_deref());
             // what is computed has no digits that a user gave
             let computed = parameters.formula(name).is_some();
             let text = if computed { Scale::given([*value]).in_line(*value) } else { in_full(*value) };
-            format!("{name} = {}", with_unit(&text, unit))
+            format!("{name} = {}", with_unit(&text, scenario.unit_of(name)))
         };
         rows.push(("parameters", parameters.iter().map(value).collect::<Vec<_>>().join(", ")));
     }

@@ -1,5 +1,7 @@
 //! How a report looks: its width, whether it may use colour, whether it must do without Unicode.
 
+use std::io::{self, Write};
+
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::answer::record::{OutcomeKind, State};
@@ -175,6 +177,17 @@ impl Style {
             lines.push(line);
         }
         lines
+    }
+
+    /// Writes `text` in the colour of `role`, broken between words into lines of the width of the output.
+    pub fn paragraph(&self, out: &mut dyn Write, role: Role, text: &str) -> io::Result<()> {
+        self.wrap(text, self.width).iter().try_for_each(|line| writeln!(out, "{}", self.paint(role, line)))
+    }
+
+    /// An error as it is shown, its lines kept.
+    pub fn error(&self, message: &str) -> String {
+        let lines: Vec<String> = message.lines().map(|line| self.text(line)).collect();
+        format!("{} {}", self.paint(Role::Bad, "error:"), lines.join("\n"))
     }
 
     /// `label` and behind it `text`, broken into lines that hang under the text's first word; under the label where that

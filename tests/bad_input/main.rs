@@ -77,7 +77,7 @@ fn a_missing_file_and_an_unknown_name_say_what_was_expected() {
     let problems = load_named_or_file("baem").unwrap_err().to_string();
     assert!(
         problems.starts_with(
-            "baem: no embedded scenario and no file has this name: did you mean \"beam\"?\n  \
+            "baem: no embedded scenario and no file has this name (did you mean \"beam\"?)\n  \
              help: expected the path of a scenario file or one of beam, beam-limit, "
         ),
         "{problems}"

@@ -251,7 +251,7 @@ fn formulas_in_a_circle_are_told_with_all_their_names() {
     let text = problems(&with(r#""a": { "formula": "a" }"#));
     assert!(text.contains("in a circle: a → a"), "{text}");
     let text = problems(&with(r#""a": { "formula": "2*G" }"#));
-    assert!(text.contains("parameters.a.formula: in \"2*G\": unknown parameter \"G\": did you mean"), "{text}");
+    assert!(text.contains("parameters.a.formula: in \"2*G\": unknown parameter \"G\" (did you mean"), "{text}");
     let text = problems(&with(r#""a": { "formula": "1/g" }"#));
     assert!(text.contains("the formula \"1/g\" is not a finite number at g = 0"), "{text}");
     let text = problems(&with(r#""a": { "formula": "F", "max": 3 }"#));
@@ -263,7 +263,7 @@ fn wrong_expressions_are_told_with_their_column() {
     // The column is that of the wrong word within the text.
     let text = problems(&BAR.replace("\"L*cos(0)\"", "\"L*cso(0)\""));
     assert!(
-        text.starts_with("t.json:12:36: nodes.B[0]: in \"L*cso(0)\": unknown function \"cso\": did you mean"),
+        text.starts_with("t.json:12:36: nodes.B[0]: in \"L*cso(0)\": unknown function \"cso\" (did you mean"),
         "{text}"
     );
     let text = problems(&BAR.replace("\"L*cos(0)\"", "\"L/g\""));

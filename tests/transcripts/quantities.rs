@@ -137,7 +137,7 @@ fn expectations_that_fail_say_what_was_found() {
         ("M AB at 9 = 0", "found 9 is beyond the bar AB, which is 4 long"),
         ("fx B = 0", "found no support at node B"),
         ("stres b{0,0} = 0", "unknown quantity `stres`"),
-        ("\"tip sog\" < 0", "unknown quantity `tip sog`: did you mean \"tip sag\"?"),
+        ("\"tip sog\" < 0", "unknown quantity `tip sog` (did you mean `tip sag`?)"),
         ("M BC start = 0", "no bar `BC`: the only bar is AB"),
         ("x_n base[*] = 0", "put sum, max or min before it"),
         ("outcome norml", "did you mean `normal`"),
@@ -270,11 +270,11 @@ fn wrong_probes_and_combinations_are_told_with_their_place() {
     let problems = |text: &str| load_text("t.json", text, None).expect_err("wrong").to_string();
     for (from, to, part) in [
         ("\"uy B\"", "\"uy C\"", "probes[\"tip sag\"]: no node `C`"),
-        ("\"uy B\"", "\"uz B\"", "unknown quantity `uz`: did you mean \"ux\"?"),
+        ("\"uy B\"", "\"uz B\"", "unknown quantity `uz` (did you mean `ux`?)"),
         ("\"uy B\"", "\"uy B, ux B\"", "a probe is one quantity, found 2"),
         ("\"uy B\"", "3", "probes[\"tip sag\"]: expected a string, found the number 3"),
         ("\"lift\"", "\"M\"", "a probe cannot be named \"M\": it is a quantity itself"),
-        ("\"weight\": 1,", "\"wieght\": 1,", "combinations.calm.wieght: unknown load case \"wieght\": did you mean"),
+        ("\"weight\": 1,", "\"wieght\": 1,", "combinations.calm.wieght: unknown load case \"wieght\" (did you mean"),
         ("\"2*f\"", "\"2*g\"", "combinations.storm.weight: in \"2*g\": unknown parameter \"g\""),
         ("\"calm\": { \"weight\": 1, \"tip\": 1 }", "\"calm\": {}", "the combination names no load case"),
     ] {

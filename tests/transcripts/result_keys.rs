@@ -81,7 +81,7 @@ fn stresses_stand_at_nodes_and_elements() {
 #[test]
 fn an_unknown_element_is_told() {
     let error = run(&mut self::session(THREE), "show mises q2").unwrap_err();
-    assert!(error.contains("no node or element `q2`: did you mean \"q1\"?"), "{error}");
+    assert!(error.contains("no node or element `q2` (did you mean `q1`?)"), "{error}");
 }
 
 /// M(x) = −q (L − x)²/2 − P (1 − x)₊ with q = 3, P = 10, L = 4; Q(x) = q (L − x) + P for x < 1.

@@ -8,6 +8,7 @@ use super::builder::Builder;
 use super::mesh_names::MeshPart;
 use super::meshes::{Lines, MeshOutline};
 use crate::model::edge::Sides;
+use crate::model::groups::Groups;
 use crate::model::mesh::Shape;
 use crate::model::mesh::chain::{chains, oriented};
 use crate::model::structure::{Bar, Body, Element, ElementKind, MeshElements, Node};
@@ -104,28 +105,12 @@ fn append_bars<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, group: 
 
 /// The parts of a mesh that hang together, with names: of the mesh, of a group that is just this part, or of a node.
 fn bodies(part: &MeshPart, elements: &[Element], first: usize, nodes: usize) -> Vec<Body> {
-    let mut parent: Vec<usize> = (0..nodes).collect();
-    fn root(parent: &mut [usize], mut node: usize) -> usize {
-        while parent[node] != node {
-            parent[node] = parent[parent[node]];
-            node = parent[node];
-        }
-        node
-    }
-    for element in elements {
-        let one = root(&mut parent, element.nodes[0]);
-        for node in &element.nodes[1..] {
-            let other = root(&mut parent, *node);
-            parent[other] = one;
-        }
-    }
-    let mut bodies: Vec<Body> = Vec::new();
-    let mut body_of: HashMap<usize, usize> = HashMap::new();
-    for (index, element) in elements.iter().enumerate() {
-        let body = *body_of.entry(root(&mut parent, element.nodes[0])).or_insert_with(|| {
-            bodies.push(Body { name: String::new(), elements: Vec::new() });
-            bodies.len() - 1
-        });
+    let mut groups = Groups::new(nodes);
+    elements.iter().for_each(|element| groups.join_all(element.nodes.iter().copied()));
+    let body_of = groups.numbers(elements.iter().map(|element| element.nodes[0]));
+    let count = body_of.iter().max().map_or(0, |last| last + 1);
+    let mut bodies: Vec<Body> = vec![Body { name: String::new(), elements: Vec::new() }; count];
+    for (index, body) in body_of.into_iter().enumerate() {
         bodies[body].elements.push(first + index);
     }
     let single = bodies.len() == 1;

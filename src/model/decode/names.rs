@@ -4,7 +4,7 @@ use super::builder::Builder;
 use super::mesh_names::MeshPart;
 use super::reader::Cursor;
 use super::spot::Spot;
-use super::words::{did_you_mean, listed, nearest, quoted};
+use super::words::{did_you_mean, listed, quoted};
 use crate::model::edge::Edge;
 use crate::model::plate::PlateSide;
 
@@ -86,11 +86,7 @@ impl<'d> Builder<'d> {
     fn plate(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<usize> {
         let plate = self.plates.get(id).copied();
         if plate.is_none() && !self.broken.contains(id) {
-            let known: Vec<&str> = self.plates.keys().copied().collect();
-            let hint = match nearest(id, known) {
-                Some(near) => format!(": did you mean {}?", quoted(&name.replacen(id, near, 1))),
-                None => String::new(),
-            };
+            let hint = did_you_mean(id, self.plates.keys().copied());
             cursor.problem(format!("unknown plate {} in {}{hint}", quoted(id), quoted(name)), self.known_plates());
         }
         plate

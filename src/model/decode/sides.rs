@@ -3,7 +3,7 @@
 use super::builder::Builder;
 use super::reader::{Cursor, Fields};
 use super::spot::Spot;
-use super::words::nearest;
+use super::words::near;
 use crate::model::edge::Edge;
 use crate::model::mortar::{self, MortarError};
 use crate::model::pair::{Pair, Weights};
@@ -71,7 +71,7 @@ pub fn is_geometry(cursor: Cursor<'_>) -> bool {
 }
 
 fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
-    !builder.nodes.contains_key(word) && nearest(word, [GROUND]).is_some()
+    !builder.nodes.contains_key(word) && !near(word, [GROUND]).is_empty()
 }
 
 /// Of one node against another one or the ground.

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::Warning;
+use crate::model::groups::Groups;
 use crate::model::scenario::Scenario;
 use crate::model::structure::{ElementLoad, Load, Structure};
 
@@ -82,24 +83,14 @@ fn weight(structure: &Structure) -> Option<[f64; 2]> {
 
 /// A label for each node: the same for nodes that elements, ties and rigid bodies join.
 pub fn parts(structure: &Structure) -> Vec<usize> {
-    let mut above: Vec<usize> = (0..structure.nodes.len()).collect();
-    fn root(above: &mut [usize], mut node: usize) -> usize {
-        while above[node] != node {
-            above[node] = above[above[node]];
-            node = above[node];
-        }
-        node
-    }
+    let mut parts = Groups::new(structure.nodes.len());
     let elements = structure.elements.iter().map(|element| &element.nodes);
     let ties = structure.ties.iter().map(|tie| &tie.nodes);
     let rigid = structure.rigid.iter().map(|body| &body.nodes);
     for nodes in elements.chain(ties).chain(rigid) {
-        for pair in nodes.windows(2) {
-            let (a, b) = (root(&mut above, pair[0]), root(&mut above, pair[1]));
-            above[a] = b;
-        }
+        parts.join_all(nodes.iter().copied());
     }
-    (0..structure.nodes.len()).map(|node| root(&mut above, node)).collect()
+    (0..structure.nodes.len()).map(|node| parts.of(node)).collect()
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::words::{Internal, Meaning, OfStress, Over, STATES, WORDS, entry, pair_words};
 use super::{BarPlace, Names, Quantity, ResultantPart, fits};
-use crate::model::words::{did_you_mean, nearest};
+use crate::model::words::{did_you_mean_typed, no_such};
 
 /// Words that are no quantity.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -13,20 +13,10 @@ fn error<T>(text: impl Into<String>) -> Result<T, QuantityError> {
     Err(QuantityError(text.into()))
 }
 
-/// The known name, or "no pair `jiont[0]` (did you mean `joint[0]`?): the pairs are c1, c2".
+/// The known name.
 fn known<'n>(what: &str, word: &str, names: &[&'n str]) -> Result<&'n str, QuantityError> {
-    if let Some(found) = names.iter().find(|name| **name == word) {
-        return Ok(found);
-    }
-    // Of two letters any other two are near.
-    let near = nearest(word, names.iter().copied()).filter(|_| word.len() > 2);
-    let near = near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)"));
-    error(match names {
-        [] => format!("no {what} `{word}`: this scenario has none"),
-        [only] => format!("no {what} `{word}`{near}: the only {what} is {only}"),
-        [first, .., last] if names.len() > 8 => format!("no {what} `{word}`{near}: the {what}s are {first} … {last}"),
-        names => format!("no {what} `{word}`{near}: the {what}s are {}", names.join(", ")),
-    })
+    let found = names.iter().find(|name| **name == word);
+    found.copied().ok_or_else(|| QuantityError(no_such(what, word, names.iter().copied())))
 }
 
 /// Reads one quantity from the front of `words`; what is left comes back.
@@ -78,7 +68,7 @@ fn read_words<'w>(
 ) -> Result<(Quantity, &'w [String]), QuantityError> {
     let Some(entry) = entry(first) else {
         let probes = names.probes.iter().map(|(name, _)| name.as_str());
-        let near = did_you_mean(first, WORDS.iter().map(|known| known.word).chain(probes));
+        let near = did_you_mean_typed(first, WORDS.iter().map(|known| known.word).chain(probes));
         return error(format!("unknown quantity `{first}`{near}; `help show` lists them"));
     };
     let argument = |rest: &'w [String]| match rest.split_first() {
@@ -177,7 +167,7 @@ fn known_place(what: &str, name: &str, names: &Names<'_>, others: &[&str]) -> Re
     // In order: of equally near names always the same one is told.
     let mut all: Vec<&str> = names.nodes.iter().chain(others).copied().collect();
     all.sort_unstable();
-    error(format!("no {what} `{name}`{}", did_you_mean(name, all)))
+    error(format!("no {what} `{name}`{}", did_you_mean_typed(name, all)))
 }
 
 fn bar<'w>(
@@ -221,7 +211,7 @@ fn over<'w>(over: Over, rest: &'w [String], names: &Names<'_>) -> Result<(Quanti
         }
         _ => error(format!(
             "`{word} {inner}`{}: expected a number of pairs, like `{word} x_n joint[*]`{}",
-            did_you_mean(inner, pair_words().map(|(word, _)| word)),
+            did_you_mean_typed(inner, pair_words().map(|(word, _)| word)),
             match over {
                 Over::Sum => "",
                 Over::Max => ", of a bar, like `max M AB`, or `max u`",

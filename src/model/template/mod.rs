@@ -28,7 +28,7 @@ use super::load::load_text;
 use super::parameter::{Parameter, ParameterValues};
 use super::problem::Problems;
 use super::scenario::Scenario;
-use super::words::did_you_mean;
+use super::words::did_you_mean_typed;
 
 /// All kinds, in the order of the list.
 pub const ALL: &[Template] = &[
@@ -94,23 +94,23 @@ pub struct Choice {
 #[derive(Debug, Error)]
 pub enum TemplateError {
     /// No such kind.
-    #[error("`{kind}` is no kind of structure{near} The kinds are {known} (`new` lists them with their names)")]
+    #[error("`{kind}` is no kind of structure{near}: the kinds are {known} (`new` lists them with their names)")]
     Kind {
         /// The word.
         kind: String,
-        /// ": did you mean …?", or the end of the sentence.
+        /// The question whether a near one was meant, or nothing.
         near: String,
         /// All of them.
         known: String,
     },
     /// No such name.
-    #[error("{kind} has no `{name}`{near} Its names are {known}")]
+    #[error("{kind} has no `{name}`{near}: its names are {known}")]
     Name {
         /// The kind.
         kind: &'static str,
         /// The word.
         name: String,
-        /// ": did you mean …?", or the end of the sentence.
+        /// The question whether a near one was meant, or nothing.
         near: String,
         /// All of them.
         known: String,
@@ -166,7 +166,7 @@ pub fn find(kind: &str) -> Result<&'static Template, TemplateError> {
         let kinds: Vec<&str> = ALL.iter().map(|template| template.kind).collect();
         TemplateError::Kind {
             kind: kind.to_owned(),
-            near: asked(did_you_mean(kind, kinds.iter().copied())),
+            near: did_you_mean_typed(kind, kinds.iter().copied()),
             known: kinds.join(", "),
         }
     })
@@ -237,7 +237,7 @@ impl Template {
         TemplateError::Name {
             kind: self.kind,
             name: name.to_owned(),
-            near: asked(did_you_mean(name, names.iter().map(String::as_str))),
+            near: did_you_mean_typed(name, names.iter().map(String::as_str)),
             known: names.join(", "),
         }
     }
@@ -308,11 +308,6 @@ fn number(name: &str, parameter: &Parameter, text: &str) -> Result<f64, Template
         },
         found: text.to_owned(),
     })
-}
-
-/// The question after a mistyped word, or the end of the sentence without one.
-fn asked(near: String) -> String {
-    if near.is_empty() { ".".to_owned() } else { near }
 }
 
 /// Lines of a list of the text, a comma between them.

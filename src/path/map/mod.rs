@@ -20,6 +20,7 @@ use super::quantity::{Facts, Value};
 use super::route::Route;
 use super::start::PathError;
 use crate::answer::record::{RayClass, State, Verdict};
+use crate::model::groups::Groups;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
 
@@ -149,48 +150,25 @@ fn along(case: Case<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
 
 /// The region of each part of each panel, numbered from the left below.
 fn connected(panels: &[Panel], range: [f64; 2]) -> Vec<Vec<usize>> {
-    let mut parents: Vec<usize> = Vec::new();
-    fn root(parents: &mut [usize], mut at: usize) -> usize {
-        while parents[at] != at {
-            parents[at] = parents[parents[at]];
-            at = parents[at];
-        }
-        at
-    }
-    let starts: Vec<usize> = panels
-        .iter()
-        .map(|panel| {
-            let start = parents.len();
-            parents.extend(start..start + panel.areas.len());
-            start
-        })
-        .collect();
+    let mut count = 0;
+    let start = |panel: &Panel| {
+        count += panel.areas.len();
+        count - panel.areas.len()
+    };
+    let starts: Vec<usize> = panels.iter().map(start).collect();
+    let mut groups = Groups::new(count);
     for (k, two) in panels.windows(2).enumerate() {
         let (below, above) = (&two[0].lines[two[0].lines.len() - 1], &two[1].lines[0]);
         for (i, a) in below.parts.iter().enumerate() {
             for (j, b) in above.parts.iter().enumerate().filter(|(_, b)| b.scheme == a.scheme) {
                 if a.to.min(b.to) - a.from.max(b.from) > TOUCHING * (range[1] - range[0]) {
-                    let (i, j) = (root(&mut parents, starts[k] + i), root(&mut parents, starts[k + 1] + j));
-                    parents[i.max(j)] = i.min(j);
+                    groups.join(starts[k] + i, starts[k + 1] + j);
                 }
             }
         }
     }
-    let mut numbers: Vec<Option<usize>> = vec![None; parents.len()];
-    let mut next = 0;
-    (panels.iter().zip(&starts))
-        .map(|(panel, start)| {
-            (0..panel.areas.len())
-                .map(|part| {
-                    let root = root(&mut parents, start + part);
-                    *numbers[root].get_or_insert_with(|| {
-                        next += 1;
-                        next - 1
-                    })
-                })
-                .collect()
-        })
-        .collect()
+    let mut numbers = groups.numbers(0..count).into_iter();
+    panels.iter().map(|panel| numbers.by_ref().take(panel.areas.len()).collect()).collect()
 }
 
 /// A, B, …, Z, AA, …

@@ -15,9 +15,9 @@ use crate::view;
 use crate::view::combinations::Row;
 use crate::watch::Watch;
 
+use crate::model::words::no_such;
 use crate::session::language::candidates::Candidate;
 use crate::session::language::command::{Action, Command};
-use crate::session::language::selection::no_such;
 use crate::session::{CommandError, Next, Output, Session, worker};
 
 /// Solve the load combinations of the scenario

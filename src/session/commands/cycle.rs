@@ -3,9 +3,9 @@
 use clap::Args;
 use serde::Serialize;
 
-use super::find::range;
 use crate::answer::record::Ray;
 use crate::model::quantity::fits;
+use crate::model::words::no_such;
 use crate::path::cycle::{Kind, MOST, PairSlip, Turn, cycle, shakedown_limit};
 use crate::path::cycle_starts::{StartResult, Starts, from_all};
 use crate::path::record::PathRecord;
@@ -14,7 +14,7 @@ use crate::path::static_shakedown::Static;
 use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
-use crate::session::language::selection::no_such;
+use crate::session::language::range;
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 
@@ -71,16 +71,6 @@ fn slips(asked: &Asked<'_>) -> Vec<Candidate> {
 enum From {
     Begin(Begin),
     All,
-}
-
-/// `A..B` in any order: from the first to the second.
-fn ends(word: &str) -> Result<[f64; 2], CommandError> {
-    match word.split_once("..") {
-        Some((a, b)) if a.parse::<f64>().is_ok_and(|a| b.parse::<f64>().is_ok_and(|b| a > b)) => {
-            range(&format!("{b}..{a}"), "cycle").map(|[b, a]| [a, b])
-        }
-        _ => range(word, "cycle"),
-    }
 }
 
 /// What the static theorem says of every start.
@@ -165,7 +155,7 @@ impl Session {
                 );
             }
         };
-        let (name, ends) = (self.varied(name)?.to_owned(), ends(span)?);
+        let (name, ends) = (self.varied(name)?.to_owned(), range::either_way(span, "cycle")?);
         let ground = self.ground(io.watch)?;
         let what = name.clone();
         let begin = match from {
@@ -188,7 +178,7 @@ impl Session {
             every_start: StaticReport::of(&found.every_start),
             sentence: &found.sentence,
         };
-        io.show(&report, |out, style| view::cycle::write(out, &found, self.load_unit(&name), units, style))?;
+        io.show(&report, |out, style| view::cycle::write(out, &found, self.now.scenario.unit_of(&name), units, style))?;
         self.keep_path(PathRecord::of_history(&found.history));
         Ok(())
     }
@@ -203,7 +193,7 @@ impl Session {
             every_start: StaticReport::of(&found.every_start),
             sentence: found.sentence(),
         };
-        let (unit, units) = (self.load_unit(&found.name), &self.now.scenario.units);
+        let (unit, units) = (self.now.scenario.unit_of(&found.name), &self.now.scenario.units);
         io.show(&report, |out, style| view::cycle::write_starts(out, found, unit, units, style))?;
         Ok(())
     }
@@ -247,11 +237,6 @@ impl Session {
         Ok(From::Begin(Begin::Slips(slips)))
     }
 
-    /// The unit of a parameter.
-    fn load_unit(&self, name: &str) -> Option<&str> {
-        self.now.scenario.parameters.get(name)?.unit.as_deref()
-    }
-
     /// `limit cycle LOAD [A..B]`: from A, 0 if it is left out; B is looked at first.
     pub(in crate::session) fn limit_cycle(
         &mut self,
@@ -260,15 +245,12 @@ impl Session {
     ) -> Result<(), CommandError> {
         let (name, span) = match words {
             [name] => (name, None),
-            [name, span] => (name, Some(ends(span)?)),
+            [name, span] => (name, Some(range::either_way(span, "cycle")?)),
             _ => return refused("limit cycle: expected `limit cycle LOAD [A..B]`"),
         };
         let name = self.varied(name)?.to_owned();
         let ground = self.ground(io.watch)?;
-        let present = match ground.prepared.cases.iter().find(|(case, _)| *case == name) {
-            Some((_, factor)) => factor.value(&self.now.values),
-            None => self.now.values.get(&name).copied().unwrap_or_default(),
-        };
+        let present = ground.case(io.watch).present(&name).unwrap_or_default();
         let ends = span.unwrap_or([0.0, if present == 0.0 { 1.0 } else { present }]);
         let what = name.clone();
         let found = worker::run(io.watch, move |watch| shakedown_limit(ground.case(watch), &what, ends))??;
@@ -281,7 +263,9 @@ impl Session {
             from_every_start: found.every_start.0,
             every_start: StaticReport::of(&found.every_start.1),
         };
-        io.show(&report, |out, style| view::cycle::write_limit(out, &name, &found, self.load_unit(&name), style))?;
+        io.show(&report, |out, style| {
+            view::cycle::write_limit(out, &name, &found, self.now.scenario.unit_of(&name), style)
+        })?;
         Ok(())
     }
 }

@@ -8,9 +8,9 @@ use crate::model::quantity::Quantity;
 use crate::path::envelope::{Axis, Peak, envelope};
 use crate::path::quantity::Facts;
 use crate::session::commands::combine::Combined;
-use crate::session::commands::find;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
+use crate::session::language::range;
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 use crate::view::combinations::Extreme;
@@ -121,7 +121,7 @@ impl Session {
         while let Some((name, after)) = rest.split_first() {
             let name = self.varied(name)?.to_owned();
             let (range, after) = match after.split_first() {
-                Some((word, after)) if word.contains("..") => (find::range(word, command)?, after),
+                Some((word, after)) if word.contains("..") => (range::upwards(word, command)?, after),
                 _ => (self.slider(&name, command)?, after),
             };
             if axes.iter().any(|axis| axis.name == name) {

@@ -10,11 +10,12 @@ use crate::path::edge::{Which, edge};
 use crate::path::find::{Found, Wanted, find};
 use crate::view;
 
+use crate::model::words::no_such;
 use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::language::expect::{self, Expectation, Operator};
-use crate::session::language::selection::no_such;
+use crate::session::language::range;
 use crate::session::{CommandError, Next, Output, Session, worker};
 
 /// Find the values of a parameter or load at which a quantity is as wanted
@@ -78,19 +79,6 @@ struct Request {
     condition: String,
 }
 
-/// `A..B`, upwards.
-pub(in crate::session) fn range(word: &str, command: &str) -> Result<[f64; 2], CommandError> {
-    let number = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
-    let ends = word.split_once("..").and_then(|(from, to)| Some([number(from)?, number(to)?]));
-    match ends {
-        Some([from, to]) if from < to => Ok([from, to]),
-        Some([from, to]) => {
-            refused(format!("{command}: the range {from}..{to} is empty: the smaller value comes first"))
-        }
-        None => refused(format!("{command}: `{word}` is no range; expected A..B, e.g. 0..1")),
-    }
-}
-
 impl Session {
     /// The name of a parameter that can be set, or of a load case.
     pub(in crate::session) fn varied<'w>(&self, name: &'w str) -> Result<&'w str, CommandError> {
@@ -132,7 +120,7 @@ impl Session {
         };
         let (name, range) = match head {
             [name] => (self.varied(name)?, self.slider(name, "find")?),
-            [name, text] => (self.varied(name)?, range(text, "find")?),
+            [name, text] => (self.varied(name)?, range::upwards(text, "find")?),
             _ => return refused(form),
         };
         let read = expect::read(condition, &self.names(), &self.now.values)
@@ -159,7 +147,7 @@ impl Session {
         let request = self.request(words)?;
         let ground = self.ground(io.watch)?;
         let (name, range) = (request.name.clone(), request.range);
-        let unit = self.now.scenario.parameters.get(&name).and_then(|parameter| parameter.unit.clone());
+        let unit = self.now.scenario.unit_of(&name).map(str::to_owned);
         let outcome = matches!(&request.quantity, Quantity::Answer(OfAnswer::Outcome))
             && request.wanted == Wanted::Word("answer".to_owned());
         let name = request.name.clone();

@@ -88,7 +88,7 @@ impl Session {
             }
             error => error,
         })?;
-        let unit = self.now.scenario.parameters.get(name).and_then(|parameter| parameter.unit.clone());
+        let unit = self.now.scenario.unit_of(name).map(str::to_owned);
         let report = LimitReport {
             load: name,
             limit: found.factor,

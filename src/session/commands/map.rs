@@ -109,7 +109,7 @@ impl Session {
     /// Units of the axes and of the quantity.
     pub(in crate::session) fn map_labels(&self, drawn: &Drawn) -> view::map::Labels<'_> {
         let units = &self.now.scenario.units;
-        let unit = |axis: &Axis| self.now.scenario.parameters.get(&axis.name)?.unit.as_deref();
+        let unit = |axis: &Axis| self.now.scenario.unit_of(&axis.name);
         let quantity = drawn.quantity.as_ref().map(|quantity| (quantity.to_string(), quantity.unit(units)));
         view::map::Labels { units: [unit(&drawn.map.axes[0]), unit(&drawn.map.axes[1])], quantity }
     }

@@ -4,11 +4,11 @@ use std::io::Write;
 use std::sync::Arc;
 
 use crate::model::parameter::ParameterValues;
+use crate::model::words::did_you_mean_typed;
+use crate::model::words::no_such;
 use crate::path::quantity::OnPath;
 use crate::path::record::{Followed, PathRecord};
 use crate::session::commands::along::Along;
-use crate::session::language::selection::no_such;
-use crate::session::language::suggestion::did_you_mean;
 use crate::session::{CommandError, Format, Output, Session};
 use crate::view;
 use crate::view::plot::chart::Chart;
@@ -72,7 +72,7 @@ impl Session {
         let mut pairs = Vec::new();
         for name in names {
             let pair = ids.iter().position(|id| id == name).ok_or_else(|| {
-                CommandError::Refused(format!("plot: no pair {name}{}", did_you_mean(name, ids.iter().copied())))
+                CommandError::Refused(format!("plot: no pair {name}{}", did_you_mean_typed(name, ids.iter().copied())))
             })?;
             pairs.push(pair);
         }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PivotRecord};
 use crate::model::structure::Structure;
+use crate::model::words::no_such;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::diagram;
 use crate::view::plot::scene::{self, Magnification};
@@ -334,7 +335,7 @@ impl Session {
         match bar {
             Some(bar) => match names().find(|name| *name == bar) {
                 Some(name) => Ok((members, vec![name])),
-                None => Err(CommandError::Refused(crate::session::language::selection::no_such("bar", bar, names()))),
+                None => Err(CommandError::Refused(no_such("bar", bar, names()))),
             },
             None if structure.bars.is_empty() => Err(CommandError::Refused("the structure has no bars".into())),
             None => Ok((members, names().collect())),

@@ -7,6 +7,7 @@ use crate::path::stages::History;
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
 use crate::view;
+use crate::view::style::Role;
 
 /// Follow the load history of the scenario, with memory
 ///
@@ -56,7 +57,7 @@ impl Session {
                 Some(index) => view::stages::write_stage(out, &history, index, units, style),
             }?;
             let line = format!("quantities, `expect` and tables now stand {place}, until the next change or `solve`");
-            view::stages::write_line(out, &line, style)
+            style.paragraph(out, Role::Muted, &line)
         })?;
         Ok(())
     }

@@ -15,7 +15,7 @@ pub const UNDO: Command = Command::of::<Undo>("undo");
 
 impl Action for Undo {
     fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
-        session.undo_change(io)?;
+        session.go(Way::Back, io)?;
         Ok(Next::Continue)
     }
 }
@@ -29,35 +29,37 @@ pub const REDO: Command = Command::of::<Redo>("redo");
 
 impl Action for Redo {
     fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
-        session.redo_change(io)?;
+        session.go(Way::Forth, io)?;
         Ok(Next::Continue)
     }
 }
 
-impl Session {
-    fn undo_change(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let Some(change) = self.undo.last().cloned() else {
-            return Err(CommandError::Refused("nothing to undo".into()));
-        };
-        let before = self.now.clone();
-        self.enter(change.setup, false, io)?;
-        self.undo.pop();
-        let mut notes = vec![format!("undone: {}", change.command)];
-        notes.extend(self.note_in_journal(&before, |_| Record::Undo));
-        self.redo.push(Change { command: change.command, setup: before });
-        self.say_what_changed(&notes, io)
-    }
+#[derive(Clone, Copy)]
+enum Way {
+    Back,
+    Forth,
+}
 
-    fn redo_change(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let Some(change) = self.redo.last().cloned() else {
-            return Err(CommandError::Refused("nothing to redo".into()));
+impl Session {
+    /// Takes the last change back, or does again the last that was taken back.
+    fn go(&mut self, way: Way, io: &mut Output<'_>) -> Result<(), CommandError> {
+        let (from, done, record, nothing) = match way {
+            Way::Back => (&self.undo, "undone", Record::Undo, "nothing to undo"),
+            Way::Forth => (&self.redo, "done again", Record::Redo, "nothing to redo"),
+        };
+        let Some(change) = from.last().cloned() else {
+            return Err(CommandError::Refused(nothing.into()));
         };
         let before = self.now.clone();
         self.enter(change.setup, false, io)?;
-        self.redo.pop();
-        let mut notes = vec![format!("done again: {}", change.command)];
-        notes.extend(self.note_in_journal(&before, |_| Record::Redo));
-        self.undo.push(Change { command: change.command, setup: before });
+        let mut notes = vec![format!("{done}: {}", change.command)];
+        notes.extend(self.note_in_journal(&before, |_| record));
+        let (from, to) = match way {
+            Way::Back => (&mut self.undo, &mut self.redo),
+            Way::Forth => (&mut self.redo, &mut self.undo),
+        };
+        from.pop();
+        to.push(Change { command: change.command, setup: before });
         self.say_what_changed(&notes, io)
     }
 }

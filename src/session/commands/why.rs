@@ -12,10 +12,12 @@ use crate::text::number::{short, with_unit};
 use crate::view;
 use crate::watch::Quiet;
 
+use crate::model::words::no_such;
 use crate::session::language::candidates::Candidate;
 use crate::session::language::command::{Action, Command};
-use crate::session::language::selection::{no_pair, no_such};
+use crate::session::language::selection::no_pair;
 use crate::session::{CommandError, Next, Output, Session};
+use crate::view::style::Role;
 
 /// Say why a pair is in its state, and which pivots brought it there; of a bare LCP, why a variable has its value
 #[derive(Debug, Args)]
@@ -174,9 +176,7 @@ impl Session {
         };
         let why = vertex.why(letter, row);
         io.show(&why, |out, style| {
-            for line in style.wrap(&style.text(&why.cause), style.width) {
-                writeln!(out, "{line}")?;
-            }
+            style.paragraph(out, Role::Plain, &why.cause)?;
             for line in style.hanging("  ", &style.text(&why.row)) {
                 writeln!(out, "{line}")?;
             }

@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 
-use super::suggestion::suggestion;
 use super::tokens::OpenQuote;
 
 /// A command that does not belong to the language.
@@ -12,12 +11,12 @@ pub enum GrammarError {
     #[error(transparent)]
     Quote(#[from] OpenQuote),
     /// No such command.
-    #[error("unknown command `{word}`{}: `help` lists all commands", suggestion(.near))]
+    #[error("unknown command `{word}`{near}: `help` lists all commands")]
     Unknown {
         /// The word.
         word: String,
-        /// Commands that look like it.
-        near: Vec<String>,
+        /// The question whether a near one was meant, or nothing.
+        near: String,
     },
     /// A prefix of several commands.
     #[error("`{word}` may be {}: write one more letter", .candidates.join(", "))]

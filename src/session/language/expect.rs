@@ -10,8 +10,8 @@ use crate::model::parameter::ParameterValues;
 use crate::model::quantity::{self, Names, OfAnswer, Quantity, WORDS};
 use crate::path::quantity::{Facts, Value};
 
+use crate::model::words::did_you_mean_typed;
 use crate::session::language::setting::number;
-use crate::session::language::suggestion::did_you_mean;
 
 /// Comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +117,7 @@ pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Re
             [word] if allowed.contains(&word.as_str()) => Ok(word.clone()),
             [word] => Err(bad(format!(
                 "`{word}` is no {subject}{}: expected {}",
-                did_you_mean(word, allowed.iter().copied()),
+                did_you_mean_typed(word, allowed.iter().copied()),
                 allowed.join(", ")
             ))),
             _ => Err(bad(format!("`{subject}` takes one of {}", allowed.join(", ")))),

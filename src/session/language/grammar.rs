@@ -1,10 +1,10 @@
 //! The words of a line → a command, by the table of commands.
 
 use crate::model::quantity;
+use crate::model::words::did_you_mean_typed;
 use crate::session::commands;
 use crate::session::language::command::{Command, Parsed};
 use crate::session::language::error::GrammarError;
-use crate::session::language::suggestion::near;
 use crate::session::language::tokens;
 
 /// The command of a name or an alias.
@@ -30,8 +30,11 @@ pub fn resolve(word: &str) -> Result<&'static Command, GrammarError> {
             word: word.to_owned(),
             // a quantity is asked for by its exact word
             near: match quantity::entry(word) {
-                Some(entry) => vec![format!("show {} {}", entry.word, entry.meaning.arguments()).trim_end().to_owned()],
-                None => near(word, commands::all().map(|command| command.name)),
+                Some(entry) => {
+                    let show = format!("show {} {}", entry.word, entry.meaning.arguments());
+                    format!(" (did you mean `{}`?)", show.trim_end())
+                }
+                None => did_you_mean_typed(word, commands::all().map(|command| command.name)),
             },
         }),
         _ => Err(GrammarError::Ambiguous {

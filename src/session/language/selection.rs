@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use crate::answer::record::PairState;
 use crate::model::quantity::{Internal, displacement_words, fits, pair_words};
 
+use crate::model::words::{did_you_mean_typed, no_such};
 use crate::session::CommandError;
-use crate::session::language::suggestion::did_you_mean;
 
 /// Keys of `displacements … sort KEY`, by magnitude; `u` is √(u_x² + u_y²).
 pub fn displacement_keys() -> Vec<&'static str> {
@@ -28,20 +28,6 @@ pub(in crate::session) fn no_pair(id: &str, pairs: &[PairState]) -> CommandError
         [] => format!("no pair `{id}`: this scenario has no contact pairs"),
         pairs => no_such("pair", id, pairs.iter().map(|pair| pair.id.as_str())),
     })
-}
-
-/// "no pair `c9` (did you mean …?): the pairs are c1 … c6".
-pub(in crate::session) fn no_such<'a>(what: &str, id: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    let near = did_you_mean(id, known.clone());
-    let names: Vec<&str> = known.collect();
-    match names.as_slice() {
-        [] => format!("no {what} `{id}`: there is none"),
-        [one] => format!("no {what} `{id}`{near}: the only {what} is {one}"),
-        [first, .., last] if names.len() > 8 => {
-            format!("no {what} `{id}`{near}: the {what}s are {first} … {last}")
-        }
-        names => format!("no {what} `{id}`{near}: the {what}s are {}", names.join(", ")),
-    }
 }
 
 /// Which rows of a table are asked for.
@@ -75,7 +61,7 @@ impl<'w> Rows<'w> {
                 ("sort", Some(key)) => {
                     return Err(CommandError::Refused(format!(
                         "{command}: no sort key `{key}`{}: expected {}",
-                        did_you_mean(key, keys.iter().copied()),
+                        did_you_mean_typed(key, keys.iter().copied()),
                         keys.join(", ")
                     )));
                 }

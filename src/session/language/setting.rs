@@ -6,7 +6,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Rules, UnknownChoice};
 use crate::model::scenario::{Scenario, Source};
 
-use crate::session::language::suggestion::did_you_mean;
+use crate::model::words::did_you_mean_typed;
 
 /// A `set` that cannot be done.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -159,7 +159,7 @@ pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
     let rules = RULES.iter().map(|rule| rule.name).chain(["auto"]);
     SetError::UnknownParameter {
         name: name.to_owned(),
-        near: did_you_mean(name, names.iter().copied().chain(rules)),
+        near: did_you_mean_typed(name, names.iter().copied().chain(rules)),
         known: match names.len() {
             0 => "none".to_owned(),
             _ => names.join(", "),

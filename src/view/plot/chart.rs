@@ -7,7 +7,7 @@ use unicode_width::UnicodeWidthStr;
 use super::Series;
 use super::canvas::{Canvas, Stroke};
 use super::ticks::{HUGE, Ticks, range};
-use crate::text::number::with_unit;
+use crate::text::number::{heading, with_unit};
 use crate::view::scale::Scale;
 use crate::view::style::{Role, Style, pad_left};
 
@@ -122,8 +122,7 @@ impl Chart {
     /// The title, the unit with its power of ten, and what is said behind it.
     pub fn heading(&self, scale: Option<&Scale>, ascii: bool) -> String {
         let unit = scale.map_or(self.ordinate.clone(), |scale| scale.unit(self.ordinate.as_deref(), ascii));
-        let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
-        format!("{}{unit}{}", self.title, self.about)
+        format!("{}{}", heading(&self.title, unit.as_deref()), self.about)
     }
 
     /// The power of ten of the values at the abscissa.
@@ -281,8 +280,7 @@ impl Chart {
                 write(line)?;
             }
             let mut line = Slots::new(columns);
-            let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
-            middle(&mut line, &format!("{abscissa}{}", style.text(&unit)));
+            middle(&mut line, &style.text(&heading(&self.abscissa, unit.as_deref())));
             return write(line);
         }
         line.put(0, &scale.number(first));

@@ -9,7 +9,7 @@ use crate::answer::record::MemberForces;
 use crate::answer::rounding::{denoised, largest};
 use crate::model::units::Units;
 use crate::view::members::extremes;
-use crate::view::style::Style;
+use crate::view::style::{Role, Style};
 use crate::view::{force_unit, length_unit, moment_unit};
 
 /// Points within a piece whose diagram is curved.
@@ -71,10 +71,7 @@ pub fn write(out: &mut dyn Write, drawing: &Drawing<'_>, units: &Units, style: &
         return writeln!(out, "{}", style.fit(&style.text(&text), style.width));
     };
     Chart { height, ..chart }.write(out, style)?;
-    for line in style.wrap(&extremes(&diagram, force, units), style.width) {
-        writeln!(out, "{line}")?;
-    }
-    Ok(())
+    style.paragraph(out, Role::Plain, &extremes(&diagram, force, units))
 }
 
 /// Name of an internal force in a title, and its unit.

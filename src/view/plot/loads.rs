@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::canvas::{Canvas, Stroke};
+use crate::model::groups::Groups;
 use crate::model::structure::{ElementKind, ElementLoad, Load, LoadCase, Structure};
 use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
@@ -194,25 +195,12 @@ impl Weight {
 
 /// What an element belongs to, for its weight: (0, a node of the membranes that hang together), or (1, a bar).
 fn owners(structure: &Structure) -> Vec<(usize, usize)> {
-    // a tree of nodes for each body: every node points towards the root of its own
-    let mut towards: Vec<usize> = (0..structure.nodes.len()).collect();
-    fn root(towards: &mut [usize], mut node: usize) -> usize {
-        while towards[node] != node {
-            towards[node] = towards[towards[node]];
-            node = towards[node];
-        }
-        node
-    }
-    let membranes = || structure.elements.iter().filter(|element| matches!(element.kind, ElementKind::Membrane { .. }));
-    for element in membranes() {
-        let first = root(&mut towards, element.nodes[0]);
-        for &node in &element.nodes[1..] {
-            let other = root(&mut towards, node);
-            towards[other] = first;
-        }
+    let mut bodies = Groups::new(structure.nodes.len());
+    for element in structure.elements.iter().filter(|element| matches!(element.kind, ElementKind::Membrane { .. })) {
+        bodies.join_all(element.nodes.iter().copied());
     }
     let mut owner: Vec<(usize, usize)> =
-        structure.elements.iter().map(|element| (0, root(&mut towards, element.nodes[0]))).collect();
+        structure.elements.iter().map(|element| (0, bodies.of(element.nodes[0]))).collect();
     for (number, bar) in structure.bars.iter().enumerate() {
         owner[bar.elements.clone()].fill((1, number));
     }

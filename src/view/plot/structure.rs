@@ -13,6 +13,7 @@ use crate::answer::rounding::largest;
 use crate::model::parameter::ParameterValues;
 use crate::model::structure::Structure;
 use crate::model::units::Units;
+use crate::text::number::heading;
 use crate::view::members::extremes;
 use crate::view::style::{Role, Style};
 
@@ -83,10 +84,10 @@ pub fn write_with_diagrams(
     style: &Style,
 ) -> io::Result<()> {
     let (name, unit) = diagram::name(force, units);
-    let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+    let name = heading(name, unit.as_deref());
     let side = if force == Internal::Moment { ", on the tension side" } else { "" };
     let head = if picture.title.is_empty() { String::new() } else { format!("{} · ", picture.title) };
-    let title = format!("{head}{name}{unit}{side}");
+    let title = format!("{head}{name}{side}");
     let picture = Picture { title: &title, displacements: None, ..*picture };
     let scene = Scene::new(&picture, None).with_diagrams(picture.structure, members, force);
     draw(out, &picture, &scene, None, style)?;
@@ -96,9 +97,7 @@ pub fn write_with_diagrams(
     diagrams.sort_by(|a, b| size(&b.1).total_cmp(&size(&a.1)));
     for (id, found) in diagrams.iter().take(EXTREMES) {
         let line = format!("{id} {}", extremes(found, force, units));
-        for line in style.wrap(&style.text(&line), style.width) {
-            writeln!(out, "{line}")?;
-        }
+        style.paragraph(out, Role::Plain, &line)?;
     }
     if diagrams.len() > EXTREMES {
         let rest = format!("… and {} bars with less: `members BAR`", diagrams.len() - EXTREMES);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, GREY, MARGIN, SMALL, WIDTH, points, width_of};
 use crate::path::map::Map;
-use crate::text::number::short;
+use crate::text::number::{heading, short};
 use crate::view::map::{Labels, meaning};
 use crate::view::path::exact;
 
@@ -18,10 +18,7 @@ pub fn figure(map: &Map, labels: &Labels<'_>, caption: &Caption) -> String {
     let ends = y.map(short);
     let gutter = ends.iter().map(|label| width_of(label, SMALL)).fold(0.0, f64::max);
     let (left, right) = (MARGIN + gutter + 10.0, WIDTH - MARGIN - 12.0);
-    let name = |axis: usize| {
-        let unit = labels.units[axis].map_or(String::new(), |unit| format!(" [{unit}]"));
-        format!("{}{unit}", map.axes[axis].name)
-    };
+    let name = |axis: usize| heading(&map.axes[axis].name, labels.units[axis]);
     let top = drawing.y + 22.0;
     let bottom = top + HEIGHT;
     drawing.text((left, top - 8.0), &name(1), SMALL, Anchor::Start, BLACK, "");

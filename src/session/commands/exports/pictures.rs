@@ -8,7 +8,7 @@ use crate::answer::record::OutcomeKind;
 use crate::export::atomic;
 use crate::session::commands::plots::Shape;
 use crate::session::{CommandError, Session};
-use crate::text::number::{short, with_unit};
+use crate::text::number::{heading, short, with_unit};
 use crate::view::members::extremes;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::scene::Scene;
@@ -99,9 +99,9 @@ impl Session {
         let mut shape = self.shape()?;
         (shape.displacements, shape.pairs) = (None, None);
         let (name, unit) = diagram::name(force, units);
-        let unit = unit.map_or(String::new(), |unit| format!(" [{unit}]"));
+        let name = heading(name, unit.as_deref());
         let side = if force == Internal::Moment { ", on the tension side" } else { ", > 0 on the +y side of each bar" };
-        let caption = self.caption(&format!("{}: {name}{unit}{side}", self.short_name()));
+        let caption = self.caption(&format!("{}: {name}{side}", self.short_name()));
         let scene = Scene::new(&shape.picture(0), None);
         let bars = svg::forces::Bars { structure: shape.structure, members, bars: &bars, force };
         Ok(svg::forces::figure(&scene, &bars, units.length.as_deref(), &caption))
@@ -120,9 +120,8 @@ impl Session {
             .values
             .free()
             .map(|(name, value)| {
-                let unit = scenario.parameters.get(name).and_then(|parameter| parameter.unit.as_deref());
                 // kept together where the line is broken
-                format!("{name} = {}", with_unit(&short(value), unit)).replace(' ', "\u{a0}")
+                format!("{name} = {}", with_unit(&short(value), scenario.unit_of(name))).replace(' ', "\u{a0}")
             })
             .collect();
         if !named.is_empty() {
