@@ -58,7 +58,7 @@ pub fn near<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Vec<&'n
         return Vec::new();
     }
     let word = word.to_lowercase();
-    let allowed = (length / 3).max(1);
+    let allowed = ((length + 1) / 3).max(1);
     let mut best = allowed;
     let (mut nearest, mut begun) = (Vec::new(), Vec::new());
     for name in known {

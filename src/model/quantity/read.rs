@@ -418,7 +418,7 @@ mod tests {
     fn unknown_words_and_names_are_told() {
         let names = names(&[]);
         for (text, part) in [
-            ("xn c1", "unknown quantity `xn`: did you mean \"x_n\"?"),
+            ("xn c1", "unknown quantity `xn` (did you mean `x_n`?)"),
             ("x_n c9", "no pair `c9`"),
             ("x_n joint[*]", "put sum, max or min before it"),
             ("x_n", "`x_n` of what? Write `x_n PAIR`"),

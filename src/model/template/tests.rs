@@ -54,7 +54,7 @@ fn a_value_stands_in_the_text_and_its_slider_reaches_it() {
 #[test]
 fn what_cannot_be_is_refused_with_what_can() {
     for (kind, given, said) in [
-        ("portla", &[][..], &["`portla` is no kind", "did you mean \"portal\"", "press-fit"][..]),
+        ("portla", &[][..], &["`portla` is no kind", "did you mean `portal`", "press-fit"][..]),
         ("portal", &[("hh", "3")], &["portal has no `hh`", "L, h, b, q"]),
         ("portal", &[("k", "3")], &["portal has no `k`", "L, h, b, q"]),
         ("portal", &[("L", "x")], &["`L` is the span", "a number greater than 0", "`x`"]),
@@ -66,7 +66,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         ("portal", &[("f", "-0.1")], &["not negative"]),
         ("portal", &[("b", "20")], &["the footings would overlap: b = 20 must be less than L = 12"]),
         ("portal", &[("L", "10"), ("L", "11")], &["`L` is given twice"]),
-        ("arch", &[("block", "9")], &["arch has no `block`", "did you mean \"blocks\"", "blocks, R, t"]),
+        ("arch", &[("block", "9")], &["arch has no `block`", "did you mean `blocks`", "blocks, R, t"]),
         ("arch", &[("blocks", "0")], &["`blocks` is the number of blocks", "a whole number from 3 to 99", "`0`"]),
         ("arch", &[("blocks", "1000000000")], &["a whole number from 3 to 99"]),
         ("arch", &[("blocks", "-4")], &["a whole number"]),
