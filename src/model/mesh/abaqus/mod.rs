@@ -130,7 +130,7 @@ impl Reader<'_> {
             if let Some(meant) = known.iter().find(|known| strsim::osa_distance(known, name) == 1) {
                 return Err(self.cards.problem(
                     keyword.place,
-                    format!("*{} has no parameter {shown}: did you mean \"{meant}\"?", keyword.name),
+                    format!("*{} has no parameter {shown} (did you mean \"{meant}\"?)", keyword.name),
                     "correct the parameter",
                 ));
             }
@@ -220,7 +220,7 @@ impl Reader<'_> {
             other => {
                 if let Some(meant) = KEYWORDS.iter().find(|known| strsim::osa_distance(known, other) == 1) {
                     return refused(
-                        &format!("*{} is unknown: did you mean \"*{meant}\"?", quoted(other).trim_matches('"')),
+                        &format!("*{} is unknown (did you mean \"*{meant}\"?)", quoted(other).trim_matches('"')),
                         "correct the keyword",
                     );
                 }

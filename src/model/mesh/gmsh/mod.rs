@@ -61,7 +61,7 @@ pub fn read(bytes: &[u8], name: &str) -> Result<RawMesh, MeshProblem> {
                 let known = ["Nodes", "Elements", "PhysicalNames", "Entities"];
                 if let Some(meant) = known.iter().find(|known| known.eq_ignore_ascii_case(other)) {
                     return Err(source.problem(
-                        format!("${} is no section: did you mean \"${meant}\"?", printable(other)),
+                        format!("${} is no section (did you mean \"${meant}\"?)", printable(other)),
                         "names of sections are spelled with capitals",
                     ));
                 }
