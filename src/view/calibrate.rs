@@ -11,13 +11,6 @@ use crate::text::number::{short, with_unit};
 /// Most sensitivities that stand in a row.
 const COLUMNS: usize = 4;
 
-fn paragraph(out: &mut dyn Write, role: Role, text: &str, style: &Style) -> io::Result<()> {
-    for line in style.wrap(&style.text(text), style.width) {
-        writeln!(out, "{}", style.paint(role, &line))?;
-    }
-    Ok(())
-}
-
 /// `f = 0.3 ± 0.002: 2 pairs slip, 1 sticks`.
 fn group(found: &Group) -> String {
     let mut text = match found.interval {
@@ -49,7 +42,7 @@ fn group(found: &Group) -> String {
 pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Result<()> {
     for each in &found.groups {
         let role = if each.identifiable { Role::Accent } else { Role::Warning };
-        paragraph(out, role, &group(each), style)?;
+        style.paragraph(out, role, &group(each))?;
     }
     let mut columns = vec![
         Column::words("quantity"),
@@ -73,7 +66,7 @@ pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Res
         0 => "as many measurements as frictions: nothing is left to judge the fit by".to_owned(),
         spare => format!("{spare} more than frictions"),
     };
-    paragraph(out, Role::Plain, &format!("sum of squares {}; {spare}", short(found.squares)), style)?;
+    style.paragraph(out, Role::Plain, &format!("sum of squares {}; {spare}", short(found.squares)))?;
     for [value, squares] in &found.other_minima {
         let text = format!(
             "also least nearby: {} = {}, sum of squares {}",
@@ -81,8 +74,8 @@ pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Res
             exact(*value),
             short(*squares)
         );
-        paragraph(out, Role::Warning, &text, style)?;
+        style.paragraph(out, Role::Warning, &text)?;
     }
     let role = if found.global { Role::Plain } else { Role::Muted };
-    paragraph(out, role, &found.sentence, style)
+    style.paragraph(out, role, &found.sentence)
 }

@@ -15,7 +15,7 @@ use crate::session::language::expect::{self, Expectation, Operator};
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 
-use super::find::range;
+use crate::session::language::range;
 
 /// Find the friction that explains measured slips or displacements
 ///
@@ -173,7 +173,7 @@ impl Session {
         let mut groups: Vec<(String, [f64; 2])> = Vec::new();
         for word in words {
             if let (true, Some(group)) = (word.contains(".."), groups.last_mut()) {
-                group.1 = range(word, "calibrate")?;
+                group.1 = range::upwards(word, "calibrate")?;
                 if group.1[0] < 0.0 {
                     return refused(format!("calibrate: friction is not negative: {word}"));
                 }
