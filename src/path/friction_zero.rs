@@ -97,9 +97,10 @@ impl Follower<'_> {
         let mut best = bad;
         for round in 0..200 {
             let width = (b - a).abs();
-            if width <= 4.0 * f64::EPSILON * a.abs().max(b.abs()) || f_a == 0.0 {
+            if width <= 4.0 * f64::EPSILON * a.abs().max(b.abs()) {
                 break;
             }
+            // Where one of them is 0 at the good place already, the secant leads nowhere and halving does.
             let secant = b - f_b * (b - a) / (f_b - f_a);
             let inside = (secant - a) * (secant - b) < 0.0;
             let x = if round % 3 == 2 || !inside { 0.5 * (a + b) } else { secant };

@@ -1,5 +1,6 @@
-//! The grid of a sweep: up to three parameters, each over a range.
+//! The points of a sweep: a grid of up to three parameters, each over a range, or points drawn at random.
 
+use super::sample::draw::Draw;
 use crate::model::scenario::Scenario;
 
 /// No axis has more points than this.
@@ -44,9 +45,9 @@ pub enum GridError {
 pub struct Axis {
     /// The parameter.
     pub name: String,
-    /// Its values, in the order of the sweep.
+    /// Its values, in the order of the sweep; none where they are drawn.
     pub values: Vec<f64>,
-    /// The range in words, the same for the same values: `f=0:1:0.05`.
+    /// The range in words, the same for the same values: `f=0:1:0.05`, `f=uniform(0.2,0.6)`.
     pub range: String,
 }
 
@@ -148,11 +149,13 @@ impl Axis {
     }
 }
 
-/// The points of all axes; the last axis runs fastest.
+/// The points of all axes, the last axis running fastest, or points drawn at random.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// The axes.
     pub axes: Vec<Axis>,
+    /// How its points are drawn, where they are.
+    pub drawn: Option<Draw>,
 }
 
 impl Grid {
@@ -183,21 +186,37 @@ impl Grid {
         if points > 1e12 {
             return Err(GridError::Axes(format!("{points:e} points are too many")));
         }
-        Ok(Grid { axes })
+        Ok(Grid { axes, drawn: None })
+    }
+
+    /// Points drawn at random.
+    pub fn of_draw(draw: Draw) -> Grid {
+        let axis = |(name, range)| Axis { name, values: Vec::new(), range };
+        let axes = draw
+            .variables
+            .iter()
+            .map(|variable| axis((variable.name.clone(), format!("{}={}", variable.name, variable.of))));
+        Grid { axes: axes.collect(), drawn: Some(draw) }
     }
 
     /// Number of points.
     pub fn len(&self) -> usize {
-        self.axes.iter().map(|axis| axis.values.len()).product()
+        match &self.drawn {
+            Some(draw) => draw.count,
+            None => self.axes.iter().map(|axis| axis.values.len()).product(),
+        }
     }
 
-    /// Whether there is no point (never: every axis has one).
+    /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// The values at point `index`, one per axis.
     pub fn point(&self, mut index: usize) -> Vec<f64> {
+        if let Some(draw) = &self.drawn {
+            return draw.point(index).0;
+        }
         let mut values = vec![0.0; self.axes.len()];
         for (value, axis) in values.iter_mut().zip(&self.axes).rev() {
             *value = axis.values[index % axis.values.len()];

@@ -5,6 +5,8 @@ use std::io::{BufRead, BufReader, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use super::grid::{AXES, Axis, Grid, Shard};
+use super::sample::draw::Draw;
+use super::sample::variable;
 use super::sweep::{Format, Header, columns_line, header_line, key};
 use super::sweep_file::{SweepFileError, failed, next_line, read_header, same};
 use crate::text::file;
@@ -173,7 +175,11 @@ impl Shards {
 /// The grid that the header of a part tells, of as many points as it says.
 fn grid_of(part: &Part) -> Result<Grid, SweepFileError> {
     let no = |why: String| SweepFileError::NoSweep { path: part.path.clone(), why };
-    let Header { grid, points, .. } = &part.header;
+    let Header { grid, points, drawn, .. } = &part.header;
+    if let Some(rule) = drawn {
+        let variables = grid.iter().map(|text| variable(text)).collect::<Result<_, _>>().map_err(no)?;
+        return Ok(Grid::of_draw(Draw { variables, rule: rule.clone(), count: *points }));
+    }
     if grid.is_empty() || grid.len() > AXES {
         return Err(no(format!("its header tells {} ranges, expected 1 to {AXES}", grid.len())));
     }
@@ -183,7 +189,7 @@ fn grid_of(part: &Part) -> Result<Grid, SweepFileError> {
     if found != *points as f64 {
         return Err(no(format!("its header tells {points} points, and its grid {} has {found}", grid.join(" "))));
     }
-    Ok(Grid { axes })
+    Ok(Grid { axes, drawn: None })
 }
 
 /// Whether every shard is there, once.

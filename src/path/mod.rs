@@ -21,6 +21,7 @@ pub mod quantity;
 pub(crate) mod rate;
 pub mod record;
 pub mod route;
+pub mod sample;
 pub mod sensitivity;
 pub mod stages;
 pub mod start;

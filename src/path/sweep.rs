@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 use super::grid::{Grid, Shard};
 use super::quantity::Facts;
+use super::sample::draw::Rule;
 use crate::answer::record::{Answer, State};
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
@@ -60,6 +61,9 @@ pub struct Header {
     pub grid: Vec<String>,
     /// Points of the whole grid.
     pub points: usize,
+    /// How they were drawn, where they are not those of a grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drawn: Option<Rule>,
     /// Part of them in this file.
     pub shard: Shard,
     /// Quantities with columns of their own.
@@ -147,6 +151,7 @@ impl Sweep<'_> {
             hash: hash.long(),
             grid: self.grid.axes.iter().map(|axis| axis.range.clone()).collect(),
             points: self.grid.len(),
+            drawn: self.grid.drawn.as_ref().map(|draw| draw.rule.clone()),
             shard: self.shard,
             quantities: self.quantities.iter().map(ToString::to_string).collect(),
         }

@@ -125,6 +125,10 @@ fn difference(found: &Header, expected: &Header) -> Option<(&'static str, String
     if found.points != expected.points {
         return Some(("number of points", found.points.to_string(), expected.points.to_string()));
     }
+    if found.drawn != expected.drawn {
+        let words = |header: &Header| serde_json::json!(header.drawn).to_string();
+        return Some(("way of drawing", words(found), words(expected)));
+    }
     let differ = found.quantities != expected.quantities;
     differ.then(|| ("list of quantities", found.quantities.join(", "), expected.quantities.join(", ")))
 }

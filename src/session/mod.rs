@@ -133,6 +133,8 @@ pub struct Session {
     path_values: ParameterValues,
     /// The last map.
     map: Option<Arc<commands::map::Drawn>>,
+    /// The last `sample`.
+    sampled: Option<Arc<crate::path::sample::Sampled>>,
     /// The table of the last `sweep` that was shown.
     swept: Option<Arc<Table>>,
     /// What would stop the collapse of this answer, once it was looked for.
@@ -191,6 +193,7 @@ impl Session {
             path: None,
             path_values: ParameterValues::default(),
             map: None,
+            sampled: None,
             swept: None,
             remedies: None,
             followed: None,

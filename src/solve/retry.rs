@@ -71,6 +71,9 @@ impl Prepared {
         } else if !certified {
             job.compare_with_default(&mut solved)?;
         }
+        if let (Some(report), Some(ray)) = (&solved.ray, &mut solved.answer.ray) {
+            ray.verdict = report.verdict;
+        }
         if let Some(report) = solved.ray.as_mut().filter(|_| !brief) {
             explain(report, &problem, self.built());
             if watch.stop() {

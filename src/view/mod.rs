@@ -25,6 +25,7 @@ pub mod quantities;
 pub mod ray;
 pub mod reactions;
 pub mod report;
+pub mod sample;
 pub mod scale;
 pub mod sensitivity;
 pub mod stages;

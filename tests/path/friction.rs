@@ -132,3 +132,25 @@ fn sensitivities_agree_with_differences() {
         }
     }
 }
+
+/// Example 1 with F2 = 150: the k-th support from the pulled end slips at f = 150 / (100 k), wherever the path starts. From
+/// 0.6 to 0.2 a step of the search ends exactly on the first of these places, 0.5.
+#[test]
+fn a_zero_at_the_end_of_a_step_is_found_there() {
+    for start in [0.5, 0.55, 0.58, 0.6, 0.65, 0.7, 0.9] {
+        let mut session = super::find::beam();
+        for command in ["set F 100".to_owned(), "set F2 150".to_owned(), format!("set f {start}")] {
+            super::find::report(&mut session, &command).unwrap();
+        }
+        let path = super::find::report(&mut session, "trace f to 0.2").unwrap();
+        let found: Vec<f64> =
+            path["breakpoints"].as_array().unwrap().iter().map(|at| at["value"].as_f64().unwrap()).collect();
+        let expected: Vec<f64> = (2..6).map(|k| 150.0 / (100.0 * f64::from(k + 1))).filter(|f| *f < start).collect();
+        let end = path["places"].as_array().map(|places| places.last().unwrap()["value"].as_f64().unwrap());
+        assert!(end.is_none_or(|end| (end - 0.25).abs() < 1e-9), "{path}");
+        assert!(found.len() + 1 >= expected.len(), "{start}: {found:?}");
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).abs() < 1e-9, "{start}: {found} {expected}");
+        }
+    }
+}

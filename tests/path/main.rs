@@ -14,6 +14,7 @@ mod load_amounts;
 mod map;
 mod prove;
 mod random;
+mod sample;
 mod session;
 mod stages;
 mod sweep;

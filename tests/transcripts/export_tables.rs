@@ -55,6 +55,7 @@ const COMMANDS: &[(&str, Exported)] = &[
     ("sensitivity", Ok(("load beam", "sensitivity f", "pair"))),
     ("stages", Ok(("load pipeline; stages", "stages", "stage"))),
     ("sweep", Ok(("load beam; sweep f 0..1 3", "sweep", "outcome"))),
+    ("sample", Ok(("load beam; sample f=uniform(0.4,0.6) of max u", "sample", "what"))),
     ("map", Ok(("load beam; map f 0.1..0.9 F2 50..400", "map", "at_F2"))),
     ("calibrate", Ok(("load beam", "calibrate f where z_t c6 = 0.004", "computed"))),
     ("cycle", Ok(("load beam", "cycle F2 0..61", "difference"))),

@@ -109,7 +109,15 @@ impl Lines<'_> {
     /// A value that the scenario cannot take, an interruption.
     pub fn line(&self, at: f64) -> Result<(Line, bool), PathError> {
         let there = self.case.at(self.across, at)?;
-        let case = there.case(self.case);
+        let (parts, exact) = self.over(there.case(self.case))?;
+        Ok((Line { at, parts }, exact))
+    }
+
+    /// The parts of a line on which this case stands still, and whether they were followed on exact paths.
+    ///
+    /// # Errors
+    /// As [`Lines::line`].
+    pub fn over(&self, case: Case<'_>) -> Result<(Vec<Part>, bool), PathError> {
         let (mut upwards, mut downwards) = (Vec::new(), Vec::new());
         let exact = self.fill(case, (self.range, false), AGAIN, &mut upwards)?;
         let upwards = self.joined(upwards);
@@ -118,7 +126,7 @@ impl Lines<'_> {
             self.fill(case, (self.range, true), AGAIN, &mut downwards)?;
         }
         let downwards = self.joined(downwards);
-        Ok((Line { at, parts: self.joined(overlaid(&upwards, &downwards, SAME * self.length())) }, exact))
+        Ok((self.joined(overlaid(&upwards, &downwards, SAME * self.length())), exact))
     }
 
     fn length(&self) -> f64 {

@@ -10,10 +10,9 @@ mod panel;
 
 use serde::Serialize;
 
-pub use line::{Part, Scheme};
+pub use line::{Lines, Part, Scheme};
 pub use panel::Panel;
 
-use self::line::Lines;
 use self::panel::Cutter;
 use super::envelope::Axis;
 use super::quantity::{Facts, Value};

@@ -21,6 +21,7 @@ use crate::session::{CommandError, Next, Output, Session};
 ///   expect unknowns|free|lcp OP NUMBER      (sizes, as `status` shows them)
 ///   expect ray mechanism|artefact|fault|no-equilibrium
 ///   expect verdict certified|proved|undecided
+///   expect collapse|undecided OP NUMBER     (probabilities, after `sample`)
 ///   expect stage S …                        (after `stages`: at the end of stage S)
 ///   expect error "part of the message"      (after a command that fails)
 /// NUMBER and TOLERANCE may be formulas of the parameters: `2*f*F`, `q*L^2/8`; a tolerance also `1%`.
@@ -35,6 +36,9 @@ pub struct Expect {
     #[arg(value_name = "EXPECTATION", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
     words: Vec<String>,
 }
+
+/// What the last `sample` tells.
+const SAMPLED: [&str; 2] = ["collapse", "undecided"];
 
 pub const EXPECT: Command = Command { complete: words, keeps_error: true, ..Command::of::<Expect>("expect") };
 
@@ -71,6 +75,16 @@ fn words(asked: &Asked<'_>) -> Vec<Candidate> {
 
 impl Session {
     fn expect(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
+        if let Some((subject, rest)) = words.split_first().filter(|(first, _)| SAMPLED.contains(&first.as_str())) {
+            let bound = expect::bound(rest, &self.now.values)?;
+            let sampled = self.need_sample()?;
+            let found = if subject == SAMPLED[0] { sampled.collapse } else { sampled.undecided };
+            if !bound.holds(found) {
+                let unmet = expect::Unmet { expected: format!("{subject} {bound}"), found: found.to_string() };
+                return Err(unmet.into());
+            }
+            return Ok(io.say(&format!("as expected: {}", words.join(" ")))?);
+        }
         let expectation = expect::read(words, &self.names(), &self.now.values)?;
         self.with_facts(io.watch, |facts| expectation.test(facts, self.last_error.as_deref()))?;
         match expectation {

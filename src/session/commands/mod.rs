@@ -32,6 +32,7 @@ pub(in crate::session) mod ray_guide;
 pub(in crate::session) mod record;
 pub mod reload;
 pub(in crate::session) mod restore;
+pub(in crate::session) mod sample;
 pub(in crate::session) mod save;
 pub mod screen;
 pub mod script;
@@ -99,6 +100,7 @@ pub static GROUPS: &[(&str, &[Command])] = &[
             limit::LIMIT,
             find::FIND,
             map::MAP,
+            sample::SAMPLE,
             sensitivity::SENSITIVITY,
             stages::STAGES,
             cycle::CYCLE,

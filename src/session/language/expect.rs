@@ -88,7 +88,7 @@ pub struct Unmet {
 }
 
 /// Besides the quantities.
-const OTHERS: &[&str] = &["ray", "error"];
+const OTHERS: &[&str] = &["ray", "error", "collapse", "undecided"];
 
 /// The words that may follow `expect`, besides the probes.
 pub fn subjects() -> impl Iterator<Item = &'static str> {
@@ -164,7 +164,7 @@ fn computed(text: &str, values: &ParameterValues) -> Result<f64, String> {
 }
 
 /// `= 100 ± 1e-6`, `<=20`, `= q*L^2/8 ± 1%`, with or without blanks.
-fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, ExpectationSyntax> {
+pub fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, ExpectationSyntax> {
     let text = words.join(" ");
     let bad = || ExpectationSyntax {
         what: format!(
@@ -216,7 +216,8 @@ impl Bound {
         (self.operator, self.value, self.tolerance)
     }
 
-    fn holds(&self, found: f64) -> bool {
+    /// Whether what was found is as expected.
+    pub fn holds(&self, found: f64) -> bool {
         match self.operator {
             Operator::Equal => (found - self.value).abs() <= self.tolerance,
             Operator::NotEqual => found != self.value,

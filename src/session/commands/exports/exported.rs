@@ -68,6 +68,8 @@ pub enum Exported {
     Path,
     /// The last `sweep` that was shown
     Sweep,
+    /// The last `sample`: probabilities, quantiles and histograms
+    Sample,
     /// The last `map`: its regions, or a picture
     Map,
     /// What `summary` shows

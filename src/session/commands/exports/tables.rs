@@ -86,6 +86,7 @@ impl Session {
             Exported::Reactions => json_export::reactions(&self.shown(what)?),
             Exported::Path => json!(self.need_path()?),
             Exported::Map => self.map_json(&self.need_map()?),
+            Exported::Sample => self.sample_rows()?,
             Exported::Result => {
                 self.need_quantities()?;
                 self.result(false).unwrap_or_default()
