@@ -1,10 +1,12 @@
 //! The program as the shell sees it: arguments, streams, exit statuses. Each subcommand has its file.
 
 mod check;
+mod doctor;
 mod ending;
 mod faces;
 mod input;
 mod look;
+mod manual;
 mod new;
 mod order;
 mod prompt;
@@ -69,11 +71,10 @@ enum Command {
     /// Print the JSON Schema of the scenario format
     #[command(after_help = "Example:\n  stickslip schema > stickslip.schema.json")]
     Schema,
-    /// Print the completions of a shell
-    Completions {
-        /// The shell
-        shell: clap_complete::Shell,
-    },
+    Doctor(doctor::Doctor),
+    Completions(manual::Completions),
+    #[command(name = "man")]
+    Manual(manual::Manual),
 }
 
 /// Runs what the arguments of the process ask for, up to the REPL.
@@ -123,11 +124,9 @@ fn run(cli: Cli) -> Result<u8, Failure> {
         Command::Import(import) => return import.run(style, out),
         Command::Scenarios => crate::session::write_scenarios(out, style)?,
         Command::Schema => out.write_all(schema::SCHEMA.as_bytes())?,
-        Command::Completions { shell } => {
-            let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Cli::command(), "stickslip", &mut script);
-            out.write_all(&script)?;
-        }
+        Command::Doctor(doctor) => return doctor.run(&cli.look, style, out),
+        Command::Completions(completions) => return completions.run(Cli::command(), out),
+        Command::Manual(manual) => return manual.run(Cli::command(), out),
     }
     Ok(0)
 }
@@ -149,6 +148,7 @@ fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
         {
             writeln!(io::stderr(), "error: {hint}")
         }
+        Some(shown) if look::is_ascii(arguments) => write_ascii(&shown),
         Some(shown) => shown.print(),
         None => io::stderr().write_all(printable::text(&error.render().to_string(), false).as_bytes()),
     };
@@ -156,4 +156,11 @@ fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => 2,
         _ => status,
     }
+}
+
+/// Help, version or an error of usage where nothing but ASCII can be shown.
+fn write_ascii(shown: &clap::Error) -> io::Result<()> {
+    let style = Style { ascii: true, ..Style::default() };
+    let text: String = shown.render().to_string().lines().map(|line| style.text(line) + "\n").collect();
+    if shown.use_stderr() { io::stderr().write_all(text.as_bytes()) } else { io::stdout().write_all(text.as_bytes()) }
 }

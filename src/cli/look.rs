@@ -1,5 +1,6 @@
 //! How the output looks, from the options and from what the terminal can do.
 
+use std::ffi::OsString;
 use std::io::IsTerminal;
 
 use clap::{Args, ValueEnum};
@@ -42,30 +43,55 @@ impl Look {
             None if terminal => terminal_width(),
             None => 80,
         };
-        Style { width, color, ascii: self.ascii || is_ascii_terminal(&variable) }
+        Style { width, color, ascii: self.why_ascii().is_some() }
+    }
+
+    /// Why only ASCII is written.
+    pub(super) fn why_ascii(&self) -> Option<String> {
+        if self.ascii { Some("--ascii".to_owned()) } else { why_ascii(&variable) }
+    }
+
+    /// Why a stream has no colours that has none.
+    pub(super) fn why_no_color(&self, terminal: bool) -> String {
+        match self.color {
+            Color::Never => "--color never",
+            _ if !terminal => "stdout is no terminal",
+            _ if is_dumb() => "TERM is not set, or dumb",
+            _ => "NO_COLOR is set",
+        }
+        .to_owned()
     }
 }
 
 /// The text of a variable of the environment that is set to something.
-fn variable(name: &str) -> Option<String> {
+pub(super) fn variable(name: &str) -> Option<String> {
     std::env::var_os(name).filter(|value| !value.is_empty()).map(|value| value.to_string_lossy().into_owned())
 }
 
-/// Whether Unicode would come out wrong: the locale, as far as one is named, is not UTF-8, or it is the console of
-/// Linux, whose font lacks most of what is drawn.
-fn is_ascii_terminal(variable: &dyn Fn(&str) -> Option<String>) -> bool {
+/// Why Unicode would come out wrong: the locale, as far as one is named, is not UTF-8, or it is the console of Linux,
+/// whose font lacks most of what is drawn.
+fn why_ascii(variable: &dyn Fn(&str) -> Option<String>) -> Option<String> {
     // the first that is set decides, as POSIX says
-    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(variable);
-    let is_utf8 = |locale: String| {
+    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, variable(name)?)));
+    let is_utf8 = |locale: &str| {
         let locale = locale.to_ascii_lowercase();
         locale.contains("utf-8") || locale.contains("utf8")
     };
-    locale.is_some_and(|locale| !is_utf8(locale)) || variable("TERM").as_deref() == Some("linux")
+    match locale {
+        Some((name, locale)) if !is_utf8(&locale) => Some(format!("{name}={locale} is not UTF-8")),
+        _ if variable("TERM").as_deref() == Some("linux") => Some("TERM=linux: its font lacks them".to_owned()),
+        _ => None,
+    }
+}
+
+/// Whether help and errors of usage are written in ASCII; there may be no [`Look`] to ask.
+pub(super) fn is_ascii(arguments: &[OsString]) -> bool {
+    arguments.iter().any(|word| word == "--ascii") || why_ascii(&variable).is_some()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::is_ascii_terminal;
+    use super::why_ascii;
 
     #[test]
     fn the_locale_decides_in_the_order_of_posix() {
@@ -86,7 +112,7 @@ mod tests {
         ] {
             let variable =
                 |name: &str| set.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned());
-            assert_eq!(is_ascii_terminal(&variable), ascii, "{set:?}");
+            assert_eq!(why_ascii(&variable).is_some(), ascii, "{set:?}");
         }
     }
 }

@@ -109,7 +109,7 @@ fn in_bytes(text: &str, line: &str) -> Option<f64> {
     Some(kibibytes * 1024.0)
 }
 
-fn readable(bytes: f64) -> String {
+pub fn readable(bytes: f64) -> String {
     let units = [("MiB", 1.0 / 1024.0), ("GiB", 1.0), ("TiB", 1024.0), ("PiB", 1024.0 * 1024.0)];
     let amount = bytes / GIB;
     // The largest unit that gives at least 1; MiB for anything smaller.

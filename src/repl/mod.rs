@@ -8,8 +8,8 @@ mod terminal;
 
 use std::io::{self, IsTerminal, Write};
 
-use crate::session::journal::{self, Journal};
-use crate::session::{Next, Session};
+use crate::session::journal::Journal;
+use crate::session::{Next, Session, places};
 use crate::view::status;
 use crate::view::style::Style;
 
@@ -35,9 +35,16 @@ impl Ended {
 
 /// Keeps a journal of the session in the user's state directory, so that nothing is lost without `quit`.
 pub fn keep_journal(session: &mut Session) {
-    if let (Some(state), Ok(here)) = (journal::state_directory(), std::env::current_dir()) {
-        session.keep_journal(Journal::new(&state, &here));
+    if let Ok(journal) = journal() {
+        session.keep_journal(journal);
     }
+}
+
+/// The journal of this workplace, or why none can be kept.
+fn journal() -> Result<Journal, String> {
+    let state = places::state().ok_or(places::NO_STATE)?;
+    let here = std::env::current_dir().map_err(|error| format!("the working directory cannot be named: {error}"))?;
+    Ok(Journal::new(&state, &here))
 }
 
 /// Whether both ends are a terminal, so that a journal is kept and the full screen can be shown.
@@ -75,6 +82,11 @@ fn greet(session: &Session, style: &Style, out: &mut dyn Write) -> io::Result<()
         writeln!(out, "{}", status::line(answer, None, &scenario.units, style))?;
     }
     writeln!(out, "`help` lists the commands, Tab completes, Ctrl-D leaves.")?;
+    if let Err(why) = journal() {
+        for line in style.hanging("a crash would lose all changes: ", &why) {
+            writeln!(out, "{line}")?;
+        }
+    }
     if let Some(left) = session.left_over() {
         let changes = left.changes();
         let s = if changes == 1 { "" } else { "s" };

@@ -96,6 +96,13 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
     if prompt {
         return Ok(Ended::with(0));
     }
+    if line_number == 0 {
+        let note = "stdin is no terminal and holds no commands; `stickslip solve` and `stickslip help` need none (in a \
+                    container, `-it` gives a terminal)";
+        for line in style.hanging("note: ", note) {
+            let _ = writeln!(io::stderr(), "{line}");
+        }
+    }
     let status = [status, pending, session.trouble_status()].into_iter().find(|status| *status != 0).unwrap_or(0);
     Ok(Ended::with(status))
 }

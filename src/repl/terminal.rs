@@ -15,7 +15,7 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::session::commands::reload::open_editor;
 use crate::session::file_watch::FileWatch;
-use crate::session::{CommandError, Next, Output, Session, journal};
+use crate::session::{CommandError, Next, Output, Session, journal, places};
 use crate::text::printable;
 use crate::view::style::{Role, Style};
 
@@ -315,9 +315,8 @@ struct History {
 
 impl History {
     fn open(editor: &mut LineEditor) -> Self {
-        let path = journal::state_directory()
-            .filter(|folder| fs::create_dir_all(folder).is_ok())
-            .map(|folder| folder.join("history"));
+        let path =
+            places::state().filter(|folder| fs::create_dir_all(folder).is_ok()).map(|folder| folder.join("history"));
         if let Some(path) = &path
             && let Ok(bytes) = fs::read(path)
         {

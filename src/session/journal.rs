@@ -17,15 +17,6 @@ use crate::text::hash::Hash;
 /// Format of the header line.
 const FORMAT: &str = "stickslip-journal/2";
 
-/// The user's state directory of this program: `$XDG_STATE_HOME/stickslip` or `~/.local/state/stickslip`; `None`
-/// where neither variable is set to an absolute path.
-pub fn state_directory() -> Option<PathBuf> {
-    let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    absolute("XDG_STATE_HOME")
-        .or_else(|| absolute("HOME").map(|home| home.join(".local/state")))
-        .map(|base| base.join("stickslip"))
-}
-
 /// Opens a file of the state directory for writing at its end; nobody but the user may read it.
 ///
 /// # Errors

@@ -15,6 +15,7 @@ pub mod journal;
 pub mod language;
 pub mod load;
 mod output;
+pub mod places;
 mod present;
 mod recorder;
 mod run;

@@ -10,6 +10,7 @@ use std::{fs, io};
 use serde_json::Value;
 
 use super::keymap::Keymap;
+use crate::session::places;
 
 /// What the user may choose.
 #[derive(Clone, Debug)]
@@ -32,10 +33,7 @@ impl Default for Config {
 
 /// Where the configuration stands; `None` where no variable names a folder.
 pub fn path() -> Option<PathBuf> {
-    let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    absolute("XDG_CONFIG_HOME")
-        .or_else(|| absolute("HOME").map(|home| home.join(".config")))
-        .map(|folder| folder.join("stickslip/config.json"))
+    places::configuration().map(|folder| folder.join("config.json"))
 }
 
 /// The configuration of the user; the defaults if there is none.

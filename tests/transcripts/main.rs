@@ -15,6 +15,7 @@ mod reload;
 mod repl_pty;
 mod result_keys;
 mod serve;
+mod surroundings;
 mod tables;
 mod tui_pty;
 mod work;

@@ -16,7 +16,7 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const PROMPT: &str = "› ";
 
 /// The REPL in `folder`, its state kept there too.
-fn command(folder: &Path, term: &str, arguments: &[&str]) -> CommandBuilder {
+pub fn command(folder: &Path, term: &str, arguments: &[&str]) -> CommandBuilder {
     let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_stickslip"));
     command.args(arguments);
     command.cwd(folder);
@@ -28,7 +28,7 @@ fn command(folder: &Path, term: &str, arguments: &[&str]) -> CommandBuilder {
 }
 
 /// A program on a terminal of its own.
-struct Terminal {
+pub struct Terminal {
     child: Box<dyn Child + Send + Sync>,
     master: Option<Box<dyn MasterPty + Send>>,
     writer: Option<Box<dyn Write + Send>>,
@@ -41,7 +41,7 @@ impl Terminal {
         Terminal::spawn(command(folder, term, arguments))
     }
 
-    fn spawn(command: CommandBuilder) -> Terminal {
+    pub fn spawn(command: CommandBuilder) -> Terminal {
         let pair =
             native_pty_system().openpty(PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 }).unwrap();
         let child = pair.slave.spawn_command(command).unwrap();
@@ -69,7 +69,7 @@ impl Terminal {
         self.seen.lock().unwrap().1.clone()
     }
 
-    fn send(&mut self, text: &str) {
+    pub fn send(&mut self, text: &str) {
         let writer = self.writer.as_mut().unwrap();
         writer.write_all(text.as_bytes()).unwrap();
         writer.flush().unwrap();
@@ -83,7 +83,7 @@ impl Terminal {
     }
 
     /// Waits until the screen is as wanted.
-    fn wait(&self, what: &str, wanted: impl Fn(&str) -> bool) -> String {
+    pub fn wait(&self, what: &str, wanted: impl Fn(&str) -> bool) -> String {
         let start = Instant::now();
         loop {
             let screen = self.screen();
@@ -96,14 +96,14 @@ impl Terminal {
     }
 
     /// Waits for an empty prompt in the last line that is written on.
-    fn prompt(&self) -> String {
+    pub fn prompt(&self) -> String {
         self.wait("the prompt", |screen| {
             screen.trim_end_matches('\n').lines().next_back().is_some_and(|line| line.trim_end() == PROMPT.trim_end())
         })
     }
 
     /// Types a line and waits for its answer and the next prompt.
-    fn ask(&mut self, text: &str, answer: &str) -> String {
+    pub fn ask(&mut self, text: &str, answer: &str) -> String {
         self.send(&format!("{text}\r"));
         self.wait(answer, |screen| {
             let mut behind = screen.rsplit_once(&format!("{PROMPT}{text}")).map_or("", |(_, behind)| behind);
@@ -114,7 +114,7 @@ impl Terminal {
     }
 
     /// Waits for the end; its exit status.
-    fn end(mut self) -> u32 {
+    pub fn end(mut self) -> u32 {
         let start = Instant::now();
         loop {
             if let Some(status) = self.child.try_wait().unwrap() {

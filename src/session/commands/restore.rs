@@ -9,10 +9,10 @@ use clap::{Args, ValueEnum};
 use crate::model::embedded;
 use crate::text::hash::Hash;
 
-use crate::session::journal::{self, Chosen, Record};
+use crate::session::journal::{Chosen, Record};
 use crate::session::language::command::{Action, Command, Recorded};
 use crate::session::language::setting::{RULES, SetError};
-use crate::session::{Change, CommandError, Next, Output, Session, Setup, load};
+use crate::session::{Change, CommandError, Next, Output, Session, Setup, load, places};
 
 /// The word of `restore discard`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -197,7 +197,7 @@ impl Session {
         if discard {
             left.discard().map_err(|source| CommandError::File {
                 doing: "remove the journal in",
-                path: journal::state_directory().unwrap_or_default(),
+                path: places::state().unwrap_or_default(),
                 source,
             })?;
             return Ok(io.say(&format!("{changes} change{s} forgotten"))?);
@@ -272,6 +272,6 @@ impl Session {
 }
 
 fn not_kept(error: &std::io::Error) -> String {
-    let folder = journal::state_directory().unwrap_or_default();
+    let folder = places::state().unwrap_or_default();
     format!("a crash would lose this change: the journal in {} cannot be written: {error}", folder.display())
 }
