@@ -142,13 +142,14 @@ fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
         tell_json(&json_export::problems(&[Problems::of_file("", message, "")]));
     }
+    let plain = Style { ascii: look::is_ascii(arguments), ..Style::default() };
     let printed = match shown {
         _ if status != 0
             && let Some(hint) = prompt::hint(arguments) =>
         {
-            writeln!(io::stderr(), "error: {hint}")
+            writeln!(io::stderr(), "error: {}", plain.text(&hint))
         }
-        Some(shown) if look::is_ascii(arguments) => write_ascii(&shown),
+        Some(shown) if plain.ascii => write_ascii(&shown, &plain),
         Some(shown) => shown.print(),
         None => io::stderr().write_all(printable::text(&error.render().to_string(), false).as_bytes()),
     };
@@ -159,8 +160,7 @@ fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
 }
 
 /// Help, version or an error of usage where nothing but ASCII can be shown.
-fn write_ascii(shown: &clap::Error) -> io::Result<()> {
-    let style = Style { ascii: true, ..Style::default() };
+fn write_ascii(shown: &clap::Error, style: &Style) -> io::Result<()> {
     let text: String = shown.render().to_string().lines().map(|line| style.text(line) + "\n").collect();
     if shown.use_stderr() { io::stderr().write_all(text.as_bytes()) } else { io::stdout().write_all(text.as_bytes()) }
 }

@@ -53,6 +53,8 @@ fn an_old_locale_gets_ascii() {
         vec!["sweep", "beam", "--vary", "f=0:0.2:0.1"],
         vec!["check", "beam"],
         vec!["doctor"],
+        vec!["pairs"],
+        vec!["help", "pairs"],
         vec!["scenarios"],
         vec!["new"],
         vec![],
