@@ -2,7 +2,10 @@
 
 use clap::Args;
 
+use super::input::named;
 use crate::model::rules::{Covering, Engine, TieBreak};
+use crate::session::{CommandError, Session};
+use crate::signals::TerminalWatch;
 
 /// What is solved with other values and rules than those of the file.
 #[derive(Args, Debug)]
@@ -26,8 +29,15 @@ impl Settings {
         self.covering.is_some() || self.tie_break.is_some() || self.engine.is_some()
     }
 
+    /// A session on a scenario named on the command line, solved after these.
+    pub(super) fn session(&self, scenario: &str, watch: &TerminalWatch) -> Result<Session, CommandError> {
+        let session = Session::with_settings(named(scenario, watch)?, &self.words(), watch);
+        watch.clear();
+        session
+    }
+
     /// The words after a `set`, setting by setting.
-    pub(super) fn words(&self) -> Vec<Vec<String>> {
+    fn words(&self) -> Vec<Vec<String>> {
         let rule = |name: &str, choice: Option<String>| choice.map(|choice| vec![name.to_owned(), choice]);
         self.values
             .iter()

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use clap::Args;
 
 use super::ending::Failure;
-use super::input::{Form, named};
+use super::input::Form;
 use super::settings::Settings;
 use crate::export::json as json_export;
 use crate::model::embedded;
@@ -37,10 +37,7 @@ impl Solve {
     pub(super) fn run(&self, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
         let signals = Signals::install()?;
         let watch = TerminalWatch::new(&signals);
-        let scenario = named(&self.scenario, &watch)?;
-        let session = Session::with_settings(scenario, &self.settings.words(), &watch);
-        watch.clear();
-        let mut session = session?;
+        let mut session = self.settings.session(&self.scenario, &watch)?;
         if !self.at_once && !session.scenario().stages.is_empty() {
             let history = session.follow_stages(&watch);
             watch.clear();

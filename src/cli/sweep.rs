@@ -6,10 +6,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::ending::Failure;
-use super::input::named;
 use super::settings::Settings;
 use crate::model::embedded;
-use crate::session::Session;
 use crate::session::commands::sweep;
 use crate::signals::{Signals, TerminalWatch};
 use crate::view::style::Style;
@@ -58,10 +56,7 @@ impl Sweep {
     pub(super) fn run(&self, style: &Style, out: &mut dyn Write) -> Result<u8, Failure> {
         let signals = Signals::install()?;
         let watch = TerminalWatch::new(&signals);
-        let scenario = named(&self.scenario, &watch)?;
-        let session = Session::with_settings(scenario, &self.settings.words(), &watch);
-        watch.clear();
-        let session = session?;
+        let session = self.settings.session(&self.scenario, &watch)?;
         let request = sweep::SweepRequest {
             axes: &self.axes,
             shard: self.shard,

@@ -7,7 +7,7 @@
 //! Which word a file has for this is known to the decoder and to the report of the law; a known friction bound r_f is
 //! f = 0 and c = r_f. The direction of friction is one of a list of facets (method §7): a pair in the plane has two.
 
-use crate::model::pair::Law;
+use crate::model::pair::{Law, LawKind};
 use crate::model::parameter::Number;
 use crate::model::rules::Covering;
 
@@ -73,6 +73,15 @@ impl PairLaw {
     /// A pair that never opens and slips under a known force.
     pub fn bilateral(fixed: f64) -> PairLaw {
         PairLaw { normal: NormalJoint::Bilateral, tangential: TangentialJoint::Bounded { friction: 0.0, fixed } }
+    }
+
+    /// The word of the law.
+    pub fn kind(&self) -> LawKind {
+        match (self.normal, self.tangential) {
+            (NormalJoint::Bilateral, _) => LawKind::Bound,
+            (_, TangentialJoint::Free) => LawKind::Frictionless,
+            (_, TangentialJoint::Bounded { .. }) => LawKind::Coulomb,
+        }
     }
 
     /// Whether the pair never opens.

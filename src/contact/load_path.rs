@@ -36,30 +36,17 @@ pub fn path_lcp(problem: &ContactProblem, increment: &DVector<f64>) -> ContactLc
         Ok(contact) => contact,
         Err(_) => unreachable!("covering ones fits all numbers"),
     };
-    if system.force_form.is_some() {
-        let fixed = problem.fixed_bounds();
-        let mut lcp = MirroredLcp::clone(&contact.lcp);
-        lcp.q = constants(system, &contact, &problem.joint_constants(), &fixed);
-        lcp.covering = constants(system, &contact, increment, &vec![0.0; fixed.len()]);
-        contact.lcp = Arc::new(lcp);
-        return contact;
-    }
-    let unit = contact.force_unit;
-    let load = problem.joint_constants();
+    let (load, fixed) = (problem.joint_constants(), problem.fixed_bounds());
+    let nothing = vec![0.0; fixed.len()];
     let mut lcp = MirroredLcp::clone(&contact.lcp);
-    for (i, pair) in system.pairs.iter().enumerate() {
-        if let Some(row) = contact.normal_row[i] {
-            lcp.q[row] = load[i] / unit;
-            lcp.covering[row] = increment[i] / unit;
-        }
-        if let (Some(row), Some(joint)) = (contact.plus_row[i], pair.tangential) {
-            let f = problem.laws[i].friction();
-            lcp.q[row] = load[joint] / unit + f * (load[i] / unit) + problem.laws[i].fixed_bound() / unit;
-            lcp.covering[row] = increment[joint] / unit + f * (increment[i] / unit);
-            if let Some(mirror) = &mut lcp.mirrors[row] {
-                mirror.covering = 0.0;
-            }
-        }
+    if system.force_form.is_some() {
+        lcp.q = constants(system, &contact, &load, &fixed);
+        lcp.covering = constants(system, &contact, increment, &nothing);
+    } else {
+        let friction = problem.frictions();
+        lcp.q = contact.force_rows(system, &load, &friction, &fixed);
+        lcp.covering = contact.force_rows(system, increment, &friction, &nothing);
+        lcp.mirrors.iter_mut().flatten().for_each(|mirror| mirror.covering = 0.0);
     }
     contact.lcp = Arc::new(lcp);
     contact

@@ -28,9 +28,14 @@ impl Sum {
         if self.magnitude > 0.0 { self.value / self.magnitude } else { self.value }
     }
 
+    /// Most that rounding can have changed the value by.
+    pub fn error(self) -> f64 {
+        NOISE * self.magnitude
+    }
+
     /// Whether rounding alone can have made the value.
     pub fn is_zero(self) -> bool {
-        self.value.abs() <= NOISE * self.magnitude
+        self.value.abs() <= self.error()
     }
 
     /// The value, 0 where it is rounding.

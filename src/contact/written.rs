@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use super::rows::{Quantity, RowId, RowKind};
 use super::system::ContactSystem;
+use nalgebra::DVector;
+
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::ratio_test::TieRule;
@@ -67,6 +69,28 @@ impl ContactLcp {
     pub fn lexicographic_order(&self) -> Vec<usize> {
         let normals = self.rows.iter().filter(|row| row.couple == RowKind::Normal).count();
         (normals..self.rows.len()).chain(0..normals).collect()
+    }
+
+    /// Contact forces, and reserves f λ_n + λ_τ + c, over the primary rows and the unit of force; `forces` are λ over the
+    /// joints, `friction` and `fixed` f and c of every pair.
+    pub fn force_rows(
+        &self,
+        system: &ContactSystem,
+        forces: &DVector<f64>,
+        friction: &[f64],
+        fixed: &[f64],
+    ) -> DVector<f64> {
+        let unit = self.force_unit;
+        let mut rows = DVector::zeros(self.lcp.size());
+        for (i, pair) in system.pairs.iter().enumerate() {
+            if let Some(row) = self.normal_row[i] {
+                rows[row] = forces[i] / unit;
+            }
+            if let (Some(row), Some(joint)) = (self.plus_row[i], pair.tangential) {
+                rows[row] = forces[joint] / unit + friction[i] * (forces[i] / unit) + fixed[i] / unit;
+            }
+        }
+        rows
     }
 
     /// Name of a variable: `p`, `x_n[c1]`, `x+[c1]`, `z-[c1]`.

@@ -43,8 +43,8 @@ fn forces(problem: &ContactProblem, motions: &FreeMotions, size: f64) -> Forces 
     let mut program = LinearProgram::default();
     let mut balance = vec![Vec::new(); motions.count()];
     let mut put = |variable: usize, joint: usize| {
-        for entry in motions.row(joint).iter().filter(|entry| entry.value != 0.0) {
-            balance[entry.motion].push((variable, entry.value));
+        for entry in motions.row(joint).iter().filter(|entry| entry.part.value != 0.0) {
+            balance[entry.motion].push((variable, entry.part.value));
         }
     };
     for (pair, law) in problem.laws.iter().enumerate() {
@@ -108,7 +108,7 @@ pub fn balanced_multiples(
     Multiples::Between(ends)
 }
 
-/// Whether there are balanced forces under the load of `numbers`, as far as f64 can tell; `None` where that could not
+/// Whether there are balanced forces under the load of `problem`, as far as f64 can tell; `None` where that could not
 /// be decided in the time.
 pub fn is_balanced(problem: &ContactProblem, motions: &FreeMotions, seconds: f64) -> Option<bool> {
     let system = &*problem.system;

@@ -21,10 +21,11 @@ use num_traits::Zero;
 
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved};
-use super::motions::{Entry, FreeMotions, Rounded};
+use super::motions::{Entry, FreeMotions};
 use super::proof::{BUDGET, Certificate, CertificateSearch};
 use crate::contact::law::FACETS;
 use crate::contact::problem::ContactProblem;
+use crate::contact::sum::Sum;
 use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 
@@ -65,7 +66,7 @@ struct MotionProgram<'a> {
     problem: &'a ContactProblem,
     motions: &'a FreeMotions,
     /// Work of the loads per unit of each motion.
-    work: Vec<Rounded>,
+    work: Vec<Sum>,
     /// Largest work of a motion.
     scale: f64,
     end: Instant,
@@ -74,9 +75,9 @@ struct MotionProgram<'a> {
 
 /// A sparse row plus `factor` times another one.
 fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Vec<(usize, f64)> {
-    let mut terms: Vec<(usize, f64)> = row.iter().map(|entry| (entry.motion, entry.value)).collect();
+    let mut terms: Vec<(usize, f64)> = row.iter().map(|entry| (entry.motion, entry.part.value)).collect();
     for entry in other {
-        let value = factor * entry.value;
+        let value = factor * entry.part.value;
         match terms.iter_mut().find(|(motion, _)| *motion == entry.motion) {
             Some((_, sum)) => *sum += value,
             None => terms.push((entry.motion, value)),
@@ -227,7 +228,7 @@ impl MotionProgram<'_> {
         let mut equations = Equations::new(amounts.len(), self.end);
         let held: Vec<usize> = self.held().collect();
         for joint in held {
-            equations.add(self.motions.row(joint).iter().map(|entry| (entry.motion, rational(entry.value))));
+            equations.add(self.motions.row(joint).iter().map(|entry| (entry.motion, rational(entry.part.value))));
         }
         for slack in tight {
             equations.add(self.exact_terms(slack.pair, slack.side));
@@ -249,8 +250,8 @@ impl MotionProgram<'_> {
     /// Terms of ζ_n − side · f ζ_τ as the data have them.
     fn exact_terms(&self, pair: usize, side: f64) -> Vec<(usize, BigRational)> {
         let f = rational(side * self.problem.laws[pair].friction());
-        let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, rational(entry.value)));
-        let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -rational(entry.value) * &f));
+        let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, rational(entry.part.value)));
+        let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -rational(entry.part.value) * &f));
         normal.chain(tangential).collect()
     }
 
@@ -260,16 +261,15 @@ impl MotionProgram<'_> {
         let value = |terms: Vec<(usize, BigRational)>| -> BigRational {
             terms.into_iter().filter(|(k, _)| amounts[*k] != 0.0).map(|(k, a)| a * amount(k)).sum()
         };
-        let mut taken = Rounded::default();
+        let mut taken = Sum::default();
         let mut needed_exact = false;
         for (pair, law) in self.problem.laws.iter().enumerate() {
             let normal = self.motions.displacement(pair, amounts);
             let slip = self.problem.system.pairs[pair]
                 .tangential
-                .map_or(Rounded::default(), |joint| self.motions.displacement(joint, amounts));
+                .map_or(Sum::default(), |joint| self.motions.displacement(joint, amounts));
             let (f, c) = (law.friction(), law.fixed_bound());
-            taken.value += c * slip.value.abs();
-            taken.magnitude += c * slip.magnitude;
+            taken = taken.plus(c, Sum { value: slip.value.abs(), ..slip });
             let sure = normal.value - f * slip.value.abs() > normal.error() + 2.0 * f * slip.error();
             let still = normal.magnitude == 0.0 && (f == 0.0 || slip.magnitude == 0.0);
             if still || (sure && !law.is_bilateral()) {
@@ -294,10 +294,9 @@ impl MotionProgram<'_> {
                 return None;
             }
         }
-        let mut power = Rounded::default();
+        let mut power = Sum::default();
         for (work, amount) in self.work.iter().zip(amounts) {
-            power.value += work.value * amount;
-            power.magnitude += work.magnitude * amount.abs();
+            power = power.plus(*amount, *work);
         }
         if power.value - taken.value <= power.error() + 2.0 * taken.error() {
             return None;

@@ -10,6 +10,7 @@ pub mod margin;
 pub mod misfit;
 pub mod mode;
 pub mod motions;
+pub mod pair_state;
 pub mod plain_ray;
 pub mod plain_why;
 pub mod proof;

@@ -6,6 +6,7 @@
 use nalgebra::DVector;
 
 use super::kernel::clean;
+use crate::contact::sum::Sum;
 use crate::contact::system::ContactSystem;
 use crate::fem::MainSystem;
 use crate::lcp::problem::NOISE;
@@ -23,10 +24,8 @@ const ZERO: f64 = 8.0 * f64::EPSILON;
 pub struct Entry {
     /// Index of the motion.
     pub motion: usize,
-    /// Mutual displacement of the joint per unit of the motion.
-    pub value: f64,
-    /// Sum of the magnitudes of the terms of `value`: it is wrong by a few ε of this.
-    pub magnitude: f64,
+    /// Mutual displacement of the joint per unit of the motion, with the magnitudes of its terms.
+    pub part: Sum,
 }
 
 /// Motions that cost no energy, joint by joint.
@@ -34,27 +33,6 @@ pub struct Entry {
 pub struct FreeMotions {
     rows: Vec<Vec<Entry>>,
     count: usize,
-}
-
-/// A sum with what its rounding can amount to.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rounded {
-    /// The sum.
-    pub value: f64,
-    /// Sum of the magnitudes of its terms.
-    pub magnitude: f64,
-}
-
-impl Rounded {
-    fn add(&mut self, value: f64, magnitude: f64) {
-        self.value += value;
-        self.magnitude += magnitude;
-    }
-
-    /// Most that rounding can have changed the sum by.
-    pub fn error(&self) -> f64 {
-        NOISE * self.magnitude
-    }
 }
 
 impl FreeMotions {
@@ -73,15 +51,15 @@ impl FreeMotions {
             .iter()
             .map(|joint| {
                 let entry = |(motion, k): (&crate::fem::Motion, usize)| {
-                    let mut sum = Rounded::default();
+                    let mut sum = Sum::default();
                     for (node, a) in &joint.terms {
                         for (a, u) in a.iter().zip(&motion.u[*node]) {
-                            sum.add(a * u, (a * u).abs());
+                            sum = sum.plus(1.0, Sum::exactly(a * u));
                         }
                     }
                     let value = if sum.value.abs() <= ZERO * sum.magnitude { 0.0 } else { sum.value };
                     let magnitude = sum.magnitude * known(motion.internal);
-                    (magnitude > 0.0).then_some(Entry { motion: k, value, magnitude })
+                    (magnitude > 0.0).then_some(Entry { motion: k, part: Sum { value, magnitude } })
                 };
                 motions.iter().zip(0..).filter_map(entry).collect()
             })
@@ -96,7 +74,7 @@ impl FreeMotions {
             .map(|row| {
                 // The columns are orthonormal to rounding: every entry is wrong by some ε of 1.
                 let entry = |(value, motion): (&f64, usize)| {
-                    (*value != 0.0).then_some(Entry { motion, value: *value, magnitude: 1.0 })
+                    (*value != 0.0).then_some(Entry { motion, part: Sum { value: *value, magnitude: 1.0 } })
                 };
                 row.iter().zip(0..).filter_map(entry).collect()
             })
@@ -115,11 +93,10 @@ impl FreeMotions {
     }
 
     /// Displacement of a joint under so much of each motion.
-    pub fn displacement(&self, joint: usize, amounts: &[f64]) -> Rounded {
-        let mut sum = Rounded::default();
+    pub fn displacement(&self, joint: usize, amounts: &[f64]) -> Sum {
+        let mut sum = Sum::default();
         for entry in &self.rows[joint] {
-            let amount = amounts[entry.motion];
-            sum.add(entry.value * amount, entry.magnitude * amount.abs());
+            sum = sum.plus(amounts[entry.motion], entry.part);
         }
         sum
     }
@@ -131,11 +108,13 @@ impl FreeMotions {
 
     /// Work −RF·z of a load over the joints, per unit of each motion; `terms`: what each entry of the load was summed
     /// from.
-    pub fn work(&self, load: &DVector<f64>, terms: &DVector<f64>) -> Vec<Rounded> {
-        let mut work = vec![Rounded::default(); self.count];
+    pub fn work(&self, load: &DVector<f64>, terms: &DVector<f64>) -> Vec<Sum> {
+        let mut work = vec![Sum::default(); self.count];
         for (row, (load, terms)) in self.rows.iter().zip(load.iter().zip(terms.iter())) {
             for entry in row {
-                work[entry.motion].add(-load * entry.value, terms.max(load.abs()) * entry.magnitude);
+                let Sum { value, magnitude } = entry.part;
+                let own = Sum { value: -load * value, magnitude: terms.max(load.abs()) * magnitude };
+                work[entry.motion] = work[entry.motion].plus(1.0, own);
             }
         }
         work

@@ -3,7 +3,7 @@
 use num_rational::BigRational;
 use serde_json::{Map, Value, json};
 
-use crate::contact::law::{PairLaw, TangentialJoint};
+use crate::contact::law::PairLaw;
 use crate::solve::prove::forms::Forms;
 use crate::solve::prove::system::{ProvedContact, ProvedSystem};
 use crate::solve::prove::tree::{Sum, Tree};
@@ -25,15 +25,10 @@ pub fn system(system: &ProvedSystem, title: &str) -> Value {
 fn of_contact(contact: &ProvedContact) -> Value {
     let rows: Vec<Vec<f64>> = contact.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
     let laws = || contact.laws.iter();
-    let word = |law: &PairLaw| match law.tangential {
-        TangentialJoint::Free => "frictionless",
-        TangentialJoint::Bounded { .. } if law.is_bilateral() => "bound",
-        TangentialJoint::Bounded { .. } => "coulomb",
-    };
     let fixed = |law: &PairLaw, bilateral: bool| if law.is_bilateral() == bilateral { law.fixed_bound() } else { 0.0 };
     let mut value = json!({
         "pairs": contact.ids,
-        "law": laws().map(word).collect::<Vec<_>>(),
+        "law": laws().map(|law| law.kind().word()).collect::<Vec<_>>(),
         "friction": laws().map(PairLaw::friction).collect::<Vec<_>>(),
         "cohesion": laws().map(|law| fixed(law, false)).collect::<Vec<_>>(),
         "bound": laws().map(|law| fixed(law, true)).collect::<Vec<_>>(),

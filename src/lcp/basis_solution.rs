@@ -79,6 +79,18 @@ impl<'a> Whole<'a> {
         basis.active.iter().map(|&k| self.parts(k)).collect()
     }
 
+    /// z over all rows and p of a basis whose active rows of M z + d p are `right`; `None` where its equations are not as
+    /// many as its unknowns, or singular.
+    fn solve(&self, basis: &Basis, right: Vec<f64>) -> Option<(Vec<f64>, f64)> {
+        if basis.z.len() + usize::from(basis.p) != right.len() {
+            return None;
+        }
+        let solution = self.system(basis).solve(&DVector::from_vec(right))?;
+        let mut z = vec![0.0; self.lcp.full_size];
+        basis.z.iter().zip(solution.iter()).for_each(|(&k, value)| z[k] = *value);
+        Some((z, if basis.p { solution[solution.len() - 1] } else { 0.0 }))
+    }
+
     /// w = M z + shift q + d p of all whole rows, exact zero in the active ones.
     fn response(&self, basis: &Basis, z: &[f64], p: f64, shift: f64) -> Vec<f64> {
         let mut primary = vec![0.0; self.lcp.size()];
@@ -99,17 +111,7 @@ impl<'a> Whole<'a> {
 /// Values of all variables at a basis; `None` where its equations are singular.
 pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
     let whole = Whole::new(lcp);
-    let n = basis.active.len();
-    if basis.z.len() + usize::from(basis.p) != n {
-        return None;
-    }
-    let right = DVector::from_fn(n, |a, _| -whole.q(basis.active[a]));
-    let solution = whole.system(basis).solve(&right)?;
-    let mut z = vec![0.0; lcp.full_size];
-    for (b, &k) in basis.z.iter().enumerate() {
-        z[k] = solution[b];
-    }
-    let p = if basis.p { solution[n - 1] } else { 0.0 };
+    let (z, p) = whole.solve(basis, basis.active.iter().map(|&row| -whole.q(row)).collect())?;
     let w = whole.response(basis, &z, p, 1.0);
     Some(Point { z, w, p })
 }
@@ -118,48 +120,23 @@ pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
 /// the data) is given; no sign is looked at. `None` where the equations are singular.
 pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> Option<Point> {
     let whole = Whole::new(lcp);
-    let n = basis.active.len();
-    if basis.z.len() + usize::from(basis.p) != n {
-        return None;
-    }
-    let right = DVector::from_fn(n, |a, _| -w[basis.active[a]]);
-    let step = whole.system(basis).solve(&right)?;
-    let mut point = point.clone();
-    for (b, &k) in basis.z.iter().enumerate() {
-        point.z[k] += step[b];
-    }
-    if basis.p {
-        point.p += step[n - 1];
-    }
-    point.w = whole.response(basis, &point.z, point.p, 1.0);
-    Some(point)
+    let (step, step_p) = whole.solve(basis, basis.active.iter().map(|&row| -w[row]).collect())?;
+    let z: Vec<f64> = point.z.iter().zip(step).map(|(z, step)| z + step).collect();
+    let p = point.p + step_p;
+    let w = whole.response(basis, &z, p, 1.0);
+    Some(Point { z, w, p })
 }
 
 /// Direction at a basis in which `entering` grows by 1; `None` where the equations are singular.
 pub fn direction(lcp: &MirroredLcp, basis: &Basis, entering: Variable) -> Option<RayDirection> {
     let whole = Whole::new(lcp);
-    let n = basis.active.len();
-    if basis.z.len() + usize::from(basis.p) != n {
-        return None;
-    }
-    let right: Vec<f64> = match entering {
-        Variable::Z(k) => {
-            let rows = whole.active_parts(basis);
-            whole.column(k, &rows).map(|entry| -entry).collect()
-        }
-        Variable::W(k) => {
-            let active = basis.active.iter();
-            active.map(|&row| f64::from(row == k)).collect()
-        }
-        Variable::P => basis.active.iter().map(|&row| -whole.d(row)).collect(),
+    let active = basis.active.iter();
+    let right = match entering {
+        Variable::Z(k) => whole.column(k, &whole.active_parts(basis)).map(|entry| -entry).collect(),
+        Variable::W(k) => active.map(|&row| f64::from(row == k)).collect(),
+        Variable::P => active.map(|&row| -whole.d(row)).collect(),
     };
-    let right = DVector::from_vec(right);
-    let solution = whole.system(basis).solve(&right)?;
-    let mut z = vec![0.0; lcp.full_size];
-    for (b, &k) in basis.z.iter().enumerate() {
-        z[k] = solution[b];
-    }
-    let mut p = if basis.p { solution[n - 1] } else { 0.0 };
+    let (mut z, mut p) = whole.solve(basis, right)?;
     match entering {
         Variable::Z(k) => z[k] = 1.0,
         Variable::P => p = 1.0,

@@ -7,7 +7,6 @@ use super::route::Route;
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
-use crate::solve::error::QuestionError;
 
 /// Values of each parameter on a grid over one, two or three of them.
 const POINTS: [usize; 3] = [41, 11, 7];
@@ -104,18 +103,10 @@ fn values(
     quantities: &[Quantity],
 ) -> Result<Option<Vec<Option<f64>>>, PathError> {
     let settings: Vec<(&str, f64)> = axes.iter().zip(at).map(|(axis, value)| (axis.name.as_str(), *value)).collect();
-    let there = match case.at_all(&settings) {
-        Ok(there) => there,
-        // Values without a model: nothing to read there.
-        Err(QuestionError::Refused(_)) => return Ok(None),
-        Err(error) => return Err(error.into()),
-    };
-    let case = there.case(case);
-    let solved = case.solve_briefly()?;
-    if !solved.answer.is_answer() {
+    let Some((there, solved)) = case.solved_at(&settings)?.filter(|(_, solved)| solved.answer.is_answer()) else {
         return Ok(None);
-    }
-    let facts = Facts::of_answer(case, &solved);
+    };
+    let facts = Facts::of_answer(there.case(case), &solved);
     Ok(Some(quantities.iter().map(|quantity| facts.value(quantity).ok()?.number()).collect()))
 }
 

@@ -8,7 +8,6 @@ use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::path::quantity::Facts;
 use crate::solve::Case;
-use crate::solve::error::QuestionError;
 
 /// Intervals into which a range is cut where there is no exact path.
 pub const CELLS: usize = 40;
@@ -212,19 +211,11 @@ fn gather(parts: &[Part], wanted: &Wanted, place: impl Fn(f64) -> Place) -> Foun
 
 /// The quantity of an answer of its own at a value.
 fn solved_value(case: Case<'_>, name: &str, at: f64, quantity: &Quantity) -> Result<Option<Value>, PathError> {
-    let there = match case.at(name, at) {
-        Ok(there) => there,
-        // Values without a model: nothing to read there.
-        Err(QuestionError::Refused(_)) => return Ok(None),
-        Err(error) => return Err(error.into()),
-    };
-    let case = there.case(case);
-    let solved = case.solve_briefly()?;
+    let Some((there, solved)) = case.solved_at(&[(name, at)])? else { return Ok(None) };
     if !solved.answer.is_answer() && quantity.is_of_state() {
         return Ok(None);
     }
-    let facts = Facts::of_answer(case, &solved);
-    Ok(facts.value(quantity).ok())
+    Ok(Facts::of_answer(there.case(case), &solved).value(quantity).ok())
 }
 
 fn on_grid(

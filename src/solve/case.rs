@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::error::QuestionError;
 use super::prepared::Prepared;
+use super::state::Solved;
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
@@ -96,5 +97,19 @@ impl<'a> Case<'a> {
             there.cases[case].1 = Number::Value(value);
         }
         Ok(There { prepared: Arc::new(there), values })
+    }
+
+    /// An answer of its own at other values of some of them; `None` where these values have no model.
+    ///
+    /// # Errors
+    /// Stopped, or a run that could not be made.
+    pub fn solved_at(self, settings: &[(&str, f64)]) -> Result<Option<(There, Solved)>, QuestionError> {
+        let there = match self.at_all(settings) {
+            Ok(there) => there,
+            Err(QuestionError::Refused(_)) => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let solved = there.case(self).solve_briefly()?;
+        Ok(Some((there, solved)))
     }
 }

@@ -16,8 +16,8 @@ use crate::watch::Watch;
 
 /// Contact pairs (or a third of the rows) up to which the tableau takes part.
 const TABLEAU_PAIRS: usize = 80;
-/// Contact pairs up to which exact arithmetic takes part.
-const EXACT_PAIRS: usize = 12;
+/// Contact pairs up to which exact arithmetic takes part: it would take longer than all the others beyond.
+const COMPARED_EXACTLY: usize = 12;
 
 /// One combination and its end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -71,7 +71,7 @@ impl Prepared {
         if pairs <= TABLEAU_PAIRS {
             engines.push(Engine::Tableau);
         }
-        if pairs <= EXACT_PAIRS {
+        if pairs <= COMPARED_EXACTLY {
             engines.push(Engine::Exact);
         }
         let mut found: Vec<Answer> = Vec::new();

@@ -6,6 +6,8 @@
 
 use std::sync::{Arc, Mutex};
 
+use nalgebra::DVector;
+
 use crate::contact::problem::ContactProblem;
 use crate::contact::written::ContactLcp;
 use crate::lcp::mirrored::MirroredLcp;
@@ -64,23 +66,11 @@ impl WarmStart {
     }
 
     /// q per primary row and b per mirrored row for the given numbers, with the friction of the matrix.
-    fn right_side(&self, problem: &ContactProblem, extra: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let system = &*problem.system;
+    fn right_side(&self, problem: &ContactProblem, extra: &[f64]) -> (DVector<f64>, Vec<f64>) {
+        let fixed: Vec<f64> = problem.laws.iter().zip(extra).map(|(law, extra)| law.fixed_bound() + extra).collect();
         let load = problem.joint_constants();
-        let unit = self.contact.force_unit;
-        let size = self.contact.lcp.size();
-        let (mut q, mut constants) = (vec![0.0; size], vec![0.0; size]);
-        for (i, pair) in system.pairs.iter().enumerate() {
-            if let Some(row) = self.contact.normal_row[i] {
-                q[row] = load[i] / unit;
-            }
-            if let (Some(row), Some(joint)) = (self.contact.plus_row[i], pair.tangential) {
-                let constant = (problem.laws[i].fixed_bound() + extra[i]) / unit;
-                q[row] = load[joint] / unit + self.contact.friction[i] * (load[i] / unit) + constant;
-                constants[row] = 2.0 * constant;
-            }
-        }
-        (q, constants)
+        let q = self.contact.force_rows(&problem.system, &load, &self.contact.friction, &fixed);
+        (q, self.per_row(&fixed, self.contact.force_unit).into_iter().map(|constant| 2.0 * constant).collect())
     }
 
     /// Follows the answer to other numbers and extra cohesions; `None` where the path does not get there.

@@ -2,7 +2,7 @@
 //!
 //! For every choice of states (open O, slip S with its sign σ, else stick) the block with rows R_n (O), R_τ (O), R_τ +
 //! σ f R_n (S) and columns z_n (O), z_τ (O ∪ S) must keep a positive determinant. It is a polynomial in the parameter;
-//! its roots are eigenvalues. Exact search over all choices up to [`EXACT_PAIRS`] pairs, sampled beyond. One pair:
+//! its roots are eigenvalues. Exact search over all choices up to [`SEARCHED_PAIRS`] pairs, sampled beyond. One pair:
 //! f = R_ττ / |R_nτ| (Klarbring 1990).
 
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::{ContactPair, ContactSystem};
 
 /// Most pairs for which all choices of states are examined.
-pub const EXACT_PAIRS: usize = 8;
+pub const SEARCHED_PAIRS: usize = 8;
 /// Smallest over largest pivot (R scaled to unit diagonal) below which a block counts as singular.
 const SINGULAR: f64 = 1e-10;
 /// Entries of R, scaled to unit diagonal, up to which a coupling of two joints is rounding of the condensation: as a
@@ -66,7 +66,7 @@ enum Root {
 
 /// Smallest parameter s ≥ 0 at which uniqueness may end. `friction` gives f of every pair for a parameter value; it must
 /// be affine in it (each f is the parameter, a multiple of it, or a constant). Only the f of pairs that open are read.
-/// Up to [`EXACT_PAIRS`] pairs all choices are examined, beyond `samples` blocks drawn with `seed`. `observer` hears the
+/// Up to [`SEARCHED_PAIRS`] pairs all choices are examined, beyond `samples` blocks drawn with `seed`. `observer` hears the
 /// number of blocks examined and may stop the search.
 pub fn critical_friction(
     system: &ContactSystem,
@@ -76,7 +76,7 @@ pub fn critical_friction(
     observer: &mut dyn FnMut(u64) -> ControlFlow<()>,
 ) -> CriticalFriction {
     let m = system.pair_count();
-    let exact = m <= EXACT_PAIRS;
+    let exact = m <= SEARCHED_PAIRS;
     let mut search = Search::new(system, friction, observer);
     let ended = if exact { search.all(&mut Vec::with_capacity(m)) } else { search.sample(samples, seed) };
     let complete = ended.is_continue();

@@ -172,7 +172,7 @@ impl<'a> Exact<'a> {
         }
     }
 
-    /// Turns the end of the filtered run into a proved one.
+    /// Turns the end of the run over balls into a proved one.
     fn prove(&self, outcome: Outcome<BallModP>) -> Outcome<BigRational> {
         let failed = || {
             if self.watch.stop() {

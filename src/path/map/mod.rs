@@ -91,16 +91,18 @@ impl Map {
         self.region_of[panel].get(part).copied()
     }
 
+    /// The place at so much along the lines and across them, in the order of the axes.
+    pub fn place(&self, along: f64, across: f64) -> [f64; 2] {
+        if self.along == 0 { [along, across] } else { [across, along] }
+    }
+
     /// The outlines of a region's parts, in the order of the axes, panel by panel.
     pub fn outlines(&self, region: usize) -> Vec<Vec<[f64; 2]>> {
         let mut outlines = Vec::new();
         for (panel, regions) in self.panels.iter().zip(&self.region_of) {
             for part in (0..regions.len()).filter(|part| regions[*part] == region) {
-                let corner = |along: f64, across: f64| {
-                    if self.along == 0 { [along, across] } else { [across, along] }
-                };
-                let lower = panel.lines.iter().map(|line| corner(line.parts[part].from, line.at));
-                let upper = panel.lines.iter().rev().map(|line| corner(line.parts[part].to, line.at));
+                let lower = panel.lines.iter().map(|line| self.place(line.parts[part].from, line.at));
+                let upper = panel.lines.iter().rev().map(|line| self.place(line.parts[part].to, line.at));
                 outlines.push(lower.chain(upper).collect());
             }
         }
@@ -209,7 +211,7 @@ impl Map {
             let across = 0.5 * (low + high);
             let bounds = self.panels[panel].bounds(across);
             let inside = 0.5 * (bounds[part] + bounds[part + 1]);
-            let at = if self.along == 0 { [inside, across] } else { [across, inside] };
+            let at = self.place(inside, across);
             let named = |states: &[State]| Some(ids.iter().cloned().zip(states.iter().copied()).collect());
             let (states, other) = match &self.panels[panel].lines[0].parts[part].scheme {
                 Scheme::Pairs(states) => (named(states), None),

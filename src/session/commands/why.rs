@@ -3,12 +3,13 @@
 use clap::Args;
 use serde::Serialize;
 
-use crate::answer::record::{PairDirection, PairState, PivotRecord, State};
+use crate::answer::record::{PairDirection, PairState, PivotRecord};
 use crate::explain::margin::Margin;
+use crate::explain::pair_state;
 use crate::explain::plain_why::Vertex;
 use crate::solve::prepared::Geometry;
 use crate::solve::state::RunData;
-use crate::text::number::{short, with_unit};
+use crate::text::number::short;
 use crate::view;
 use crate::watch::Quiet;
 
@@ -70,43 +71,8 @@ impl Session {
         let pairs = self.pairs();
         let pair = pairs.iter().find(|pair| pair.id == id).ok_or_else(|| no_pair(id, &pairs))?;
         let units = &self.now.scenario.units;
-        let force = |value: f64| with_unit(&short(value), units.force.as_deref());
-        let length = |value: f64| with_unit(&short(value), units.length.as_deref());
         let state = view::pairs::state_words(pair);
-        let cause = match pair.state {
-            State::Open => {
-                format!("nothing presses it together: x_n = {} and it is open by {}", force(pair.x_n), length(pair.z_n))
-            }
-            State::Closed => {
-                format!("it is pressed together with x_n = {}, and without friction x_t = 0", force(pair.x_n))
-            }
-            State::Stick if pair.reserve_plus.min(pair.reserve_minus) <= 1e-12 * pair.bound.abs() => {
-                format!(
-                    "it stands exactly at its limit, |x_t| = {} = bound {}, but has not moved",
-                    force(pair.x_t.abs()),
-                    force(pair.bound)
-                )
-            }
-            State::Stick => format!(
-                "its friction force |x_t| = {} does not exceed the bound {}; reserves x+ = {}, x- = {}",
-                force(pair.x_t.abs()),
-                force(pair.bound),
-                force(pair.reserve_plus),
-                force(pair.reserve_minus)
-            ),
-            State::SlipPlus => format!(
-                "its reserve x+ is used up: x_t = {} stands at the bound -{}, and it has slipped {} along +t",
-                force(pair.x_t),
-                force(pair.bound),
-                length(pair.z_t)
-            ),
-            State::SlipMinus => format!(
-                "its reserve x- is used up: x_t = {} stands at the bound {}, and it has slipped {} along -t",
-                force(pair.x_t),
-                force(pair.bound),
-                length(-pair.z_t)
-            ),
-        };
+        let cause = pair_state::cause(pair, units);
         let shown = self.shown_step();
         let margins = self.margins(id);
         let moved = answer.ray.as_ref().filter(|_| self.position.is_none()).and_then(|ray| {

@@ -126,7 +126,7 @@ fn kernel(problem: &ContactProblem, built: Built<'_>) -> Vec<DVector<f64>> {
         let motions = FreeMotions::new(system, built);
         let mut columns = vec![DVector::zeros(k); motions.count()];
         for joint in 0..k {
-            motions.row(joint).iter().for_each(|entry| columns[entry.motion][joint] = entry.value);
+            motions.row(joint).iter().for_each(|entry| columns[entry.motion][joint] = entry.part.value);
         }
         return columns;
     }

@@ -78,11 +78,10 @@ pub fn figure(map: &Map, labels: &Labels<'_>, caption: &Caption) -> String {
 
 /// The lines between regions: along the bounds within panels, and across where panels meet in different regions.
 fn borders(drawing: &mut Drawing, map: &Map, place: &dyn Fn([f64; 2]) -> (f64, f64)) {
-    let corner = |along: f64, across: f64| if map.along == 0 { [along, across] } else { [across, along] };
     let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
     for panel in &map.panels {
         for part in 1..panel.areas.len() {
-            lines.push(panel.lines.iter().map(|line| place(corner(line.parts[part].from, line.at))).collect());
+            lines.push(panel.lines.iter().map(|line| place(map.place(line.parts[part].from, line.at))).collect());
         }
     }
     for (number, two) in map.panels.windows(2).enumerate() {
@@ -91,7 +90,7 @@ fn borders(drawing: &mut Drawing, map: &Map, place: &dyn Fn([f64; 2]) -> (f64, f
             for (j, b) in above.parts.iter().enumerate() {
                 let (from, to) = (a.from.max(b.from), a.to.min(b.to));
                 if from < to && map.region_of[number][i] != map.region_of[number + 1][j] {
-                    lines.push(vec![place(corner(from, below.at)), place(corner(to, below.at))]);
+                    lines.push(vec![place(map.place(from, below.at)), place(map.place(to, below.at))]);
                 }
             }
         }
