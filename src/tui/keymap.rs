@@ -65,6 +65,12 @@ impl Keymap {
             .collect()
     }
 
+    /// The keys that do something in a place, as shown.
+    pub fn of(&self, context: Context, action: Do, ascii: bool) -> String {
+        let found = self.rows(context, ascii).into_iter().find(|(_, binding)| binding.action == action);
+        found.map_or(String::new(), |(keys, _)| keys)
+    }
+
     /// (keys, word) for the line of hints in these places.
     pub fn hints(&self, contexts: &[Context], ascii: bool) -> Vec<(String, &'static str)> {
         let mut hints: Vec<(String, &'static str)> = Vec::new();

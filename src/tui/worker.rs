@@ -24,9 +24,15 @@ const PACE: Duration = Duration::from_millis(250);
 /// Does one job after `last` was shown. The session is as it was if it fails.
 pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watch: &dyn Watch) -> Done {
     let mut output = Vec::new();
-    let (mut answers, mut gauges, mut asked) = (None, None, Vec::new());
-    let result = match &job {
-        Job::Set { name, value } => run(session, &format!("set {name} {value}"), &mut output, style, watch),
+    let (mut answers, mut gauges, mut glance, mut asked) = (None, None, None, Vec::new());
+    // what is no command does not ask for it by itself
+    let ready = if matches!(job, Job::Set { .. }) { Ok(()) } else { session.ensure_whole(watch) };
+    let result = ready.and_then(|()| match &job {
+        Job::Set { name, value } => {
+            let mut io = Output::text(&mut output, style, watch);
+            io.joints_first = true;
+            session.execute(&format!("set {name} {value}"), &mut io)
+        }
         Job::Step(step) => run(session, &format!("step to {step}"), &mut output, style, watch),
         Job::Line { text, .. } => run(session, text, &mut output, style, watch),
         Job::Pivots => session.ensure_pivots(&mut Output::text(&mut output, style, watch)).map(|()| Next::Continue),
@@ -42,11 +48,15 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
             }
         }
         Job::Remedies => session.ensure_remedies(watch).map(|()| Next::Continue),
+        Job::Glance { settings } => session.glance(settings, watch).map(|found| {
+            glance = Some(found);
+            Next::Continue
+        }),
         Job::Answers => session.all_answers(watch).map(|found| {
             answers = Some(found);
             Next::Continue
         }),
-    };
+    });
     if let (Job::Line { text, .. }, Ok(_)) = (&job, &result) {
         asked = session.quantities_asked(text);
     }
@@ -58,9 +68,12 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
         }
     };
     let mut shown = Shown::after(last, session);
-    match job {
-        Job::Motion => shown.complete(session),
-        Job::Show(Loading::Stage(stage)) => shown = shown.at_stage(stage, session),
+    match (&job, glance) {
+        (Job::Motion, _) => shown.complete(session),
+        (Job::Show(Loading::Stage(stage)), _) => shown = shown.at_stage(*stage, session),
+        (Job::Glance { settings: [(_, x), (_, y)] }, Some(glance)) => {
+            shown = Shown::beside(last, session, glance, [*x, *y]);
+        }
         _ => {}
     }
     Done {

@@ -2,17 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::session::Next;
+use crate::session::{DrawnMap, Next};
 use crate::view::style::Role;
 
 use super::orders::{RELOAD, order};
-use super::{output, quantities, selection, tour};
-use crate::tui::action::{Done, Effect, Job, Leave, Loading};
+use super::{map, output, quantities, selection, tour};
+use crate::tui::action::{Do, Done, Effect, Job, Leave, Loading};
 use crate::tui::app::{Overlay, PERIOD, State};
+use crate::tui::bindings::Context;
 use crate::tui::kept::The;
-use crate::tui::layout;
 use crate::tui::pane::Pane;
 use crate::tui::tour::steps;
+use crate::tui::{layout, panes};
 
 /// A job ended: its result is shown, the next one begins.
 pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
@@ -20,7 +21,15 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     let new_scenario = !Arc::ptr_eq(&state.shown.scenario, &done.shown.scenario);
     state.running = None;
     state.progress = None;
-    state.shown = done.shown;
+    let old_map = state.shown.map.as_ref().map(|(drawn, _)| The::one(drawn));
+    if matches!(done.job, Job::Glance { .. }) {
+        map::take(state, done.shown);
+    } else if done.job.is_background() && state.below.is_some() {
+        state.below = Some(done.shown);
+    } else {
+        state.below = None;
+        state.shown = done.shown;
+    }
     if new_scenario {
         // Sliders and steps meant the old one; lines (those of the tour, too) are carried out in their order.
         state.waiting.retain(|job| matches!(job, Job::Line { .. }));
@@ -67,6 +76,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     } else {
         output::show_output(state, &done.job, &done.output);
     }
+    show_new_map(state, &done.job, old_map);
     let mut effects = Vec::new();
     if let Some(name) = state.combination.clone().filter(|_| moved && ended && state.shown.combination.is_none()) {
         effects.extend(order(state, Job::Show(Loading::Combination(name))));
@@ -86,7 +96,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         state.running = Some(next.clone());
         effects.push(Effect::Run(next));
     }
-    if followed && state.shown.is_warm() {
+    if followed && state.shown.is_warm() && !state.shown.is_behind() {
         // The answer is there; its pivots follow unless a slider moves on.
         effects.extend(order(state, Job::Pivots));
     }
@@ -96,7 +106,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
 
 /// What is computed while nothing else is asked for: first what moves, then the remedies of a collapse.
 pub fn background(state: &mut State) -> Vec<Effect> {
-    if state.running.is_some() || !state.waiting.is_empty() {
+    if state.running.is_some() || !state.waiting.is_empty() || state.below.is_some() {
         return Vec::new();
     }
     let here = The::one(&state.shown.moment);
@@ -112,6 +122,25 @@ pub fn background(state: &mut State) -> Vec<Effect> {
         order(state, Job::Remedies)
     } else {
         Vec::new()
+    }
+}
+
+/// A map that was drawn is shown in its pane; what it printed can be shown again.
+fn show_new_map(state: &mut State, job: &Job, old: Option<The<DrawnMap>>) {
+    let new = state.shown.map.as_ref().map(|(drawn, _)| The::one(drawn));
+    if new == old {
+        return;
+    }
+    state.map_at = None;
+    if let (Some(regions), Job::Line { shows: true, .. }) = (panes::map::drawn(state).map(|d| d.map.regions.len()), job)
+    {
+        state.overlay = Overlay::None;
+        selection::focus(state, Pane::Map);
+        let keys = state.keys.of(Context::Everywhere, Do::Output, state.look.ascii);
+        state.say(
+            Role::Good,
+            format!("a map of {regions} regions: the arrows move its cursor ({keys} shows its table)"),
+        );
     }
 }
 

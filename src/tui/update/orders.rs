@@ -37,6 +37,12 @@ pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
                 effects.push(Effect::Stop);
             }
         }
+        Job::Glance { .. } => {
+            state.waiting.retain(|waiting| !matches!(waiting, Job::Glance { .. }));
+            if matches!(running, Job::Glance { .. } | Job::Pivots) {
+                effects.push(Effect::Stop);
+            }
+        }
         Job::Answers | Job::Line { .. } => {}
         Job::Pivots | Job::Motion | Job::Quantities(_) | Job::Remedies => {}
     }
