@@ -183,6 +183,13 @@ pub enum Job {
         /// Its new value.
         value: f64,
     },
+    /// A slider moves by these tenths of its step from wherever a command that was typed before has put it.
+    Vary {
+        /// The parameter.
+        name: String,
+        /// Key by key.
+        tenths: Vec<i8>,
+    },
     /// Show this pivot.
     Step(usize),
     /// A command line.

@@ -306,6 +306,17 @@ impl State {
         }
     }
 
+    /// Whether what is at work belongs to the frame of the last key, if it comes at once. What follows the states of a
+    /// slider does not: they are drawn first.
+    pub fn awaits(&self) -> bool {
+        match &self.running {
+            _ if self.progress.is_some() => false,
+            Some(Job::Motion) => self.shown.is_whole(),
+            Some(Job::Pivots) | None => false,
+            Some(_) => true,
+        }
+    }
+
     /// The plots that make sense now; never empty.
     pub fn plots(&self) -> Vec<Plot> {
         let pairs = self.shown.pairs();

@@ -74,11 +74,15 @@ impl Keymap {
     /// (keys, word) for the line of hints in these places.
     pub fn hints(&self, contexts: &[Context], ascii: bool) -> Vec<(String, &'static str)> {
         let mut hints: Vec<(String, &'static str)> = Vec::new();
-        for context in contexts {
+        for (number, context) in contexts.iter().enumerate() {
+            let taken = |key| contexts[..number].iter().any(|before| self.find(*before, key).is_some());
             for (binding, keys) in BINDINGS.iter().zip(&self.keys) {
                 let (true, Some(key)) = (binding.context == *context && !binding.hint.is_empty(), keys.first()) else {
                     continue;
                 };
+                if taken(*key) {
+                    continue;
+                }
                 let label = key.label(ascii);
                 match hints.last_mut().filter(|(_, word)| *word == binding.hint) {
                     Some((keys, _)) => {
@@ -117,6 +121,7 @@ pub fn manual() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::pane::Pane;
     use std::collections::HashSet;
 
     #[test]
@@ -152,6 +157,9 @@ mod tests {
         let hints = Keymap::default().hints(&[Context::Everywhere], false);
         assert!(hints.contains(&("←→".to_owned(), "step")));
         assert!(hints.contains(&("+-".to_owned(), "vary")));
+        // a key means what it does in the pane
+        let hints = Keymap::default().hints(&[Context::Pane(Pane::Map), Context::Everywhere], false);
+        assert_eq!(hints.iter().filter(|(keys, _)| keys == "←→").collect::<Vec<_>>(), [&("←→".to_owned(), "move")]);
         let hints = Keymap::default().hints(&[Context::Everywhere], true);
         assert!(hints.contains(&("left/right".to_owned(), "step")));
     }

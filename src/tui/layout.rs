@@ -177,20 +177,25 @@ pub fn pane_at(places: &Places, x: u16, y: u16) -> Option<(Pane, Rect)> {
     places.panes.iter().copied().find(|(_, area)| area.contains((x, y).into()))
 }
 
-/// Names of tabs in a border with the columns they take: (start, pane, name). That of the pane in front is whole; the
-/// others are as long as all of them find room, and where even their shortest forms do not, the last ones are numbers.
+/// Names of tabs in a border with the columns they take: (start, pane, name). They are as long as all of them find room,
+/// that of the pane in front longest; where even the shortest do not, the last ones are numbers.
 pub fn tab_names(area: Rect, panes: &[Pane], front: Pane) -> Vec<(u16, Pane, String)> {
     /// Blanks around a name and the line to the next one.
     const BETWEEN: usize = 3;
-    let name = |pane: Pane, form: fn(Pane) -> &'static str| {
-        let word = if pane == front { pane.title() } else { form(pane) };
-        format!("{} {word}", pane.index() + 1).trim_end().to_owned()
+    type Form = fn(Pane) -> &'static str;
+    let name = |pane: Pane, form: Form| format!("{} {}", pane.index() + 1, form(pane)).trim_end().to_owned();
+    let all = |(of_front, of_others): (Form, Form)| -> Vec<String> {
+        panes.iter().map(|pane| name(*pane, if *pane == front { of_front } else { of_others })).collect()
     };
-    let all = |form: fn(Pane) -> &'static str| panes.iter().map(|pane| name(*pane, form)).collect::<Vec<String>>();
     let room = usize::from(area.width).saturating_sub(2);
     let fits = |names: &[String]| names.iter().map(|name| name.len() + BETWEEN).sum::<usize>() <= room;
-    let forms = [Pane::title as fn(Pane) -> &'static str, Pane::short, Pane::shortest];
-    let mut names = forms.map(all).into_iter().find(|names| fits(names)).unwrap_or_else(|| all(Pane::shortest));
+    let forms: [(Form, Form); 4] = [
+        (Pane::title, Pane::title),
+        (Pane::title, Pane::short),
+        (Pane::title, Pane::shortest),
+        (Pane::short, Pane::shortest),
+    ];
+    let mut names = forms.into_iter().map(all).find(|names| fits(names)).unwrap_or_else(|| all(forms[3]));
     for at in (0..panes.len()).rev().filter(|at| panes[*at] != front) {
         if !fits(&names) {
             names[at] = name(panes[at], |_| "");
@@ -224,8 +229,9 @@ mod tests {
         assert_eq!(names(four, Pane::Pairs, 48), "1 Structure|5 Plots|3 Pairs|6 Answer");
         let five = [four, &[Pane::Quantities]].concat();
         assert_eq!(names(&five, Pane::Pairs, 60), "1 Struct|5 Plots|3 Pairs|6 Answer|7 Quant");
-        assert_eq!(names(&five, Pane::Quantities, 48), "1 Str|5 Plot|3 Pair|6 Ans|7 Quantities");
-        assert_eq!(names(&SHARED, Pane::Map, 48), "1 Str|5 Plot|3 Pair|6 Ans|7|8|9 Map");
+        assert_eq!(names(&five, Pane::Pairs, 48), "1 Str|5 Plot|3 Pairs|6 Ans|7 Qty");
+        assert_eq!(names(&five, Pane::Quantities, 48), "1 Str|5 Plot|3 Pair|6 Ans|7 Quant");
+        assert_eq!(names(&SHARED, Pane::Map, 48), "1 Str|5 Plot|3 Pair|6|7|8|9 Map");
         assert_eq!(
             names(&SHARED, Pane::Structure, 120),
             "1 Structure|5 Plots|3 Pairs|6 Answer|7 Quantities|8 Loading|9 Map"

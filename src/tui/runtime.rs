@@ -239,7 +239,7 @@ impl Loop {
                     return Ok(ended);
                 }
                 changed |= drew;
-                next = if self.state.running.is_some() && self.state.progress.is_none() {
+                next = if self.state.awaits() {
                     self.incoming.recv_timeout(TOGETHER).ok()
                 } else {
                     self.incoming.try_recv().ok()

@@ -36,9 +36,11 @@ impl Legend {
         let mut x = area.x;
         let y = area.bottom().saturating_sub(1);
         for (sign, role, word) in &self.0 {
-            let word = look.text(word);
-            let need = sign.chars().count() + 1 + word.chars().count();
-            if usize::from(x) + need > usize::from(area.right()) {
+            /// Letters of a word that still say something.
+            const LEAST: usize = 4;
+            let room = usize::from(area.right().saturating_sub(x)).saturating_sub(sign.chars().count() + 1);
+            let word = look.fit(word, room);
+            if room < LEAST {
                 break;
             }
             let room = usize::from(area.right() - x);

@@ -118,3 +118,28 @@ fn a_command_finds_the_answer_whole() {
         assert!(answer(&rig).check.equilibrium.is_some());
     }
 }
+
+/// Somebody who wants everything to stop.
+struct Stops;
+
+impl crate::watch::Watch for Stops {
+    fn progress(&self, _: &str, _: f64) {}
+    fn stop(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn the_next_step_does_not_wait_for_displacements() {
+    let mut rig = plates();
+    assert_eq!(slide(&mut rig), [Effect::Run(Job::Motion)]);
+    assert!(!rig.state.awaits(), "the states are drawn before");
+    assert_eq!(update(&mut rig.state, Action::Do(Do::Vary(10))), [Effect::Stop]);
+    let done = perform(&mut rig.session, &rig.state.shown, Job::Motion, rig.state.look.report(76), &Stops);
+    assert!(done.interrupted && !rig.session.solved().unwrap().is_whole());
+    let effects = update(&mut rig.state, Action::Done(Box::new(done)));
+    assert!(matches!(effects[..], [Effect::Run(Job::Set { .. })]) && rig.state.message.is_none());
+    let Effect::Run(job) = effects[0].clone() else { unreachable!() };
+    let done = rig.perform(job);
+    assert_eq!(update(&mut rig.state, Action::Done(Box::new(done))), [Effect::Run(Job::Motion)]);
+}

@@ -47,7 +47,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     if done.job == Job::Remedies && done.interrupted {
         state.remedies_sought = None;
     }
-    let changed = matches!(done.job, Job::Set { .. } | Job::Show(_)) || done.job.is_background();
+    let changed = matches!(done.job, Job::Set { .. } | Job::Vary { .. } | Job::Show(_)) || done.job.is_background();
     quantities::ask(state, done.asked);
     match (&done.job, done.gauges) {
         (_, Some(gauges)) => quantities::take(state, gauges),
@@ -55,13 +55,14 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         (Job::Line { shows: true, .. }, None) => state.combination = None,
         _ => {}
     }
-    let moved = matches!(done.job, Job::Set { .. } | Job::Line { shows: false, .. });
+    let moved = matches!(done.job, Job::Set { .. } | Job::Vary { .. } | Job::Line { shows: false, .. });
     let ended = !done.interrupted && done.error.is_none();
     let followed = changed && ended;
     if let Some(error) = done.error {
         if done.interrupted {
-            // a slider that moved on stops its older solve: nothing to tell
-            if !changed || state.waiting.is_empty() {
+            // a slider or cursor that moved on stops its older solve: nothing to tell
+            let moves_on = changed || matches!(done.job, Job::Glance { .. });
+            if !moves_on || state.waiting.is_empty() {
                 state.say(Role::Warning, "stopped: the session is as it was");
             }
         } else if is_reload && matches!(done.job, Job::Line { shows: false, .. }) {

@@ -74,7 +74,7 @@ pub(super) fn show_output(state: &mut State, job: &Job, output: &str) {
                 state.say(Role::Warning, text);
             }
         }
-        Job::Line { .. } | Job::Set { .. } => {
+        Job::Line { .. } | Job::Set { .. } | Job::Vary { .. } => {
             // `undone: …`, or that a value lies outside its range; the last line says what the screen shows anyway
             let lines = state.look.lines(output);
             if lines.len() > 1 && state.tour.is_none() {
@@ -98,7 +98,7 @@ pub(super) fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
     }
     let title = match job {
         Job::Line { text, .. } => text.clone(),
-        Job::Set { name, .. } => format!("set {name}"),
+        Job::Set { name, .. } | Job::Vary { name, .. } => format!("set {name}"),
         Job::Step(_) => "step".into(),
         Job::Answers => "answers".into(),
         Job::Pivots => "pivots".into(),

@@ -193,16 +193,13 @@ impl Loads {
         let words = |kind: LoadKind| {
             let of_kind = arrows.arrows.iter().filter(|arrow| arrow.kind == kind);
             let most = of_kind.map(|arrow| size(arrow.force)).reduce(f64::max)?;
+            let summed = self.summed(kind, arrows);
+            let or = |name: &str| if summed.is_empty() { name.to_owned() } else { summed.clone() };
             let (name, most, unit) = match kind {
-                LoadKind::Force if arrows.is_added => ("load (near ones added)", most, &force),
-                LoadKind::Force => ("load", most, &force),
-                LoadKind::Line => ("line load", most.max(self.largest_line()), &line),
-                LoadKind::Weight => ("weight", most, &force),
-            };
-            let name = match (kind, self.summed(kind, arrows)) {
-                (_, summed) if summed.is_empty() => name.to_owned(),
-                (LoadKind::Weight, summed) => summed,
-                (_, summed) => format!("{name} of {summed}"),
+                LoadKind::Force if arrows.is_added => (format!("{} (near ones added)", or("load")), most, &force),
+                LoadKind::Force => (or("load"), most, &force),
+                LoadKind::Line => (or("line load"), most.max(self.largest_line()), &line),
+                LoadKind::Weight => (or("weight"), most, &force),
             };
             Some((kind, format!("{name} up to {}", with_unit(&short(most), unit.as_deref()))))
         };
@@ -434,7 +431,7 @@ mod tests {
         // √(20² + 5²) = 20.616
         assert_eq!(legend(&loads), ["load up to 3 kN", "weight + quake up to 20.616 kN"]);
         loads.points.push(point(LoadKind::Force, 4.0, [0.0, 4.0], 0b1000));
-        assert_eq!(legend(&loads)[0], "load of push + wind up to 5 kN");
+        assert_eq!(legend(&loads)[0], "push + wind up to 5 kN");
     }
 
     #[test]
