@@ -195,7 +195,7 @@ pub fn tab_names(area: Rect, panes: &[Pane], front: Pane) -> Vec<(u16, Pane, Str
         (Pane::title, Pane::shortest),
         (Pane::short, Pane::shortest),
     ];
-    let mut names = forms.into_iter().map(all).find(|names| fits(names)).unwrap_or_else(|| all(forms[3]));
+    let mut names = forms.into_iter().map(all).find(|names| fits(names)).unwrap_or_else(|| all(forms[2]));
     for at in (0..panes.len()).rev().filter(|at| panes[*at] != front) {
         if !fits(&names) {
             names[at] = name(panes[at], |_| "");

@@ -1,6 +1,8 @@
 //! The pictures of the panes as they are kept, and what each is made of. Where a picture is as of old, a key costs what
 //! is seen of it, however large the model is.
 
+use std::ops::Range;
+
 use ratatui::buffer::Buffer;
 use ratatui::text::Line;
 
@@ -19,7 +21,7 @@ pub struct Pictures {
     /// Order of the pairs.
     pub order: Kept<(The<Moment>, SortKey, bool), Order>,
     /// Table of the pairs.
-    pub pairs: Kept<(The<Moment>, SortKey, bool, Sheet), Listing>,
+    pub pairs: Kept<(The<Moment>, SortKey, bool, Sheet, Range<usize>), Listing>,
     /// Table of the pivots.
     pub pivots: Kept<(The<Solved>, Sheet), Listing>,
     /// The structure.

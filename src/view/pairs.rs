@@ -74,7 +74,7 @@ mod tests {
     /// A part of a table is read in the numbers of the whole: its rows are those of the whole.
     #[test]
     fn a_part_has_the_powers_of_ten_of_all() {
-        let mut pairs = sample::answer().pairs;
+        let mut pairs = sample::beam(0.3, 70.0).pairs;
         pairs[0].x_n = 3.0e7;
         let style = Style { width: 200, ..Style::default() };
         let written = |table: Table| {

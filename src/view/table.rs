@@ -51,7 +51,15 @@ pub struct Column {
 impl Column {
     /// Left-aligned words.
     pub fn words(head: &str) -> Column {
-        Column { head: head.into(), unit: None, align: Align::Left, kind: Kind::Measured, quantity: None, rank: 0, unwritten: 0.0 }
+        Column {
+            head: head.into(),
+            unit: None,
+            align: Align::Left,
+            kind: Kind::Measured,
+            quantity: None,
+            rank: 0,
+            unwritten: 0.0,
+        }
     }
 
     /// Counters, at the right.
