@@ -5,8 +5,8 @@
 //! ```
 //!
 //! `screen` is from the key to the bytes of its frames, `session` what the session's own thread works meanwhile; both the
-//! least of several repetitions, as on an idle machine. `first` is what a slider costs until the new states stand on the
-//! screen; displacements, the check of equilibrium and the pivots follow in the background.
+//! least of several repetitions, as on an idle machine. `first` is what a slider that is held costs until the new states
+//! stand on the screen; displacements, the check of equilibrium and the pivots follow when it rests.
 
 #[path = "../benches/common/mod.rs"]
 #[allow(dead_code)]
@@ -86,15 +86,14 @@ impl Rig {
         Ok(Rig { session, state, terminal, sent })
     }
 
-    /// Presses a key, carries out the jobs that follow from it, draws after each as the loop does; the cost of all of it,
-    /// and that until the first job is drawn.
-    fn press(&mut self, key: &str) -> Result<[Cost; 2], Failure> {
+    /// Presses a key, carries out the jobs that follow from it, draws after each as the loop does; `first`: only one of them,
+    /// as where the next key comes before the others begin.
+    fn press(&mut self, key: &str, first: bool) -> Result<Cost, Failure> {
         let before = self.sent.0.get();
         let key = Key::parse(key).ok_or_else(|| format!("no key `{key}`"))?;
         let modifiers = if key.control { KeyModifiers::CONTROL } else { KeyModifiers::NONE };
         let code = if key.code == KeyCode::Char(' ') { KeyCode::Char(' ') } else { key.code };
         let mut cost = Cost::default();
-        let mut first = None;
         let clock = Instant::now();
         let action = input::action(&self.state, &KeyEvent::new(code, modifiers));
         let mut effects = VecDeque::from(action.map_or_else(Vec::new, |action| update(&mut self.state, action)));
@@ -109,12 +108,14 @@ impl Rig {
                 effects.extend(update(&mut self.state, done));
                 self.terminal.draw(|frame| draw(&self.state, frame))?;
                 cost.screen += clock.elapsed();
-                cost.bytes = self.sent.0.get() - before;
-                first.get_or_insert(cost);
+                if first {
+                    self.state.running = None;
+                    break;
+                }
             }
         }
         cost.bytes = self.sent.0.get() - before;
-        Ok([cost, first.unwrap_or(cost)])
+        Ok(cost)
     }
 
     fn work(&mut self, job: Job) -> Action {
@@ -123,8 +124,8 @@ impl Rig {
     }
 }
 
-/// What is measured: its name, the keys that lead there, the keys that are pressed in turn. One that is named `first` is
-/// measured until the first job is drawn.
+/// What is measured: its name, the keys that lead there, the keys that are pressed in turn. Of one that is named `first`
+/// only the first job is carried out.
 const ROWS: &[(&str, &[&str], &[&str])] = &[
     ("row of Pairs", &["3"], &["down"]),
     ("page of Pairs", &["3"], &["pagedown", "pageup"]),
@@ -150,14 +151,14 @@ fn measure(size: (u16, u16), sizes: &[usize]) -> Result<(), Failure> {
     for &pairs in sizes {
         let mut rig = Rig::new(pairs, size)?;
         for ((name, first, keys), row) in ROWS.iter().zip(&mut table) {
-            let which = usize::from(name.ends_with("first"));
-            rig.press("esc")?;
+            rig.press("esc", false)?;
             for key in *first {
-                rig.press(key)?;
+                rig.press(key, false)?;
             }
+            let repetitions = if name.ends_with("all") { 3 } else { REPETITIONS };
             let mut costs = Vec::new();
-            for round in 0..REPETITIONS {
-                costs.push(rig.press(keys[round % keys.len()])?[which]);
+            for round in 0..repetitions {
+                costs.push(rig.press(keys[round % keys.len()], name.ends_with("first"))?);
             }
             let least =
                 |of: fn(&Cost) -> Duration| costs.iter().map(of).min().map_or(0.0, |least| 1e3 * least.as_secs_f64());
@@ -165,7 +166,7 @@ fn measure(size: (u16, u16), sizes: &[usize]) -> Result<(), Failure> {
             bytes.sort_unstable();
             row.push(format!("{:.2}", least(|cost| cost.screen)));
             row.push(format!("{:.2}", least(|cost| cost.session)));
-            row.push(bytes[REPETITIONS / 2].to_string());
+            row.push(bytes[bytes.len() / 2].to_string());
         }
     }
     let mut out = io::stdout();
