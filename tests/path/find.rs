@@ -128,6 +128,27 @@ fn block() -> Session {
     session(load_text("block", text, None).unwrap_or_else(|problems| panic!("{problems}")))
 }
 
+/// The voussoir arch of 21 blocks, against limit analysis by an independent linear programme (`scenarios/scripts/arch.stick`):
+/// least friction 0.350458429 at t/R = 0.15, least t/R 0.106741541 at f = 1; at 0.9999 of each it is proved to fall.
+#[test]
+fn the_least_friction_and_thickness_of_an_arch() {
+    let mut session = session(embedded::load("arch").expect("embedded"));
+    for (setting, name, least) in [("set eta 0.15", "f", 0.350_458_429), ("set f 1", "eta", 0.106_741_541)] {
+        report(&mut session, setting).unwrap();
+        let found = report(&mut session, &format!("find least {name} where outcome answer")).unwrap();
+        // The programme's figures have eight digits.
+        near(&found["value"], least, 2e-8);
+        assert_eq!(found["collapse"]["verdict"], "certified", "{found}");
+        assert_eq!(found["answer"]["outcome"], "normal", "{found}");
+        near(&found["collapse"]["value"], least, 2e-8);
+        for command in [&format!("set {name} {}", 0.9999 * least), "expect class mechanism", "expect verdict certified"]
+        {
+            session.execute(command, &mut Output::text(&mut Vec::new(), Style::default(), &Quiet)).expect(command);
+        }
+        report(&mut session, &format!("reset {name}")).unwrap();
+    }
+}
+
 /// Three nodes in a row, each held down by a spring of its own (R_nn = k I), so that statics alone would let x_n grow: the
 /// collapse where f · 240 < 110 is found by the search through the schemes, which speaks of that f only.
 #[test]
