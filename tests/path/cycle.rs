@@ -94,7 +94,7 @@ fn what_cannot_be_repeated_is_refused() {
         ("cycle f 0..1", "no factor of a load case depends on it"),
         ("cycle F2 0..1 0", "no number of cycles"),
         ("limit cycle F2 0..1 2", ""),
-        ("limit F2 pull", "expected one load"),
+        ("limit F2 pull", "of which load?"),
     ] {
         let refusal = report(&mut session, command).unwrap_err();
         assert!(refusal.contains(part), "{command}: {refusal}");
