@@ -39,8 +39,15 @@ pub fn no_such<'n>(what: &str, id: &str, known: impl IntoIterator<Item = &'n str
     match names.as_slice() {
         [] => format!("no {what} `{id}`: there is none"),
         [only] => format!("no {what} `{id}`{near}: the only {what} is {only}"),
-        [first, .., last] if names.len() > 8 => format!("no {what} `{id}`{near}: the {what}s are {first} … {last}"),
-        names => format!("no {what} `{id}`{near}: the {what}s are {}", names.join(", ")),
+        names => {
+            let shown = match names {
+                [first, .., last] if names.len() > 8 => format!("{first} … {last}"),
+                names => names.join(", "),
+            };
+            // of two kinds of things the last word alone would have its plural
+            let are = if what.contains(" or ") { "there are".to_owned() } else { format!("the {what}s are") };
+            format!("no {what} `{id}`{near}: {are} {shown}")
+        }
     }
 }
 

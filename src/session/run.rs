@@ -102,9 +102,6 @@ impl Session {
                     .into(),
             ));
         }
-        if !io.joints_first {
-            self.ensure_whole(io.watch)?;
-        }
         if action.needs_pivots() {
             self.ensure_pivots(io)?;
         }

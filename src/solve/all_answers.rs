@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use super::cold::Extent;
 use super::error::{QuestionError, SolveError};
 use super::plain::plain_answer;
 use super::plain_answers::{Effort, search_plain_answers};
@@ -186,7 +185,7 @@ impl Prepared {
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };
         let rules = AttemptRules::from(Rules::default()).by(AttemptEngine::Enumeration);
-        Ok(self.answer_at(problem, contact, point, rules, Extent::Whole))
+        Ok(self.answer_at(problem, contact, point, rules))
     }
 }
 

@@ -195,7 +195,7 @@ fn combinations_multiply_the_factors_of_their_cases() {
     let error = run(&mut session, "combine strom").unwrap_err();
     assert!(error.contains("no combination `strom`") && error.contains("storm"), "{error}");
     let error = run(
-        &mut crate::session(
+        &mut self::session(
             &TWO.replace("\"combinations\"", "\"stages\"")
                 .replace("{ \"calm\": {", "[ {")
                 .replace("}, \"storm\": {", "}, {")

@@ -75,7 +75,9 @@ impl Session {
         let known = &self.now.scenario.combinations;
         if known.is_empty() {
             return Err(CommandError::Refused(
-                "the scenario has no `combinations`: { \"ULS1\": { \"weight\": 1.35, \"pull\": 1.5 } }".into(),
+                "the scenario has no `combinations`; in its file they are written \"combinations\": { \"ULS1\": { \"weight\": \
+                 1.35, \"pull\": 1.5 } }, with the names of its load cases"
+                    .into(),
             ));
         }
         if let Some(name) = name

@@ -138,7 +138,11 @@ fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
         };
         let all = names.pairs.iter().filter_map(value);
         let most = all.reduce(|best, next| if next.0.abs() > best.0.abs() { next } else { best });
-        most.map(|(value, at)| Peak { what, quantity: Quantity::Pairs(Over::Max, which, String::new()), value, at })
+        most.map(|(value, at)| {
+            // nothing is largest nowhere
+            let at = if value == 0.0 { String::new() } else { at };
+            Peak { what, quantity: Quantity::Pairs(Over::Max, which, String::new()), value, at }
+        })
     };
     let bars = |what: &'static str, which: Internal| {
         let value = |bar: &&str| {
@@ -147,7 +151,10 @@ fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
         };
         let most = names.bars().iter().filter_map(value).reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a });
         let quantity = |bar: &str| Quantity::Bar(which, bar.to_owned(), BarPlace::Extreme);
-        most.map(|(value, at)| Peak { what, quantity: quantity(&at), value, at })
+        most.map(|(value, at)| {
+            let quantity = quantity(&at);
+            Peak { what, quantity, value, at: if value == 0.0 { String::new() } else { at } }
+        })
     };
     let displacement = facts.value(&Quantity::LargestDisplacement).ok().and_then(|value| value.number());
     let displacement = displacement.map(|value| Peak {

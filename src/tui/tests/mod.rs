@@ -5,8 +5,6 @@ mod commands;
 mod drawings;
 mod keys;
 mod lists;
-mod live;
-mod map;
 mod mouse;
 mod panes;
 mod parameters;
