@@ -77,6 +77,11 @@ impl Session {
             return refused(format!("prove: {file} must end in .json"));
         }
         let beside = path.with_extension("system.json");
+        if self.followed.is_some() {
+            return refused(
+                "prove: what stands is a moment of a history; `solve` goes back to the answer at once, which can be proved",
+            );
+        }
         self.spare_scenario(path)?;
         self.spare_scenario(&beside)?;
         let proof = self.ask(io, move |prepared, solved, watch| match all {

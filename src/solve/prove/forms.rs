@@ -16,6 +16,8 @@ use super::system::{ProvedContact, ProvedSystem};
 use crate::contact::law::{PairLaw, TangentialJoint};
 use crate::lcp::exact::dyadic::{WholeRows, rational};
 use crate::lcp::exact::polyhedron::Polyhedron;
+use crate::lcp::exact::rational_solve::clear_denominators;
+use crate::lcp::exact::scalar::BigInt;
 
 /// One way for a pair or a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,9 +101,13 @@ impl Forms {
 
     /// Value of every variable where the unknowns have these.
     pub fn values(&self, z: &[BigRational]) -> Vec<BigRational> {
+        // In whole numbers: one greatest common divisor a form, not one a term.
+        let (whole, common) = clear_denominators(z);
         let value = |form: &Vec<BigRational>| {
-            let terms = form.iter().zip(z).filter(|(a, z)| !a.is_zero() && !z.is_zero()).map(|(a, z)| a * z);
-            terms.sum::<BigRational>() + &form[self.unknowns]
+            let (coefficients, scale) = clear_denominators(form);
+            let terms = coefficients.iter().zip(&whole).filter(|(a, z)| !a.is_zero() && !z.is_zero());
+            let sum: BigInt = terms.map(|(a, z)| a * z).sum();
+            BigRational::new(sum + &coefficients[self.unknowns] * &common, scale * &common)
         };
         z.iter().cloned().chain(self.forms.iter().map(value)).collect()
     }

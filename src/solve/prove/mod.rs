@@ -166,8 +166,8 @@ impl Prepared {
             Ok(all) => Ok(Proof { system, forms, claim: Claim::Answers(all) }),
             Err(NoTree::Stopped) => Err(QuestionError::Interrupted),
             Err(NoTree::TooLarge) => refused(format!(
-                "prove: the tree has more than {MOST_NODES} branches, too many to be checked by anyone; `enumerate` goes \
-                 through them all without writing them down"
+                "prove: the tree would have more than {MOST_NODES} branches; half as many pairs have one that is small. \
+                 `enumerate` goes through them all without writing them down"
             )),
         }
     }

@@ -124,11 +124,11 @@ fn kernel(problem: &ContactProblem, built: Built<'_>) -> Vec<DVector<f64>> {
     let k = system.joint_count();
     if built.is_some() && system.kernel.ncols() > 0 {
         let motions = FreeMotions::new(system, built);
-        let mut columns = vec![DVector::zeros(k); motions.count()];
-        for joint in 0..k {
-            motions.row(joint).iter().for_each(|entry| columns[entry.motion][joint] = entry.part.value);
-        }
-        return columns;
+        let part = |motion: usize, joint: usize| {
+            motions.row(joint).iter().find(|entry| entry.motion == motion).map_or(0.0, |entry| entry.part.value)
+        };
+        let column = |motion| DVector::from_fn(k, |joint, _| part(motion, joint));
+        return (0..motions.count()).map(column).collect();
     }
     // The digits of a file may have the kernel already.
     let mut whole = WholeRows::default();

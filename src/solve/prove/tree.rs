@@ -11,6 +11,11 @@ use crate::lcp::exact::scalar::BigInt;
 /// More nodes than this make no tree that one would want to check.
 pub const MOST_NODES: usize = 5_000;
 
+/// After so many nodes …
+const LOOK: usize = 500;
+/// … a tree is given up of which so many times the most nodes would be needed, if it goes on like this.
+const HOPELESS: usize = 4;
+
 /// Factors of variables.
 pub type Sum = Vec<(usize, BigRational)>;
 
@@ -133,7 +138,8 @@ impl Search<'_> {
         share: f64,
     ) -> Result<Tree, NoTree> {
         self.nodes += 1;
-        if self.nodes > MOST_NODES {
+        let hopeless = self.nodes >= LOOK && self.share * (HOPELESS * MOST_NODES) as f64 / (self.nodes as f64) < 1.0;
+        if self.nodes > MOST_NODES || hopeless {
             return Err(NoTree::TooLarge);
         }
         match state {
