@@ -25,6 +25,8 @@ use model::Model;
 const MINIMA: usize = 12;
 /// Rounds of each friction alone after the descents.
 const ROUNDS: usize = 3;
+/// Below this share of the measured values slopes by differences are rounding.
+const DIFFERENCES: f64 = 1e-6;
 /// Groups of which every corner of the box is a start.
 const CORNERS: usize = 3;
 
@@ -339,7 +341,7 @@ impl Seen {
     fn of(model: &Model<'_>, slopes: &DMatrix<f64>) -> Seen {
         let scaled = model.scaled_slopes(slopes);
         let count = scaled.ncols();
-        let floor = BLIND * model.size();
+        let floor = if model.history { DIFFERENCES } else { BLIND } * model.size();
         let mut why: Vec<Option<Blind>> =
             (0..count).map(|k| (scaled.column(k).norm() <= floor).then_some(Blind::Alone)).collect();
         let shown: Vec<usize> = (0..count).filter(|&k| why[k].is_none()).collect();
