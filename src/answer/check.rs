@@ -66,7 +66,11 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
 
 /// The largest load on a joint, its terms and those of gaps and known bounds taken by their magnitude.
 fn load_size(problem: &ContactProblem) -> f64 {
-    let closing = problem.system.stiffness.abs() * problem.dislocation_sizes(DVector::zeros(problem.load.len()));
+    let mut closing: DVector<f64> = DVector::zeros(problem.load.len());
+    for (joint, gap) in problem.gaps().enumerate().filter(|(_, gap)| *gap != 0.0) {
+        let column = problem.system.stiffness.column(joint);
+        closing.iter_mut().zip(column.iter()).for_each(|(sum, entry)| *sum += entry.abs() * gap.abs());
+    }
     let bounds = problem.fixed_bounds().into_iter().fold(0.0, f64::max);
     problem.load_terms.amax().max(closing.amax()).max(bounds)
 }
@@ -80,6 +84,17 @@ impl Check {
             && self.min_z >= -tolerance
             && self.complementarity <= tolerance
             && self.hidden <= HIDDEN
-            && self.equilibrium.is_none_or(|residual| residual <= TOLERANCE)
+            && self.equilibrium_holds()
+    }
+
+    fn equilibrium_holds(&self) -> bool {
+        self.equilibrium.is_none_or(|residual| residual <= TOLERANCE)
+    }
+
+    /// A check of the joints alone with the residual of the structure's equilibrium, which completes it.
+    pub fn with_equilibrium(self, equilibrium: Option<f64>) -> Check {
+        let mut check = Check { equilibrium, joints_only: false, ..self };
+        check.passed = self.passed && check.equilibrium_holds();
+        check
     }
 }

@@ -290,6 +290,9 @@ pub struct Check {
     /// What rounding hides of the forces, as a share of the loads; told where a check fails for it.
     #[serde(skip)]
     pub hidden: f64,
+    /// Whether only the joints were examined so far: displacements and the equilibrium of the structure are still to come.
+    #[serde(skip)]
+    pub joints_only: bool,
     /// Whether all are within bounds.
     pub passed: bool,
 }

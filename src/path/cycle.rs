@@ -7,6 +7,7 @@ use super::stages::{Begin, History, HistoryEnd, StageResult, follow_factors};
 use super::start::PathError;
 use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::Ray;
+use crate::lcp::problem::NOISE;
 use crate::solve::case::Case;
 use crate::solve::error::QuestionError;
 use crate::solve::problem::factors;
@@ -74,6 +75,10 @@ pub struct Turn {
     /// The largest difference of a contact force or gap from the cycle before, as a share of the largest of its kind;
     /// `None` of the first.
     pub difference: Option<f64>,
+    /// Working schemes passed on the way there and back.
+    pub schemes: usize,
+    /// Whether the next cycle passes the same in the same order; `None` where none was followed.
+    pub repeated: Option<bool>,
 }
 
 /// What was found.
@@ -203,8 +208,13 @@ fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
         // What moves to and fro without loss is open, or on a bound of 0.
         let lossless = lost.iter().all(|lost| *lost <= SAME * force * slips);
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
-        turns.push(Turn { dissipated: lost, pairs, difference });
-        if closed > SAME {
+        let schemes = |first: usize| stages_of(&history, first).flat_map(StageResult::schemes);
+        let repeated = (number + 1 < complete).then(|| schemes(there).eq(schemes(there + 2)));
+        let before = turns.last().and_then(|turn: &Turn| turn.difference);
+        turns.push(Turn { dissipated: lost, pairs, difference, schemes: schemes(there).count(), repeated });
+        // A cycle that only comes near to the one before is followed by others that come nearer: how far in all?
+        let tail = difference.zip(before).map_or(0.0, |(now, before)| tail(now, before));
+        if closed > SAME || tail > SAME {
             continue;
         }
         // What is left behind may be the tail of a convergence: it ratchets only where the next cycle leaves the same.
@@ -230,12 +240,14 @@ fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
 
 fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
     let count = turns.len();
-    let proof = "the forces and gaps at its end are those at its beginning, and the rates depend on nothing else: every \
-                 further cycle is the same";
     match kind {
-        Kind::ShakesDown => format!("nothing slips under a force in cycle {count}; {proof}"),
-        Kind::Alternates => format!("the slips of cycle {count} go to and fro; {proof}"),
-        Kind::Ratchets => format!("cycle {count} leaves slips behind; {proof}"),
+        Kind::ShakesDown => {
+            format!(
+                "nothing slips under a force in cycle {count}: it is elastic, and so is every further one, the same"
+            )
+        }
+        Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns)),
+        Kind::Ratchets => format!("cycle {count} leaves slips behind; {}", recurrence(turns)),
         Kind::Collapses => format!("in cycle {}: {}", count + 1, history.end_sentence()),
         Kind::Undecided => {
             let difference = |index: usize| turns.get(index).and_then(|turn| turn.difference);
@@ -252,6 +264,40 @@ fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
             format!("no cycle of {count} repeats to {SAME:e}{rate}")
         }
     }
+}
+
+/// Why every further cycle is as the last.
+fn recurrence(turns: &[Turn]) -> String {
+    let Some(last) = turns.last() else { return String::new() };
+    let next = match last.repeated {
+        Some(true) => format!("; the next was followed as well and passes the same {} working schemes", last.schemes),
+        Some(false) => "; the next was followed as well: events that coincide come in another order".to_owned(),
+        None => String::new(),
+    };
+    let before = turns.len().checked_sub(2).and_then(|before| turns[before].difference);
+    let near = match (last.difference, before) {
+        (None, _) => format!("to {SAME:e} of the largest"),
+        (Some(now), _) if now <= NOISE => "to rounding".to_owned(),
+        (Some(now), Some(before)) if now < before => {
+            format!("to {now:.1e} of the largest, {:.3} times the difference of the cycle before", now / before)
+        }
+        (Some(now), _) => format!("to {now:.1e} of the largest"),
+    };
+    format!(
+        "its forces and gaps are at its end what they were at its beginning, {near}, and the rates depend on nothing else: every \
+         further cycle is the same{next}"
+    )
+}
+
+/// The stages of the cycle that begins with one.
+fn stages_of(history: &History, first: usize) -> impl Iterator<Item = &StageResult> {
+    history.stages[first..].iter().take(2)
+}
+
+/// What is left to come where differences fall from one cycle to the next, in the same ratio from here on; 0 where they are
+/// rounding.
+fn tail(now: f64, before: f64) -> f64 {
+    if now <= NOISE || now >= before { 0.0 } else { now * now / (before - now) }
 }
 
 /// The largest amplitude that shakes down.

@@ -24,8 +24,8 @@ const SECONDS: f64 = 10.0;
 /// How far before the end of the linear programme the proof is tried, as shares of the way: at the end itself no reserve is
 /// left.
 const BEFORE: [f64; 4] = [1e-9, 1e-8, 1e-7, 1e-6];
-/// Pairs up to which it is looked for.
-const MOST_PAIRS: usize = 500;
+/// Pairs up to which slips are sought.
+pub const MOST_PAIRS: usize = 500;
 
 /// What the theorem says of every start.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,8 @@ pub enum Static {
     NotAsked,
     /// It does not hold here: why.
     Inapplicable(String),
+    /// So many pairs are too many to look.
+    TooLarge(usize),
     /// No such slips were found.
     Nothing,
     /// Shakes down from every start: the least reserve under slips that were checked.
@@ -57,18 +59,19 @@ struct Search<'a> {
     units: (f64, f64),
 }
 
-/// Why the theorem does not hold; `None` where it does.
-fn inapplicable(problem: &ContactProblem) -> Option<String> {
+/// Why the theorem cannot be asked; `None` where it can.
+fn refusal(problem: &ContactProblem) -> Option<Static> {
     let system = &*problem.system;
-    if system.pair_count() > MOST_PAIRS {
-        return Some(format!("{} pairs are too many to look for it; up to {MOST_PAIRS} are not", system.pair_count()));
-    }
     if system.force_form.is_some() {
-        return Some("joints repeat one another, so that contact forces are not unique".to_owned());
+        let why = "joints repeat one another, so that contact forces are not unique";
+        return Some(Static::Inapplicable(why.to_owned()));
     }
-    let (i, j) = coupled(problem)?;
+    let Some((i, j)) = coupled(problem) else {
+        let count = system.pair_count();
+        return (count > MOST_PAIRS).then_some(Static::TooLarge(count));
+    };
     let [pressed, slipping] = [i, j].map(|pair| &system.pairs[pair].id);
-    Some(format!("a slip of {slipping} changes the contact force of {pressed}"))
+    Some(Static::Inapplicable(format!("a slip of {slipping} changes the contact force of {pressed}")))
 }
 
 /// A pair whose contact force depends on the slip of another one.
@@ -176,8 +179,8 @@ fn present(case: Case<'_>) -> Option<ContactProblem> {
 /// What the theorem says of a cycle that passes these places.
 pub fn static_shakedown<'m>(case: Case<'_>, moments: impl Iterator<Item = &'m Moment>) -> Static {
     let Some(problem) = present(case) else { return Static::NotAsked };
-    if let Some(why) = inapplicable(&problem) {
-        return Static::Inapplicable(why);
+    if let Some(refusal) = refusal(&problem) {
+        return refusal;
     }
     let places: Vec<Place> = moments.map(|moment| Place::of(&problem, moment)).collect();
     let search = Search::new(&problem, &places);
@@ -191,8 +194,8 @@ pub fn static_shakedown<'m>(case: Case<'_>, moments: impl Iterator<Item = &'m Mo
 /// See [`super::cycle::cycle`].
 pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<(Option<f64>, Static), PathError> {
     let Some(problem) = present(case) else { return Ok((None, Static::NotAsked)) };
-    if let Some(why) = inapplicable(&problem) {
-        return Ok((None, Static::Inapplicable(why)));
+    if let Some(refusal) = refusal(&problem) {
+        return Ok((None, refusal));
     }
     let targets = [target(case, name, from)?, target(case, name, to)?];
     let history = follow_factors(case, &Begin::Unloaded, &targets)?;

@@ -9,6 +9,7 @@ use crate::model::uses::Redone;
 use crate::solve::{Prepared, Solved};
 use crate::view::status;
 use crate::view::style::Role;
+use crate::watch::Watch;
 
 use super::journal::Record;
 use super::{Change, CommandError, Format, Output, Session, Setup};
@@ -56,7 +57,7 @@ impl Session {
                 _ => false,
             };
             let last = self.solved.clone().filter(|_| warm && same_geometry);
-            Some(next.solve_from(last, io.watch)?)
+            Some(next.solve_from(last, io.joints_first, io.watch)?)
         } else {
             None
         };
@@ -68,6 +69,23 @@ impl Session {
             self.path = None;
             self.map = None;
             self.swept = None;
+        }
+        Ok(())
+    }
+
+    /// Works out what is still to come of the present answer and of the one before: displacements, members, reactions, the
+    /// check of equilibrium. Every command does so first, unless the face shows the states ahead of the rest.
+    ///
+    /// # Errors
+    /// As for a solve; the session then is as it was.
+    pub fn ensure_whole(&mut self, watch: &dyn Watch) -> Result<(), CommandError> {
+        if let Some(solved) = self.solved.clone().filter(|solved| !solved.is_whole()) {
+            let whole = self.now.whole(solved, watch)?;
+            self.trouble |= whole.answer.outcome.is_failure();
+            self.solved = Some(Arc::new(whole));
+        }
+        if let Some(previous) = self.previous.as_mut().filter(|previous| !previous.is_whole()) {
+            *previous = Arc::new(previous.completed());
         }
         Ok(())
     }

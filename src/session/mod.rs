@@ -42,7 +42,8 @@ pub use crate::solve::{Prepared, Solved};
 use crate::watch::Watch;
 
 pub use commands::load::write_scenarios;
-pub use commands::side::{AllAnswers, OneAnswer};
+pub use commands::map::Drawn as DrawnMap;
+pub use commands::side::{AllAnswers, Glance, OneAnswer};
 pub use error::CommandError;
 pub use gauges::Gauge;
 use output::Report;

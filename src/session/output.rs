@@ -45,6 +45,9 @@ pub struct Output<'a> {
     pub has_screen: bool,
     /// Whether the lines come by themselves: from a script, a pipe, a paste. Nobody looks at what the one before said.
     pub unattended: bool,
+    /// Whether the face shows states and forces of the pairs ahead of displacements and the check of equilibrium, for which
+    /// it asks by [`Session::ensure_whole`](super::Session::ensure_whole).
+    pub joints_first: bool,
     /// Whether a script says each command before its result.
     pub echo: bool,
     /// The report of the command that runs, in JSON.
@@ -68,6 +71,7 @@ impl<'a> Output<'a> {
             watch,
             line: 0,
             has_screen: false,
+            joints_first: false,
             unattended: false,
             echo: false,
             report: None,

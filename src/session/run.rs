@@ -102,6 +102,9 @@ impl Session {
                     .into(),
             ));
         }
+        if !io.joints_first {
+            self.ensure_whole(io.watch)?;
+        }
         if action.needs_pivots() {
             self.ensure_pivots(io)?;
         }

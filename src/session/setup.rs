@@ -10,7 +10,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
 use crate::model::uses::Redone;
-use crate::solve::{self, Case, Prepared, Solved};
+use crate::solve::{self, Case, Prepared, SolveError, Solved};
 use crate::watch::Watch;
 
 /// What the user has chosen: all that `undo` brings back.
@@ -61,13 +61,15 @@ impl Setup {
 
     /// Solves cold, preparing the geometry if that was not done yet.
     pub(super) fn solve(&mut self, watch: &dyn Watch) -> Result<Arc<Solved>, CommandError> {
-        self.solve_from(None, watch)
+        self.solve_from(None, false, watch)
     }
 
-    /// Solves, from the `last` answer of the same geometry where there is one and that pays.
+    /// Solves, from the `last` answer of the same geometry where there is one and that pays; `joints_first`: of an answer
+    /// found so, displacements and the check of equilibrium are left for [`Session::ensure_whole`].
     pub(super) fn solve_from(
         &mut self,
         last: Option<Arc<Solved>>,
+        joints_first: bool,
         watch: &dyn Watch,
     ) -> Result<Arc<Solved>, CommandError> {
         let scenario = Arc::clone(&self.scenario);
@@ -83,17 +85,23 @@ impl Setup {
             };
             let case = prepared.case(&scenario, &values).under(rules).watched(watch);
             let solved = match last.filter(|_| redone < Redone::Stiffness) {
+                Some(last) if joints_first => case.solve_joints_from(&last),
                 Some(last) => case.solve_from(&last),
                 None => case.solve(),
             };
-            let mut solved = solved.map_err(|error| {
-                if error.is_interrupted() { CommandError::Interrupted } else { CommandError::Solve(error.to_string()) }
-            })?;
+            let mut solved = solved.map_err(refused_or_interrupted)?;
             solved.answer.redone = redone;
             Ok::<_, CommandError>((prepared, Arc::new(solved)))
         })??;
         self.prepared = Some(prepared);
         Ok(solved)
+    }
+
+    /// The answer of this setup with what was left for later.
+    pub(super) fn whole(&self, solved: Arc<Solved>, watch: &dyn Watch) -> Result<Solved, CommandError> {
+        let Some(prepared) = self.prepared.clone() else { return Ok(solved.completed()) };
+        let setup = self.clone();
+        worker::run(watch, move |watch| setup.case(&prepared, watch).whole(&solved))?.map_err(refused_or_interrupted)
     }
 
     pub(super) fn same_choice(&self, other: &Setup) -> bool {
@@ -102,6 +110,10 @@ impl Setup {
             && self.values.len() == other.values.len()
             && self.values.iter().zip(&other.values).all(|((a, x), (b, y))| a == b && x.to_bits() == y.to_bits())
     }
+}
+
+pub(super) fn refused_or_interrupted(error: SolveError) -> CommandError {
+    if error.is_interrupted() { CommandError::Interrupted } else { CommandError::Solve(error.to_string()) }
 }
 
 impl Session {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
+use super::cold::Extent;
 use super::error::{QuestionError, SolveError};
 use super::plain::plain_answer;
 use super::plain_answers::{Effort, search_plain_answers};
@@ -185,7 +186,7 @@ impl Prepared {
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };
         let rules = AttemptRules::from(Rules::default()).by(AttemptEngine::Enumeration);
-        Ok(self.answer_at(problem, contact, point, rules))
+        Ok(self.answer_at(problem, contact, point, rules, Extent::Whole))
     }
 }
 

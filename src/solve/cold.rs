@@ -9,7 +9,7 @@ use super::error::SolveError;
 use super::finish::empty_answer;
 use super::plain::{PlainProblem, solve_plain_judged};
 use super::prepared::{Geometry, Prepared};
-use super::state::{RunData, Solved};
+use super::state::{LookedAt, Rest, RunData, Solved};
 use super::warm::WarmStart;
 use crate::answer::pairs::{joint_state, pair_states};
 use crate::answer::record::{AttemptRules, OutcomeKind};
@@ -24,6 +24,15 @@ use crate::lcp::parametric::Parametric;
 use crate::lcp::pivot::PivotLog;
 use crate::model::rules::{Covering, Engine, Rules};
 use crate::watch::Watch;
+
+/// What of an answer is worked out at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Extent {
+    /// All of it.
+    Whole,
+    /// States and forces of the joints with their check; [`Case::whole`] works out the rest.
+    Joints,
+}
 
 impl Case<'_> {
     /// Solves.
@@ -123,7 +132,7 @@ impl Prepared {
             _ => {}
         }
         let seconds = start.elapsed().as_secs_f64();
-        let mut solved = self.state_of(problem, contact, run, rules.into());
+        let mut solved = self.state_of(problem, contact, run, rules.into(), Extent::Whole);
         solved.answer.timings.lemke = seconds;
         solved.answer.ray = solved.ray.as_ref().map(|report| report.record(system, rules.covering));
         if let RunData::Contact { contact, pivots, .. } = &solved.run {
@@ -146,14 +155,22 @@ impl Prepared {
         contact: ContactLcp,
         point: Point,
         rules: AttemptRules,
+        extent: Extent,
     ) -> Solved {
         let point = refined(problem, &contact, point);
         let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
-        self.state_of(problem, contact, run, rules)
+        self.state_of(problem, contact, run, rules, extent)
     }
 
-    /// What a run ended in: the pairs, of an answer all the rest with its check, of a ray its class.
-    fn state_of(&self, problem: &ContactProblem, contact: ContactLcp, run: Run, rules: AttemptRules) -> Solved {
+    /// What a run ended in: the pairs, of an answer all the rest of that extent with its check, of a ray its class.
+    fn state_of(
+        &self,
+        problem: &ContactProblem,
+        contact: ContactLcp,
+        run: Run,
+        rules: AttemptRules,
+        extent: Extent,
+    ) -> Solved {
         let system = &*problem.system;
         let state = joint_state(problem, &contact, &run.point);
         let mut answer = empty_answer(&run, contact.force_unit, rules, self.size(system, &contact));
@@ -163,8 +180,14 @@ impl Prepared {
         if let Outcome::Ray(direction) = &run.outcome {
             ray = Some(Box::new(ray::look(problem, &contact, direction, answer.p)));
         }
-        if answer.is_answer() {
-            self.complete(&mut answer, problem, &state);
+        let mut rest = None;
+        match (extent, &*self.geometry) {
+            _ if !answer.is_answer() => {}
+            (Extent::Joints, Geometry::Structure { .. }) => {
+                self.complete_joints(&mut answer, problem, &state);
+                rest = Some(Arc::new(Rest { prepared: self.clone(), joints: state }));
+            }
+            _ => self.complete(&mut answer, problem, &state),
         }
         Solved {
             cycled: matches!(run.outcome, Outcome::Cycle(_)),
@@ -173,6 +196,8 @@ impl Prepared {
             ray,
             plain_ray: None,
             warm: None,
+            rest,
+            looked_at: LookedAt::default(),
             retry_note: String::new(),
         }
     }

@@ -36,6 +36,21 @@ impl Prepared {
         judge(answer, check_contact(problem, state, equilibrium));
     }
 
+    /// The part of [`Prepared::complete`] that comes first: the fresh check of the joints.
+    pub(super) fn complete_joints(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) {
+        answer.notes = notes_on_shared_forces(problem, state);
+        judge(answer, Check { joints_only: true, ..check_contact(problem, state, None) });
+    }
+
+    /// The part of [`Prepared::complete`] that [`Prepared::complete_joints`] leaves.
+    pub(super) fn complete_rest(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) {
+        let equilibrium = self.recover(answer, problem, state);
+        answer.check = answer.check.with_equilibrium(equilibrium);
+        if !answer.check.passed {
+            fail_check(answer);
+        }
+    }
+
     /// Displacements, members and reactions of a state; the residual of its equilibrium, where there is a K.
     pub(super) fn recover(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) -> Option<f64> {
         let mut equilibrium = None;

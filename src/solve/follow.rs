@@ -9,6 +9,7 @@ use crate::contact::problem::ContactProblem;
 use crate::lcp::outcome::Point;
 use crate::model::rules::{Engine, Rules};
 use crate::solve::case::Case;
+use crate::solve::cold::Extent;
 use crate::solve::error::SolveError;
 use crate::solve::prepared::Prepared;
 use crate::solve::problem::{contact_problem, factors};
@@ -27,13 +28,41 @@ impl Case<'_> {
     /// # Errors
     /// As [`Case::solve`].
     pub fn solve_from(self, last: &Solved) -> Result<Solved, SolveError> {
+        self.solve_to(last, Extent::Whole)
+    }
+
+    /// As [`Case::solve_from`], but of an answer that is followed only states and forces of the pairs, with the check over
+    /// the joints: what a slider shows first. [`Case::whole`] works out the rest.
+    ///
+    /// # Errors
+    /// As [`Case::solve`].
+    pub fn solve_joints_from(self, last: &Solved) -> Result<Solved, SolveError> {
+        self.solve_to(last, Extent::Joints)
+    }
+
+    /// An answer with its displacements, members, reactions and the check of equilibrium. Where that check fails, the
+    /// answer is found anew as after any check that fails.
+    ///
+    /// # Errors
+    /// As [`Case::solve`].
+    pub fn whole(self, solved: &Solved) -> Result<Solved, SolveError> {
+        let whole = solved.completed();
+        if solved.is_whole() || whole.answer.is_answer() {
+            return Ok(whole);
+        }
+        let mut anew = self.solve_from(solved)?;
+        anew.answer.redone = solved.answer.redone;
+        Ok(anew)
+    }
+
+    fn solve_to(self, last: &Solved, extent: Extent) -> Result<Solved, SolveError> {
         let large = self.prepared.system().is_some_and(|system| system.pairs.len() >= WARM_PAIRS);
         let usual = self.rules.are_default() && self.rules.engine == Engine::Scheme;
         if large
             && usual
             && last.answer.is_answer()
             && self.scenario.law_refusal(self.values).is_none()
-            && let Some(solved) = self.follow(last)
+            && let Some(solved) = self.follow_to(last, extent)
         {
             return Ok(solved);
         }
@@ -43,6 +72,10 @@ impl Case<'_> {
     /// The answer reached from the last one, if it passes its check. Public for tests and measurements of the warm
     /// start alone: any number of pairs.
     pub fn follow(self, last: &Solved) -> Option<Solved> {
+        self.follow_to(last, Extent::Whole)
+    }
+
+    fn follow_to(self, last: &Solved, extent: Extent) -> Option<Solved> {
         let Case { prepared, values, rules, watch, .. } = self;
         let system = prepared.system()?;
         let slot = last.warm.as_ref()?;
@@ -52,12 +85,12 @@ impl Case<'_> {
         let start = Instant::now();
         let problem = contact_problem(system, &factors(prepared, values), values);
         let problem_seconds = start.elapsed().as_secs_f64();
-        let (mut solved, mut seconds) = prepared.follow_kept(&mut kept, &problem, rules, watch)?;
+        let (mut solved, mut seconds) = prepared.follow_kept(&mut kept, &problem, (rules, extent), watch)?;
         if !solved.answer.is_answer() {
             // The way is made; only its end was not sharp enough.
             let way = solved.answer.start;
             kept.refine();
-            let (refined, more) = prepared.follow_kept(&mut kept, &problem, rules, watch)?;
+            let (refined, more) = prepared.follow_kept(&mut kept, &problem, (rules, extent), watch)?;
             solved = refined;
             solved.answer.start = way;
             seconds += more;
@@ -83,7 +116,7 @@ impl Prepared {
         &self,
         kept: &mut WarmStart,
         problem: &ContactProblem,
-        rules: Rules,
+        (rules, extent): (Rules, Extent),
         watch: &dyn Watch,
     ) -> Option<(Solved, f64)> {
         let start = Instant::now();
@@ -93,7 +126,7 @@ impl Prepared {
         let point =
             Point { z: found.point.z.iter().map(|z| z * length).collect(), w: vec![0.0; contact.rows.len()], p: 0.0 };
         let seconds = start.elapsed().as_secs_f64();
-        let mut solved = self.answer_at(problem, contact, point, rules.into());
+        let mut solved = self.answer_at(problem, contact, point, rules.into(), extent);
         solved.answer.start = Start::Warm { changes: found.pivots };
         Some((solved, seconds))
     }

@@ -12,6 +12,7 @@ use crate::lcp::basis::Basis;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
 use crate::model::rules::Rules;
+use crate::solve::cold::Extent;
 use crate::solve::error::SolveError;
 use crate::solve::prepared::Prepared;
 use crate::solve::state::Solved;
@@ -77,7 +78,7 @@ impl Prepared {
             w: vec![0.0; contact.rows.len()],
             p: 0.0,
         };
-        let mut solved = self.answer_at(problem, contact, point, rules);
+        let mut solved = self.answer_at(problem, contact, point, rules, Extent::Whole);
         solved.answer.attempts.iter_mut().for_each(|attempt| attempt.pivots = Some(pivots));
         Ok(AlongLoad::Answer(Box::new(solved)))
     }

@@ -12,7 +12,7 @@ use super::finish::{empty_answer, fail_check};
 use super::ladder::{EXACT_BUDGET, LAST_RESORT, Ladder, others};
 use super::plain_answers::{PlainAnswers, RayProof, all_plain_answers, prove_plain_ray};
 use super::settle::{ray_holds, settled};
-use super::state::{RunData, Solved};
+use super::state::{LookedAt, RunData, Solved};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
 use crate::answer::check::TOLERANCE;
 use crate::answer::check_plain::{ROUNDING, check_plain};
@@ -161,6 +161,8 @@ pub(super) fn attempt_plain(
         ray: None,
         plain_ray,
         cycled,
+        rest: None,
+        looked_at: LookedAt::default(),
         retry_note: String::new(),
         warm: None,
     })
@@ -268,6 +270,8 @@ pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRule
         plain_ray: None,
         cycled: false,
         warm: None,
+        rest: None,
+        looked_at: LookedAt::default(),
         retry_note: String::new(),
     }
 }

@@ -1,6 +1,7 @@
 //! One solved state: its answer, and the numbers behind every working scheme on the way to it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use super::finish::named;
 use super::prepared::{Geometry, Prepared};
@@ -58,6 +59,23 @@ pub struct Solved {
     pub cycled: bool,
     /// The dictionary of the answer, for the next change; contact problems under the default engine only.
     pub(super) warm: Option<WarmSlot>,
+    /// What is still to be worked out of an answer; see [`Solved::completed`].
+    pub(super) rest: Option<Arc<Rest>>,
+    /// The pivot that was looked at last: pairs and displacements there come from one state.
+    pub(super) looked_at: LookedAt,
+}
+
+/// The joints after one pivot of a run; shared by the copies of an answer.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LookedAt(Arc<Mutex<Option<(usize, Arc<JointState>)>>>);
+
+/// What displacements, members, reactions and the check of equilibrium follow from.
+#[derive(Clone, Debug)]
+pub(super) struct Rest {
+    /// The geometry that was solved.
+    pub(super) prepared: Prepared,
+    /// Its joints.
+    pub(super) joints: JointState,
 }
 
 impl Solved {
@@ -65,6 +83,22 @@ impl Solved {
     pub fn pivots(&self) -> &PivotLog {
         let (RunData::Contact { pivots, .. } | RunData::Plain { pivots, .. }) = &self.run;
         pivots
+    }
+
+    /// Whether displacements, members, reactions and the check of equilibrium are there, as far as there are such.
+    pub fn is_whole(&self) -> bool {
+        self.rest.is_none()
+    }
+
+    /// The same with what was left for later; no answer any more where the check of equilibrium fails.
+    pub fn completed(&self) -> Solved {
+        let mut whole = Solved { rest: None, ..self.clone() };
+        if let (Some(rest), RunData::Contact { problem, .. }) = (&self.rest, &self.run) {
+            let start = Instant::now();
+            rest.prepared.complete_rest(&mut whole.answer, problem, &rest.joints);
+            whole.answer.timings.total += start.elapsed().as_secs_f64();
+        }
+        whole
     }
 
     /// Number of pivots.
@@ -78,7 +112,17 @@ impl Solved {
     }
 
     /// The vertex after pivot `step` over the joints; `None` beyond the last and for a bare LCP.
-    fn state_at(&self, step: usize) -> Option<JointState> {
+    fn state_at(&self, step: usize) -> Option<Arc<JointState>> {
+        let mut kept = self.looked_at.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, state)) = kept.as_ref().filter(|(at, _)| *at == step) {
+            return Some(Arc::clone(state));
+        }
+        let state = Arc::new(self.find_state_at(step)?);
+        *kept = Some((step, Arc::clone(&state)));
+        Some(state)
+    }
+
+    fn find_state_at(&self, step: usize) -> Option<JointState> {
         let RunData::Contact { contact, problem, pivots, last, .. } = &self.run else {
             return None;
         };

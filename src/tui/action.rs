@@ -83,6 +83,14 @@ pub enum Do {
     Ask,
     /// Ask no longer for the selected quantity.
     Forget,
+    /// The cursor of the map so many cells to the right.
+    Across(i8),
+    /// Set the parameters of the map to the place of its cursor.
+    SetHere,
+    /// The cursor of the map into the next region.
+    NextRegion,
+    /// The cursor of the map back to the present values.
+    CursorHome,
     /// Show what was last printed again.
     Output,
     /// Let the ray's mode move.
@@ -175,6 +183,13 @@ pub enum Job {
         /// Its new value.
         value: f64,
     },
+    /// A slider moves by these tenths of its step from wherever a command that was typed before has put it.
+    Vary {
+        /// The parameter.
+        name: String,
+        /// Key by key.
+        tenths: Vec<i8>,
+    },
     /// Show this pivot.
     Step(usize),
     /// A command line.
@@ -196,6 +211,11 @@ pub enum Job {
     Quantities(Vec<Quantity>),
     /// What would stop the collapse shown.
     Remedies,
+    /// The answer at a place of the map, beside the session.
+    Glance {
+        /// Names of the axes with the values there.
+        settings: [(String, f64); 2],
+    },
 }
 
 impl Job {

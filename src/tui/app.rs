@@ -158,6 +158,12 @@ pub struct State {
     pub gauges_at: Option<The<Moment>>,
     /// The selected quantity.
     pub quantity: usize,
+    /// The pane in the place that Plots and Map share on a large screen.
+    pub lower: Pane,
+    /// The place of the cursor in the map, once it was moved.
+    pub map_at: Option<[f64; 2]>,
+    /// What is shown again when the cursor of the map is left: the session, while an answer beside it is shown.
+    pub below: Option<Arc<Shown>>,
     /// The job at work.
     pub running: Option<Job>,
     /// Jobs that wait for it.
@@ -227,6 +233,9 @@ impl State {
             gauges: Vec::new(),
             gauges_at: None,
             quantity: 0,
+            lower: Pane::Plot,
+            map_at: None,
+            below: None,
             running: None,
             waiting: VecDeque::new(),
             progress: None,
@@ -265,6 +274,9 @@ impl State {
         self.gauges.clear();
         self.gauges_at = None;
         self.quantity = 0;
+        self.lower = Pane::Plot;
+        self.map_at = None;
+        self.below = None;
         self.sort = SortKey::File;
         self.descending = false;
         self.held = None;
@@ -291,6 +303,17 @@ impl State {
             Some(MOVE)
         } else {
             None
+        }
+    }
+
+    /// Whether what is at work belongs to the frame of the last key, if it comes at once. What follows the states of a
+    /// slider does not: they are drawn first.
+    pub fn awaits(&self) -> bool {
+        match &self.running {
+            _ if self.progress.is_some() => false,
+            Some(Job::Motion) => self.shown.is_whole(),
+            Some(Job::Pivots) | None => false,
+            Some(_) => true,
         }
     }
 
@@ -362,6 +385,7 @@ impl State {
         match pane {
             Pane::Quantities => !(self.shown.scenario.probes.is_empty() && self.asked.is_empty()),
             Pane::Loading => self.loadings().len() > 1,
+            Pane::Map => self.shown.map.is_some(),
             _ => true,
         }
     }

@@ -23,7 +23,7 @@ pub enum Context {
 
 impl Context {
     /// In the order of the help.
-    pub const ALL: [Context; 12] = [
+    pub const ALL: [Context; 13] = [
         Context::Everywhere,
         Context::Pane(Pane::Structure),
         Context::Pane(Pane::Parameters),
@@ -33,6 +33,7 @@ impl Context {
         Context::Pane(Pane::Answer),
         Context::Pane(Pane::Quantities),
         Context::Pane(Pane::Loading),
+        Context::Pane(Pane::Map),
         Context::Tour,
         Context::Overlay,
         Context::Entry,
@@ -84,6 +85,7 @@ const PARAMETERS: Context = Context::Pane(Pane::Parameters);
 const PAIRS: Context = Context::Pane(Pane::Pairs);
 const PIVOTS: Context = Context::Pane(Pane::Pivots);
 const QUANTITIES: Context = Context::Pane(Pane::Quantities);
+const MAP: Context = Context::Pane(Pane::Map);
 
 /// All keys.
 #[rustfmt::skip]
@@ -116,6 +118,7 @@ pub const BINDINGS: &[Binding] = &[
     row(Everywhere, "answer", &["6"], Do::Focus(Pane::Answer), "go to Answer", ""),
     row(Everywhere, "quantities", &["7"], Do::Focus(Pane::Quantities), "go to Quantities", ""),
     row(Everywhere, "loading", &["8"], Do::Focus(Pane::Loading), "go to Loading", ""),
+    row(Everywhere, "map", &["9"], Do::Focus(Pane::Map), "go to Map", ""),
     row(Everywhere, "page-up", &["pageup"], Do::PageUp, "ten rows up", ""),
     row(Everywhere, "page-down", &["pagedown"], Do::PageDown, "ten rows down", ""),
     row(Everywhere, "step-first", &["home"], Do::StepFirst, "first pivot: the entry of p", ""),
@@ -164,6 +167,12 @@ pub const BINDINGS: &[Binding] = &[
 
     row(QUANTITIES, "ask", &["enter"], Do::Ask, "ask for one more quantity: `show …`", "ask"),
     row(QUANTITIES, "forget", &["x", "delete"], Do::Forget, "ask no longer for the selected one", "forget"),
+
+    row(MAP, "map-left", &["left", "h"], Do::Across(-1), "cursor to the left: every pane shows the answer there", "move"),
+    row(MAP, "map-right", &["right", "l"], Do::Across(1), "cursor to the right; up and down as everywhere", "move"),
+    row(MAP, "map-set", &["enter"], Do::SetHere, "set both parameters to the place of the cursor", "set"),
+    row(MAP, "map-region", &["space"], Do::NextRegion, "cursor into the next region", "region"),
+    row(MAP, "map-home", &["home"], Do::CursorHome, "cursor back to the present values", ""),
 
     row(Tour, "tour-next", &["enter"], Do::TourNext, "next step of the tour", ""),
     row(Tour, "tour-back", &["backspace"], Do::TourBack, "step before", ""),

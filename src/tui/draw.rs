@@ -123,6 +123,7 @@ fn outcome(state: &State) -> (String, Role) {
         return ("not solved yet".into(), Role::Warning);
     };
     let loading = match state.loading() {
+        _ if shown.glance.is_some() => "at the cursor of the map · ".to_owned(),
         Loading::Own => String::new(),
         loading => format!("{} · ", panes::loading::name(state, &loading)),
     };
@@ -165,7 +166,7 @@ fn draw_pane(state: &State, places: &Places, pane: Pane, area: Rect, shares: boo
     }
     let tabs = places.tabs.as_ref().filter(|_| shares).map(|(area, names)| layout::tab_names(*area, names, pane));
     if let Some(tabs) = &tabs {
-        used += tabs.iter().map(|(_, _, name)| name.len() + 3).sum::<usize>();
+        used += tabs.last().map_or(0, |(start, _, name)| usize::from(start - area.x) + name.len() + 2);
     }
     let note = panes::note(state, pane);
     let inner = usize::from(area.width).saturating_sub(2);
@@ -205,7 +206,11 @@ fn draw_sentence(state: &State, area: Rect, buffer: &mut Buffer) {
     let report = look.report(width);
     let (mut lines, head) = match state.tour.and_then(|at| tour::lines(state, at, width)) {
         Some(lines) => lines,
-        None => (report.wrap(&panes::pivots::sentence(state), width), 0),
+        None => {
+            let region = if state.focus == Pane::Map { panes::map::sentence(state) } else { None };
+            let text = region.unwrap_or_else(|| panes::pivots::sentence(state));
+            (report.wrap(&text, width), 0)
+        }
     };
     let rows = usize::from(area.height);
     if lines.len() > rows && rows > 0 {
@@ -234,6 +239,7 @@ fn draw_about(state: &State, area: Rect, buffer: &mut Buffer) {
     let text = match state.focus {
         Pane::Parameters => panes::parameters::about(state),
         Pane::Pairs | Pane::Structure => panes::pairs::about(state),
+        Pane::Map => panes::map::about(state),
         Pane::Pivots | Pane::Plot | Pane::Answer | Pane::Quantities | Pane::Loading => changes(state),
     };
     if let Some(text) = text {

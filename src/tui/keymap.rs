@@ -65,14 +65,24 @@ impl Keymap {
             .collect()
     }
 
+    /// The keys that do something in a place, as shown.
+    pub fn of(&self, context: Context, action: Do, ascii: bool) -> String {
+        let found = self.rows(context, ascii).into_iter().find(|(_, binding)| binding.action == action);
+        found.map_or(String::new(), |(keys, _)| keys)
+    }
+
     /// (keys, word) for the line of hints in these places.
     pub fn hints(&self, contexts: &[Context], ascii: bool) -> Vec<(String, &'static str)> {
         let mut hints: Vec<(String, &'static str)> = Vec::new();
-        for context in contexts {
+        for (number, context) in contexts.iter().enumerate() {
+            let taken = |key| contexts[..number].iter().any(|before| self.find(*before, key).is_some());
             for (binding, keys) in BINDINGS.iter().zip(&self.keys) {
                 let (true, Some(key)) = (binding.context == *context && !binding.hint.is_empty(), keys.first()) else {
                     continue;
                 };
+                if taken(*key) {
+                    continue;
+                }
                 let label = key.label(ascii);
                 match hints.last_mut().filter(|(_, word)| *word == binding.hint) {
                     Some((keys, _)) => {
@@ -111,6 +121,7 @@ pub fn manual() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::pane::Pane;
     use std::collections::HashSet;
 
     #[test]
@@ -146,6 +157,9 @@ mod tests {
         let hints = Keymap::default().hints(&[Context::Everywhere], false);
         assert!(hints.contains(&("←→".to_owned(), "step")));
         assert!(hints.contains(&("+-".to_owned(), "vary")));
+        // a key means what it does in the pane
+        let hints = Keymap::default().hints(&[Context::Pane(Pane::Map), Context::Everywhere], false);
+        assert_eq!(hints.iter().filter(|(keys, _)| keys == "←→").collect::<Vec<_>>(), [&("←→".to_owned(), "move")]);
         let hints = Keymap::default().hints(&[Context::Everywhere], true);
         assert!(hints.contains(&("left/right".to_owned(), "step")));
     }

@@ -31,7 +31,8 @@ pub struct Places {
 }
 
 /// Panes that share the large place of a middling screen.
-pub const SHARED: [Pane; 6] = [Pane::Structure, Pane::Plot, Pane::Pairs, Pane::Answer, Pane::Quantities, Pane::Loading];
+pub const SHARED: [Pane; 7] =
+    [Pane::Structure, Pane::Plot, Pane::Pairs, Pane::Answer, Pane::Quantities, Pane::Loading, Pane::Map];
 /// Panes that share a place of a large screen.
 pub const SIDE: [Pane; 3] = [Pane::Answer, Pane::Quantities, Pane::Loading];
 
@@ -116,6 +117,11 @@ fn middle(state: &State, body: Rect, places: &mut Places) {
         };
         places.panes = vec![(front, rest), (Pane::Structure, structure)];
         places.tabs = Some((rest, offered(state, &SHARED[1..], front)));
+    } else if state.tab == Pane::Map && state.shown.structure().is_some() {
+        // what the cursor shows stands beside it
+        let (map, structure) = cut_rows(left, left.height - left.height * 2 / 5);
+        places.panes = vec![(Pane::Map, map), (Pane::Structure, structure)];
+        places.tabs = Some((map, offered(state, &SHARED[1..], Pane::Map)));
     } else {
         places.panes = vec![(state.tab, left)];
         places.tabs = Some((left, offered(state, &SHARED, state.tab)));
@@ -143,7 +149,7 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
     let (pivots, pairs) = cut_rows(rest, needed.clamp(6, rest.height / 2));
     places.panes = vec![
         (Pane::Structure, structure),
-        (Pane::Plot, plot),
+        (state.lower, plot),
         (Pane::Parameters, parameters),
         (Pane::Pivots, pivots),
         (Pane::Pairs, pairs),
@@ -171,32 +177,64 @@ pub fn pane_at(places: &Places, x: u16, y: u16) -> Option<(Pane, Rect)> {
     places.panes.iter().copied().find(|(_, area)| area.contains((x, y).into()))
 }
 
-/// Names of tabs in a border with the columns they take: (start, pane, name).
+/// Names of tabs in a border with the columns they take: (start, pane, name). They are as long as all of them find room,
+/// that of the pane in front longest; where even the shortest do not, the last ones are numbers.
 pub fn tab_names(area: Rect, panes: &[Pane], front: Pane) -> Vec<(u16, Pane, String)> {
-    let named: Vec<(Pane, String)> =
-        panes.iter().map(|pane| (*pane, format!("{} {}", pane.index() + 1, pane.title()))).collect();
-    let length = |names: &[(Pane, String)]| names.iter().map(|(_, n)| n.len() + 3).sum::<usize>() + 2;
-    let names = if length(&named) <= usize::from(area.width) {
-        named
-    } else {
-        panes
-            .iter()
-            .map(|pane| {
-                let number = (pane.index() + 1).to_string();
-                let name = if *pane == front { format!("{number} {}", pane.title()) } else { number };
-                (*pane, name)
-            })
-            .collect()
+    /// Blanks around a name and the line to the next one.
+    const BETWEEN: usize = 3;
+    type Form = fn(Pane) -> &'static str;
+    let name = |pane: Pane, form: Form| format!("{} {}", pane.index() + 1, form(pane)).trim_end().to_owned();
+    let all = |(of_front, of_others): (Form, Form)| -> Vec<String> {
+        panes.iter().map(|pane| name(*pane, if *pane == front { of_front } else { of_others })).collect()
     };
+    let room = usize::from(area.width).saturating_sub(2);
+    let fits = |names: &[String]| names.iter().map(|name| name.len() + BETWEEN).sum::<usize>() <= room;
+    let forms: [(Form, Form); 4] = [
+        (Pane::title, Pane::title),
+        (Pane::title, Pane::short),
+        (Pane::title, Pane::shortest),
+        (Pane::short, Pane::shortest),
+    ];
+    let mut names = forms.into_iter().map(all).find(|names| fits(names)).unwrap_or_else(|| all(forms[2]));
+    for at in (0..panes.len()).rev().filter(|at| panes[*at] != front) {
+        if !fits(&names) {
+            names[at] = name(panes[at], |_| "");
+        }
+    }
     let mut x = area.x + 1;
     let mut tabs = Vec::new();
-    for (pane, name) in names {
+    for (pane, name) in panes.iter().zip(names) {
         let start = x;
         // names are ASCII and short
-        x += name.len() as u16 + 3;
+        x += (name.len() + BETWEEN) as u16;
         if x <= area.right() {
-            tabs.push((start, pane, name));
+            tabs.push((start, *pane, name));
         }
     }
     tabs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tabs on the left of a screen of 80 columns: 48 columns.
+    #[test]
+    fn tabs_are_shortened_before_they_become_numbers() {
+        let names = |panes: &[Pane], front: Pane, width: u16| -> String {
+            let tabs = tab_names(Rect::new(0, 0, width, 10), panes, front);
+            tabs.iter().map(|(_, _, name)| name.as_str()).collect::<Vec<_>>().join("|")
+        };
+        let four = &SHARED[..4];
+        assert_eq!(names(four, Pane::Pairs, 48), "1 Structure|5 Plots|3 Pairs|6 Answer");
+        let five = [four, &[Pane::Quantities]].concat();
+        assert_eq!(names(&five, Pane::Pairs, 60), "1 Struct|5 Plots|3 Pairs|6 Answer|7 Quant");
+        assert_eq!(names(&five, Pane::Pairs, 48), "1 Str|5 Plot|3 Pairs|6 Ans|7 Qty");
+        assert_eq!(names(&five, Pane::Quantities, 48), "1 Str|5 Plot|3 Pair|6 Ans|7 Quant");
+        assert_eq!(names(&SHARED, Pane::Map, 48), "1 Str|5 Plot|3 Pair|6|7|8|9 Map");
+        assert_eq!(
+            names(&SHARED, Pane::Structure, 120),
+            "1 Structure|5 Plots|3 Pairs|6 Answer|7 Quantities|8 Loading|9 Map"
+        );
+    }
 }

@@ -17,27 +17,47 @@ pub fn window(selected: usize, count: usize, rows: usize) -> usize {
     selected.saturating_sub(rows / 2).min(count.saturating_sub(rows))
 }
 
-/// The list.
+/// The rows that may come into view while the selected one of `count` stays in its page of `height` rows.
+pub fn around(selected: usize, count: usize, height: usize) -> std::ops::Range<usize> {
+    let height = height.max(1);
+    let page = selected / height;
+    page.saturating_sub(1) * height..((page + 2) * height).min(count)
+}
+
+/// The list, or the part of it around the rows in view.
 #[derive(Default)]
 pub struct Listing {
     /// Stays at the top.
-    pub heading: Vec<Line<'static>>,
-    /// The rows.
-    pub rows: Vec<Line<'static>>,
+    heading: Vec<Line<'static>>,
+    /// The rows, from this one on.
+    rows: Vec<Line<'static>>,
+    first: usize,
+    /// How many there are in all.
+    count: usize,
 }
 
 impl Listing {
+    /// All of a list.
+    pub fn new(heading: Vec<Line<'static>>, rows: Vec<Line<'static>>) -> Listing {
+        Listing { heading, first: 0, count: rows.len(), rows }
+    }
+
+    /// The rows of a list of `count` from `first` on, among them those around the selected one: see [`around`].
+    pub fn part(heading: Vec<Line<'static>>, rows: Vec<Line<'static>>, (first, count): (usize, usize)) -> Listing {
+        Listing { heading, rows, first, count }
+    }
+
     /// First row in view and how many there are.
     fn window(&self, selected: usize, area: Rect) -> (usize, usize) {
         let room = usize::from(area.height).saturating_sub(self.heading.len());
-        (window(selected, self.rows.len(), room), room)
+        (window(selected, self.count, room), room)
     }
 
     /// The row at a line of the screen.
     pub fn row_at(&self, selected: usize, area: Rect, y: u16) -> Option<usize> {
         let (first, room) = self.window(selected, area);
         let row = usize::from(y.checked_sub(area.y)?).checked_sub(self.heading.len())?;
-        Some(first + row).filter(|at| row < room && *at < self.rows.len())
+        Some(first + row).filter(|at| row < room && *at < self.count)
     }
 
     /// Draws it; `starred` rows bear a star. The selected row is reversed where the pane has the focus, else bold.
@@ -52,7 +72,8 @@ impl Listing {
         let body = Rect::new(area.x + GUTTER, area.y, area.width.saturating_sub(GUTTER), area.height);
         put_lines(&self.heading, body, buffer);
         let (first, room) = self.window(selected, area);
-        for (row, line) in self.rows.iter().enumerate().skip(first).take(room) {
+        let rows = (self.first..).zip(&self.rows);
+        for (row, line) in rows.filter(|(row, _)| (first..first + room).contains(row)) {
             // as many rows as the area has
             let y = area.y + (self.heading.len() + row - first) as u16;
             buffer.set_line(body.x, y, line, body.width);
@@ -64,11 +85,5 @@ impl Listing {
                 buffer.set_style(Rect::new(area.x, y, area.width, 1), style);
             }
         }
-    }
-
-    /// The text of a row.
-    pub fn text(&self, row: usize) -> String {
-        let spans = self.rows.get(row).into_iter().flat_map(|line| &line.spans);
-        spans.map(|span| span.content.as_ref()).collect()
     }
 }

@@ -27,6 +27,7 @@ pub mod panes;
 pub mod pictures;
 pub mod prompt;
 pub mod runtime;
+pub mod sequence;
 pub mod shown;
 pub mod terminal;
 pub mod theme;

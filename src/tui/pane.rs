@@ -19,11 +19,13 @@ pub enum Pane {
     Quantities,
     /// Combinations of the loads and stages of their history.
     Loading,
+    /// The plane of two parameters, cut into regions of equal working scheme.
+    Map,
 }
 
 impl Pane {
     /// All panes, in the order of their numbers.
-    pub const ALL: [Pane; 8] = [
+    pub const ALL: [Pane; 9] = [
         Pane::Structure,
         Pane::Parameters,
         Pane::Pairs,
@@ -32,6 +34,7 @@ impl Pane {
         Pane::Answer,
         Pane::Quantities,
         Pane::Loading,
+        Pane::Map,
     ];
 
     /// Its title.
@@ -45,6 +48,33 @@ impl Pane {
             Pane::Answer => "Answer",
             Pane::Quantities => "Quantities",
             Pane::Loading => "Loading",
+            Pane::Map => "Map",
+        }
+    }
+
+    /// The title where there is little room.
+    pub fn short(self) -> &'static str {
+        match self {
+            Pane::Structure => "Struct",
+            Pane::Parameters => "Params",
+            Pane::Quantities => "Quant",
+            Pane::Loading => "Load",
+            pane => pane.title(),
+        }
+    }
+
+    /// The title where there is less.
+    pub fn shortest(self) -> &'static str {
+        match self {
+            Pane::Structure => "Str",
+            Pane::Parameters => "Par",
+            Pane::Pairs => "Pair",
+            Pane::Pivots => "Piv",
+            Pane::Plot => "Plot",
+            Pane::Answer => "Ans",
+            Pane::Quantities => "Qty",
+            Pane::Loading => "Load",
+            Pane::Map => "Map",
         }
     }
 
@@ -63,6 +93,7 @@ impl Pane {
             (Pane::Answer, _) => "how the run ended, and its check",
             (Pane::Quantities, _) => "probes, and what `:show` asks for",
             (Pane::Loading, _) => "combinations and stages, shown one by one",
+            (Pane::Map, _) => "arrows: the answer there; Enter sets both",
         }
     }
 

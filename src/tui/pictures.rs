@@ -1,17 +1,17 @@
 //! The pictures of the panes as they are kept, and what each is made of. Where a picture is as of old, a key costs what
 //! is seen of it, however large the model is.
 
-use std::sync::Arc;
+use std::ops::Range;
 
 use ratatui::buffer::Buffer;
 use ratatui::text::Line;
 
-use crate::session::{Remedies, Solved};
+use crate::session::{DrawnMap, Remedies, Solved};
 
 use super::kept::{Kept, The};
 use super::listing::Listing;
 use super::pane::{Plot, SortKey};
-use super::shown::Moment;
+use super::shown::{Moment, Motion};
 use super::theme::Look;
 use super::viewport::Viewport;
 
@@ -21,17 +21,17 @@ pub struct Pictures {
     /// Order of the pairs.
     pub order: Kept<(The<Moment>, SortKey, bool), Order>,
     /// Table of the pairs.
-    pub pairs: Kept<(The<Moment>, SortKey, bool, Sheet), Listing>,
+    pub pairs: Kept<(The<Moment>, SortKey, bool, Sheet, Range<usize>), Listing>,
     /// Table of the pivots.
     pub pivots: Kept<(The<Solved>, Sheet), Listing>,
-    /// How the structure moves.
-    pub shape: Kept<The<Moment>, Shape>,
     /// The structure.
     pub structure: Kept<StructureKey, StructurePicture>,
     /// The plots.
     pub plots: Kept<PlotKey, Buffer>,
     /// The answer in words.
     pub answer: Kept<AnswerKey, Vec<Line<'static>>>,
+    /// The map.
+    pub map: Kept<MapKey, Vec<Line<'static>>>,
 }
 
 /// What a text or a table is written on.
@@ -68,21 +68,13 @@ impl Order {
     }
 }
 
-/// How the structure moves.
-pub struct Shape {
-    /// u_x, u_y and the rotation of every node; `None` where nothing is known to move.
-    pub u: Option<Vec<[f64; 3]>>,
-    /// Likewise of the answer before, where it is worth showing.
-    pub before: Option<Vec<[f64; 3]>>,
-    /// The automatic scale.
-    pub automatic: f64,
-}
-
 /// What the picture of the structure is made of.
 #[derive(PartialEq)]
 pub struct StructureKey {
     /// The state.
     pub moment: The<Moment>,
+    /// How the structure moves.
+    pub motion: The<Motion>,
     /// Columns and rows.
     pub size: (u16, u16),
     /// Colours and characters.
@@ -116,6 +108,8 @@ pub struct PlotKey {
     pub size: (u16, u16),
     /// Colours and characters.
     pub look: Look,
+    /// Whether forces of the bars are there.
+    pub whole: bool,
     /// The first plot.
     pub plot: Plot,
     /// Whether the answer before is shown too.
@@ -131,15 +125,21 @@ pub struct AnswerKey {
     pub remedies: Option<The<Remedies>>,
     /// Whether it is being looked for.
     pub looking: bool,
+    /// Whether displacements and the check of equilibrium are there.
+    pub whole: bool,
     /// What it is written on.
     pub sheet: Sheet,
 }
 
-impl AnswerKey {
-    /// Of these.
-    pub fn new(moment: &Arc<Moment>, remedies: Option<&Arc<Remedies>>, looking: bool, sheet: Sheet) -> Self {
-        AnswerKey { moment: The::one(moment), remedies: remedies.map(The::one), looking, sheet }
-    }
+/// What the picture of a map is made of.
+#[derive(PartialEq)]
+pub struct MapKey {
+    /// The map.
+    pub map: Option<The<DrawnMap>>,
+    /// Columns and rows of its plane.
+    pub size: (usize, usize),
+    /// Colours and characters.
+    pub look: Look,
 }
 
 impl Pictures {

@@ -23,6 +23,7 @@ use super::app::State;
 use super::config;
 use super::input;
 use super::overlay;
+use super::sequence;
 use super::shown::Shown;
 use super::terminal::{Asked, Screen, asked};
 use super::theme::Look;
@@ -126,17 +127,16 @@ impl Reader {
                 }
                 let found = {
                     let _reading = theirs.reading.lock().unwrap_or_else(PoisonError::into_inner);
-                    match event::poll(LOOK) {
-                        Ok(true) => Some(event::read()),
-                        Ok(false) => None,
-                        Err(error) => Some(Err(error)),
-                    }
+                    let within = |wait| event::poll(wait)?.then(event::read).transpose();
+                    within(LOOK).and_then(|first| match first {
+                        Some(first) => sequence::joined(first, || within(sequence::WAIT)),
+                        None => Ok(Vec::new()),
+                    })
                 };
-                let incoming = match found {
-                    None => continue,
-                    Some(Ok(event)) => Incoming::Terminal(event),
-                    Some(Err(error)) if error.kind() == io::ErrorKind::Interrupted => continue,
-                    Some(Err(error)) => {
+                let incoming: Vec<Incoming> = match found {
+                    Ok(events) => events.into_iter().map(Incoming::Terminal).collect(),
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                    Err(error) => {
                         // a terminal that is gone fails first; its signal comes a moment later
                         thread::sleep(LOOK);
                         let incoming = match asked(&signals) {
@@ -147,8 +147,10 @@ impl Reader {
                         return;
                     }
                 };
-                if sender.send(incoming).is_err() {
-                    return;
+                for event in incoming {
+                    if sender.send(event).is_err() {
+                        return;
+                    }
                 }
             }
         };
@@ -237,7 +239,7 @@ impl Loop {
                     return Ok(ended);
                 }
                 changed |= drew;
-                next = if self.state.running.is_some() && self.state.progress.is_none() {
+                next = if self.state.awaits() {
                     self.incoming.recv_timeout(TOGETHER).ok()
                 } else {
                     self.incoming.try_recv().ok()

@@ -8,8 +8,9 @@ use crate::model::scenario::{Scenario, Source, Stage};
 use crate::model::structure::Structure;
 use crate::session::language::complete::Vocabulary;
 use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, RayClass, Start};
-use crate::session::{History, Prepared, Remedies, Session, Solved};
+use crate::session::{DrawnMap, Glance, History, Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
+use crate::view::plot::scene::{Magnification, factor, nodal};
 
 /// A session at one moment.
 #[derive(Clone)]
@@ -36,17 +37,25 @@ pub struct Shown {
     pub combination: Option<String>,
     /// The state there.
     pub moment: Arc<Moment>,
+    /// How the structure moves there.
+    pub motion: Arc<Motion>,
+    /// Whether `motion` is still that of what was shown before: the states are drawn first.
+    is_behind: bool,
     /// Whether the files of the scenario are watched.
     pub watches: bool,
     /// What would stop the collapse, once it was looked for.
     pub remedies: Option<Arc<Remedies>>,
+    /// The last map, and under which other values than the present ones it was drawn, if it was.
+    pub map: Option<(Arc<DrawnMap>, Option<String>)>,
+    /// The place in the map whose answer is shown in the place of the session's.
+    pub glance: Option<[f64; 2]>,
     /// Names for completion, gathered when the first letter asks for them.
     vocabulary: Arc<OnceLock<Vocabulary>>,
 }
 
 /// The state at the place shown. It stays the same one until another answer or another pivot is shown, so that what is
 /// drawn of it can be kept.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, PartialEq)]
 pub struct Moment {
     /// The pairs.
     pub pairs: Vec<PairState>,
@@ -58,26 +67,44 @@ pub struct Moment {
     pub solution: Option<PlainSolution>,
     /// p.
     pub p: Option<f64>,
-    /// Displacements at a pivot on the way, motion of a ray at its end.
-    motion: Arc<Motion>,
-    /// Whether `motion` is still that of what was shown before: the states are drawn first.
-    is_behind: bool,
 }
 
-/// What moves; it takes a solution of the whole structure.
+/// How the structure moves at the place shown; it takes a solution of the whole structure.
 #[derive(Clone, Default)]
-struct Motion {
-    displacements: Option<Vec<NodeDisplacement>>,
-    mode: Option<Vec<NodeDisplacement>>,
+pub struct Motion {
+    /// u_x, u_y and the rotation of every node, of a ray its mode; `None` where nothing is known to move.
+    pub u: Option<Vec<[f64; 3]>>,
+    /// Likewise of the answer before, where it is worth showing.
+    pub before: Option<Vec<[f64; 3]>>,
+    /// The automatic scale. It is that of the answer while its pivots are shown, so that pictures can be compared.
+    pub automatic: f64,
 }
 
 impl Motion {
-    fn of(session: &Session) -> Self {
-        Motion {
-            // at the end they stand in the answer
-            displacements: session.position().and_then(|_| session.displacements()),
-            mode: session.mode(),
-        }
+    fn of(session: &Session, shown: &Shown) -> Self {
+        let there = match (shown.at_ray(), shown.position) {
+            (true, _) => session.mode(),
+            (false, Some(_)) => session.displacements(),
+            (false, None) => None,
+        };
+        Motion::new(shown, there)
+    }
+
+    /// `there`: displacements at a pivot on the way, or the mode of the ray shown.
+    fn new(shown: &Shown, there: Option<Vec<NodeDisplacement>>) -> Self {
+        let Some(structure) = shown.structure() else { return Motion::default() };
+        let of_answer = |answer: &Answer| answer.displacements.as_deref().map(|u| nodal(structure, u));
+        let end = shown.answer().and_then(of_answer);
+        let u = match there {
+            Some(there) => Some(nodal(structure, &there)),
+            None if shown.at_ray() || shown.position.is_some() => None,
+            None => end.clone(),
+        };
+        let before = shown.before().filter(|_| shown.has_before()).and_then(of_answer);
+        let moves = |u: &Vec<[f64; 3]>| u.iter().any(|u| u[0] != 0.0 || u[1] != 0.0);
+        let measured = end.as_ref().filter(|end| moves(end) && !shown.at_ray()).or(u.as_ref());
+        let automatic = measured.map_or(1.0, |u| factor(structure, u, Magnification::Auto));
+        Motion { before: before.filter(|before| u.as_ref() != Some(before)), u, automatic }
     }
 }
 
@@ -106,8 +133,12 @@ impl Shown {
             stage: None,
             combination: session.combination().map(str::to_owned),
             moment: Arc::default(),
+            motion: Arc::default(),
+            is_behind: false,
             watches: session.watched().is_some(),
             remedies: session.remedies(),
+            map: session.last_map(),
+            glance: None,
             vocabulary: Arc::default(),
         };
         if let Some(history) = &shown.history {
@@ -116,14 +147,20 @@ impl Shown {
             shown.position = None;
         }
         match last.filter(|last| last.is_same_moment(&shown)) {
-            Some(last) => shown.moment = Arc::clone(&last.moment),
+            Some(last) => {
+                (shown.moment, shown.motion) = (Arc::clone(&last.moment), Arc::clone(&last.motion));
+                shown.is_behind = last.is_behind;
+            }
             None => {
-                let mut moment = Moment::of(session, &shown);
+                let moment = Moment::of(session, &shown);
+                shown.moment = match last.filter(|last| last.is_completed_by(&shown) && *last.moment == moment) {
+                    Some(last) => Arc::clone(&last.moment),
+                    None => Arc::new(moment),
+                };
                 match last.filter(|last| Arc::ptr_eq(&last.scenario, &shown.scenario) && shown.needs_motion()) {
-                    Some(last) => (moment.motion, moment.is_behind) = (Arc::clone(&last.moment.motion), true),
-                    None => moment.motion = Arc::new(Motion::of(session)),
+                    Some(last) => (shown.motion, shown.is_behind) = (Arc::clone(&last.motion), true),
+                    None => shown.motion = Arc::new(Motion::of(session, &shown)),
                 }
-                shown.moment = Arc::new(moment);
             }
         }
         if let Some(last) =
@@ -131,6 +168,28 @@ impl Shown {
         {
             shown.vocabulary = Arc::clone(&last.vocabulary);
         }
+        shown
+    }
+
+    /// The answer at a place of the map, beside the session, which `last` showed or another such answer.
+    pub fn beside(last: &Shown, session: &Session, glance: Glance, at: [f64; 2]) -> Self {
+        let mut shown = Shown {
+            prepared: Some(glance.prepared),
+            values: glance.values,
+            solved: Some(glance.solved),
+            previous: session.solved(),
+            position: None,
+            history: None,
+            stage: None,
+            combination: None,
+            map: session.last_map(),
+            remedies: None,
+            is_behind: false,
+            glance: Some(at),
+            ..last.clone()
+        };
+        shown.moment = Arc::new(Moment::of(session, &shown));
+        shown.motion = Arc::new(Motion::new(&shown, glance.mode));
         shown
     }
 
@@ -147,11 +206,21 @@ impl Shown {
             && same(&self.previous, &other.previous)
             && same(&self.history, &other.history)
             && (self.position, self.stage) == (other.position, other.stage)
+            && self.glance == other.glance
+    }
+
+    /// Whether the other shows the same answer with what this one lacks.
+    fn is_completed_by(&self, other: &Shown) -> bool {
+        !self.is_whole()
+            && other.is_whole()
+            && Arc::ptr_eq(&self.scenario, &other.scenario)
+            && self.values == other.values
+            && (self.position, self.stage) == (other.position, other.stage)
     }
 
     /// Whether something moves that the answer does not contain.
     fn needs_motion(&self) -> bool {
-        self.structure().is_some() && (self.position.is_some() || self.at_ray())
+        self.structure().is_some() && (self.position.is_some() || self.at_ray() || !self.is_whole())
     }
 
     /// The same at the end of another stage, from 0.
@@ -159,21 +228,25 @@ impl Shown {
         if self.stage.is_some() && self.stage != Some(stage) {
             self.stage = Some(stage);
             self.moment = Arc::new(Moment::of(session, &self));
+            self.motion = Arc::new(Motion::of(session, &self));
         }
         self
     }
 
+    /// Whether the answer has its displacements and the check of equilibrium.
+    pub fn is_whole(&self) -> bool {
+        self.solved.as_ref().is_none_or(|solved| solved.is_whole())
+    }
+
     /// Whether displacements are still to come: see [`Shown::complete`].
     pub fn is_behind(&self) -> bool {
-        self.moment.is_behind
+        self.is_behind
     }
 
     /// Computes what [`Shown::after`] left out, if the session still stands there.
     pub fn complete(&mut self, session: &Session) {
-        if self.moment.is_behind {
-            let mut moment = (*self.moment).clone();
-            (moment.motion, moment.is_behind) = (Arc::new(Motion::of(session)), false);
-            self.moment = Arc::new(moment);
+        if self.is_behind {
+            (self.motion, self.is_behind) = (Arc::new(Motion::of(session, self)), false);
         }
     }
 
@@ -223,17 +296,9 @@ impl Shown {
         &self.moment.pairs
     }
 
-    /// Displacements at the pivot shown; while [`Shown::is_behind`] those of what was shown before.
-    pub fn displacements(&self) -> Option<&[NodeDisplacement]> {
-        match (self.position, self.answer()) {
-            (None, Some(answer)) => answer.displacements.as_deref(),
-            _ => self.moment.motion.displacements.as_deref(),
-        }
-    }
-
-    /// Motion of the ray.
-    pub fn mode(&self) -> Option<&[NodeDisplacement]> {
-        self.moment.motion.mode.as_deref()
+    /// Whether the ray shown has a motion that can be drawn.
+    pub fn has_mode(&self) -> bool {
+        self.at_ray() && !self.is_behind && self.motion.u.is_some()
     }
 
     /// What the last change did to a pair.
@@ -273,7 +338,10 @@ impl Shown {
     /// Whether this is a collapse of which it is not known yet what would stop it.
     pub fn lacks_remedies(&self) -> bool {
         let ray = self.answer().and_then(|answer| answer.ray.as_ref());
-        self.stage.is_none() && self.remedies.is_none() && ray.is_some_and(|ray| ray.class == RayClass::Mechanism)
+        self.stage.is_none()
+            && self.glance.is_none()
+            && self.remedies.is_none()
+            && ray.is_some_and(|ray| ray.class == RayClass::Mechanism)
     }
 
     /// Whether the answer was followed from the last one and has no pivots yet.
@@ -295,16 +363,15 @@ impl Shown {
         let moment = Arc::make_mut(&mut shown.moment);
         moment.changes.clear();
         moment.change_of.clear();
+        Arc::make_mut(&mut shown.motion).before = None;
         shown
     }
 }
 
 impl Moment {
     fn of(session: &Session, shown: &Shown) -> Self {
-        let pairs = match (shown.stage, shown.answer()) {
-            (Some(_), Some(end)) => end.pairs.clone(),
-            _ => session.pairs(),
-        };
+        let elsewhere = shown.answer().filter(|_| shown.stage.is_some() || shown.glance.is_some());
+        let pairs = elsewhere.map_or_else(|| session.pairs(), |answer| answer.pairs.clone());
         let changes = match (shown.answer(), shown.before()) {
             (Some(now), Some(before)) if shown.position.is_none() => difference::changes(before, now),
             _ => Vec::new(),
@@ -315,10 +382,11 @@ impl Moment {
             .iter()
             .map(|pair| rest.next_if(|(_, change)| change.pair == pair.id).map(|(index, _)| index))
             .collect();
-        let (solution, p) = match shown.stage {
-            Some(_) => (None, None),
-            None => (session.solution(), session.p()),
+        let (solution, p) = match (shown.stage, elsewhere) {
+            (Some(_), _) => (None, None),
+            (None, Some(answer)) => (answer.solution.clone(), Some(answer.p)),
+            (None, None) => (session.solution(), session.p()),
         };
-        Moment { pairs, changes, change_of, solution, p, ..Moment::default() }
+        Moment { pairs, changes, change_of, solution, p }
     }
 }

@@ -15,18 +15,28 @@ use crate::watch::Watch;
 
 use super::action::{Action, Done, Job, Loading};
 use super::shown::Shown;
+use super::vary;
 
 /// Shorter work shows no progress.
 const PATIENCE: Duration = Duration::from_millis(400);
 /// Between two looks at the progress.
 const PACE: Duration = Duration::from_millis(250);
 
+/// What follows the states of a slider waits so long for its next step: longer than between two repeats of a held key.
+const QUIET: Duration = Duration::from_millis(40);
+
 /// Does one job after `last` was shown. The session is as it was if it fails.
 pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watch: &dyn Watch) -> Done {
     let mut output = Vec::new();
-    let (mut answers, mut gauges, mut asked) = (None, None, Vec::new());
-    let result = match &job {
-        Job::Set { name, value } => run(session, &format!("set {name} {value}"), &mut output, style, watch),
+    let (mut answers, mut gauges, mut glance, mut asked) = (None, None, None, Vec::new());
+    // what is no command does not ask for it by itself
+    let ready = if matches!(job, Job::Set { .. } | Job::Vary { .. }) { Ok(()) } else { session.ensure_whole(watch) };
+    let result = ready.and_then(|()| match &job {
+        Job::Set { name, value } => slide(session, (name, *value), &mut output, style, watch),
+        Job::Vary { name, tenths } => match varied(session, name, tenths) {
+            Some(value) => slide(session, (name, value), &mut output, style, watch),
+            None => Ok(Next::Continue),
+        },
         Job::Step(step) => run(session, &format!("step to {step}"), &mut output, style, watch),
         Job::Line { text, .. } => run(session, text, &mut output, style, watch),
         Job::Pivots => session.ensure_pivots(&mut Output::text(&mut output, style, watch)).map(|()| Next::Continue),
@@ -42,11 +52,15 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
             }
         }
         Job::Remedies => session.ensure_remedies(watch).map(|()| Next::Continue),
+        Job::Glance { settings } => session.glance(settings, watch).map(|found| {
+            glance = Some(found);
+            Next::Continue
+        }),
         Job::Answers => session.all_answers(watch).map(|found| {
             answers = Some(found);
             Next::Continue
         }),
-    };
+    });
     if let (Job::Line { text, .. }, Ok(_)) = (&job, &result) {
         asked = session.quantities_asked(text);
     }
@@ -58,9 +72,12 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
         }
     };
     let mut shown = Shown::after(last, session);
-    match job {
-        Job::Motion => shown.complete(session),
-        Job::Show(Loading::Stage(stage)) => shown = shown.at_stage(stage, session),
+    match (&job, glance) {
+        (Job::Motion, _) => shown.complete(session),
+        (Job::Show(Loading::Stage(stage)), _) => shown = shown.at_stage(*stage, session),
+        (Job::Glance { settings: [(_, x), (_, y)] }, Some(glance)) => {
+            shown = Shown::beside(last, session, glance, [*x, *y]);
+        }
         _ => {}
     }
     Done {
@@ -74,6 +91,26 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
         gauges,
         asked,
     }
+}
+
+/// Moves a slider: states and forces of the pairs come ahead of the rest.
+fn slide(
+    session: &mut Session,
+    (name, value): (&str, f64),
+    output: &mut Vec<u8>,
+    style: Style,
+    watch: &dyn Watch,
+) -> Result<Next, CommandError> {
+    let mut io = Output::text(output, style, watch);
+    io.joints_first = true;
+    session.execute(&format!("set {name} {value}"), &mut io)
+}
+
+/// The value of a slider after these keys; `None` where it is no slider of the scenario any more.
+fn varied(session: &Session, name: &str, tenths: &[i8]) -> Option<f64> {
+    let parameter = session.scenario().parameters.get(name)?;
+    let now = *session.values().get(name)?;
+    Some(tenths.iter().fold(now, |value, tenths| vary::varied(value, parameter, *tenths)))
 }
 
 /// The answer under another loading. A history that was followed serves all its stages.
@@ -134,6 +171,9 @@ impl Worker {
                 let watch =
                     WatchAdapter { number, stopped: &asked, send: &send, since: Mutex::new((Instant::now(), None)) };
                 let kept = job.clone();
+                if matches!(job, Job::Pivots) || (matches!(job, Job::Motion) && !last.is_whole()) {
+                    watch.wait(QUIET);
+                }
                 let done = catch_unwind(AssertUnwindSafe(|| perform(&mut session, &last, job, style, &watch)));
                 let done = done.unwrap_or_else(|_| Done {
                     job: kept,
@@ -185,6 +225,16 @@ struct WatchAdapter<'a> {
     send: &'a (dyn Fn(Action) + Sync),
     /// When it began, and when progress was last told.
     since: Mutex<(Instant, Option<Instant>)>,
+}
+
+impl WatchAdapter<'_> {
+    /// Lets this time pass, unless it is asked to stop.
+    fn wait(&self, time: Duration) {
+        const LOOK: Duration = Duration::from_millis(2);
+        while !self.stop() && self.since.lock().unwrap_or_else(PoisonError::into_inner).0.elapsed() < time {
+            thread::sleep(LOOK);
+        }
+    }
 }
 
 impl Watch for WatchAdapter<'_> {

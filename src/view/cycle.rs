@@ -9,7 +9,7 @@ use super::table::{Cell, Column, Row, Table};
 use crate::model::units::Units;
 use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
 use crate::path::cycle_starts::Starts;
-use crate::path::static_shakedown::Static;
+use crate::path::static_shakedown::{MOST_PAIRS, Static};
 use crate::text::number::{short, with_unit};
 
 /// Cycles shown of a longer list, at its beginning and at its end.
@@ -116,6 +116,9 @@ pub fn every_start(found: &Static) -> Option<String> {
         Static::NotAsked => None,
         Static::Inapplicable(why) => Some(format!(
             "another start may do otherwise: {why}, so that the static theorem of shakedown does not hold"
+        )),
+        Static::TooLarge(pairs) => Some(format!(
+            "the static theorem of shakedown was not asked of other starts: {pairs} pairs are too many, {MOST_PAIRS} are not"
         )),
         Static::Nothing => Some("the static theorem of shakedown proves nothing of other starts".to_owned()),
         Static::Proved(_) => Some(

@@ -43,29 +43,38 @@ pub fn fill(map: &Map, region: usize, column: usize, row: usize) -> char {
 
 /// The picture, line by line from above; each cell with its region.
 pub fn cells(map: &Map, width: usize, height: usize) -> Vec<Vec<Option<usize>>> {
-    let at = |axis: usize, k: usize, count: usize| {
-        let [low, high] = map.axes[axis].range;
-        low + (high - low) * (k as f64 + 0.5) / count as f64
-    };
-    (0..height)
-        .rev()
-        .map(|row| (0..width).map(|column| map.region_at([at(0, column, width), at(1, row, height)])).collect())
-        .collect()
+    let at = |column: usize, row: usize| map.region_at(place_of(map, (column, row), width, height));
+    (0..height).map(|row| (0..width).map(|column| at(column, row)).collect()).collect()
 }
 
 /// Where a region's mark stands in a picture: column and row from above.
 pub fn mark(map: &Map, region: usize, width: usize, height: usize) -> (usize, usize) {
+    cell(map, map.regions[region].at, width, height)
+}
+
+/// Column and row from above of a place in a picture; the nearest one where it lies outside.
+pub fn cell(map: &Map, at: [f64; 2], width: usize, height: usize) -> (usize, usize) {
     let share = |axis: usize| {
         let [low, high] = map.axes[axis].range;
-        (map.regions[region].at[axis] - low) / (high - low)
+        (at[axis] - low) / (high - low)
     };
     let cell = |share: f64, count: usize| ((share * count as f64) as usize).min(count - 1);
     (cell(share(0), width), height - 1 - cell(share(1), height))
 }
 
+/// The place in the middle of a cell of a picture, column and row from above.
+pub fn place_of(map: &Map, (column, row): (usize, usize), width: usize, height: usize) -> [f64; 2] {
+    let at = |axis: usize, k: usize, count: usize| {
+        let [low, high] = map.axes[axis].range;
+        low + (high - low) * (k as f64 + 0.5) / count as f64
+    };
+    [at(0, column, width), at(1, height - 1 - row, height)]
+}
+
 /// The picture, the regions, the notes.
 pub fn write(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -> io::Result<()> {
-    picture(out, map, labels, style)?;
+    let width = style.width.saturating_sub(gutter(map)).clamp(8, WIDEST);
+    picture(out, map, labels, (width, HEIGHT), style)?;
     writeln!(out)?;
     regions(out, map, labels, style)?;
     for note in &map.notes {
@@ -74,17 +83,41 @@ pub fn write(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style)
     Ok(())
 }
 
-fn picture(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -> io::Result<()> {
+/// Columns left of the plane in a picture, of which the last is its axis, and right of it.
+pub fn gutter(map: &Map) -> usize {
+    numbers(map) + 4
+}
+
+/// Columns of the numbers beside the vertical axis.
+fn numbers(map: &Map) -> usize {
+    map.axes[1].range.map(|end| short(end).len()).into_iter().max().unwrap_or_default()
+}
+
+/// Where the plane stands in a picture: its first column, and its first row, after the name of the axis.
+pub fn corner(map: &Map) -> (usize, usize) {
+    (numbers(map) + 2, 1)
+}
+
+/// Rows of a picture besides those of the plane: the name above, the axis and its numbers below.
+pub const AROUND: usize = 3;
+
+/// The plane in letters, of this many columns and rows, with its axes.
+pub fn picture(
+    out: &mut dyn Write,
+    map: &Map,
+    labels: &Labels<'_>,
+    (width, height): (usize, usize),
+    style: &Style,
+) -> io::Result<()> {
     let [low, high] = map.axes[1].range.map(short);
-    let gutter = low.len().max(high.len());
-    let width = style.width.saturating_sub(gutter + 4).clamp(8, WIDEST);
+    let gutter = numbers(map);
     writeln!(out, "{}", style.paint(Role::Header, &style.text(&heading(&map.axes[1].name, labels.units[1]))))?;
-    let rows = cells(map, width, HEIGHT);
-    let marks: Vec<(usize, usize)> = (0..map.regions.len()).map(|region| mark(map, region, width, HEIGHT)).collect();
+    let rows = cells(map, width, height);
+    let marks: Vec<(usize, usize)> = (0..map.regions.len()).map(|region| mark(map, region, width, height)).collect();
     for (row, regions) in rows.iter().enumerate() {
         let label = match row {
             0 => &high,
-            row if row + 1 == HEIGHT => &low,
+            row if row + 1 == height => &low,
             _ => "",
         };
         write!(out, "{} {}", pad_left(label, gutter), if style.ascii { '|' } else { '│' })?;

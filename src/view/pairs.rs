@@ -6,6 +6,7 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{force_unit, length_unit};
 use crate::answer::record::{PairState, State};
+use crate::answer::rounding::largest;
 use crate::model::units::Units;
 
 /// State of a pair in words; an open pair that cohesion (or p) still holds says so: `open (held)`,
@@ -29,22 +30,32 @@ pub fn write(out: &mut dyn Write, pairs: &[PairState], units: &Units, style: &St
 
 /// The table that is written.
 pub fn table(pairs: &[PairState], units: &Units) -> Table {
+    part(&pairs.iter().collect::<Vec<_>>(), pairs, units)
+}
+
+/// The rows of some of the pairs, in the powers of ten of all.
+pub fn part(some: &[&PairState], all: &[PairState], units: &Units) -> Table {
+    let column = |column: Column, value: fn(&PairState) -> f64| column.with_unwritten(largest(all.iter().map(value)));
     let force = |head: &str| Column::numbers(head, force_unit(units)).clean().of(1);
     let length = |head: &str| Column::numbers(head, length_unit(units)).clean().of(2);
-    let friction = pairs.iter().any(|pair| pair.law.has_tangential_joint());
+    let friction = all.iter().any(|pair| pair.law.has_tangential_joint());
     let mut columns = vec![
         Column::words("pair"),
         Column::words("state"),
-        force("x_n"),
-        force("x_τ").droppable(1),
-        length("z_n").droppable(2),
-        length("z_τ"),
+        column(force("x_n"), |pair| pair.x_n),
+        column(force("x_τ").droppable(1), |pair| pair.x_t),
+        column(length("z_n").droppable(2), |pair| pair.z_n),
+        column(length("z_τ"), |pair| pair.z_t),
     ];
     if friction {
-        columns.extend([force("bound").droppable(3), force("x⁺").droppable(4), force("x⁻").droppable(5)]);
+        columns.extend([
+            column(force("bound").droppable(3), |pair| pair.bound),
+            column(force("x⁺").droppable(4), |pair| pair.reserve_plus),
+            column(force("x⁻").droppable(5), |pair| pair.reserve_minus),
+        ]);
     }
     let mut table = Table::new(columns);
-    for pair in pairs {
+    for pair in some {
         let mut cells = vec![Cell::from(pair.id.as_str()), Cell::new(state_words(pair), Role::State(pair.state))];
         cells.extend([pair.x_n, pair.x_t, pair.z_n, pair.z_t].map(Cell::number));
         if friction {
@@ -53,4 +64,28 @@ pub fn table(pairs: &[PairState], units: &Units) -> Table {
         table.rows.push(Row::new(cells));
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::tests::sample;
+
+    /// A part of a table is read in the numbers of the whole: its rows are those of the whole.
+    #[test]
+    fn a_part_has_the_powers_of_ten_of_all() {
+        let mut pairs = sample::beam(0.3, 70.0).pairs;
+        pairs[0].x_n = 3.0e7;
+        let style = Style { width: 200, ..Style::default() };
+        let written = |table: Table| {
+            let mut out = Vec::new();
+            table.write(&mut out, &style).unwrap();
+            String::from_utf8(out).unwrap()
+        };
+        let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        let whole = written(table(&pairs, &Units::default()));
+        let last = written(part(&[&pairs[pairs.len() - 1]], &pairs, &Units::default()));
+        assert_eq!(words(whole.lines().last().unwrap()), words(last.lines().last().unwrap()));
+        assert_eq!(words(whole.lines().nth(1).unwrap()), words(last.lines().nth(1).unwrap()));
+    }
 }

@@ -332,7 +332,12 @@ fn check(answer: &Answer) -> String {
         format!("w·z {}", residual(check.complementarity)),
     ];
     figures.extend(check.equilibrium.map(|equilibrium| format!("equilibrium {}", residual(equilibrium))));
-    format!("{}: {}", if check.passed { "passed" } else { "FAILED" }, figures.join(" · "))
+    let word = match (check.passed, check.joints_only) {
+        (false, _) => "FAILED",
+        (true, true) => "joints passed, equilibrium follows",
+        (true, false) => "passed",
+    };
+    format!("{word}: {}", figures.join(" · "))
 }
 
 /// A try of the solver and how it ended.

@@ -44,12 +44,22 @@ pub struct Column {
     /// Columns of one quantity have the same number.
     quantity: Option<u8>,
     rank: u8,
+    /// The largest of its numbers in rows that are not written.
+    unwritten: f64,
 }
 
 impl Column {
     /// Left-aligned words.
     pub fn words(head: &str) -> Column {
-        Column { head: head.into(), unit: None, align: Align::Left, kind: Kind::Measured, quantity: None, rank: 0 }
+        Column {
+            head: head.into(),
+            unit: None,
+            align: Align::Left,
+            kind: Kind::Measured,
+            quantity: None,
+            rank: 0,
+            unwritten: 0.0,
+        }
     }
 
     /// Counters, at the right.
@@ -82,6 +92,12 @@ impl Column {
     /// their largest.
     pub fn of(mut self, quantity: u8) -> Column {
         self.quantity = Some(quantity);
+        self
+    }
+
+    /// Of a part of a table: the power of ten is that of a column in which a number of this size stands, too.
+    pub fn with_unwritten(mut self, largest: f64) -> Column {
+        self.unwritten = largest;
         self
     }
 
@@ -216,9 +232,10 @@ impl Table {
         let alike = |other: &Column| column.quantity.is_some() && other.quantity == column.quantity;
         let of_quantity: Vec<usize> =
             (0..self.columns.len()).filter(|&other| other == index || alike(&self.columns[other])).collect();
-        let most = largest(of_quantity.iter().flat_map(|&other| self.numbers(other)));
+        let with_unwritten = |other: usize| self.numbers(other).chain([self.columns[other].unwritten]);
+        let most = largest(of_quantity.iter().flat_map(|&other| with_unwritten(other)));
         let value = |value: f64| if column.kind == Kind::Measured { denoised(value, most) } else { value };
-        let own = largest(self.numbers(index).map(value));
+        let own = largest(with_unwritten(index).map(value));
         let decisive = if own > 0.0 && own < APART * most { own } else { most };
         let scale = match column.kind {
             Kind::Given => Scale::given(self.numbers(index)),

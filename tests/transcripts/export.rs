@@ -364,7 +364,7 @@ fn a_picture_of_the_structure_has_a_legend_of_what_it_shows() {
     let text = fs::read_to_string(&file).expect("a file");
     let texts: Vec<&str> = tags(&text).into_iter().filter(|tag| tag.name == "text").map(|tag| tag.text).collect();
     // at the end F = 100 and F2 = 250 add up
-    let load = format!("load up to {:.2} kN", 100.0_f64.hypot(250.0));
+    let load = format!("weight + pull up to {:.2} kN", 100.0_f64.hypot(250.0));
     for word in ["stick", "slip+", &load, "undeformed", "5 m", "c1", "c6"] {
         assert!(texts.contains(&word), "{word} is missing in {texts:?}");
     }

@@ -43,6 +43,13 @@ pub struct StageResult {
     pub end: Answer,
 }
 
+impl StageResult {
+    /// What the pairs do between its moments, in order; stretches of no length are left out.
+    pub fn schemes(&self) -> impl Iterator<Item = &[(State, Option<State>)]> {
+        self.moments.windows(2).filter(|ends| ends[1].t > ends[0].t).map(|ends| &ends[1].way[..])
+    }
+}
+
 /// ∫ F·du = ΔU + D of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {

@@ -7,6 +7,7 @@ use serde_json::{Value as Json, json};
 
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
+use crate::model::scenario::Scenario;
 use crate::path::envelope::Axis;
 use crate::path::map::{self, map};
 use crate::session::error::refused;
@@ -21,7 +22,8 @@ use crate::view;
 /// the sliders where they are left out. One of the two is followed on its exact path while the other stands still;
 /// where the order of the schemes changes is found to the last digits. Each region gets its area, and at a place inside
 /// its states, or the collapse with its motion and what is proved of it, and the quantity. In small problems other
-/// answers are looked for there; their regions are hatched. `export map FILE.svg|.json` writes the last map.
+/// answers are looked for there; their regions are hatched. `export map FILE.svg|.json` writes the last map; in the full
+/// screen a cursor in it shows the answer at any place.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  map f 0..1 F2 0..400\n  map f 0..1 F2 0..400 of z_t c6")]
 pub struct Map {
@@ -62,6 +64,15 @@ pub struct Drawn {
     values: ParameterValues,
 }
 
+impl Drawn {
+    /// Units of the axes and of the quantity.
+    pub fn labels<'a>(&self, scenario: &'a Scenario) -> view::map::Labels<'a> {
+        let unit = |axis: &Axis| scenario.unit_of(&axis.name);
+        let quantity = self.quantity.as_ref().map(|quantity| (quantity.to_string(), quantity.unit(&scenario.units)));
+        view::map::Labels { units: [unit(&self.map.axes[0]), unit(&self.map.axes[1])], quantity }
+    }
+}
+
 impl Session {
     /// `map P [A..B] Q [C..D] [of QUANTITY]`.
     pub(in crate::session) fn draw_map(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -98,20 +109,25 @@ impl Session {
     /// # Errors
     /// None was drawn.
     pub(in crate::session) fn need_map(&self) -> Result<Drawn, CommandError> {
-        let Some(drawn) = &self.map else { return refused("no map yet: `map P A..B Q C..D` draws one") };
-        let mut drawn = Drawn::clone(drawn);
-        let axes: Vec<&str> = drawn.map.axes.iter().map(|axis| axis.name.as_str()).collect();
-        let stale = self.other_values(&drawn.values, &axes).map(|stale| format!("The map was drawn {stale}."));
-        drawn.map.notes.extend(stale);
+        let Some((drawn, stale)) = self.last_map() else {
+            return refused("no map yet: `map P A..B Q C..D` draws one");
+        };
+        let mut drawn = Drawn::clone(&drawn);
+        drawn.map.notes.extend(stale.map(|stale| format!("The map was drawn {stale}.")));
         Ok(drawn)
+    }
+
+    /// The last map, and under which other values than the present ones it was drawn, if it was.
+    pub fn last_map(&self) -> Option<(Arc<Drawn>, Option<String>)> {
+        let drawn = self.map.clone()?;
+        let axes: Vec<&str> = drawn.map.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let stale = self.other_values(&drawn.values, &axes);
+        Some((drawn, stale))
     }
 
     /// Units of the axes and of the quantity.
     pub(in crate::session) fn map_labels(&self, drawn: &Drawn) -> view::map::Labels<'_> {
-        let units = &self.now.scenario.units;
-        let unit = |axis: &Axis| self.now.scenario.unit_of(&axis.name);
-        let quantity = drawn.quantity.as_ref().map(|quantity| (quantity.to_string(), quantity.unit(units)));
-        view::map::Labels { units: [unit(&drawn.map.axes[0]), unit(&drawn.map.axes[1])], quantity }
+        drawn.labels(&self.now.scenario)
     }
 
     pub(in crate::session) fn map_json(&self, drawn: &Drawn) -> Json {

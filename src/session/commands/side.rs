@@ -7,10 +7,14 @@ use nalgebra::DVector;
 
 use crate::answer::record::{NodeDisplacement, PairState};
 use crate::answer::same::same_pairs;
+use crate::model::parameter::ParameterValues;
+use crate::solve::case::There;
 use crate::solve::prepared::Geometry;
+use crate::solve::{Prepared, Solved};
 use crate::watch::Watch;
 
 use crate::session::error::refused;
+use crate::session::setup::refused_or_interrupted;
 use crate::session::{CommandError, Session, worker};
 
 /// One of several answers.
@@ -35,6 +39,39 @@ pub struct AllAnswers {
     pub complete: bool,
 }
 
+/// An answer beside the present one.
+pub struct Glance {
+    /// The geometry there.
+    pub prepared: Arc<Prepared>,
+    /// The values there.
+    pub values: ParameterValues,
+    /// The answer there.
+    pub solved: Arc<Solved>,
+    /// The motion of the ray it ended in.
+    pub mode: Option<Vec<NodeDisplacement>>,
+}
+
+/// The motion of a ray as displacements of the nodes.
+fn mode_of(prepared: &Prepared, solved: &Solved) -> Option<Vec<NodeDisplacement>> {
+    let ray = solved.answer.ray.as_ref()?;
+    let Geometry::Structure { system, main, structure } = &*prepared.geometry else {
+        return None;
+    };
+    let mut z = DVector::zeros(system.joint_count());
+    for (i, (pair, direction)) in system.pairs.iter().zip(ray.direction.pairs()).enumerate() {
+        z[i] = direction.z_n;
+        if let Some(joint) = pair.tangential {
+            z[joint] = direction.z_t;
+        }
+    }
+    if z.amax() == 0.0 {
+        return None;
+    }
+    let u = main.displacements(&vec![0.0; prepared.cases.len()], &z);
+    let nodes = structure.nodes.iter().zip(&u.0);
+    Some(nodes.map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] }).collect())
+}
+
 /// Most pairs whose answers are shown side by side.
 const MOST_PAIRS: usize = 10;
 
@@ -42,25 +79,26 @@ impl Session {
     /// The motion of the ray as displacements of the nodes (largest mutual displacement 1); `None` without a ray or
     /// a structure.
     pub fn mode(&self) -> Option<Vec<NodeDisplacement>> {
-        let solved = self.solved.as_ref()?;
-        let ray = solved.answer.ray.as_ref()?;
-        let prepared = self.now.prepared.as_ref()?;
-        let Geometry::Structure { system, main, structure } = &*prepared.geometry else {
-            return None;
-        };
-        let mut z = DVector::zeros(system.joint_count());
-        for (i, (pair, direction)) in system.pairs.iter().zip(ray.direction.pairs()).enumerate() {
-            z[i] = direction.z_n;
-            if let Some(joint) = pair.tangential {
-                z[joint] = direction.z_t;
-            }
-        }
-        if z.amax() == 0.0 {
-            return None;
-        }
-        let u = main.displacements(&vec![0.0; prepared.cases.len()], &z);
-        let nodes = structure.nodes.iter().zip(&u.0);
-        Some(nodes.map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] }).collect())
+        mode_of(self.now.prepared.as_ref()?, self.solved.as_ref()?)
+    }
+
+    /// The answer at other values of parameters, or factors of load cases, on the side: the session stays as it is.
+    ///
+    /// # Errors
+    /// Values that cannot be; nothing solved yet; an interruption.
+    pub fn glance(&self, settings: &[(String, f64)], watch: &dyn Watch) -> Result<Glance, CommandError> {
+        let (prepared, solved) = self.both()?;
+        let setup = self.now.clone();
+        let settings = settings.to_vec();
+        worker::run(watch, move |watch| {
+            let named: Vec<(&str, f64)> = settings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+            let case = setup.case(&prepared, watch);
+            let there = case.at_all(&named)?;
+            let solved = there.case(case).solve_from(&solved).map_err(refused_or_interrupted)?;
+            let mode = mode_of(&there.prepared, &solved);
+            let There { prepared, values } = there;
+            Ok(Glance { prepared, values, solved: Arc::new(solved), mode })
+        })?
     }
 
     /// Searches all working schemes of the present problem for answers.

@@ -8,6 +8,7 @@ use ratatui::text::Line;
 
 use crate::tui::action::Job;
 use crate::tui::app::State;
+use crate::tui::kept::The;
 use crate::tui::paint::{put_lines, report};
 use crate::tui::pictures::{AnswerKey, Sheet};
 use crate::view::style::Role;
@@ -17,7 +18,14 @@ use crate::view::{self, status};
 pub fn lines(state: &State, width: usize) -> Rc<Vec<Line<'static>>> {
     let sheet = Sheet { width, look: state.look };
     let looking = state.running == Some(Job::Remedies);
-    let key = AnswerKey::new(&state.shown.moment, state.shown.remedies.as_ref(), looking, sheet);
+    let shown = &state.shown;
+    let key = AnswerKey {
+        moment: The::one(&shown.moment),
+        remedies: shown.remedies.as_ref().map(The::one),
+        looking,
+        whole: shown.is_whole(),
+        sheet,
+    };
     state.pictures.answer.of(key, || written(state, width))
 }
 

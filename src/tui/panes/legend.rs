@@ -2,6 +2,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
 use crate::tui::theme::Look;
 use crate::view::style::Role;
@@ -36,11 +37,13 @@ impl Legend {
         let mut x = area.x;
         let y = area.bottom().saturating_sub(1);
         for (sign, role, word) in &self.0 {
-            let word = look.text(word);
-            let need = sign.chars().count() + 1 + word.chars().count();
-            if usize::from(x) + need > usize::from(area.right()) {
+            let room = usize::from(area.right().saturating_sub(x)).saturating_sub(sign.chars().count() + 1);
+            let whole = look.text(word);
+            // without its amount sooner than without its name; half a number would be another number
+            let name = whole.split_once(" up to ").map(|(name, _)| name.to_owned());
+            let Some(word) = [Some(whole), name].into_iter().flatten().find(|word| word.width() <= room) else {
                 break;
-            }
+            };
             let room = usize::from(area.right() - x);
             let (after, _) = buffer.set_stringn(x, y, sign, room, look.role(*role));
             let text = format!(" {word}");

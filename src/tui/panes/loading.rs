@@ -60,7 +60,7 @@ fn listing(state: &State, loadings: &[Loading], width: u16) -> Listing {
             Span::styled(look.fit(&text, room), look.role(Role::Muted)),
         ])
     });
-    Listing { heading: Vec::new(), rows: rows.collect() }
+    Listing::new(Vec::new(), rows.collect())
 }
 
 fn selected(state: &State, loadings: &[Loading]) -> usize {

@@ -3,6 +3,7 @@
 pub mod answer;
 mod legend;
 pub mod loading;
+pub mod map;
 pub mod pairs;
 pub mod parameters;
 pub mod pivots;
@@ -31,6 +32,7 @@ pub fn draw(state: &State, pane: Pane, area: Rect, buffer: &mut Buffer) {
         Pane::Answer => answer::draw(state, area, buffer),
         Pane::Quantities => quantities::draw(state, area, buffer),
         Pane::Loading => loading::draw(state, area, buffer),
+        Pane::Map => map::draw(state, area, buffer),
     }
 }
 
@@ -41,6 +43,7 @@ pub fn note(state: &State, pane: Pane) -> String {
         Pane::Pairs => pairs::note(state),
         Pane::Pivots => pivots::note(state),
         Pane::Loading => loading::note(state),
+        Pane::Map => map::note(state),
         Pane::Parameters | Pane::Plot | Pane::Answer | Pane::Quantities => String::new(),
     }
 }

@@ -11,11 +11,11 @@ use crate::session::results::PairState;
 use crate::text::number::{short, with_unit};
 use crate::tui::app::State;
 use crate::tui::kept::The;
-use crate::tui::listing::{GUTTER, Listing};
+use crate::tui::listing::{GUTTER, Listing, around};
 use crate::tui::paint::{inside, put_text, report};
 use crate::tui::pane::{Pane, SortKey};
 use crate::tui::pictures::Sheet;
-use crate::view::pairs::{state_words, write};
+use crate::view::pairs::{part, state_words};
 use crate::view::pivots::title;
 use crate::view::style::Role;
 use crate::view::{force_unit, length_unit};
@@ -36,15 +36,17 @@ pub fn note(state: &State) -> String {
     format!("{} {arrow}", state.sort.word())
 }
 
-/// Heading and a line per pair, in the chosen order.
-fn listing(state: &State, width: u16) -> Rc<Listing> {
-    let sheet = Sheet { width: usize::from(width.saturating_sub(GUTTER)), look: state.look };
-    let key = (The::one(&state.shown.moment), state.sort, state.descending, sheet);
+/// Heading and a line for each of the pairs around the selected one, in the chosen order.
+fn listing(state: &State, area: Rect) -> Rc<Listing> {
+    let sheet = Sheet { width: usize::from(area.width.saturating_sub(GUTTER)), look: state.look };
+    let order = state.order();
+    let shown = around(order.place(state.pair), order.pairs.len(), usize::from(area.height));
+    let key = (The::one(&state.shown.moment), state.sort, state.descending, sheet, shown.clone());
     state.pictures.pairs.of(key, || {
-        let pairs: Vec<PairState> =
-            state.order().pairs.iter().map(|index| state.shown.pairs()[*index].clone()).collect();
+        let all = state.shown.pairs();
+        let pairs: Vec<&PairState> = order.pairs[shown.clone()].iter().map(|index| &all[*index]).collect();
         let units = &state.shown.scenario.units;
-        let mut lines = report(state.look, sheet.width, |out, style| write(out, &pairs, units, style));
+        let mut lines = report(state.look, sheet.width, |out, style| part(&pairs, all, units).write(out, style));
         // the remark on columns that found no room; no pair begins with a bracket
         let remark =
             |line: &Line<'_>| line.spans.first().is_some_and(|span| span.content.trim_start().starts_with('('));
@@ -52,7 +54,7 @@ fn listing(state: &State, width: u16) -> Rc<Listing> {
             lines.pop();
         }
         let rows = lines.split_off(lines.len().saturating_sub(pairs.len()));
-        Listing { heading: lines, rows }
+        Listing::part(lines, rows, (shown.start, order.pairs.len()))
     })
 }
 
@@ -60,7 +62,7 @@ fn listing(state: &State, width: u16) -> Rc<Listing> {
 pub fn pair_at(state: &State, area: Rect, y: u16) -> Option<usize> {
     let inside = inside(area);
     let order = state.order();
-    let row = listing(state, inside.width).row_at(order.place(state.pair), inside, y)?;
+    let row = listing(state, inside).row_at(order.place(state.pair), inside, y)?;
     order.pairs.get(row).copied()
 }
 
@@ -78,7 +80,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
     let changed = |row: usize| order.pairs.get(row).is_some_and(|pair| state.shown.change(*pair).is_some());
     let selected = (order.place(state.pair), state.focus == Pane::Pairs);
-    listing(state, area.width).draw(look, selected, changed, area, buffer);
+    listing(state, area).draw(look, selected, changed, area, buffer);
 }
 
 /// Names of the rows of a bare LCP.
@@ -96,10 +98,8 @@ fn draw_solution(state: &State, (z, w): (&[f64], &[f64]), area: Rect, buffer: &m
     let row = |((name, z), w): ((&String, &f64), &f64)| {
         Line::raw(format!("{:<8}{:>14}{:>14}", look.fit(name, 8), short(*z), short(*w)))
     };
-    let listing = Listing {
-        heading: vec![Line::styled(format!("{:<8}{:>14}{:>14}", "row", "z", "w"), look.role(Role::Header))],
-        rows: names(state).iter().zip(z).zip(w).map(row).collect(),
-    };
+    let heading = vec![Line::styled(format!("{:<8}{:>14}{:>14}", "row", "z", "w"), look.role(Role::Header))];
+    let listing = Listing::new(heading, names(state).iter().zip(z).zip(w).map(row).collect());
     listing.draw(look, (state.pair, state.focus == Pane::Pairs), |_| false, area, buffer);
 }
 

@@ -143,10 +143,8 @@ fn listing(state: &State, solved: &Arc<Solved>, width: u16) -> Rc<Listing> {
             if columns.until > 0 { pad_right("   until", columns.until) } else { String::new() },
             if columns.tie > 0 { "   ties" } else { "" }
         );
-        Listing {
-            heading: vec![Line::styled(heading, look.role(Role::Header))],
-            rows: pivots.iter().zip(&numbers).map(|(pivot, p)| row(pivot, p, &columns, look)).collect(),
-        }
+        let rows = pivots.iter().zip(&numbers).map(|(pivot, p)| row(pivot, p, &columns, look));
+        Listing::new(vec![Line::styled(heading, look.role(Role::Header))], rows.collect())
     })
 }
 

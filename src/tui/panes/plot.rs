@@ -34,6 +34,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         moment: The::one(&state.shown.moment),
         size: (area.width, area.height),
         look,
+        whole: state.shown.is_whole(),
         plot: state.plot,
         ghost: state.ghost,
     };

@@ -27,7 +27,7 @@ fn listing(state: &State, width: u16) -> Listing {
             Span::styled(look.fit(&gauge.value, room), look.role(role)),
         ])
     });
-    Listing { heading: Vec::new(), rows: rows.collect() }
+    Listing::new(Vec::new(), rows.collect())
 }
 
 /// The quantity in a row of the screen.

@@ -1,7 +1,5 @@
 //! The structure: undeformed, as it was before the last change, deformed; supports, loads, pairs by state.
 
-use std::rc::Rc;
-
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -15,58 +13,35 @@ use crate::tui::app::{PERIOD, State};
 use crate::tui::kept::The;
 use crate::tui::paint::{paste, put_lines, put_text};
 use crate::tui::pane::Pane;
-use crate::tui::pictures::{Shape, StructureKey, StructurePicture};
+use crate::tui::pictures::{StructureKey, StructurePicture};
+use crate::tui::shown::Motion;
 use crate::tui::viewport::View;
 use crate::view::pivots::title;
 use crate::view::plot::canvas::{Canvas, Stroke};
 use crate::view::plot::chart::dotted;
 use crate::view::plot::loads::{Drawn, Loads};
-use crate::view::plot::scene::{Lines, Magnification, factor, lines, nodal, supported};
+use crate::view::plot::scene::{grid, outline, supported};
 use crate::view::plot::structure::{GRID_PITCH, grid_pitch, pair_sign, support_sign, support_word};
 use crate::view::plot::ticks::range;
 use crate::view::style::Role;
 
-/// How the structure moves at the place shown. The automatic scale is that of the answer while its pivots are shown, so
-/// that pictures can be compared.
-fn shape(state: &State, structure: &Structure) -> Rc<Shape> {
-    let shown = &state.shown;
-    state.pictures.shape.of(The::one(&shown.moment), || {
-        let motion = if shown.at_ray() { shown.mode() } else { shown.displacements() };
-        let u = motion.map(|u| nodal(structure, u));
-        let before = shown
-            .before()
-            .and_then(|answer| answer.displacements.as_ref())
-            .filter(|_| shown.has_before())
-            .map(|u| nodal(structure, u));
-        let end = shown.answer().and_then(|answer| answer.displacements.as_ref()).map(|u| nodal(structure, u));
-        let moves = |u: &Vec<[f64; 3]>| u.iter().any(|u| u[0] != 0.0 || u[1] != 0.0);
-        let automatic = match (end.filter(moves).filter(|_| !shown.at_ray()), &u) {
-            (Some(u), _) => factor(structure, &u, Magnification::Auto),
-            (None, Some(u)) => factor(structure, u, Magnification::Auto),
-            (None, None) => 1.0,
-        };
-        Shape { before: before.filter(|before| u.as_ref() != Some(before)), u, automatic }
-    })
-}
-
 /// The scale at which the displacements are drawn.
 pub fn scale(state: &State) -> f64 {
-    let automatic = || state.shown.structure().map_or(1.0, |structure| shape(state, structure).automatic);
-    state.magnification.unwrap_or_else(automatic)
+    state.magnification.unwrap_or(state.shown.motion.automatic)
 }
 
 /// What the picture is, for the border.
 pub fn note(state: &State) -> String {
-    let Some(structure) = state.shown.structure() else {
+    if state.shown.structure().is_none() {
         return String::new();
-    };
-    let mut note = match (state.shown.at_ray(), state.shown.mode().is_some()) {
+    }
+    let mut note = match (state.shown.at_ray(), state.shown.has_mode()) {
         (true, true) if state.moving => "mode of the ray, moving".to_owned(),
         (true, true) => "mode of the ray".to_owned(),
         (true, false) if state.shown.is_behind() => "its mode follows".to_owned(),
         (true, false) => "ray without a motion".to_owned(),
         _ if state.shown.is_behind() => "displacements follow".to_owned(),
-        _ => match &shape(state, structure).u {
+        _ => match &state.shown.motion.u {
             Some(u) if u.iter().any(|u| *u != [0.0; 3]) => format!("displacements × {}", short(scale(state))),
             _ => "undeformed".to_owned(),
         },
@@ -103,6 +78,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
 fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut Buffer) {
     let key = StructureKey {
         moment: The::one(&state.shown.moment),
+        motion: The::one(&state.shown.motion),
         size: (area.width, area.height),
         look: state.look,
         view: state.view,
@@ -137,14 +113,14 @@ fn picture(state: &State, structure: &Structure, area: Rect) -> StructurePicture
     let Some(view) = View::new(structure, state.view, &canvas) else {
         return StructurePicture { buffer, pairs: Vec::new() };
     };
-    let shape = shape(state, structure);
     let swing = if state.shown.at_ray() {
         (std::f64::consts::TAU * f64::from(state.phase) / f64::from(PERIOD)).sin()
     } else {
         1.0
     };
     let factor = scale(state) * swing;
-    let mut painter = Painter { state, structure, view, shape: &shape, factor, canvas, legend: Legend::default() };
+    let mut painter =
+        Painter { state, structure, view, motion: &state.shown.motion, factor, canvas, legend: Legend::default() };
     painter.draw_lines();
     painter.draw_supports();
     painter.draw_loads();
@@ -169,7 +145,7 @@ struct Painter<'s> {
     state: &'s State,
     structure: &'s Structure,
     view: View,
-    shape: &'s Shape,
+    motion: &'s Motion,
     /// By which the displacements are drawn.
     factor: f64,
     canvas: Canvas,
@@ -180,7 +156,7 @@ impl Painter<'_> {
     /// Dot of a node, displaced.
     fn dot(&self, node: usize) -> (f64, f64) {
         let position = self.structure.nodes.get(node).map_or([0.0; 2], |n| n.position);
-        let u = self.shape.u.as_ref().and_then(|u| u.get(node)).copied().unwrap_or_default();
+        let u = self.motion.u.as_ref().and_then(|u| u.get(node)).copied().unwrap_or_default();
         self.view.place((position[0] + self.factor * u[0], position[1] + self.factor * u[1]))
     }
 
@@ -195,29 +171,27 @@ impl Painter<'_> {
     /// The structure as it is, as it was before, as it was built, and its grid.
     fn draw_lines(&mut self) {
         let look = self.state.look;
-        let rest = vec![[0.0; 3]; self.structure.nodes.len()];
-        let u = self.shape.u.as_ref().unwrap_or(&rest);
-        let now = lines(self.structure, u, self.factor);
-        let outline = self.view.clip(&now.outline);
-        self.canvas.draw(Role::Plain, outline.into_iter().map(Stroke::Line).collect());
-        if let Some(before) = self.shape.before.as_ref().filter(|_| self.state.ghost) {
-            let ghost = lines(self.structure, before, self.factor);
-            self.draw_faint(Role::Series(1), &ghost, 2.5);
+        let u: &[[f64; 3]] = self.motion.u.as_deref().unwrap_or_default();
+        let now = self.view.clip(&outline(self.structure, u, self.factor));
+        self.canvas.draw(Role::Plain, now.into_iter().map(Stroke::Line).collect());
+        if let Some(before) = self.motion.before.as_ref().filter(|_| self.state.ghost) {
+            self.draw_faint(Role::Series(1), before, 2.5);
             self.legend.note(look.sign('┈', ':'), Role::Series(1), "before");
         }
         if self.factor != 0.0 && u.iter().any(|u| *u != [0.0; 3]) {
-            self.draw_faint(Role::Muted, &lines(self.structure, &rest, 0.0), 5.0);
+            self.draw_faint(Role::Muted, &[], 5.0);
             self.legend.note(look.sign('·', '.'), Role::Muted, "undeformed");
         }
         if grid_pitch(self.structure, self.view.pitch) >= GRID_PITCH {
-            let strokes = self.view.clip(&now.grid);
+            let strokes = self.view.clip(&grid(self.structure, u, self.factor));
             let strokes = strokes.iter().map(|line| Stroke::Dots(dotted(line, 2.0))).collect();
             self.canvas.draw_under(Role::Muted, strokes);
         }
     }
 
-    fn draw_faint(&mut self, role: Role, lines: &Lines, pitch: f64) {
-        let strokes = self.view.clip(&lines.outline).iter().map(|line| Stroke::Dots(dotted(line, pitch))).collect();
+    fn draw_faint(&mut self, role: Role, u: &[[f64; 3]], pitch: f64) {
+        let lines = self.view.clip(&outline(self.structure, u, self.factor));
+        let strokes = lines.iter().map(|line| Stroke::Dots(dotted(line, pitch))).collect();
         self.canvas.draw_under(role, strokes);
     }
 
@@ -262,7 +236,7 @@ impl Painter<'_> {
         // in the mode of a ray a pair is shown by its motion
         let directions = shown
             .answer()
-            .filter(|_| shown.at_ray() && shown.mode().is_some())
+            .filter(|_| shown.has_mode())
             .and_then(|answer| answer.ray.as_ref())
             .map(|ray| ray.direction.pairs());
         let mut places = Vec::with_capacity(shown.pairs().len());

@@ -5,6 +5,8 @@ mod commands;
 mod drawings;
 mod keys;
 mod lists;
+mod live;
+mod map;
 mod mouse;
 mod panes;
 mod parameters;

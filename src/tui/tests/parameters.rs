@@ -120,3 +120,21 @@ fn progress_is_shown_and_can_be_stopped() {
     update(&mut rig.state, progress());
     assert_eq!(rig.state.progress, None);
 }
+
+/// 250 is the value of the file, 10 a step: the keys come before the command is carried out.
+#[test]
+fn keys_typed_ahead_go_from_where_the_command_leads() {
+    let mut rig = Rig::new("beam", 80, 24);
+    rig.press(&["2", "down", "down", ":"]);
+    rig.act(Action::Paste("set F2 120".into()));
+    let [Effect::Run(line)] = &update(&mut rig.state, Action::Do(Do::Accept))[..] else { panic!("one job") };
+    for tenths in [10, 10, -1] {
+        assert_eq!(update(&mut rig.state, Action::Do(Do::Vary(tenths))), []);
+    }
+    let done = rig.perform(line.clone());
+    let [Effect::Run(vary)] = &update(&mut rig.state, Action::Done(Box::new(done)))[..] else { panic!("one job") };
+    let done = rig.perform(vary.clone());
+    update(&mut rig.state, Action::Done(Box::new(done)));
+    assert_eq!(rig.session.values()["F2"], 139.0);
+    assert_eq!(rig.state.value("F2"), 139.0);
+}

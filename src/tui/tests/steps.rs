@@ -62,9 +62,10 @@ fn the_mode_moves_only_at_a_ray() {
     rig.act(Action::Paste("330".into()));
     rig.press(&["enter"]);
     assert!(rig.state.shown.at_ray());
-    let mode = rig.state.shown.mode().unwrap().to_vec();
+    assert!(rig.state.shown.has_mode());
+    let mode = rig.state.shown.motion.u.clone().unwrap();
     // the beam slides as a whole
-    assert!(mode.iter().all(|u| (u.ux - 1.0).abs() < 1e-9 && u.uy.abs() < 1e-9));
+    assert!(mode.iter().all(|u| (u[0] - 1.0).abs() < 1e-9 && u[1].abs() < 1e-9));
     rig.press(&["m"]);
     assert!(rig.state.tick().is_some());
     let first = rig.screen();

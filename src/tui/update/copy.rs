@@ -8,7 +8,7 @@ use crate::tui::action::{Effect, Loading};
 use crate::tui::app::{Overlay, State};
 use crate::tui::clipboard::MOST;
 use crate::tui::pane::Pane;
-use crate::tui::panes::{answer, loading, pairs, pivots};
+use crate::tui::panes::{answer, loading, map, pairs, pivots};
 use crate::tui::{layout, overlay, paint};
 
 /// What is said where the pivots of the answer would be asked, and a stage is shown.
@@ -100,6 +100,7 @@ fn value_text(state: &State) -> Option<String> {
         Pane::Plot => None,
         Pane::Quantities => state.gauges.get(state.quantity).map(|gauge| gauge.value.clone()),
         Pane::Loading => Some(loading::name(state, &state.loading())),
+        Pane::Map => map::about(state),
         Pane::Answer => {
             let width = layout::area_of(state, Pane::Answer).map_or(80, |area| paint::inside(area).width);
             let lines = answer::lines(state, usize::from(width));
@@ -127,6 +128,7 @@ fn command_text(state: &State) -> Option<String> {
         Pane::Plot => state.plot.command().map(str::to_owned),
         Pane::Answer => Some("status".to_owned()),
         Pane::Quantities => state.gauges.get(state.quantity).map(|gauge| format!("show {}", gauge.quantity)),
+        Pane::Map => map::command(state)?.ok(),
         Pane::Loading => Some(match state.loading() {
             Loading::Own => "solve".to_owned(),
             Loading::Combination(name) => format!("combine {}", quote(&name)),

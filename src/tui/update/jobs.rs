@@ -2,17 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::session::Next;
+use crate::session::{DrawnMap, Next};
 use crate::view::style::Role;
 
 use super::orders::{RELOAD, order};
-use super::{output, quantities, selection, tour};
-use crate::tui::action::{Done, Effect, Job, Leave, Loading};
+use super::{map, output, quantities, selection, tour};
+use crate::tui::action::{Do, Done, Effect, Job, Leave, Loading};
 use crate::tui::app::{Overlay, PERIOD, State};
+use crate::tui::bindings::Context;
 use crate::tui::kept::The;
-use crate::tui::layout;
 use crate::tui::pane::Pane;
 use crate::tui::tour::steps;
+use crate::tui::{layout, panes};
 
 /// A job ended: its result is shown, the next one begins.
 pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
@@ -20,7 +21,15 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     let new_scenario = !Arc::ptr_eq(&state.shown.scenario, &done.shown.scenario);
     state.running = None;
     state.progress = None;
-    state.shown = done.shown;
+    let old_map = state.shown.map.as_ref().map(|(drawn, _)| The::one(drawn));
+    if matches!(done.job, Job::Glance { .. }) {
+        map::take(state, done.shown);
+    } else if done.job.is_background() && state.below.is_some() {
+        state.below = Some(done.shown);
+    } else {
+        state.below = None;
+        state.shown = done.shown;
+    }
     if new_scenario {
         // Sliders and steps meant the old one; lines (those of the tour, too) are carried out in their order.
         state.waiting.retain(|job| matches!(job, Job::Line { .. }));
@@ -38,7 +47,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     if done.job == Job::Remedies && done.interrupted {
         state.remedies_sought = None;
     }
-    let changed = matches!(done.job, Job::Set { .. } | Job::Show(_)) || done.job.is_background();
+    let changed = matches!(done.job, Job::Set { .. } | Job::Vary { .. } | Job::Show(_)) || done.job.is_background();
     quantities::ask(state, done.asked);
     match (&done.job, done.gauges) {
         (_, Some(gauges)) => quantities::take(state, gauges),
@@ -46,13 +55,14 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         (Job::Line { shows: true, .. }, None) => state.combination = None,
         _ => {}
     }
-    let moved = matches!(done.job, Job::Set { .. } | Job::Line { shows: false, .. });
+    let moved = matches!(done.job, Job::Set { .. } | Job::Vary { .. } | Job::Line { shows: false, .. });
     let ended = !done.interrupted && done.error.is_none();
     let followed = changed && ended;
     if let Some(error) = done.error {
         if done.interrupted {
-            // a slider that moved on stops its older solve: nothing to tell
-            if !changed || state.waiting.is_empty() {
+            // a slider or cursor that moved on stops its older solve: nothing to tell
+            let moves_on = changed || matches!(done.job, Job::Glance { .. });
+            if !moves_on || state.waiting.is_empty() {
                 state.say(Role::Warning, "stopped: the session is as it was");
             }
         } else if is_reload && matches!(done.job, Job::Line { shows: false, .. }) {
@@ -67,6 +77,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     } else {
         output::show_output(state, &done.job, &done.output);
     }
+    show_new_map(state, &done.job, old_map);
     let mut effects = Vec::new();
     if let Some(name) = state.combination.clone().filter(|_| moved && ended && state.shown.combination.is_none()) {
         effects.extend(order(state, Job::Show(Loading::Combination(name))));
@@ -86,7 +97,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         state.running = Some(next.clone());
         effects.push(Effect::Run(next));
     }
-    if followed && state.shown.is_warm() {
+    if followed && state.shown.is_warm() && !state.shown.is_behind() {
         // The answer is there; its pivots follow unless a slider moves on.
         effects.extend(order(state, Job::Pivots));
     }
@@ -96,7 +107,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
 
 /// What is computed while nothing else is asked for: first what moves, then the remedies of a collapse.
 pub fn background(state: &mut State) -> Vec<Effect> {
-    if state.running.is_some() || !state.waiting.is_empty() {
+    if state.running.is_some() || !state.waiting.is_empty() || state.below.is_some() {
         return Vec::new();
     }
     let here = The::one(&state.shown.moment);
@@ -112,6 +123,25 @@ pub fn background(state: &mut State) -> Vec<Effect> {
         order(state, Job::Remedies)
     } else {
         Vec::new()
+    }
+}
+
+/// A map that was drawn is shown in its pane; what it printed can be shown again.
+fn show_new_map(state: &mut State, job: &Job, old: Option<The<DrawnMap>>) {
+    let new = state.shown.map.as_ref().map(|(drawn, _)| The::one(drawn));
+    if new == old {
+        return;
+    }
+    state.map_at = None;
+    if let (Some(regions), Job::Line { shows: true, .. }) = (panes::map::drawn(state).map(|d| d.map.regions.len()), job)
+    {
+        state.overlay = Overlay::None;
+        selection::focus(state, Pane::Map);
+        let keys = state.keys.of(Context::Everywhere, Do::Output, state.look.ascii);
+        state.say(
+            Role::Good,
+            format!("a map of {regions} regions: the arrows move its cursor ({keys} shows its table)"),
+        );
     }
 }
 

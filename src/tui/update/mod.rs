@@ -2,6 +2,7 @@
 
 mod copy;
 mod jobs;
+mod map;
 mod mouse;
 mod orders;
 mod output;
@@ -41,6 +42,9 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Do(what) => {
             if !matches!(what, Do::Redraw) {
                 state.message = None;
+            }
+            if !map::keeps_glance(what) {
+                map::leave(state);
             }
             let mut effects = perform(state, what);
             effects.extend(background(state));
@@ -120,6 +124,10 @@ fn perform(state: &mut State, what: Do) -> Vec<Effect> {
         Do::CopyCommand => return copy::command(state),
         Do::Ask => state.input = Input::Command(Entry::with("show ")),
         Do::Forget => quantities::forget(state),
+        Do::Across(by) => return map::move_by(state, (isize::from(by), 0)),
+        Do::SetHere => return map::set_here(state),
+        Do::NextRegion => return map::next_region(state),
+        Do::CursorHome => map::home(state),
         Do::Output => output::again(state),
         Do::Mode => structure::move_mode(state),
         Do::Before => state.ghost = !state.ghost,

@@ -6,6 +6,7 @@ use crate::tui::layout::{self, Places};
 use crate::tui::pane::Pane;
 use crate::tui::{panes, vary};
 
+use super::map;
 use super::parameters::set;
 use super::selection::{focus, select, show};
 use super::steps::step_to;
@@ -95,6 +96,11 @@ fn press(state: &mut State, places: &Places, x: u16, y: u16) -> Vec<Effect> {
         Pane::Loading => {
             if let Some(loading) = panes::loading::at(state, area, y) {
                 return show(state, loading);
+            }
+        }
+        Pane::Map => {
+            if let Some(at) = panes::map::place_at(state, area, (x, y)) {
+                return map::glance_at(state, at);
             }
         }
         Pane::Structure | Pane::Plot | Pane::Answer => {}

@@ -23,17 +23,31 @@ pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
             state.wanted_step = None;
             let older = match running {
                 Job::Set { name: other, .. } => other == name,
-                Job::Pivots => true,
+                Job::Pivots | Job::Motion => true,
                 _ => false,
             };
             if older {
                 effects.push(Effect::Stop);
             }
         }
+        Job::Vary { name, tenths } => {
+            if let Some(Job::Vary { name: other, tenths: before }) = state.waiting.back_mut()
+                && other == name
+            {
+                before.extend(tenths);
+                return effects;
+            }
+        }
         Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
         Job::Show(_) => {
             state.waiting.retain(|waiting| !matches!(waiting, Job::Show(_)));
             if matches!(running, Job::Show(_)) {
+                effects.push(Effect::Stop);
+            }
+        }
+        Job::Glance { .. } => {
+            state.waiting.retain(|waiting| !matches!(waiting, Job::Glance { .. }));
+            if matches!(running, Job::Glance { .. } | Job::Pivots) {
                 effects.push(Effect::Stop);
             }
         }

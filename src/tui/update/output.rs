@@ -38,8 +38,7 @@ fn say_loaded(state: &mut State, title: &str, lines: Vec<Line<'static>>, role: R
         (Some(first), _) => first.clone(),
         _ => String::new(),
     };
-    let keys = state.keys.rows(Context::Everywhere, state.look.ascii);
-    let key = keys.iter().find(|(_, binding)| binding.action == Do::Output).map_or("", |(keys, _)| keys);
+    let key = state.keys.of(Context::Everywhere, Do::Output, state.look.ascii);
     let whole = texts.len() <= 1 && said.width() <= usize::from(state.size.0);
     let more = if whole { String::new() } else { format!(" ({key} shows all)") };
     let room = usize::from(state.size.0).saturating_sub(more.width());
@@ -75,7 +74,7 @@ pub(super) fn show_output(state: &mut State, job: &Job, output: &str) {
                 state.say(Role::Warning, text);
             }
         }
-        Job::Line { .. } | Job::Set { .. } => {
+        Job::Line { .. } | Job::Set { .. } | Job::Vary { .. } => {
             // `undone: …`, or that a value lies outside its range; the last line says what the screen shows anyway
             let lines = state.look.lines(output);
             if lines.len() > 1 && state.tour.is_none() {
@@ -84,6 +83,7 @@ pub(super) fn show_output(state: &mut State, job: &Job, output: &str) {
             }
         }
         Job::Step(_) | Job::Show(_) | Job::Answers | Job::Motion | Job::Quantities(_) | Job::Remedies => {}
+        Job::Glance { .. } => {}
     }
 }
 
@@ -98,7 +98,7 @@ pub(super) fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
     }
     let title = match job {
         Job::Line { text, .. } => text.clone(),
-        Job::Set { name, .. } => format!("set {name}"),
+        Job::Set { name, .. } | Job::Vary { name, .. } => format!("set {name}"),
         Job::Step(_) => "step".into(),
         Job::Answers => "answers".into(),
         Job::Pivots => "pivots".into(),
@@ -106,6 +106,7 @@ pub(super) fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
         Job::Motion => "displacements".into(),
         Job::Quantities(_) => "quantities".into(),
         Job::Remedies => "ray".into(),
+        Job::Glance { .. } => "the cursor of the map".into(),
     };
     let style = state.look.role(role);
     let report = state.look.report(overlay::text_width(state));

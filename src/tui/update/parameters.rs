@@ -29,6 +29,12 @@ pub(super) fn vary_by(state: &mut State, tenths: i8) -> Vec<Effect> {
         state.say(Role::Warning, NO_PARAMETERS);
         return Vec::new();
     };
+    let changes = |job: &Job| matches!(job, Job::Line { .. } | Job::Show(_) | Job::Vary { .. });
+    if state.running.iter().chain(&state.waiting).any(changes) {
+        // a key typed ahead means the value that the command before it leaves
+        let job = Job::Vary { name: name.to_owned(), tenths: vec![tenths] };
+        return order(state, job);
+    }
     let now = state.value(name);
     let new = vary::varied(now, parameter, tenths);
     let name = name.to_owned();

@@ -3,6 +3,7 @@
 use crate::view::pairs::state_words;
 use crate::view::style::Role;
 
+use super::map;
 use super::selection::{last_answer_line, show};
 use super::steps::step_to;
 use crate::tui::action::Effect;
@@ -10,7 +11,7 @@ use crate::tui::app::{Input, Overlay, State};
 use crate::tui::entry::Entry;
 use crate::tui::pane::Pane;
 use crate::tui::panes::{answer, loading, pairs, pivots};
-use crate::tui::{layout, overlay, paint};
+use crate::tui::{layout, overlay, paint, panes};
 
 /// Opens the line.
 pub(super) fn open(state: &mut State) {
@@ -84,6 +85,7 @@ fn rows(state: &State) -> Vec<String> {
         Pane::Plot => state.plots().iter().map(|plot| plot.title().to_owned()).collect(),
         Pane::Quantities => state.gauges.iter().map(|gauge| gauge.quantity.to_string()).collect(),
         Pane::Loading => state.loadings().iter().map(|one| loading::name(state, one)).collect(),
+        Pane::Map => panes::map::regions(state),
         Pane::Answer => {
             let width = layout::area_of(state, Pane::Answer).map_or(80, |area| paint::inside(area).width);
             answer::lines(state, usize::from(width)).iter().map(ToString::to_string).collect()
@@ -108,6 +110,7 @@ fn at(state: &State) -> usize {
         Pane::Answer => state.answer_scroll,
         Pane::Quantities => state.quantity,
         Pane::Loading => state.loadings().iter().position(|one| *one == state.loading()).unwrap_or_default(),
+        Pane::Map => map::region(state),
     }
 }
 
@@ -137,6 +140,7 @@ pub(super) fn go(state: &mut State, row: usize) -> Vec<Effect> {
             }
         }
         Pane::Quantities => state.quantity = row,
+        Pane::Map => return map::go_to_region(state, row),
         Pane::Loading => {
             if let Some(loading) = state.loadings().get(row) {
                 return show(state, loading.clone());

@@ -1,5 +1,6 @@
 //! What has the focus, and what is selected in it.
 
+use super::map;
 use super::orders::order;
 use super::steps::step_by;
 use crate::tui::action::{Effect, Job, Loading};
@@ -30,6 +31,12 @@ pub(super) fn show(state: &mut State, loading: Loading) -> Vec<Effect> {
 
 pub(super) fn focus(state: &mut State, pane: Pane) {
     state.focus = pane;
+    if pane != Pane::Map {
+        map::leave(state);
+    }
+    if matches!(pane, Pane::Plot | Pane::Map) {
+        state.lower = pane;
+    }
     if layout::SHARED.contains(&pane) {
         state.tab = pane;
     }
@@ -43,7 +50,9 @@ pub(super) fn turn_plot(state: &mut State, by: isize) {
     let count = plots.len() as isize;
     let at = plots.iter().position(|plot| *plot == state.plot).unwrap_or_default() as isize;
     state.plot = plots[(at + by).rem_euclid(count) as usize];
-    state.tab = Pane::Plot;
+    if state.focus != Pane::Map {
+        (state.tab, state.lower) = (Pane::Plot, Pane::Plot);
+    }
 }
 
 /// Up and down in the focused pane, or in what lies over the panes.
@@ -77,6 +86,7 @@ pub(super) fn select(state: &mut State, by: isize) -> Vec<Effect> {
             return show(state, loadings[moved(at, loadings.len())].clone());
         }
         Pane::Plot => turn_plot(state, by.signum()),
+        Pane::Map => return map::move_by(state, (0, -by)),
         Pane::Answer => {
             let last = last_answer_line(state);
             state.answer_scroll = state.answer_scroll.saturating_add_signed(by).min(last);

@@ -52,7 +52,7 @@ pub(super) fn move_mode(state: &mut State) {
             _ => "no ray here: there is an answer, and no mode of collapse",
         };
         state.say(Role::Warning, why);
-    } else if state.shown.mode().is_none() {
+    } else if !state.shown.has_mode() {
         state.say(Role::Warning, "this ray has no motion that could be drawn");
     } else {
         state.moving = !state.moving;

@@ -1,5 +1,6 @@
 //! Arrows of loads in a picture: each kind scaled by its largest, those close together thinned.
 
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
 use super::canvas::{Canvas, Stroke};
@@ -9,6 +10,9 @@ use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
 use crate::view::style::Role;
 use crate::view::{force_unit, length_unit};
+
+/// Most load cases that a legend names.
+const NAMED: usize = 3;
 
 /// What a load is: forces, forces per length and weights are not drawn to one scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,16 +29,24 @@ impl LoadKind {
     const ALL: [LoadKind; 3] = [LoadKind::Force, LoadKind::Line, LoadKind::Weight];
 }
 
-/// A line load: both ends of its line, and its force per length at each.
-type LineLoad = ([(f64, f64); 2], [[f64; 2]; 2]);
+/// Load cases, a bit for each; those from 128 on share the last one.
+type Cases = u128;
+
+/// A point force or a weight: its kind, its place, its force, its cases.
+type Point = (LoadKind, (f64, f64), [f64; 2], Cases);
+
+/// A line load: both ends of its line, its force per length at each, its cases.
+type LineLoad = ([(f64, f64); 2], [[f64; 2]; 2], Cases);
 
 /// Loads in the plane of a picture, all cases added up.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
     /// Point forces and weights.
-    points: Vec<(LoadKind, (f64, f64), [f64; 2])>,
+    points: Vec<Point>,
     /// Line loads: ends and values there.
     lines: Vec<LineLoad>,
+    /// Names of the load cases.
+    names: Vec<String>,
 }
 
 /// An arrow of a load.
@@ -48,6 +60,8 @@ pub struct Arrow {
     pub force: [f64; 2],
     /// Its size as a share of the largest of its kind.
     pub share: f64,
+    /// The load cases that it sums.
+    cases: Cases,
 }
 
 /// Arrows that find room.
@@ -66,33 +80,36 @@ fn size(force: [f64; 2]) -> f64 {
 impl Loads {
     /// The loads of a structure under these factors of its cases, where its nodes stand at `at`.
     pub fn of(structure: &Structure, factor: &dyn Fn(&LoadCase) -> f64, at: &dyn Fn(usize) -> (f64, f64)) -> Loads {
-        let mut loads = Loads::default();
-        let mut points: Vec<(LoadKind, (f64, f64), [f64; 2])> = Vec::new();
+        let names = structure.load_cases.iter().map(|case| case.name.clone()).collect();
+        let mut loads = Loads { names, ..Loads::default() };
+        let mut points: Vec<Point> = Vec::new();
         let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
         let mut weights: HashMap<(usize, usize), Weight> = HashMap::new();
-        let owner = owners(structure);
+        let owner = OnceCell::new();
         let on_bar = |element: usize, distance: f64| {
             let [a, b] = [0, 1].map(|end| structure.elements[element].nodes[end]);
             let share = distance / length(structure, element);
             let ((ax, ay), (bx, by)) = (at(a), at(b));
             (ax + share * (bx - ax), ay + share * (by - ay))
         };
-        for case in &structure.load_cases {
-            let factor = factor(case);
-            for load in &case.loads {
+        for (number, case) in structure.load_cases.iter().enumerate() {
+            let (factor, cases) = (factor(case), 1 << number.min(127));
+            for load in case.loads.iter().filter(|_| factor != 0.0) {
                 match *load {
                     Load::Nodal { node, force, .. } => {
-                        points.push((LoadKind::Force, at(node), force.map(|f| factor * f)));
+                        points.push((LoadKind::Force, at(node), force.map(|f| factor * f), cases));
                     }
                     Load::Element { element, load: ElementLoad::Point { distance, force, .. } } => {
-                        points.push((LoadKind::Force, on_bar(element, distance), force.map(|f| factor * f)));
+                        points.push((LoadKind::Force, on_bar(element, distance), force.map(|f| factor * f), cases));
                     }
                     Load::Element { element, load: ElementLoad::Line { range, value } } => {
                         let index = *lines.entry((element, range.map(f64::to_bits))).or_insert_with(|| {
-                            loads.lines.push((range.map(|distance| on_bar(element, distance)), [[0.0; 2]; 2]));
+                            loads.lines.push((range.map(|distance| on_bar(element, distance)), [[0.0; 2]; 2], 0));
                             loads.lines.len() - 1
                         });
-                        for (sum, value) in loads.lines[index].1.iter_mut().zip(value) {
+                        let (_, sums, of) = &mut loads.lines[index];
+                        *of |= cases;
+                        for (sum, value) in sums.iter_mut().zip(value) {
                             *sum = [sum[0] + factor * value[0], sum[1] + factor * value[1]];
                         }
                     }
@@ -101,8 +118,9 @@ impl Loads {
                         let nodes = &structure.elements[element].nodes;
                         let sum = nodes.iter().map(|&node| at(node)).fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
                         let count = nodes.len().max(1) as f64;
+                        let owner = owner.get_or_init(|| owners(structure));
                         let weight = weights.entry(owner[element]).or_default();
-                        weight.add((sum.0 / count, sum.1 / count), value.map(|b| factor * b * volume));
+                        weight.add((sum.0 / count, sum.1 / count), value.map(|b| factor * b * volume), cases);
                     }
                     // They have no direction, or are no forces.
                     Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
@@ -111,7 +129,8 @@ impl Loads {
         }
         let mut weights: Vec<_> = weights.into_iter().collect();
         weights.sort_by_key(|(owner, _)| *owner);
-        points.extend(weights.into_iter().map(|(_, weight)| (LoadKind::Weight, weight.centre(), weight.force)));
+        let weights = weights.into_iter().map(|(_, weight)| weight);
+        points.extend(weights.map(|weight| (LoadKind::Weight, weight.centre(), weight.force, weight.cases)));
         loads.points = together(points, 0.0).0;
         loads
     }
@@ -121,9 +140,9 @@ impl Loads {
     pub fn arrows(&self, apart: f64) -> Arrows {
         let (points, is_added) = together(self.points.clone(), apart);
         let mut arrows: Vec<Arrow> =
-            points.into_iter().map(|(kind, at, force)| Arrow { kind, at, force, share: 0.0 }).collect();
+            points.into_iter().map(|(kind, at, force, cases)| Arrow { kind, at, force, share: 0.0, cases }).collect();
         let mut last: Option<(f64, f64)> = None;
-        for ([a, b], [from, to]) in &self.lines {
+        for ([a, b], [from, to], cases) in &self.lines {
             let way = (b.0 - a.0).hypot(b.1 - a.1);
             let count = (way / apart).floor().clamp(1.0, 1e4) as usize;
             for step in 0..=count {
@@ -135,7 +154,7 @@ impl Loads {
                 }
                 last = Some(place);
                 let force = [mix(from[0], to[0]), mix(from[1], to[1])];
-                arrows.push(Arrow { kind: LoadKind::Line, at: place, force, share: 0.0 });
+                arrows.push(Arrow { kind: LoadKind::Line, at: place, force, share: 0.0, cases: *cases });
             }
         }
         for kind in LoadKind::ALL {
@@ -151,21 +170,36 @@ impl Loads {
 
     /// Largest line load: its arrows need not stand where it is.
     fn largest_line(&self) -> f64 {
-        self.lines.iter().flat_map(|(_, values)| values.map(size)).fold(0.0, f64::max)
+        self.lines.iter().flat_map(|(_, values, _)| values.map(size)).fold(0.0, f64::max)
     }
 
-    /// The kinds that occur with their largest value: `load up to 250 kN`.
+    /// The cases that weights act in; of the other kinds, where arrows sum several cases, those.
+    fn summed(&self, kind: LoadKind, arrows: &Arrows) -> String {
+        let of_kind = arrows.arrows.iter().filter(|arrow| arrow.kind == kind).map(|arrow| arrow.cases);
+        let told = of_kind.filter(|cases| kind == LoadKind::Weight || cases.count_ones() > 1);
+        let cases = told.fold(0, |all, cases| all | cases);
+        let is_in = |number: &usize| cases & (1 << number.min(&127)) != 0;
+        let names: Vec<&str> = (0..self.names.len()).filter(is_in).map(|number| self.names[number].as_str()).collect();
+        match names.len() {
+            0..=NAMED => names.join(" + "),
+            more => format!("{} + {} more", names[..NAMED].join(" + "), more - NAMED),
+        }
+    }
+
+    /// The kinds that occur with their largest value: `load up to 250 kN`, `weight + quake up to 30 kN`.
     pub fn legend(&self, arrows: &Arrows, units: &Units) -> Vec<(LoadKind, String)> {
         let force = force_unit(units);
         let line = force.as_ref().zip(length_unit(units)).map(|(force, length)| format!("{force}/{length}"));
         let words = |kind: LoadKind| {
             let of_kind = arrows.arrows.iter().filter(|arrow| arrow.kind == kind);
             let most = of_kind.map(|arrow| size(arrow.force)).reduce(f64::max)?;
+            let summed = self.summed(kind, arrows);
+            let or = |name: &str| if summed.is_empty() { name.to_owned() } else { summed.clone() };
             let (name, most, unit) = match kind {
-                LoadKind::Force if arrows.is_added => ("load (near ones added)", most, &force),
-                LoadKind::Force => ("load", most, &force),
-                LoadKind::Line => ("line load", most.max(self.largest_line()), &line),
-                LoadKind::Weight => ("weight", most, &force),
+                LoadKind::Force if arrows.is_added => (format!("{} (near ones added)", or("load")), most, &force),
+                LoadKind::Force => (or("load"), most, &force),
+                LoadKind::Line => (or("line load"), most.max(self.largest_line()), &line),
+                LoadKind::Weight => (or("weight"), most, &force),
             };
             Some((kind, format!("{name} up to {}", with_unit(&short(most), unit.as_deref()))))
         };
@@ -179,11 +213,13 @@ struct Weight {
     force: [f64; 2],
     /// Σ |force|, and Σ |force|·place.
     sums: [f64; 3],
+    cases: Cases,
 }
 
 impl Weight {
-    fn add(&mut self, (x, y): (f64, f64), force: [f64; 2]) {
+    fn add(&mut self, (x, y): (f64, f64), force: [f64; 2], cases: Cases) {
         let own = size(force);
+        self.cases |= cases;
         self.force = [self.force[0] + force[0], self.force[1] + force[1]];
         self.sums = [self.sums[0] + own, self.sums[1] + own * x, self.sums[2] + own * y];
     }
@@ -225,8 +261,6 @@ fn volume(structure: &Structure, index: usize) -> f64 {
     extent * element.area()
 }
 
-type Point = (LoadKind, (f64, f64), [f64; 2]);
-
 /// Point loads of one kind nearer than `apart` (or at one place) added up, at the centre of their sizes; whether any were
 /// at different places.
 fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
@@ -237,7 +271,7 @@ fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
         false => (x.to_bits() as i64, y.to_bits() as i64),
     };
     let mut is_added = false;
-    for (kind, at, force) in points {
+    for (kind, at, force, cases) in points {
         let (i, j) = cell(at);
         let is_weight = kind == LoadKind::Weight;
         let reach = if apart > 0.0 { -1..=1 } else { 0..=0 };
@@ -257,10 +291,10 @@ fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
             groups.len() - 1
         });
         is_added |= groups[group].1 != at;
-        groups[group].2.add(at, force);
+        groups[group].2.add(at, force, cases);
     }
     let all = groups.into_iter().filter(|(.., weight)| weight.sums[0] > 0.0);
-    (all.map(|(kind, _, weight)| (kind, weight.centre(), weight.force)).collect(), is_added)
+    (all.map(|(kind, _, weight)| (kind, weight.centre(), weight.force, weight.cases)).collect(), is_added)
 }
 
 /// Lengths of arrows in dots, of the largest of a kind and of a tiny one.
@@ -338,7 +372,10 @@ mod tests {
     use super::*;
 
     fn nodal(points: &[((f64, f64), [f64; 2])]) -> Loads {
-        Loads { points: points.iter().map(|&(at, force)| (LoadKind::Force, at, force)).collect(), lines: Vec::new() }
+        Loads {
+            points: points.iter().map(|&(at, force)| (LoadKind::Force, at, force, 1)).collect(),
+            ..Loads::default()
+        }
     }
 
     #[test]
@@ -365,8 +402,8 @@ mod tests {
     /// From 0 to 4 over a length of 8, an arrow every 2: 0 (none), 1, 2, 3, 4.
     #[test]
     fn a_line_load_has_arrows_as_long_as_its_values() {
-        let line = ([(0.0, 0.0), (8.0, 0.0)], [[0.0, 0.0], [0.0, -4.0]]);
-        let loads = Loads { points: Vec::new(), lines: vec![line] };
+        let line = ([(0.0, 0.0), (8.0, 0.0)], [[0.0, 0.0], [0.0, -4.0]], 1);
+        let loads = Loads { lines: vec![line], ..Loads::default() };
         let found = loads.arrows(2.0);
         let shares: Vec<f64> = found.arrows.iter().map(|arrow| arrow.share).collect();
         assert_eq!(shares, [0.25, 0.5, 0.75, 1.0]);
@@ -374,12 +411,35 @@ mod tests {
         assert_eq!(loads.legend(&found, &units), [(LoadKind::Line, "line load up to 4 kN/m".to_owned())]);
     }
 
+    /// A body of 20 under its weight and a quake of a quarter of it, pushed at one place by two cases, at another by one.
+    #[test]
+    fn an_arrow_is_labelled_by_what_it_sums() {
+        let point = |kind, x: f64, force, cases| (kind, (x, 0.0), force, cases);
+        let mut loads = Loads {
+            points: vec![
+                point(LoadKind::Weight, 0.0, [0.0, -20.0], 0b1),
+                point(LoadKind::Weight, 0.0, [5.0, 0.0], 0b10),
+                point(LoadKind::Force, 4.0, [3.0, 0.0], 0b100),
+            ],
+            names: ["weight", "quake", "push", "wind"].map(String::from).to_vec(),
+            ..Loads::default()
+        };
+        let units = Units { length: Some("m".into()), force: Some("kN".into()) };
+        let legend = |loads: &Loads| -> Vec<String> {
+            loads.legend(&loads.arrows(1.0), &units).into_iter().map(|(_, text)| text).collect()
+        };
+        // √(20² + 5²) = 20.616
+        assert_eq!(legend(&loads), ["load up to 3 kN", "weight + quake up to 20.616 kN"]);
+        loads.points.push(point(LoadKind::Force, 4.0, [0.0, 4.0], 0b1000));
+        assert_eq!(legend(&loads)[0], "push + wind up to 5 kN");
+    }
+
     #[test]
     fn an_arrow_points_along_its_force() {
         for (force, sign, ascii) in
             [([0.0, -1.0], '↓', 'V'), ([1.0, 0.0], '→', '}'), ([-1.0, 1.0], '↖', 'U'), ([-1.0, 0.0], '←', '{')]
         {
-            let arrow = Arrow { kind: LoadKind::Force, at: (0.0, 0.0), force, share: 1.0 };
+            let arrow = Arrow { kind: LoadKind::Force, at: (0.0, 0.0), force, share: 1.0, cases: 1 };
             let drawn = Drawn::new(&arrow, (0.0, 0.0), (0.0, 0.0), 10.0);
             assert_eq!((drawn.sign(false), drawn.sign(true)), (sign, ascii));
             let [tail, tip] = drawn.ends();

@@ -2,6 +2,7 @@
 //! by `view::svg`.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::loads::Loads;
 use super::ticks::range;
@@ -9,8 +10,10 @@ use super::{Series, diagram};
 use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
 use crate::answer::rounding::largest;
+use crate::model::edge::EdgeSide;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
+use crate::model::plate::Plate;
 use crate::model::structure::{Bar, Component, Element, Structure};
 use crate::text::number::short;
 
@@ -50,13 +53,13 @@ const ALL_PIECES: usize = 512;
 
 /// u of every node of the structure: (u_x, u_y, rotation), 0 where the list has no such node.
 pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[f64; 3]> {
+    let finite = |u: &NodeDisplacement| [u.ux, u.uy, u.rz].map(|u| if u.is_finite() { u } else { 0.0 });
+    let nodes = &structure.nodes;
+    if nodes.len() == displacements.len() && nodes.iter().zip(displacements).all(|(node, u)| node.id == u.node) {
+        return displacements.iter().map(finite).collect();
+    }
     let by_id: HashMap<&str, &NodeDisplacement> = displacements.iter().map(|node| (node.node.as_str(), node)).collect();
-    structure
-        .nodes
-        .iter()
-        .map(|node| by_id.get(node.id.as_str()).map_or([0.0; 3], |u| [u.ux, u.uy, u.rz]))
-        .map(|u| u.map(|u| if u.is_finite() { u } else { 0.0 }))
-        .collect()
+    nodes.iter().map(|node| by_id.get(node.id.as_str()).map_or([0.0; 3], |u| finite(u))).collect()
 }
 
 /// The factor by which displacements are drawn: the one asked for, or 1, 2 or 5 × 10^k so that the largest becomes
@@ -92,81 +95,114 @@ pub struct Lines {
     pub faces: Vec<Vec<(f64, f64)>>,
 }
 
-/// See [`Lines`].
-pub fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
-    let at = |node: usize| -> (f64, f64) {
+/// Place of a node displaced by `factor` × u.
+fn displaced(structure: &Structure, u: &[[f64; 3]], factor: f64) -> impl Fn(usize) -> (f64, f64) {
+    move |node| {
         let position = structure.nodes.get(node).map_or([0.0; 2], |n| n.position);
         let u = u.get(node).copied().unwrap_or_default();
         (position[0] + factor * u[0], position[1] + factor * u[1])
-    };
-    let mut outline = Vec::new();
-    let mut grid = Vec::new();
-    let plates = structure.plates.iter().map(|plate| &plate.elements);
-    let mut in_plate = vec![false; structure.elements.len()];
-    for elements in plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)) {
-        in_plate[elements.clone()].fill(true);
     }
+}
+
+/// See [`Lines`].
+fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
+    Lines {
+        outline: outline(structure, u, factor),
+        grid: grid(structure, u, factor),
+        faces: faces(structure, u, factor),
+    }
+}
+
+/// [`Lines::outline`].
+pub fn outline(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+    let at = displaced(structure, u, factor);
     let [many, few] = PIECES;
     let bending = structure.elements.iter().filter(|element| element.bends()).count();
     let pieces = (ALL_PIECES / bending.max(1)).clamp(many, few);
-    let mut faces = Vec::new();
-    for (index, element) in structure.elements.iter().enumerate() {
-        if element.shape().is_area() {
-            faces.push(element.ring().map(at).collect());
+    let mut outline = Vec::new();
+    let mut single = |elements: Range<usize>| {
+        for element in &structure.elements[elements] {
+            if element.bends() {
+                outline.push(bent(structure, element, u, factor, pieces));
+            } else if !element.shape().is_area() {
+                outline.push(element.nodes.iter().map(|&node| at(node)).collect());
+            } else {
+                let ring = element.ring().chain(element.nodes.first().copied());
+                outline.push(ring.map(&at).collect());
+            }
         }
-        if element.bends() {
-            outline.push(bent(structure, element, u, factor, pieces));
-        } else if !element.shape().is_area() {
-            outline.push(element.nodes.iter().map(|&node| at(node)).collect());
-        } else if !in_plate[index] {
-            let ring = element.ring().chain(element.nodes.first().copied());
-            outline.push(ring.map(at).collect());
-        }
+    };
+    // what is no part of a plate or mesh, whose outlines are known
+    let plates = structure.plates.iter().map(|plate| &plate.elements);
+    let mut bodies: Vec<&Range<usize>> = plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)).collect();
+    bodies.sort_by_key(|elements| elements.start);
+    let mut next = 0;
+    for elements in bodies {
+        single(next..elements.start.max(next));
+        next = elements.end.max(next);
     }
-    for mesh in &structure.meshes {
-        for (side, is_inside) in &mesh.sides {
-            let [a, b] = side.ends;
-            let line = [Some(a), side.middle, Some(b)].into_iter().flatten().map(at).collect();
-            if *is_inside { grid.push(line) } else { outline.push(line) }
-        }
-    }
+    single(next..structure.elements.len());
+    let sides = structure.meshes.iter().flat_map(|mesh| &mesh.sides);
+    outline.extend(sides.filter(|(_, is_inside)| !is_inside).map(|(side, _)| side_line(side, &at)));
     for plate in &structure.plates {
-        let last = plate.nodes.len().saturating_sub(1);
-        for (j, row) in plate.nodes.iter().enumerate() {
-            let line: Vec<_> = row.iter().map(|&node| at(node)).collect();
-            if j == 0 || j == last {
-                outline.push(line);
-            } else {
-                grid.push(line);
-            }
-        }
-        let columns = plate.nodes.iter().map(Vec::len).min().unwrap_or(0);
-        for i in 0..columns {
-            let line: Vec<_> = plate.nodes.iter().map(|row| at(row[i])).collect();
-            if i == 0 || i + 1 == columns {
-                outline.push(line);
-            } else {
-                grid.push(line);
-            }
-        }
+        let (rows, columns) = plate_lines(plate);
+        let ends = |count: usize| [0, count.saturating_sub(1)].into_iter().take(count);
+        outline.extend(ends(rows).map(|j| plate.nodes[j].iter().map(|&node| at(node)).collect()));
+        outline.extend(ends(columns).map(|i| plate.nodes.iter().map(|row| at(row[i])).collect()));
     }
-    for body in &structure.rigid {
-        let ring = hull(body.nodes.iter().map(|&node| at(node)).collect());
-        faces.push(ring[..ring.len() - 1].to_vec());
-        outline.push(ring);
-    }
+    outline.extend(structure.rigid.iter().map(|body| hull(body.nodes.iter().map(|&node| at(node)).collect())));
     for part in structure.superelement.iter().flat_map(|element| &element.parts) {
-        let places: Vec<[f64; 2]> = part.nodes.iter().map(|&node| structure.nodes[node].position).collect();
-        match straight_order(&places) {
-            Some(order) => outline.push(order.into_iter().map(|k| at(part.nodes[k])).collect()),
-            None => {
-                let ring = hull(part.nodes.iter().map(|&node| at(node)).collect());
-                faces.push(ring[..ring.len() - 1].to_vec());
-                outline.push(ring);
-            }
-        }
+        outline.push(match along_a_line(structure, &part.nodes) {
+            Some(order) => order.into_iter().map(|k| at(part.nodes[k])).collect(),
+            None => hull(part.nodes.iter().map(|&node| at(node)).collect()),
+        });
     }
-    Lines { outline, grid, faces }
+    outline
+}
+
+/// [`Lines::grid`].
+pub fn grid(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+    let at = displaced(structure, u, factor);
+    let sides = structure.meshes.iter().flat_map(|mesh| &mesh.sides);
+    let mut grid: Vec<_> = sides.filter(|(_, is_inside)| *is_inside).map(|(side, _)| side_line(side, &at)).collect();
+    for plate in &structure.plates {
+        let (rows, columns) = plate_lines(plate);
+        grid.extend((1..rows.saturating_sub(1)).map(|j| plate.nodes[j].iter().map(|&node| at(node)).collect()));
+        grid.extend((1..columns.saturating_sub(1)).map(|i| plate.nodes.iter().map(|row| at(row[i])).collect()));
+    }
+    grid
+}
+
+/// [`Lines::faces`].
+fn faces(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+    let at = displaced(structure, u, factor);
+    let areas = structure.elements.iter().filter(|element| element.shape().is_area());
+    let mut faces: Vec<Vec<(f64, f64)>> = areas.map(|element| element.ring().map(&at).collect()).collect();
+    let parts = structure.superelement.iter().flat_map(|element| &element.parts);
+    let wide = parts.map(|part| &part.nodes).filter(|nodes| along_a_line(structure, nodes).is_none());
+    for nodes in structure.rigid.iter().map(|body| &body.nodes).chain(wide) {
+        let mut ring = hull(nodes.iter().map(|&node| at(node)).collect());
+        ring.pop();
+        faces.push(ring);
+    }
+    faces
+}
+
+/// A side of a mesh.
+fn side_line(side: &EdgeSide, at: &impl Fn(usize) -> (f64, f64)) -> Vec<(f64, f64)> {
+    let [a, b] = side.ends;
+    [Some(a), side.middle, Some(b)].into_iter().flatten().map(at).collect()
+}
+
+/// How many rows of nodes a plate has, and how many columns.
+fn plate_lines(plate: &Plate) -> (usize, usize) {
+    (plate.nodes.len(), plate.nodes.iter().map(Vec::len).min().unwrap_or(0))
+}
+
+/// The order of nodes along the line on which they all lie; `None` if they do not.
+fn along_a_line(structure: &Structure, nodes: &[usize]) -> Option<Vec<usize>> {
+    let places: Vec<[f64; 2]> = nodes.iter().map(|&node| structure.nodes[node].position).collect();
+    straight_order(&places)
 }
 
 /// The order of places along the line on which they all lie; `None` if they do not.

@@ -248,18 +248,18 @@ fn draw_marks(scene: &Scene, fit: &mut Fit, style: &Style) -> Vec<(char, Role, S
     legend
 }
 
-/// Smallest distance of two grid lines in dots.
+/// Smallest distance of two grid lines of a plate in dots.
 pub fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
-    structure
-        .plates
-        .iter()
-        .flat_map(|plate| structure.elements.get(plate.elements.clone()))
-        .flatten()
-        .filter_map(|element| {
-            let place = |i: usize| Some(structure.nodes.get(*element.nodes.get(i)?)?.position);
-            let (a, b, d) = (place(0)?, place(1)?, place(3)?);
-            let side = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
-            Some(side(a, b).min(side(a, d)) * pitch)
-        })
-        .fold(f64::INFINITY, f64::min)
+    let place = |node: &usize| structure.nodes.get(*node).map(|node| node.position);
+    // a plate is a rectangle: its first row and column have all distances
+    let lines = structure.plates.iter().flat_map(|plate| {
+        let row: Vec<_> = plate.nodes.iter().take(1).flatten().filter_map(place).collect();
+        let column: Vec<_> = plate.nodes.iter().filter_map(|row| row.first()).filter_map(place).collect();
+        [row, column]
+    });
+    let smallest = |line: Vec<[f64; 2]>| {
+        let distances = line.windows(2).map(|two| (two[1][0] - two[0][0]).hypot(two[1][1] - two[0][1]));
+        distances.fold(f64::INFINITY, f64::min) * pitch
+    };
+    lines.map(smallest).fold(f64::INFINITY, f64::min)
 }
