@@ -22,7 +22,8 @@ use faer::{Mat, MatMut, Side};
 use nalgebra::DMatrix;
 
 use super::error::MainSystemError;
-use super::order::{Places, elimination_order};
+use super::fill::best_order;
+use super::order::Places;
 use super::sparse::SymmetricSparse;
 use super::supernodes::Supernodes;
 use super::watch::check_stop;
@@ -77,12 +78,7 @@ impl Factor {
         let places = if places.node.is_empty() { idle } else { places };
         let n = k_m.order();
         let scale = k_m.scale_to_unit_diagonal();
-        let forward = elimination_order(k_m, places, watch)?;
-        let mut position = vec![0_u32; n];
-        for (at, &row) in forward.iter().enumerate() {
-            position[row as usize] = at as u32;
-        }
-        drop(forward);
+        let position = best_order(k_m, places, c, joints, watch)?;
         check_stop(watch)?;
         let too_large = |needed: u64| MainSystemError::TooLarge {
             unknowns: n,

@@ -47,6 +47,7 @@ mod equilibrium;
 mod error;
 mod expand;
 mod factor;
+mod fill;
 mod joint_rows;
 mod kernel;
 mod loads;
