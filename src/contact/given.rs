@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 
 use super::file_data::FileData;
 use super::pivoted::{NullSpace, PivotedCholesky, is_null, orthonormal};
 use super::system::{ContactPair, ContactSystem, ForceForm, JointLoad};
 use crate::lcp::problem::NOISE;
+use crate::lcp::smallest_eigenvalue;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
 
 /// An eigenvalue below −this makes a matrix unusable, after scaling to unit diagonal.
@@ -68,7 +69,8 @@ fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(PivotedCholes
     if null.least < -NEGATIVE {
         let scale = &factor.scale;
         let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, j| matrix[(i, j)] / scale[i] / scale[j]);
-        return Err(GivenError::Indefinite { key, smallest: SymmetricEigen::new(scaled).eigenvalues.min() });
+        // What the null space shows bounds it from above.
+        return Err(GivenError::Indefinite { key, smallest: smallest_eigenvalue(&scaled).unwrap_or(null.least) });
     }
     Ok((factor, null))
 }

@@ -10,11 +10,14 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::doubled::dot;
+use crate::lcp::subtract_square;
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 const DIGITS: f64 = 64.0 * f64::EPSILON;
 /// A remaining pivot (of 1) up to this is looked at.
 const NEARLY: f64 = 1e-10;
+/// Columns that are taken off the rest at once.
+const PANEL: usize = 64;
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,26 +50,30 @@ impl PivotedCholesky {
         let scale = scales(matrix);
         let mut l = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / scale[i] / scale[j]);
         let mut order: Vec<usize> = (0..n).collect();
-        let mut rank = n;
-        for k in 0..n {
-            let largest = (k..n).max_by(|&i, &j| l[(i, i)].total_cmp(&l[(j, j)]).then(j.cmp(&i))).unwrap_or(k);
-            if l[(largest, largest)] <= NEARLY {
-                rank = k;
-                break;
-            }
-            swap(&mut l, k, largest);
-            order.swap(k, largest);
-            let root = l[(k, k)].sqrt();
-            l.view_mut((k, k), (n - k, 1)).iter_mut().for_each(|entry| *entry /= root);
-            l[(k, k)] = root;
-            let (done, rest) = l.as_mut_slice().split_at_mut((k + 1) * n);
-            let column = &done[k * n..];
-            for (j, other) in (k + 1..n).zip(rest.chunks_exact_mut(n)) {
-                let factor = column[j];
-                if factor != 0.0 {
-                    other[j..].iter_mut().zip(&column[j..]).for_each(|(a, b)| *a -= factor * b);
+        let mut rank = 0;
+        // What the columns of the panel at hand take off each diagonal entry.
+        let mut taken = vec![0.0; n];
+        while rank < n {
+            let panel = rank;
+            taken.fill(0.0);
+            while rank < n.min(panel + PANEL) {
+                let k = rank;
+                let left = |i: usize| l[(i, i)] - taken[i];
+                let largest = (k..n).max_by(|&i, &j| left(i).total_cmp(&left(j)).then(j.cmp(&i))).unwrap_or(k);
+                let pivot = left(largest);
+                if pivot <= NEARLY {
+                    return PivotedCholesky { scale, order, rank, l };
                 }
+                swap(&mut l, k, largest);
+                taken.swap(k, largest);
+                order.swap(k, largest);
+                finish_column(&mut l, panel, k, pivot.sqrt());
+                for i in k + 1..n {
+                    taken[i] += l[(i, k)].powi(2);
+                }
+                rank += 1;
             }
+            finish_panel(&mut l, panel, rank);
         }
         PivotedCholesky { scale, order, rank, l }
     }
@@ -159,6 +166,26 @@ fn swap(a: &mut DMatrix<f64>, k: usize, p: usize) {
     for i in p + 1..a.nrows() {
         a.swap((i, k), (i, p));
     }
+}
+
+/// Column k of L below its diagonal: the columns of the panel from `from` on taken off it, over the root of the pivot.
+fn finish_column(l: &mut DMatrix<f64>, from: usize, k: usize, root: f64) {
+    let n = l.nrows();
+    let (done, rest) = l.as_mut_slice().split_at_mut(k * n);
+    let column = &mut rest[k + 1..n];
+    for known in done[from * n..].chunks_exact(n) {
+        let factor = known[k];
+        column.iter_mut().zip(&known[k + 1..]).for_each(|(a, b)| *a -= factor * b);
+    }
+    column.iter_mut().for_each(|entry| *entry /= root);
+    rest[k] = root;
+}
+
+/// Takes the columns `from` … `to` off all that is to their right.
+fn finish_panel(l: &mut DMatrix<f64>, from: usize, to: usize) {
+    let n = l.nrows();
+    let (done, rest) = l.as_mut_slice().split_at_mut(to * n);
+    subtract_square(&mut rest[..], &done[from * n..], n, to);
 }
 
 /// Whether A z = 0 by the digits of A, row by row.

@@ -8,24 +8,17 @@
 //! ```
 //!
 //! z is carried along as further rows that are not eliminated ([`super::supernodes`]), so the sparsity of C is used
-//! to the end. The unknowns that the joints tie to others come last: before them the bodies are apart, and only the
-//! one that C belongs to carries the rows of z. How the others are ordered: [`super::order`].
+//! to the end. How the others are ordered: [`super::fill`], [`super::order`].
 
-use faer::perm::PermRef;
 use faer::sparse::FaerError;
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
-};
-use faer::{Mat, MatMut, Side};
+use faer::{Mat, MatMut};
 use nalgebra::DMatrix;
 
 use super::error::MainSystemError;
-use super::fill::best_order;
+use super::fill::{best_order, out_of_memory};
 use super::order::Places;
 use super::sparse::SymmetricSparse;
-use super::supernodes::Supernodes;
+use super::supernodes::{Supernodes, Terms};
 use super::watch::check_stop;
 use crate::model::memory::available_memory;
 use crate::watch::Watch;
@@ -50,13 +43,9 @@ pub struct Factor {
     joints: usize,
 }
 
-fn out_of_memory(doing: &'static str) -> MainSystemError {
-    MainSystemError::OutOfMemory { doing }
-}
-
 impl Factor {
-    /// Orders and factorizes K_m (scaled in place) with the terms (row, joint, value) of C for `joints` joints;
-    /// the rows that have to come last are ordered behind all others.
+    /// Orders and factorizes K_m (scaled in place) with the terms (row, joint, value) of C for `joints` joints; the rows
+    /// marked as last are ordered behind all others where that costs less.
     ///
     /// Where rounding makes a pivot fail, the factor is that of a slightly shifted K_m ([`Factor::is_shifted`]): good
     /// for refinement, but neither for R nor for a verdict on the structure.
@@ -78,7 +67,8 @@ impl Factor {
         let places = if places.node.is_empty() { idle } else { places };
         let n = k_m.order();
         let scale = k_m.scale_to_unit_diagonal();
-        let position = best_order(k_m, places, c, joints, watch)?;
+        watch.progress(&format!("ordering {n} unknowns"), 0.0);
+        let ordered = best_order(k_m, places, c, joints, watch)?;
         check_stop(watch)?;
         let too_large = |needed: u64| MainSystemError::TooLarge {
             unknowns: n,
@@ -87,32 +77,13 @@ impl Factor {
             available: available_memory().unwrap_or(u64::MAX),
         };
         watch.progress(&format!("analysing {n} unknowns"), 0.0);
-        let matrix = with_joints(k_m, &position, &scale, c, joints);
-        let order = n + joints;
-        let same: Vec<u32> = (0..order as u32).collect();
-        let symbolic = factorize_symbolic_cholesky(
-            SymbolicSparseColMatRef::new_checked(order, order, &matrix.column_start, None, &matrix.rows),
-            Side::Lower,
-            // With `Identity` faer takes the lower triangle for the upper one.
-            SymmetricOrdering::Custom(PermRef::new_checked(&same, &same, order)),
-            CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                ..Default::default()
-            },
-        )
-        .map_err(|error| match error {
+        let supernodes = ordered.supernodes().map_err(|error| match error {
             // More entries than a 32-bit index counts.
             FaerError::IndexOverflow => too_large(8 * (i32::MAX as u64)),
-            _ => out_of_memory("analysing the main system"),
+            _ => out_of_memory(),
         })?;
-        let SymbolicCholeskyRaw::Supernodal(structure) = symbolic.raw() else {
-            // FORCE_SUPERNODAL compares > 0 with the operation count, which counts one division per column.
-            unreachable!("the supernodal factorization was asked for")
-        };
-        let mut begin = structure.supernode_begin().to_vec();
-        begin.push(order as u32);
-        let supernodes = Supernodes::new(n, begin, |s| structure.supernode(s).pattern());
-        drop(symbolic);
+        let position = ordered.position;
+        let matrix = with_joints(k_m, &position, &scale, c, joints);
         let mut factor = Factor { supernodes, shift: 0.0, scale, position, joints };
         let needed = factor.bytes_needed();
         if available_memory().is_some_and(|available| needed > available) {
@@ -219,16 +190,10 @@ impl Factor {
     }
 }
 
-/// The lower triangle of [K_m .; Cᵀ 0], K_m permuted, the rows of z behind it with a diagonal of zeros.
-fn with_joints(
-    k_m: &SymmetricSparse,
-    position: &[u32],
-    scale: &[f64],
-    c: &[(u32, u32, f64)],
-    joints: usize,
-) -> SymmetricSparse {
+/// The lower triangle of [K_m .; Cᵀ 0], K_m permuted, the rows of z behind it.
+fn with_joints(k_m: &SymmetricSparse, position: &[u32], scale: &[f64], c: &[(u32, u32, f64)], joints: usize) -> Terms {
     let n = k_m.order();
-    let each = |visit: &mut dyn FnMut(usize, usize, f64)| {
+    Terms::new(n + joints, |visit| {
         for column in 0..n {
             let a = position[column] as usize;
             for (row, value) in k_m.column(column) {
@@ -237,21 +202,7 @@ fn with_joints(
             }
         }
         for &(row, joint, value) in c {
-            let column = position[row as usize] as usize;
-            visit(n + joint as usize, column, scale[row as usize] * value);
+            visit(n + joint as usize, position[row as usize] as usize, scale[row as usize] * value);
         }
-        for z in n..n + joints {
-            visit(z, z, 0.0);
-        }
-    };
-    let sum: Result<SymmetricSparse, std::convert::Infallible> = SymmetricSparse::from_terms(
-        n + joints,
-        |visit| each(&mut |_, column, _| visit(column)),
-        |visit| {
-            each(visit);
-            Ok(())
-        },
-    );
-    let Ok(sum) = sum;
-    sum
+    })
 }

@@ -60,6 +60,7 @@ mod repeated;
 mod sparse;
 mod superelement;
 mod supernodes;
+mod threads;
 mod watch;
 
 #[cfg(test)]

@@ -5,17 +5,22 @@
 //! minimum degree. Of a plate this leaves less fill than minimum degree alone, and much less where many rows have to
 //! come last anyway: a half then reaches only those that it touches.
 
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
+use super::threads::can_spread;
 use super::watch::check_stop;
 use crate::watch::Watch;
 
 /// So many nodes are not cut further.
 const LEAF: usize = 64;
+/// Halves of more nodes are ordered on two threads.
+const WORTH_SPREADING: usize = 4096;
 /// In the place of a number: there is none.
 const NONE: u32 = u32::MAX;
 
@@ -37,18 +42,20 @@ pub struct Places<'a> {
 pub fn elimination_order(k: &SymmetricSparse, places: Places, watch: &dyn Watch) -> Result<Vec<u32>, MainSystemError> {
     let n = k.order();
     let groups = Groups::new(places);
-    let mut dissection = Dissection {
+    let count = groups.points.len();
+    let dissection = Dissection {
         neighbors: Neighbors::new(k, &groups),
-        points: groups.points,
-        side: vec![Side::Elsewhere; groups.start.len() - 1],
-        number: vec![NONE; groups.start.len() - 1],
-        out: Vec::with_capacity(groups.start.len() - 1),
+        points: &groups.points,
+        side: (0..count).map(|_| AtomicU32::new(NONE)).collect(),
+        done: AtomicUsize::new(0),
+        is_spread: can_spread(),
         watch,
     };
-    let mut all: Vec<u32> = (0..dissection.side.len() as u32).collect();
-    dissection.dissect(&mut all, [0.0; 2])?;
+    let mut all: Vec<u32> = (0..count as u32).collect();
+    let mut of_groups = vec![0; count];
+    dissection.dissect(&mut all, &mut of_groups, 1, [0.0; 2])?;
     let mut order = Vec::with_capacity(n);
-    for &group in &dissection.out {
+    for &group in &of_groups {
         let range = groups.start[group as usize]..groups.start[group as usize + 1];
         order.extend_from_slice(&groups.rows[range]);
     }
@@ -147,78 +154,84 @@ impl Neighbors {
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Elsewhere,
-    Cut,
-    Far,
-}
-
+/// The halves are ordered side by side; what one marks, the other does not take for its own.
 struct Dissection<'a> {
     neighbors: Neighbors,
-    points: Vec<[f64; 2]>,
-    /// Side of the present cut.
-    side: Vec<Side>,
-    /// Number within the present leaf.
-    number: Vec<u32>,
-    /// The order found so far.
-    out: Vec<u32>,
+    points: &'a [[f64; 2]],
+    /// Mark of the side of a cut that each group was put on last.
+    side: Vec<AtomicU32>,
+    /// Groups that have been ordered.
+    done: AtomicUsize,
+    /// Whether there are threads for it.
+    is_spread: bool,
     watch: &'a dyn Watch,
 }
 
 impl Dissection<'_> {
-    /// Appends the order of some groups; `expected`: how many groups a cut across either axis will take.
-    fn dissect(&mut self, members: &mut [u32], mut expected: [f64; 2]) -> Result<(), MainSystemError> {
+    /// Writes the order of some groups to `out`. `number` of this stretch: 1 for all, 2 k and 2 k + 1 for the halves of
+    /// stretch k. `expected`: how many groups a cut across either axis will take.
+    fn dissect(
+        &self,
+        members: &mut [u32],
+        out: &mut [u32],
+        number: u32,
+        mut expected: [f64; 2],
+    ) -> Result<(), MainSystemError> {
         if members.len() <= LEAF {
-            return self.order_leaf(members);
+            self.order_leaf(members, out)?;
+            self.done.fetch_add(members.len(), Ordering::Relaxed);
+            return Ok(());
         }
         check_stop(self.watch)?;
-        let (done, all) = (self.out.len(), self.side.len());
+        let (done, all) = (self.done.load(Ordering::Relaxed), self.side.len());
         self.watch.progress(&format!("ordering, {done} of {all} nodes"), done as f64 / all as f64);
-        let half = members.len() / 2;
+        let size = members.len();
+        let half = size / 2;
         let mut axis = usize::from(expected[1] < expected[0]);
-        let mut cut = self.split(members, axis);
+        let mut cut = self.split(members, number, axis);
         expected[axis] = cut.len() as f64;
         if expected[1 - axis] < expected[axis] {
             // Worse than expected: the other way may be the better one.
-            let other = self.split(members, 1 - axis);
+            let other = self.split(members, number, 1 - axis);
             expected[1 - axis] = other.len() as f64;
             if other.len() < cut.len() {
                 (axis, cut) = (1 - axis, other);
             } else {
-                cut = self.split(members, axis);
+                cut = self.split(members, number, axis);
             }
         }
         // The halves are as wide as the whole along the cut, and half as long across it.
         expected[1 - axis] *= 0.5;
         let (near, far) = members.split_at_mut(half);
         // The cut to the end of the near half.
-        for &group in &cut {
-            self.side[group as usize] = Side::Cut;
-        }
-        let side = &self.side;
+        let of_cut = mark(number, 2);
+        cut.iter().for_each(|&group| self.side[group as usize].store(of_cut, Ordering::Relaxed));
         let mut kept = 0;
         for i in 0..near.len() {
-            if side[near[i] as usize] != Side::Cut {
+            if self.side[near[i] as usize].load(Ordering::Relaxed) != of_cut {
                 near.swap(kept, i);
                 kept += 1;
             }
         }
-        for &group in &cut {
-            self.side[group as usize] = Side::Elsewhere;
-        }
         let near = &mut near[..kept];
-        self.dissect(near, expected)?;
-        self.dissect(far, expected)?;
-        self.out.extend(cut);
-        Ok(())
+        let (out, last) = out.split_at_mut(size - cut.len());
+        last.copy_from_slice(&cut);
+        self.done.fetch_add(cut.len(), Ordering::Relaxed);
+        let (first, second) = out.split_at_mut(kept);
+        let mut near = || self.dissect(near, first, 2 * number, expected);
+        let mut far = || self.dissect(far, second, 2 * number + 1, expected);
+        if self.is_spread && size > WORTH_SPREADING {
+            let (near, far) = rayon::join(near, far);
+            near.and(far)
+        } else {
+            near().and_then(|()| far())
+        }
     }
 
     /// The nearer half of the members along an axis to the front; returns those of it that touch the other half.
-    fn split(&mut self, members: &mut [u32], axis: usize) -> Vec<u32> {
-        let points = &self.points;
+    fn split(&self, members: &mut [u32], number: u32, axis: usize) -> Vec<u32> {
         let key = |group: u32| {
-            let point = points[group as usize];
+            let point = self.points[group as usize];
             (point[axis], point[1 - axis])
         };
         let half = members.len() / 2;
@@ -227,31 +240,27 @@ impl Dissection<'_> {
             a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
         let (near, far) = members.split_at(half);
-        for &group in far {
-            self.side[group as usize] = Side::Far;
-        }
+        let of_far = mark(number, axis as u32);
+        far.iter().for_each(|&group| self.side[group as usize].store(of_far, Ordering::Relaxed));
+        // Marks of the other axis, and of the last time along this one.
+        near.iter().for_each(|&group| self.side[group as usize].store(NONE, Ordering::Relaxed));
         let touches = |&group: &u32| {
             let neighbors = self.neighbors.of(group);
-            neighbors.iter().any(|&other| self.side[other as usize] == Side::Far)
+            neighbors.iter().any(|&other| self.side[other as usize].load(Ordering::Relaxed) == of_far)
         };
-        let cut = near.iter().copied().filter(|group| touches(group)).collect();
-        for &group in far {
-            self.side[group as usize] = Side::Elsewhere;
-        }
-        cut
+        near.iter().copied().filter(|group| touches(group)).collect()
     }
 
     /// Approximate minimum degree of a few groups.
-    fn order_leaf(&mut self, members: &[u32]) -> Result<(), MainSystemError> {
+    fn order_leaf(&self, members: &[u32], out: &mut [u32]) -> Result<(), MainSystemError> {
         let out_of_memory = || MainSystemError::OutOfMemory { doing: "ordering the unknowns" };
-        for (number, &group) in members.iter().enumerate() {
-            self.number[group as usize] = number as u32;
-        }
+        let mut number: Vec<(u32, u32)> = members.iter().copied().zip(0..).collect();
+        number.sort_unstable();
+        let number_of = |group: &u32| number.binary_search_by_key(group, |entry| entry.0).ok().map(|at| number[at].1);
         let (mut start, mut rows) = (vec![0_u32], Vec::new());
         for &group in members {
             let from = rows.len();
-            let inside = self.neighbors.of(group).iter();
-            rows.extend(inside.map(|&other| self.number[other as usize]).filter(|&number| number != NONE));
+            rows.extend(self.neighbors.of(group).iter().filter_map(number_of));
             rows[from..].sort_unstable();
             let mut kept = from;
             for i in from..rows.len() {
@@ -262,9 +271,6 @@ impl Dissection<'_> {
             }
             rows.truncate(kept);
             start.push(rows.len() as u32);
-        }
-        for &group in members {
-            self.number[group as usize] = NONE;
         }
         let n = members.len();
         let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
@@ -278,7 +284,12 @@ impl Dissection<'_> {
             MemStack::new(&mut memory),
         )
         .map_err(|_| out_of_memory())?;
-        self.out.extend(order.into_iter().map(|i| members[i as usize]));
+        out.iter_mut().zip(order).for_each(|(out, i)| *out = members[i as usize]);
         Ok(())
     }
+}
+
+/// What marks a side (0, 1: the far one along that axis; 2: the cut) of the stretch with a number.
+fn mark(number: u32, side: u32) -> u32 {
+    4 * number + side
 }

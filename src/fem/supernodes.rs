@@ -10,15 +10,45 @@
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Accum, MatMut, MatRef, Par};
+use rayon::iter::IndexedParallelIterator;
 
 use super::error::MainSystemError;
-use super::sparse::SymmetricSparse;
+use super::threads::can_spread;
 use crate::watch::Watch;
 
 mod numeric;
 
 /// Each dense operation on one thread: results do not depend on the machine's number of cores.
 const PAR: Par = Par::Seq;
+
+/// The lower triangle of a symmetric matrix by columns, as terms that are summed; in any order.
+pub struct Terms {
+    start: Vec<usize>,
+    /// (row, value).
+    terms: Vec<(u32, f64)>,
+}
+
+impl Terms {
+    /// `each` visits all terms (row, column, value), row ≥ column; it is called twice.
+    pub fn new(order: usize, each: impl Fn(&mut dyn FnMut(usize, usize, f64))) -> Terms {
+        let mut start = vec![0; order + 1];
+        each(&mut |_, column, _| start[column + 1] += 1);
+        for column in 0..order {
+            start[column + 1] += start[column];
+        }
+        let mut next = start.clone();
+        let mut terms = vec![(0, 0.0); start[order]];
+        each(&mut |row, column, value| {
+            terms[next[column]] = (row as u32, value);
+            next[column] += 1;
+        });
+        Terms { start, terms }
+    }
+
+    fn column(&self, column: usize) -> &[(u32, f64)] {
+        &self.terms[self.start[column]..self.start[column + 1]]
+    }
+}
 
 /// Which columns make a supernode, and which rows its block has: those of its columns, then those of its pattern.
 #[derive(Debug)]
@@ -121,18 +151,16 @@ impl Supernodes {
     ///
     /// # Errors
     /// Out of memory; interrupted.
-    pub fn factorize(
-        &mut self,
-        matrix: &SymmetricSparse,
-        shift: f64,
-        watch: &dyn Watch,
-    ) -> Result<bool, MainSystemError> {
+    pub fn factorize(&mut self, matrix: &Terms, shift: f64, watch: &dyn Watch) -> Result<bool, MainSystemError> {
         let length = self.stored();
         self.values.clear();
-        self.values
-            .try_reserve_exact(length)
-            .map_err(|_| MainSystemError::OutOfMemory { doing: numeric::DOING })?;
-        self.values.resize(length, 0.0);
+        self.values.try_reserve_exact(length).map_err(|_| MainSystemError::OutOfMemory { doing: numeric::DOING })?;
+        if can_spread() {
+            // The first touch of so many pages takes its time.
+            rayon::iter::repeat_n(0.0, length).collect_into_vec(&mut self.values);
+        } else {
+            self.values.resize(length, 0.0);
+        }
         numeric::factorize(&self.shape, &mut self.values, matrix, shift, watch)
     }
 

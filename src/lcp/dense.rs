@@ -3,8 +3,11 @@
 use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 use nalgebra::{DMatrix, DVector};
+
+/// Columns of a triangle that are multiplied out at once.
+const STRIP: usize = 128;
 
 /// Lets faer compute on one thread, so that the bits of a result do not depend on the number of threads; parallel
 /// factorizations of the sizes met here are no faster (method §5).
@@ -25,6 +28,33 @@ pub(crate) fn add_product(target: &mut [f64], left: &[f64], right: &[f64], rows:
         1.0,
         Par::Seq,
     );
+}
+
+/// Lower triangle of the trailing square −= P Pᵀ: `columns` are the last columns of an n × n matrix, from number `from`
+/// on, `panel` some before them, of which P is the rows from `from` on. What is above the diagonal is left undefined.
+pub(crate) fn subtract_square(columns: &mut [f64], panel: &[f64], n: usize, from: usize) {
+    if columns.is_empty() || panel.is_empty() {
+        return;
+    }
+    let panel = MatRef::from_column_major_slice(panel, n, panel.len() / n);
+    for (index, strip) in columns.chunks_mut(STRIP * n).enumerate() {
+        let (first, width) = (from + index * STRIP, strip.len() / n);
+        matmul(
+            MatMut::from_column_major_slice_mut(strip, n, width).get_mut(first.., ..),
+            Accum::Add,
+            panel.get(first.., ..),
+            panel.get(first..first + width, ..).transpose(),
+            -1.0,
+            Par::Seq,
+        );
+    }
+}
+
+/// Smallest eigenvalue of a symmetric matrix; `None` if the iteration did not converge.
+pub(crate) fn smallest_eigenvalue(matrix: &DMatrix<f64>) -> Option<f64> {
+    let n = matrix.nrows();
+    let view = MatRef::from_column_major_slice(matrix.as_slice(), n, n);
+    view.self_adjoint_eigenvalues(Side::Lower).ok()?.first().copied()
 }
 
 /// target += matrix · x; the matrix column-major, as many columns as x has entries.

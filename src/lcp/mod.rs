@@ -37,4 +37,4 @@ pub mod ratio_test;
 mod updated_matrix;
 pub mod variable;
 
-pub(crate) use dense::compute_sequentially;
+pub(crate) use dense::{compute_sequentially, smallest_eigenvalue, subtract_square};

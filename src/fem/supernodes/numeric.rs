@@ -17,9 +17,9 @@ use faer::{Accum, MatMut, MatRef};
 use rayon::prelude::*;
 
 use super::super::error::MainSystemError;
-use super::super::sparse::SymmetricSparse;
+use super::super::threads::can_spread;
 use super::super::watch::check_stop;
-use super::{PAR, Shape};
+use super::{PAR, Shape, Terms};
 use crate::watch::Watch;
 
 /// Columns of a supernode that are factorized at once, and of an update that is multiplied out at once: large
@@ -59,7 +59,7 @@ impl From<MainSystemError> for Halt {
 pub(super) fn factorize(
     shape: &Shape,
     values: &mut [f64],
-    matrix: &SymmetricSparse,
+    matrix: &Terms,
     shift: f64,
     watch: &dyn Watch,
 ) -> Result<bool, MainSystemError> {
@@ -71,7 +71,7 @@ pub(super) fn factorize(
     let costs: Vec<f64> = (0..count).map(|s| shape.active(s) as f64 * (shape.height(s) as f64).powi(2)).collect();
     let branches = branches(shape, &owner, &costs);
     let progress = Progress { total: costs.iter().sum(), state: Mutex::default(), watch };
-    let work = Work { shape, matrix, shift, owner, costs, progress };
+    let work = Work { shape, matrix, shift, owner, costs, is_spread: can_spread(), progress };
     let mut links = vec![Link { first: NONE, next: NONE, done: 0 }; count];
     let done = work.branches(&branches, values, &mut links).and_then(|()| work.crown(&branches, values, &mut links));
     match done {
@@ -189,11 +189,13 @@ struct Product {
 
 struct Work<'a> {
     shape: &'a Shape,
-    matrix: &'a SymmetricSparse,
+    matrix: &'a Terms,
     shift: f64,
     /// Supernode of each column.
     owner: Vec<u32>,
     costs: Vec<f64>,
+    /// Whether there are threads for it.
+    is_spread: bool,
     progress: Progress<'a>,
 }
 
@@ -224,9 +226,10 @@ impl Work<'_> {
             let mut scratch = self.scratch()?;
             branch.supernodes.clone().try_for_each(|s| self.supernode(s, &mut branch, &mut scratch, false))
         };
-        match stretches.len() {
-            1 => stretches.into_iter().try_for_each(factorize),
-            _ => stretches.into_par_iter().try_for_each(factorize),
+        if self.is_spread && stretches.len() > 1 {
+            stretches.into_par_iter().try_for_each(factorize)
+        } else {
+            stretches.into_iter().try_for_each(factorize)
         }
     }
 
@@ -244,8 +247,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Factorizes one supernode; `wide`: strip by strip on all threads.
-    fn supernode(&self, s: usize, stretch: &mut Stretch, scratch: &mut Scratch, wide: bool) -> Result<(), Halt> {
+    /// Factorizes one supernode; `in_strips`: with all threads there are.
+    fn supernode(&self, s: usize, stretch: &mut Stretch, scratch: &mut Scratch, in_strips: bool) -> Result<(), Halt> {
         let shape = self.shape;
         self.take_updates(s, stretch, &mut scratch.updates);
         let start = shape.value_start[stretch.supernodes.start];
@@ -253,21 +256,37 @@ impl Work<'_> {
         let own = &mut own[..shape.height(s) * shape.width(s)];
         self.assemble(s, own, &mut scratch.local);
         let target = Target { s, local: &scratch.local, updates: &scratch.updates, before, start };
-        if wide && !target.updates.is_empty() {
-            let strips = own.par_chunks_mut(STRIP * shape.height(s)).enumerate();
-            strips.try_for_each_init(Product::default, |product, (strip, values)| {
-                self.collect(&target, strip * STRIP, values, product)
-            })?;
-        } else {
-            self.collect(&target, 0, own, &mut scratch.product)?;
-        }
-        self.eliminate(s, own, scratch, wide)?;
+        let columns = if in_strips { STRIP } else { shape.width(s) };
+        self.each_strip(
+            own,
+            columns * shape.height(s),
+            in_strips,
+            &mut scratch.product,
+            |product, (strip, values)| self.collect(&target, strip * columns, values, product),
+        )?;
+        self.eliminate(s, own, scratch, in_strips)?;
         if shape.active(s) > 0 {
             stretch.links[s - stretch.supernodes.start].done = 0;
             self.enlist(s, stretch);
         }
         self.progress.add(self.costs[s], shape.active(s), shape.eliminated)?;
         Ok(())
+    }
+
+    /// `work` on strips of so many values each, side by side if `spread` and there are threads.
+    fn each_strip(
+        &self,
+        values: &mut [f64],
+        size: usize,
+        spread: bool,
+        product: &mut Product,
+        work: impl Fn(&mut Product, (usize, &mut [f64])) -> Result<(), Halt> + Send + Sync,
+    ) -> Result<(), Halt> {
+        if spread && self.is_spread && values.len() > size {
+            values.par_chunks_mut(size).enumerate().try_for_each_init(Product::default, work)
+        } else {
+            values.chunks_mut(size).enumerate().try_for_each(|strip| work(product, strip))
+        }
     }
 
     /// Puts `d` on the list of the supernode that holds its next row, if that belongs to the stretch.
@@ -314,8 +333,8 @@ impl Work<'_> {
             local[row as usize] = (width + i) as u32;
         }
         for column in 0..width {
-            for (row, value) in self.matrix.column(begin + column) {
-                values[local[row] as usize + column * height] += value;
+            for &(row, value) in self.matrix.column(begin + column) {
+                values[local[row as usize] as usize + column * height] += value;
             }
             if begin + column < shape.eliminated {
                 values[column + column * height] += self.shift;
@@ -331,7 +350,8 @@ impl Work<'_> {
         let end = first + values.len() / height;
         for Update { descendant: d, rows } in target.updates {
             let (pattern, active) = (shape.pattern(*d), shape.active(*d));
-            let until = |row: usize| rows.start + pattern[rows.clone()].partition_point(|&other| (other as usize) < row);
+            let until =
+                |row: usize| rows.start + pattern[rows.clone()].partition_point(|&other| (other as usize) < row);
             let (from, to) = (until(first), until(end));
             let below = target.block(shape, *d).get(shape.width(*d).., ..active);
             let mut at_row = from;
@@ -373,7 +393,7 @@ impl Work<'_> {
     }
 
     /// Factorizes the eliminated columns of the block of `s` and takes their products off its other columns.
-    fn eliminate(&self, s: usize, values: &mut [f64], scratch: &mut Scratch, wide: bool) -> Result<(), Halt> {
+    fn eliminate(&self, s: usize, values: &mut [f64], scratch: &mut Scratch, in_strips: bool) -> Result<(), Halt> {
         let (active, height) = (self.shape.active(s), self.shape.height(s));
         let mut at = 0;
         while at < active {
@@ -387,15 +407,22 @@ impl Work<'_> {
                 .map_err(|_| Halt::Pivot)?;
             let top = top.as_ref();
             let solve = |rows: MatMut<f64>| solve_lower_triangular_in_place(top, rows.transpose_mut(), PAR);
-            if wide && bottom.nrows() > ROWS {
-                bottom.as_mut().par_row_chunks_mut(ROWS).for_each(solve);
+            let rows = if in_strips { ROWS } else { bottom.nrows() };
+            if in_strips && self.is_spread && bottom.nrows() > rows {
+                bottom.as_mut().par_row_chunks_mut(rows).for_each(solve);
             } else {
-                solve(bottom.as_mut());
+                let mut rest = bottom.as_mut();
+                while rest.nrows() > 0 {
+                    let size = rows.min(rest.nrows());
+                    let (piece, more) = rest.split_at_row_mut(size);
+                    solve(piece);
+                    rest = more;
+                }
             }
             // The columns right of the panel, from their diagonal down.
             let bottom = bottom.as_ref();
             let strip = (PIECE / (bottom.nrows().max(1) * size)).clamp(8, PANEL);
-            let update = |since: &mut usize, (index, columns): (usize, &mut [f64])| {
+            self.each_strip(rest, strip * height, in_strips, &mut scratch.product, |product, (index, columns)| {
                 let (first, width) = (index * strip, columns.len() / height);
                 matmul(
                     MatMut::from_column_major_slice_mut(columns, height, width).get_mut(below + first.., ..),
@@ -405,14 +432,8 @@ impl Work<'_> {
                     -1.0,
                     PAR,
                 );
-                self.look(since, (bottom.nrows() - first) * width * size)
-            };
-            if wide {
-                rest.par_chunks_mut(strip * height).enumerate().try_for_each_init(|| 0, update)?;
-            } else {
-                let mut strips = rest.chunks_mut(strip * height).enumerate();
-                strips.try_for_each(|columns| update(&mut scratch.product.since, columns))?;
-            }
+                Ok(self.look(&mut product.since, (bottom.nrows() - first) * width * size)?)
+            })?;
             at = below;
         }
         Ok(())
