@@ -16,8 +16,8 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::rows::tangential_joint;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
-use crate::lcp::exact::dyadic::rational;
-use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution, clear_denominators};
+use crate::lcp::exact::dyadic::{product, rational, shifted};
+use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution};
 use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 
 /// A quantity of a pair that must not be negative.
@@ -163,19 +163,22 @@ fn constants(matrix: &DMatrix<f64>, load: &DVector<f64>, problem: &ContactProble
 impl Forms<'_> {
     /// Σ factor·λ_row + fixed.
     fn form(&self, terms: &[(usize, f64)], fixed: f64) -> Form {
-        let mut row: Vec<BigRational> = vec![Zero::zero(); self.unknown.len() + 1];
-        for (joint, factor) in terms {
-            let factor = rational(*factor);
-            for (entry, k) in row.iter_mut().zip(&self.unknown) {
-                *entry += &factor * rational(self.data.matrix[(*joint, *k)]);
-            }
-            row[self.unknown.len()] += &factor * &self.data.constants[*joint];
+        let factors = || terms.iter().map(|(joint, factor)| (*joint, *factor));
+        let products = |k: usize| factors().map(move |(joint, factor)| product(factor, self.data.matrix[(joint, k)]));
+        let constants = factors().map(|(joint, factor)| rational(factor) * &self.data.constants[joint]);
+        let constant = constants.fold(rational(fixed), |sum, term| sum + term);
+        // All of them are integers times powers of two: the least power makes them whole.
+        let power = constant.denom().bits() as i64 - 1;
+        let least = self.unknown.iter().flat_map(|k| products(*k)).filter(|(mantissa, _)| *mantissa != 0);
+        let least = least.map(|(_, exponent)| exponent).fold(-power, i64::min);
+        let whole = |k: &usize| -> BigInt {
+            products(*k).map(|(mantissa, exponent)| shifted(mantissa, exponent - least)).sum()
+        };
+        Form {
+            coefficients: self.unknown.iter().map(whole).collect(),
+            constant: constant.numer() << (-power - least) as u64,
+            scale: shifted(1, -least),
         }
-        row[self.unknown.len()] += rational(fixed);
-        let (mut coefficients, scale) = clear_denominators(&row);
-        // The row has at least its constant.
-        let constant = coefficients.pop().unwrap_or_default();
-        Form { coefficients, constant, scale }
     }
 
     fn normal(&self, pair: usize) -> Form {

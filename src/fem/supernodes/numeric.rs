@@ -141,8 +141,9 @@ impl Progress<'_> {
             return Ok(());
         }
         state.2 = state.0;
+        // Under the lock: nobody tells of progress after somebody was stopped.
+        check_stop(self.watch)?;
         self.watch.progress(&format!("{DOING}, {} of {all} unknowns", state.1), (state.0 / self.total).min(1.0));
-        drop(state);
         check_stop(self.watch)
     }
 }

@@ -44,6 +44,31 @@ fn restricted_condensation_equals_block_solve() {
     }
 }
 
+/// R to the last bit on one thread and on several. The long low plates have their interface among the other unknowns, the
+/// high ones behind them; both have branches and a crown.
+#[test]
+fn the_factor_does_not_depend_on_the_number_of_threads() {
+    for (size, divisions) in [([30.0, 0.4], [300, 4]), ([4.0, 4.0], [40, 40])] {
+        let model = two_plates(size, divisions, 0);
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| model.solve().stiffness().clone())
+        };
+        let one = with(1);
+        assert!(one == with(2), "{divisions:?}");
+        assert!(one == with(3), "{divisions:?}");
+    }
+}
+
+/// Interface unknowns among the rest, as their dense block would cost more: R is that of the block solve.
+#[test]
+fn the_interface_among_the_rest_gives_the_same_stiffness() {
+    let model = two_plates([40.0, 0.2], [200, 1], 0);
+    let plain = plain(&model);
+    let system = model.solve();
+    assert!((system.stiffness() - &plain).amax() < 1e-12 * plain.amax());
+}
+
 /// B T = 0 and B G = I, whatever holds what.
 #[test]
 fn elimination_satisfies_the_joints() {

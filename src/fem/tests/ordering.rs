@@ -116,6 +116,20 @@ fn little_fill_in_a_square_plate() {
     assert!(entries < 4.0 * k.powi(3));
 }
 
+/// Two halves that are ordered on two threads, more nodes than one thread orders alone; on a pool of one thread the same.
+#[test]
+fn the_order_does_not_depend_on_the_number_of_threads() {
+    let plate = Plate::new(120, 60);
+    let last = vec![false; plate.node.len()];
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| plate.order(&last))
+    };
+    let order = with(1);
+    assert_eq!(order, with(2));
+    assert_eq!(order, with(3));
+}
+
 /// A long strip whose lower edge comes last: a cut across it reaches only the stretch of the edge between the next
 /// two larger cuts, so that the entries in the rows of the edge grow as its length times the logarithm of it, and
 /// not as its square.

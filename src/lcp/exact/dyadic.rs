@@ -20,6 +20,18 @@ pub fn parts(value: f64) -> (i64, i64) {
     (if value < 0.0 { -mantissa } else { mantissa }, exponent + twos)
 }
 
+/// a b: mantissa and exponent, exactly.
+pub fn product(a: f64, b: f64) -> (i128, i64) {
+    let ((a, e), (b, f)) = (parts(a), parts(b));
+    (i128::from(a) * i128::from(b), e + f)
+}
+
+/// mantissa · 2^shift.
+pub fn shifted(mantissa: i128, shift: i64) -> BigInt {
+    debug_assert!(mantissa == 0 || shift >= 0);
+    if mantissa == 0 { BigInt::default() } else { BigInt::from(mantissa) << shift as u64 }
+}
+
 /// The number that a finite f64 stands for.
 pub fn rational(value: f64) -> BigRational {
     <BigRational as Scalar>::from_f64(value)

@@ -8,6 +8,7 @@ pub mod corners;
 pub mod dyadic;
 pub mod farkas;
 pub mod lemke;
+pub mod modular;
 pub mod polyhedron;
 pub mod rational_solve;
 pub mod scalar;

@@ -8,12 +8,10 @@
 use std::ops::ControlFlow;
 
 use num_rational::BigRational;
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use num_traits::{One, Signed, Zero};
 
+use crate::lcp::exact::modular::{LimbRow, Prime};
 use crate::lcp::exact::scalar::BigInt;
-
-/// Primes below 2⁶¹; another is taken when one divides a determinant.
-const PRIMES: [u64; 4] = [(1 << 61) - 1, (1 << 61) - 31, (1 << 61) - 45, (1 << 61) - 229];
 
 /// x = numerators / denominator, denominator > 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,7 +95,7 @@ pub fn null_space(
 /// Rank of a square matrix modulo a prime of 61 bits: never above its rank, and below it only where the prime divides a
 /// minor.
 pub fn rank_modulo_prime(matrix: &[Vec<BigInt>]) -> usize {
-    independent(matrix, PRIMES[0], &mut || true).map_or(0, |basis| basis.rows.len())
+    independent(matrix, Prime::ALL[0], &mut || true).map_or(0, |basis| basis.rows.len())
 }
 
 /// A square system by its independent rows and columns.
@@ -129,7 +127,7 @@ fn reduced(
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Reduced, RationalSolution> {
     let k = rhs.len();
-    for prime in PRIMES {
+    for prime in Prime::ALL {
         let Some(basis) = independent(matrix, prime, &mut || progress(0.0).is_continue()) else {
             return Err(RationalSolution::Interrupted);
         };
@@ -177,38 +175,15 @@ fn spread(solution: &Quotients, columns: &[usize], k: usize) -> Quotients {
     Quotients { numerators, denominator: solution.denominator.clone() }
 }
 
-fn times(a: u64, b: u64, p: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(p)) as u64
-}
-
-fn inverse(a: u64, p: u64) -> u64 {
-    // Fermat.
-    let (mut base, mut exponent, mut result) = (a, p - 2, 1);
-    while exponent > 0 {
-        if exponent & 1 == 1 {
-            result = times(result, base, p);
-        }
-        base = times(base, base, p);
-        exponent >>= 1;
-    }
-    result
-}
-
-fn residue(a: &BigInt, p: u64) -> u64 {
-    let r = a % BigInt::from(p);
-    let r = if r.is_negative() { r + BigInt::from(p) } else { r };
-    r.to_u64().unwrap_or(0) // 0 ≤ r < p fits
-}
-
 struct Independent {
     rows: Vec<usize>,
     columns: Vec<usize>,
 }
 
 /// Rows and columns of a largest minor that is nonzero modulo p; `None` when stopped.
-fn independent(matrix: &[Vec<BigInt>], p: u64, go_on: &mut dyn FnMut() -> bool) -> Option<Independent> {
+fn independent(matrix: &[Vec<BigInt>], p: Prime, go_on: &mut dyn FnMut() -> bool) -> Option<Independent> {
     let k = matrix.len();
-    let mut a: Vec<Vec<u64>> = matrix.iter().map(|row| row.iter().map(|x| residue(x, p)).collect()).collect();
+    let mut a: Vec<Vec<u64>> = matrix.iter().map(|row| row.iter().map(|x| p.residue(x)).collect()).collect();
     let mut rows: Vec<usize> = (0..k).collect();
     let mut found = Independent { rows: Vec::new(), columns: Vec::new() };
     for column in 0..k {
@@ -221,16 +196,15 @@ fn independent(matrix: &[Vec<BigInt>], p: u64, go_on: &mut dyn FnMut() -> bool) 
         };
         a.swap(next, pivot);
         rows.swap(next, pivot);
-        let over = inverse(a[next][column], p);
+        let over = p.inverse(a[next][column]);
         let (top, below) = a.split_at_mut(next + 1);
+        let solved = &top[next][column..];
         for row in below {
-            let factor = times(row[column], over, p);
+            let factor = p.minus(p.times(row[column], over));
             if factor == 0 {
                 continue;
             }
-            for j in column..k {
-                row[j] = (row[j] + p - times(factor, top[next][j], p)) % p;
-            }
+            row[column..].iter_mut().zip(solved).for_each(|(x, s)| *x = p.plus_product(*x, factor, *s));
         }
         found.rows.push(rows[next]);
         found.columns.push(column);
@@ -241,20 +215,21 @@ fn independent(matrix: &[Vec<BigInt>], p: u64, go_on: &mut dyn FnMut() -> bool) 
 /// A nonsingular matrix with its inverse modulo p.
 struct Lifting {
     matrix: Vec<Vec<BigInt>>,
+    limbs: Vec<LimbRow>,
     inverse: Vec<Vec<u64>>,
-    p: u64,
+    p: Prime,
 }
 
 impl Lifting {
     /// Continues with nothing where it is singular modulo p.
-    fn new(matrix: Vec<Vec<BigInt>>, p: u64, go_on: &mut dyn FnMut() -> bool) -> ControlFlow<(), Option<Self>> {
+    fn new(matrix: Vec<Vec<BigInt>>, p: Prime, go_on: &mut dyn FnMut() -> bool) -> ControlFlow<(), Option<Self>> {
         let k = matrix.len();
         let mut a: Vec<Vec<u64>> = matrix
             .iter()
             .enumerate()
             .map(|(i, row)| {
                 let unit = (0..k).map(|j| u64::from(i == j));
-                row.iter().map(|x| residue(x, p)).chain(unit).collect()
+                row.iter().map(|x| p.residue(x)).chain(unit).collect()
             })
             .collect();
         for column in 0..k {
@@ -265,45 +240,31 @@ impl Lifting {
                 return ControlFlow::Continue(None);
             };
             a.swap(column, pivot);
-            let over = inverse(a[column][column], p);
-            for x in &mut a[column] {
-                *x = times(*x, over, p);
-            }
+            let over = p.inverse(a[column][column]);
+            a[column].iter_mut().for_each(|x| *x = p.times(*x, over));
             let solved = a[column].clone();
             for (i, row) in a.iter_mut().enumerate() {
-                let factor = row[column];
+                let factor = p.minus(row[column]);
                 if i == column || factor == 0 {
                     continue;
                 }
-                for (x, s) in row.iter_mut().zip(&solved) {
+                // Columns before this one are done with.
+                for (x, s) in row[column..].iter_mut().zip(&solved[column..]) {
                     if *s != 0 {
-                        *x = (*x + p - times(factor, *s, p)) % p;
+                        *x = p.plus_product(*x, factor, *s);
                     }
                 }
             }
         }
         let inverse = a.into_iter().map(|row| row[k..].to_vec()).collect();
-        ControlFlow::Continue(Some(Self { matrix, inverse, p }))
+        let limbs = matrix.iter().map(|row| LimbRow::new(row)).collect();
+        ControlFlow::Continue(Some(Self { matrix, limbs, inverse, p }))
     }
 
     /// inverse · b modulo p.
     fn digits(&self, b: &[BigInt]) -> Vec<u64> {
-        let b: Vec<u64> = b.iter().map(|x| residue(x, self.p)).collect();
-        let p = u128::from(self.p);
-        self.inverse
-            .iter()
-            .map(|row| {
-                // Products stay below 2^122: 32 of them fit beside a reduced sum.
-                let mut sum = 0u128;
-                for (count, (x, y)) in row.iter().zip(&b).enumerate() {
-                    sum += u128::from(*x) * u128::from(*y);
-                    if count % 32 == 31 {
-                        sum %= p;
-                    }
-                }
-                (sum % p) as u64
-            })
-            .collect()
+        let b: Vec<u64> = b.iter().map(|x| self.p.residue(x)).collect();
+        self.inverse.iter().map(|row| self.p.dot(row, &b)).collect()
     }
 
     /// Steps that certainly suffice: p^s > 2 N D by Hadamard's bound.
@@ -325,22 +286,16 @@ impl Lifting {
         b: &[BigInt],
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> ControlFlow<(), Option<Quotients>> {
-        let prime = BigInt::from(self.p);
+        let prime = BigInt::from(self.p.value());
         let enough = self.enough(b);
         let mut rest = b.to_vec();
         let mut lifted = vec![Vec::<u64>::new(); b.len()];
         let mut attempt = 8;
         for step in 1..=enough {
             let digits = self.digits(&rest);
-            for (i, row) in self.matrix.iter().enumerate() {
-                let mut sum = std::mem::take(&mut rest[i]);
-                for (a, y) in row.iter().zip(&digits) {
-                    if !a.is_zero() && *y != 0 {
-                        sum -= a * *y;
-                    }
-                }
+            for (rest, row) in rest.iter_mut().zip(&self.limbs) {
                 // Divisible: A y ≡ rest modulo p.
-                rest[i] = sum / &prime;
+                *rest = (std::mem::take(rest) - row.dot(&digits)) / self.p.value();
             }
             for (digits_of, y) in lifted.iter_mut().zip(digits) {
                 digits_of.push(y);
