@@ -5,6 +5,9 @@
 //! measure warm PAIRS F T REPETITIONS                      cold, load changed, friction changed
 //! measure resolve NX NY REPETITIONS                       a load inside the model moved, a size moved
 //! measure condense NX NY WIDTH HEIGHT CASES [plain]       two plates; `plain`: also faer's own factorization
+//! measure schur NX NY WIDTH HEIGHT FOLDER                 exports K_m and C of the same to FOLDER, and condenses it
+//! measure given PAIRS                                     the check of a matrix of a file beside a Cholesky factorization
+//! measure exact PAIRS F                                   the exact check of an answer
 //! ```
 
 #[path = "../benches/common/mod.rs"]
@@ -208,6 +211,102 @@ fn resolve(arguments: &[String]) -> Result<Value, Failure> {
     Ok(json!({ "unknowns": size, "medians": medians }))
 }
 
+/// Seconds of processor time that this process has used on all its threads.
+fn processor_seconds() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    // utime and stime, in hundredths on Linux.
+    Some((fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?) / 100.0)
+}
+
+/// Seconds on the clock and of the processor.
+fn spent<T>(work: impl FnOnce() -> T) -> (Value, T) {
+    let before = processor_seconds();
+    let (seconds, result) = timed(work);
+    let processor = before.zip(processor_seconds()).map(|(before, after)| after - before);
+    (json!({ "seconds": seconds, "processor": processor }), result)
+}
+
+/// Two plates for a Schur complement: K_m (lower triangle) and C as terms `row column value` from 1 on.
+fn schur(arguments: &[String]) -> Result<Value, Failure> {
+    let scenario = Plates {
+        divisions: [number(arguments, 0, "NX")?, number(arguments, 1, "NY")?],
+        size: [number(arguments, 2, "WIDTH")?, number(arguments, 3, "HEIGHT")?],
+        ..Plates::with_pairs(2, 0.4)
+    }
+    .scenario();
+    let folder = Path::new(arguments.get(4).ok_or("FOLDER is missing")?);
+    let Source::Structure(structure) = &scenario.source else {
+        return Err("no structure".into());
+    };
+    let joints = joints(&structure.pairs);
+    let (k_m, c) = MainSystem::matrices_of(structure, &joints, &Quiet)?;
+    let mut out = BufWriter::new(File::create(folder.join("K.txt"))?);
+    for column in 0..k_m.order() {
+        for (row, value) in k_m.column(column) {
+            writeln!(out, "{} {} {value:e}", row + 1, column + 1)?;
+        }
+    }
+    out.flush()?;
+    let mut out = BufWriter::new(File::create(folder.join("C.txt"))?);
+    for (row, joint, value) in c {
+        writeln!(out, "{} {} {value:e}", row + 1, joint + 1)?;
+    }
+    out.flush()?;
+    let (whole, main) = spent(|| MainSystem::new(structure, &joints, &Quiet));
+    let main = main?;
+    let seconds = main.timings();
+    Ok(json!({
+        "unknowns": k_m.order(), "pairs": structure.pairs.len(), "whole": whole,
+        "assemble": seconds.assemble, "factor": seconds.factor, "condense": seconds.condense,
+        "entries": main.factor_entries(), "peak_megabytes": peak_megabytes(),
+    }))
+}
+
+/// A contact stiffness matrix given as one: its check, and faer's Cholesky factorization of the same matrix.
+fn given(arguments: &[String]) -> Result<Value, Failure> {
+    let pairs: usize = number(arguments, 0, "PAIRS")?;
+    let ready = Ready::new(&Plates::with_pairs(pairs, 0.4));
+    let system = ready.prepared.system().ok_or("no contact system")?;
+    let n = system.joint_count();
+    let matrix = &system.stiffness;
+    let rows: Vec<String> = (0..n)
+        .map(|i| {
+            let entries: Vec<String> = (0..n).map(|j| format!("{:e}", matrix[(i, j)])).collect();
+            format!("[{}]", entries.join(","))
+        })
+        .collect();
+    let ids: Vec<String> = system.pairs.iter().enumerate().map(|(i, _)| format!("\"c{i}\"")).collect();
+    let load = vec!["-1"; n].join(",");
+    let friction = vec!["0.4"; pairs].join(",");
+    let text = format!(
+        r#"{{"format":"stickslip/1","title":"A matrix","contact_system":{{"pairs":[{}],"friction":[{friction}],
+"loads":{{"weight":{{"vector":[{load}]}}}},"stiffness":[{}]}}}}"#,
+        ids.join(","),
+        rows.join(",")
+    );
+    let scenario = stickslip::model::load::load_text("matrix", &text, None).map_err(|problems| problems.to_string())?;
+    let (check, prepared) = spent(|| prepare(&scenario, &Quiet));
+    prepared?;
+    let view = faer::MatRef::from_column_major_slice(matrix.as_slice(), n, n);
+    faer::set_global_parallelism(faer::Par::Seq);
+    let (cholesky, factor) = spent(|| view.llt(Side::Lower));
+    let cholesky_fails = factor.is_err();
+    Ok(
+        json!({ "pairs": pairs, "bytes": text.len(), "check": check, "cholesky": cholesky, "cholesky_fails": cholesky_fails }),
+    )
+}
+
+/// The exact check of an answer.
+fn exact(arguments: &[String]) -> Result<Value, Failure> {
+    let ready = Ready::new(&Plates::with_pairs(number(arguments, 0, "PAIRS")?, number(arguments, 1, "F")?));
+    let values = ready.values(&[]);
+    let solved = ready.prepared.case(&ready.scenario, &values).under(ready.scenario.rules).solve()?;
+    let (check, found) = spent(|| ready.prepared.check_exactly(&solved, &Quiet));
+    let found = format!("{:?}", found.map_err(|error| format!("{error:?}"))?);
+    Ok(json!({ "check": check, "found": found.get(..80) }))
+}
+
 /// The main system of two plates: seconds of its parts, memory.
 fn condense(arguments: &[String]) -> Result<Value, Failure> {
     let scenario = Plates {
@@ -222,7 +321,7 @@ fn condense(arguments: &[String]) -> Result<Value, Failure> {
     };
     let joints = joints(&structure.pairs);
     let before = peak_megabytes();
-    let (total, main) = timed(|| MainSystem::new(structure, &joints, &Quiet));
+    let (total, main) = spent(|| MainSystem::new(structure, &joints, &Quiet));
     let main = main?;
     let seconds = main.timings();
     let peak = peak_megabytes();
@@ -233,14 +332,15 @@ fn condense(arguments: &[String]) -> Result<Value, Failure> {
         "assemble": seconds.assemble,
         "factor": seconds.factor,
         "condense": seconds.condense,
-        "total": total,
+        "total": total["seconds"],
+        "processor": total["processor"],
         "entries": main.factor_entries(),
         "model_megabytes": before,
         "peak_megabytes": peak,
     });
     drop(main);
     if arguments.get(5).is_some_and(|word| word == "plain") {
-        let k_m = MainSystem::matrix(structure, &joints, &Quiet)?;
+        let (k_m, _) = MainSystem::matrices_of(structure, &joints, &Quiet)?;
         let n = k_m.order();
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &k_m.column_start, None, &k_m.rows);
         let matrix = SparseColMatRef::new(pattern, &k_m.values);
@@ -261,7 +361,13 @@ fn main() -> ExitCode {
         Some("warm") => warm(rest).map(|result| println!("{result}")),
         Some("resolve") => resolve(rest).map(|result| println!("{result}")),
         Some("condense") => condense(rest).map(|result| println!("{result}")),
-        _ => Err("expected engine, warm, resolve or condense; see the head of examples/measure.rs".into()),
+        Some("schur") => schur(rest).map(|result| println!("{result}")),
+        Some("given") => given(rest).map(|result| println!("{result}")),
+        Some("exact") => exact(rest).map(|result| println!("{result}")),
+        _ => {
+            Err("expected engine, warm, resolve, condense, schur, given or exact; see the head of examples/measure.rs"
+                .into())
+        }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

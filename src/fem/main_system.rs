@@ -226,19 +226,21 @@ impl MainSystem {
         }
     }
 
-    /// K_m, for measuring other solvers on the same matrix.
+    /// K_m and the terms (row, joint, value) of C, for measuring other solvers on the same matrices; the joints have to be
+    /// independent.
     ///
     /// # Errors
     /// As [`MainSystem::new`] up to the assembly.
-    pub fn matrix(
+    pub fn matrices_of(
         structure: &Structure,
         joints: &[Joint],
         watch: &dyn Watch,
-    ) -> Result<SymmetricSparse, MainSystemError> {
+    ) -> Result<(SymmetricSparse, Vec<(u32, u32, f64)>), MainSystemError> {
         let dofs = Dofs::new(structure);
         let elimination = Elimination::new(structure, &dofs, joints)?;
         let k: SymmetricSparse = assemble(structure, &dofs, &|| watch.stop())?;
-        Ok(main_matrices(&k, &elimination).k_m)
+        let main = main_matrices(&k, &elimination);
+        Ok((main.k_m, main.c))
     }
 
     /// Index among all joints of each joint that R is made of, ascending.

@@ -47,7 +47,7 @@ fn singular_systems_are_told_apart() {
 
 #[test]
 fn a_matrix_that_vanishes_modulo_the_first_prime() {
-    let p = BigInt::from(PRIMES[0]);
+    let p = BigInt::from(Prime::ALL[0].value());
     let RationalSolution::Unique(x) = go(&[vec![p.clone()]], &[BigInt::one()]) else { panic!() };
     assert_eq!(quotient(&x, 0), BigRational::new(BigInt::one(), p));
 }
