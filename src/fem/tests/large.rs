@@ -54,16 +54,14 @@ fn the_factor_does_not_depend_on_the_number_of_threads() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| model.solve().stiffness().clone())
         };
-        let one = with(1);
-        assert!(one == with(2), "{divisions:?}");
-        assert!(one == with(3), "{divisions:?}");
+        assert!(with(1) == with(3), "{divisions:?}");
     }
 }
 
 /// Interface unknowns among the rest, as their dense block would cost more: R is that of the block solve.
 #[test]
 fn the_interface_among_the_rest_gives_the_same_stiffness() {
-    let model = two_plates([40.0, 0.2], [200, 1], 0);
+    let model = two_plates([24.0, 0.2], [120, 1], 0);
     let plain = plain(&model);
     let system = model.solve();
     assert!((system.stiffness() - &plain).amax() < 1e-12 * plain.amax());
