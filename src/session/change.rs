@@ -12,7 +12,7 @@ use crate::view::style::Role;
 use crate::watch::Watch;
 
 use super::journal::Record;
-use super::{Change, CommandError, Format, Output, Session, Setup};
+use super::{Change, CommandError, Format, Output, Session, Setup, worker};
 
 impl Session {
     /// Takes `next` over if it can be solved (or need not be yet), and says what changed.
@@ -84,8 +84,8 @@ impl Session {
             self.trouble |= whole.answer.outcome.is_failure();
             self.solved = Some(Arc::new(whole));
         }
-        if let Some(previous) = self.previous.as_mut().filter(|previous| !previous.is_whole()) {
-            *previous = Arc::new(previous.completed());
+        if let Some(previous) = self.previous.clone().filter(|previous| !previous.is_whole()) {
+            self.previous = Some(Arc::new(worker::run(watch, move |_| previous.completed())?));
         }
         Ok(())
     }

@@ -50,7 +50,8 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     let changed = matches!(done.job, Job::Set { .. } | Job::Vary { .. } | Job::Show(_)) || done.job.is_background();
     quantities::ask(state, done.asked);
     match (&done.job, done.gauges) {
-        (_, Some(gauges)) => quantities::take(state, gauges),
+        // those of the session are not those at the cursor of the map
+        (_, Some(gauges)) if state.below.is_none() => quantities::take(state, gauges),
         // whoever types has chosen for himself
         (Job::Line { shows: true, .. }, None) => state.combination = None,
         _ => {}
