@@ -15,7 +15,7 @@ use crate::lcp::outcome::Point;
 /// A vertex over the joints, in the user's units, rounding noise removed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointState {
-    /// z over the joints; z_τ = z⁺ − z⁻.
+    /// z over the joints, lengths; z_τ = z⁺ − z⁻.
     pub z: DVector<f64>,
     /// λ = R (z − (g, 0)) + RF, computed afresh, without the covering.
     pub force: DVector<f64>,
@@ -25,7 +25,7 @@ pub struct JointState {
     pub z_terms: DVector<f64>,
     /// What the equations of a file leave over; see [`StateForces`].
     pub left: Vec<Sum>,
-    /// p.
+    /// p, a force; 0 in an answer.
     pub p: f64,
     /// Pairs whose forces the motion leaves undetermined: theirs are those of least norm.
     pub free: Vec<usize>,

@@ -244,7 +244,7 @@ impl State {
     }
 }
 
-/// Forces, displacements and reserves of one pair, in the user's units.
+/// Forces, displacements and reserves of one pair, in the user's units of force and length; signs of method §1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PairState {
     /// Pair id.
@@ -255,19 +255,19 @@ pub struct PairState {
     pub state: State,
     /// What holds an open pair (cohesion, or p > 0): `stick`, `slip+`, `slip-`.
     pub held: Option<State>,
-    /// Compressive force.
+    /// Contact force along n, > 0 pressed together.
     pub x_n: f64,
-    /// Tangential joint force.
+    /// Tangential force on the second side, > 0 along +t: −bound while the pair slips +.
     pub x_t: f64,
-    /// Distance open.
+    /// Opening, ≥ 0.
     pub z_n: f64,
-    /// Slip.
+    /// Slip of the second side, > 0 along +t.
     pub z_t: f64,
-    /// Friction bound r_f (with the covering at p > 0).
+    /// Friction bound r_f = f x_n + c ≥ 0, a force (with the covering at p > 0).
     pub bound: f64,
-    /// x⁺.
+    /// x⁺ = bound + x_t ≥ 0, a force: what is left before the pair slips +.
     pub reserve_plus: f64,
-    /// x⁻.
+    /// x⁻ = bound − x_t ≥ 0, a force: what is left before the pair slips −.
     pub reserve_minus: f64,
     /// Place; for a contact system [s, 0] or null.
     pub position: Option<[f64; 2]>,
@@ -276,16 +276,17 @@ pub struct PairState {
     pub joint: usize,
 }
 
-/// Fresh check of an answer from R, RF, f and K, all relative to the largest force and displacement.
+/// Fresh check of an answer from R, RF, f and K: numbers without unit. A force or reserve is measured by the magnitudes of
+/// the terms that it was summed from, a displacement by the share of the forces that hangs on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Check {
-    /// Smallest w.
+    /// Smallest contact force or reserve; ≥ 0 but for rounding in an answer.
     pub min_w: f64,
-    /// Smallest z.
+    /// Smallest opening, z⁺ or z⁻; likewise.
     pub min_z: f64,
     /// Of every couple the smaller of w_i and z_i, the largest of all; of a bare LCP w where z > 0.
     pub complementarity: f64,
-    /// ‖K u − F − Bᵀλ‖; `None` where there is no K.
+    /// ‖K u − F − Bᵀλ‖ relative to the loads; `None` where there is no K.
     pub equilibrium: Option<f64>,
     /// What rounding hides of the forces, as a share of the loads; told where a check fails for it.
     #[serde(skip)]
@@ -297,7 +298,7 @@ pub struct Check {
     pub passed: bool,
 }
 
-/// Displacements of a node.
+/// Displacements of a node, in the user's unit of length.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodeDisplacement {
     /// Node id.
@@ -306,11 +307,12 @@ pub struct NodeDisplacement {
     pub ux: f64,
     /// Along y.
     pub uy: f64,
-    /// Rotation, counter-clockwise; 0 at nodes without one.
+    /// Rotation in radians, counter-clockwise; 0 at nodes without one.
     pub rz: f64,
 }
 
-/// Internal forces at one end of an element, bar axes (N > 0 tension, Q = dM/dx, M > 0 tension on −y).
+/// Internal forces at one end of an element in the user's units, bar axes: N > 0 tension, Q = dM/dx, M > 0 tension on the
+/// −y side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EndForces {
     /// Normal force.
@@ -340,7 +342,7 @@ pub struct MemberForces {
     pub pieces: Vec<Piece>,
 }
 
-/// Force of the supports and springs of a node on the structure, their sum.
+/// Force of the supports and springs of a node on the structure, their sum, in the user's units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reaction {
     /// Node id.
@@ -403,7 +405,7 @@ pub struct Answer {
     pub marginal: bool,
     /// Where the run ended in a ray.
     pub ray: Option<Ray>,
-    /// p at the end.
+    /// p at the end, a force in the user's unit; 0 of an answer.
     pub p: f64,
     /// Rules of the last attempt.
     pub rules: AttemptRules,

@@ -12,7 +12,7 @@ pub enum StressPlace {
     Element(String),
 }
 
-/// A stress, tension positive.
+/// A stress, tension positive, in the user's units of force per length squared.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stress {
     /// Its place.
@@ -24,11 +24,11 @@ pub struct Stress {
     pub sy: f64,
     /// σ_xy.
     pub sxy: f64,
-    /// The larger principal stress in the plane.
+    /// The larger principal stress in the plane, s1 ≥ s2.
     pub s1: f64,
     /// The smaller one.
     pub s2: f64,
-    /// Equivalent stress of von Mises, with σ_zz.
+    /// Equivalent stress of von Mises, with σ_zz; ≥ 0.
     pub mises: f64,
 }
 

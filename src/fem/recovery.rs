@@ -54,7 +54,7 @@ pub struct NodeStress {
     pub stress: [f64; 4],
 }
 
-/// Force of the supports and springs of a node on the structure.
+/// Force of the supports and springs of a node on the structure, global axes, in the units of the loads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
     /// The node.

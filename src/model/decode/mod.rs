@@ -68,27 +68,6 @@ const COMMON: [&str; 11] = [
     "solver",
 ];
 
-/// Keys of the source *structure*.
-const STRUCTURE: [&str; 17] = [
-    "superelement",
-    "materials",
-    "sections",
-    "nodes",
-    "bars",
-    "plates",
-    "meshes",
-    "triangles",
-    "quads",
-    "edges",
-    "rigid",
-    "ties",
-    "supports",
-    "springs",
-    "foundations",
-    "contacts",
-    "loads",
-];
-
 /// Keys of the other two sources.
 const OTHER_SOURCES: [&str; 2] = ["contact_system", "lcp"];
 
@@ -143,7 +122,7 @@ pub fn scenario(name: &str, text: &str, path: Option<PathBuf>, mut under: Under<
 }
 
 fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: &Under<'_>) -> Option<Scenario> {
-    let known: Vec<&'static str> = COMMON.iter().chain(&STRUCTURE).chain(&OTHER_SOURCES).copied().collect();
+    let known: Vec<&'static str> = COMMON.into_iter().chain(structure::keys()).chain(OTHER_SOURCES).collect();
     let fields = root.fields(&known)?;
     format(&fields);
     let title = title(&fields);
@@ -307,7 +286,7 @@ enum SourceKey<'d> {
 
 /// Which of the three sources the file describes; a mixture and nothing at all are reported.
 fn source_key<'d>(fields: &Fields<'d>) -> Option<SourceKey<'d>> {
-    let structure = STRUCTURE.iter().find_map(|key| fields.entry(key));
+    let structure = structure::keys().find_map(|key| fields.entry(key));
     let system = fields.entry("contact_system");
     let lcp = fields.entry("lcp");
     let mut present: Vec<Entry<'d>> = [structure, system, lcp].into_iter().flatten().collect();

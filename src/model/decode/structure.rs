@@ -8,6 +8,26 @@ use super::{contacts, edges, elements, foundations, loads, rigid, springs, super
 use crate::model::scenario::Places;
 use crate::model::structure::{Component, Structure};
 
+/// Elements, and what they are made of: in their place a superelement may stand.
+pub const ELEMENTS: [&str; 8] = ["materials", "sections", "nodes", "bars", "plates", "meshes", "triangles", "quads"];
+
+/// What links and holds nodes: its key and its reader. Each is read after those before it, which it may name.
+const HOLDERS: [(&str, Reader); 5] = [
+    ("edges", edges::read),
+    ("rigid", rigid::read),
+    ("ties", ties::read),
+    ("supports", supports::read),
+    ("springs", springs::read),
+];
+
+type Reader = for<'d> fn(&mut Builder<'d>, &Fields<'d>);
+
+/// The keys of a structure.
+pub fn keys() -> impl Iterator<Item = &'static str> {
+    let holders = HOLDERS.map(|(key, _)| key);
+    ["superelement"].into_iter().chain(ELEMENTS).chain(holders).chain(["foundations", "contacts", "loads"])
+}
+
 /// A structure as it was read.
 pub struct Found {
     pub structure: Structure,
@@ -30,11 +50,7 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     };
     builder.elements_complete = fields.cursor().problems_so_far() == before;
     find_rotations(&mut builder);
-    edges::read(&mut builder, fields);
-    rigid::read(&mut builder, fields);
-    ties::read(&mut builder, fields);
-    supports::read(&mut builder, fields);
-    springs::read(&mut builder, fields);
+    HOLDERS.iter().for_each(|(_, read)| read(&mut builder, fields));
     contacts::read(&mut builder, fields)?;
     foundations::read(&mut builder, fields);
     loads::read(&mut builder, fields);

@@ -8,14 +8,15 @@ use super::loads::{check_case_name, factor};
 use super::matrix_file;
 use super::matrix_market::{Entries, Size};
 use super::reader::{Cursor, Entry, Fields, Place};
+use super::structure::ELEMENTS;
 use crate::model::structure::{Component, Load, LoadCase};
 use crate::model::superelement::Superelement;
 
 /// K may differ from its transpose by this much after scaling to unit diagonal.
 const SYMMETRY: f64 = 1e-8;
 
-/// What stands beside it: everything of a structure but elements and what they are made of.
-pub const BESIDE: [&str; 6] = ["rigid", "ties", "supports", "springs", "contacts", "loads"];
+/// What a structure needs elements for, beside these.
+const OF_ELEMENTS: [&str; 2] = ["edges", "foundations"];
 
 /// Reads the superelement: its nodes, dofs, K and loads. Returns the places of the names of its nodes.
 pub fn read<'d>(
@@ -24,9 +25,7 @@ pub fn read<'d>(
     at: Cursor<'d>,
     path: Option<&Path>,
 ) -> Option<Vec<Place<'d>>> {
-    let structure = &super::STRUCTURE;
-    let foreign: Vec<&str> =
-        structure.iter().copied().filter(|key| *key != "superelement" && !BESIDE.contains(key)).collect();
+    let foreign: Vec<&str> = ELEMENTS.into_iter().chain(OF_ELEMENTS).collect();
     fields.refuse(
         &foreign,
         |key| format!("`{key}` cannot stand beside `superelement`: that stands in the place of elements and nodes"),
