@@ -286,7 +286,7 @@ pub struct Check {
     pub min_z: f64,
     /// Of every couple the smaller of w_i and z_i, the largest of all; of a bare LCP w where z > 0.
     pub complementarity: f64,
-    /// ‖K u − F − Bᵀλ‖ relative to the loads; `None` where there is no K.
+    /// Largest |K u − F − Bᵀλ| beside the forces that meet at its node; `None` where there is no K.
     pub equilibrium: Option<f64>,
     /// What rounding hides of the forces, as a share of the loads; told where a check fails for it.
     #[serde(skip)]
