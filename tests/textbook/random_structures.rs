@@ -34,25 +34,8 @@ fn mirrored(q: &Turn) -> bool {
     q[0][0] * q[1][1] - q[0][1] * q[1][0] < 0.0
 }
 
-fn structure(seed: u64, q: &Turn) -> String {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut chance = |p: f64| rng.random_bool(p);
-    let bits: Vec<bool> = (0..64).map(|_| chance(0.5)).collect();
-    let loose = chance(0.4);
-    let with_quads = chance(0.5);
-    let with_tie = chance(0.3);
-    let mut number = |low: f64, high: f64| rng.random_range(low..high);
-    let turn = |v: [f64; 2]| json!(turned(q, v));
-    let bulge = number(-0.3, 0.3);
-    let mut nodes = serde_json::Map::new();
-    for (body, y) in [("a", [0.0, 1.0]), ("b", [0.0, -1.2])] {
-        for i in 0..6 {
-            let x = (i % 3) as f64 + if i >= 3 { 0.2 * bulge } else { 0.0 };
-            let lift = if i % 3 == 1 { bulge } else { 0.0 };
-            let lift = if i < 3 { lift } else { 0.3 * lift };
-            nodes.insert(format!("{body}{i}"), turn([x, y[i / 3] + lift]));
-        }
-    }
+/// The bars of both bodies; what each is hangs on `bits`.
+fn bars(bits: &[bool]) -> Vec<Value> {
     let mut bars = Vec::new();
     for (body, edges) in [
         ("a", vec![(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5), (0, 4)]),
@@ -72,6 +55,29 @@ fn structure(seed: u64, q: &Turn) -> String {
             bars.push(bar);
         }
     }
+    bars
+}
+
+fn structure(seed: u64, q: &Turn) -> String {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut chance = |p: f64| rng.random_bool(p);
+    let bits: Vec<bool> = (0..64).map(|_| chance(0.5)).collect();
+    let loose = chance(0.4);
+    let with_quads = chance(0.5);
+    let with_tie = chance(0.3);
+    let mut number = |low: f64, high: f64| rng.random_range(low..high);
+    let turn = |v: [f64; 2]| json!(turned(q, v));
+    let bulge = number(-0.3, 0.3);
+    let mut nodes = serde_json::Map::new();
+    for (body, y) in [("a", [0.0, 1.0]), ("b", [0.0, -1.2])] {
+        for i in 0..6 {
+            let x = (i % 3) as f64 + if i >= 3 { 0.2 * bulge } else { 0.0 };
+            let lift = if i % 3 == 1 { bulge } else { 0.0 };
+            let lift = if i < 3 { lift } else { 0.3 * lift };
+            nodes.insert(format!("{body}{i}"), turn([x, y[i / 3] + lift]));
+        }
+    }
+    let bars = bars(&bits);
     let quad = |id: &str, mut corners: Vec<&str>| {
         if mirrored(q) {
             corners.reverse();

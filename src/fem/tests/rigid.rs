@@ -72,6 +72,54 @@ fn random_model(seed: u64) -> Model {
     model
 }
 
+/// Every constraint as a row over the components with what it equals in both load cases: joints, supports, ties, then bodies,
+/// each node against the first.
+fn constraints(model: &Model, dofs: &Dofs) -> Vec<(Terms, [f64; 2])> {
+    let (structure, joints) = (&model.0, model.joints());
+    let at = |node: usize, component: Component| dofs.of(node, component).unwrap();
+    let mut rows: Vec<(Terms, [f64; 2])> = Vec::new();
+    for joint in &joints {
+        let terms = joint.terms.iter();
+        let terms = terms.flat_map(|(node, a)| [(at(*node, Component::X), a[0]), (at(*node, Component::Y), a[1])]);
+        rows.push((terms.collect(), [0.0; 2]));
+    }
+    for support in &structure.supports {
+        let moved = |load: &Load| match *load {
+            Load::Settlement { node, component, value }
+                if node == support.node && component == support.component =>
+            {
+                value
+            }
+            _ => 0.0,
+        };
+        let amounts = [0, 1].map(|case: usize| structure.load_cases[case].loads.iter().map(moved).sum());
+        rows.push((vec![(at(support.node, support.component), 1.0)], amounts));
+    }
+    for tie in &structure.ties {
+        for &c in &tie.components {
+            rows.push((vec![(at(tie.nodes[0], c), 1.0), (at(tie.nodes[1], c), -1.0)], [0.0; 2]));
+        }
+    }
+    for body in &structure.rigid {
+        let first = body.nodes[0];
+        let [x0, y0] = structure.nodes[first].position;
+        let turn = at(first, Component::R);
+        for &node in &body.nodes[1..] {
+            let [x, y] = structure.nodes[node].position;
+            rows.push((
+                vec![(at(node, Component::X), 1.0), (at(first, Component::X), -1.0), (turn, y - y0)],
+                [0.0; 2],
+            ));
+            rows.push((
+                vec![(at(node, Component::Y), 1.0), (at(first, Component::Y), -1.0), (turn, x0 - x)],
+                [0.0; 2],
+            ));
+            rows.push((vec![(at(node, Component::R), 1.0), (turn, -1.0)], [0.0; 2]));
+        }
+    }
+    rows
+}
+
 /// K u − F − Σ (row)ᵀ·multiplier = 0 with all rows: supports, ties, bodies (every node against its first), joints.
 #[test]
 fn as_with_every_constraint_written_out() {
@@ -81,47 +129,7 @@ fn as_with_every_constraint_written_out() {
         let system = model.solve();
         let dofs = &system.dofs;
         let n = dofs.count();
-        let at = |node: usize, component: Component| dofs.of(node, component).unwrap();
-        let mut rows: Vec<(Terms, [f64; 2])> = Vec::new();
-        for joint in &joints {
-            let terms = joint.terms.iter();
-            let terms = terms.flat_map(|(node, a)| [(at(*node, Component::X), a[0]), (at(*node, Component::Y), a[1])]);
-            rows.push((terms.collect(), [0.0; 2]));
-        }
-        for support in &structure.supports {
-            let moved = |load: &Load| match *load {
-                Load::Settlement { node, component, value }
-                    if node == support.node && component == support.component =>
-                {
-                    value
-                }
-                _ => 0.0,
-            };
-            let amounts = [0, 1].map(|case: usize| structure.load_cases[case].loads.iter().map(moved).sum());
-            rows.push((vec![(at(support.node, support.component), 1.0)], amounts));
-        }
-        for tie in &structure.ties {
-            for &c in &tie.components {
-                rows.push((vec![(at(tie.nodes[0], c), 1.0), (at(tie.nodes[1], c), -1.0)], [0.0; 2]));
-            }
-        }
-        for body in &structure.rigid {
-            let first = body.nodes[0];
-            let [x0, y0] = structure.nodes[first].position;
-            let turn = at(first, Component::R);
-            for &node in &body.nodes[1..] {
-                let [x, y] = structure.nodes[node].position;
-                rows.push((
-                    vec![(at(node, Component::X), 1.0), (at(first, Component::X), -1.0), (turn, y - y0)],
-                    [0.0; 2],
-                ));
-                rows.push((
-                    vec![(at(node, Component::Y), 1.0), (at(first, Component::Y), -1.0), (turn, x0 - x)],
-                    [0.0; 2],
-                ));
-                rows.push((vec![(at(node, Component::R), 1.0), (turn, -1.0)], [0.0; 2]));
-            }
-        }
+        let rows = constraints(&model, dofs);
         let size = n + rows.len();
         let mut matrix = DMatrix::zeros(size, size);
         for column in 0..n {

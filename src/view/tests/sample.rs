@@ -56,39 +56,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             joint: 0,
         });
     }
-    let slipping = n as usize;
-    let p = |k: usize| (pull - k as f64 * r) / (1.0 + friction) / k.max(1) as f64;
-    let mut pivots = vec![PivotRecord {
-        step: 0,
-        entering: "p".into(),
-        leaving: "x+[c6]".into(),
-        p: (pull - r) / (1.0 + friction),
-        ties: vec!["x+[c6]".into()],
-        turned: None,
-        sentence: "p enters: at p = 53.846 no reserve is negative; pair c6 has used up its reserve x⁺".into(),
-    }];
-    for k in 1..=slipping {
-        let (now, next) = (SUPPORTS + 1 - k, SUPPORTS - k);
-        let last = k == slipping;
-        pivots.push(PivotRecord {
-            step: k,
-            entering: format!("z+[c{now}]"),
-            leaving: if last { "p".into() } else { format!("x+[c{next}]") },
-            p: if last { 0.0 } else { p(k + 1) },
-            ties: if last { vec!["p".into(), format!("x+[c{next}]")] } else { vec![format!("x+[c{next}]")] },
-            turned: Some(Turned {
-                pair: format!("c{now}"),
-                joint: TurnedJoint::Tangential,
-                from: "stick".into(),
-                to: "slip+".into(),
-            }),
-            sentence: if last {
-                format!("pair c{now} slips +; p falls to 0: this is the answer")
-            } else {
-                format!("pair c{now} slips +; p falls, until pair c{next} uses up its reserve x⁺ (friction bound)")
-            },
-        });
-    }
+    let pivots = pivots(friction, pull, n as usize);
     Answer {
         outcome: OutcomeKind::Normal,
         marginal: false,
@@ -140,6 +108,44 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         notes: Vec::new(),
         failure: None,
     }
+}
+
+/// The pivots of that run, of whose pairs so many slip.
+fn pivots(friction: f64, pull: f64, slipping: usize) -> Vec<PivotRecord> {
+    let r = friction * WEIGHT;
+    let p = |k: usize| (pull - k as f64 * r) / (1.0 + friction) / k.max(1) as f64;
+    let mut pivots = vec![PivotRecord {
+        step: 0,
+        entering: "p".into(),
+        leaving: "x+[c6]".into(),
+        p: (pull - r) / (1.0 + friction),
+        ties: vec!["x+[c6]".into()],
+        turned: None,
+        sentence: "p enters: at p = 53.846 no reserve is negative; pair c6 has used up its reserve x⁺".into(),
+    }];
+    for k in 1..=slipping {
+        let (now, next) = (SUPPORTS + 1 - k, SUPPORTS - k);
+        let last = k == slipping;
+        pivots.push(PivotRecord {
+            step: k,
+            entering: format!("z+[c{now}]"),
+            leaving: if last { "p".into() } else { format!("x+[c{next}]") },
+            p: if last { 0.0 } else { p(k + 1) },
+            ties: if last { vec!["p".into(), format!("x+[c{next}]")] } else { vec![format!("x+[c{next}]")] },
+            turned: Some(Turned {
+                pair: format!("c{now}"),
+                joint: TurnedJoint::Tangential,
+                from: "stick".into(),
+                to: "slip+".into(),
+            }),
+            sentence: if last {
+                format!("pair c{now} slips +; p falls to 0: this is the answer")
+            } else {
+                format!("pair c{now} slips +; p falls, until pair c{next} uses up its reserve x⁺ (friction bound)")
+            },
+        });
+    }
+    pivots
 }
 
 /// The beam beyond its limit: F2 = 6 f F + 6 · 3.33 · (1 + f).
