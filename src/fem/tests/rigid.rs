@@ -85,9 +85,7 @@ fn constraints(model: &Model, dofs: &Dofs) -> Vec<(Terms, [f64; 2])> {
     }
     for support in &structure.supports {
         let moved = |load: &Load| match *load {
-            Load::Settlement { node, component, value }
-                if node == support.node && component == support.component =>
-            {
+            Load::Settlement { node, component, value } if node == support.node && component == support.component => {
                 value
             }
             _ => 0.0,
@@ -106,14 +104,8 @@ fn constraints(model: &Model, dofs: &Dofs) -> Vec<(Terms, [f64; 2])> {
         let turn = at(first, Component::R);
         for &node in &body.nodes[1..] {
             let [x, y] = structure.nodes[node].position;
-            rows.push((
-                vec![(at(node, Component::X), 1.0), (at(first, Component::X), -1.0), (turn, y - y0)],
-                [0.0; 2],
-            ));
-            rows.push((
-                vec![(at(node, Component::Y), 1.0), (at(first, Component::Y), -1.0), (turn, x0 - x)],
-                [0.0; 2],
-            ));
+            rows.push((vec![(at(node, Component::X), 1.0), (at(first, Component::X), -1.0), (turn, y - y0)], [0.0; 2]));
+            rows.push((vec![(at(node, Component::Y), 1.0), (at(first, Component::Y), -1.0), (turn, x0 - x)], [0.0; 2]));
             rows.push((vec![(at(node, Component::R), 1.0), (turn, -1.0)], [0.0; 2]));
         }
     }
