@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::builder::{Model, coulomb, frictionless, point};
 use crate::fem::MainSystemError;
+use crate::fem::dof::Dofs;
 use crate::model::structure::{Component, Load};
 
 /// (base dof, coefficient).

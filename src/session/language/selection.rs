@@ -105,7 +105,7 @@ impl<'w> Rows<'w> {
         let none = |id: &str| {
             let mut distinct = ids.to_vec();
             distinct.dedup();
-            CommandError::Refused(no_such(what, id, distinct.into_iter()))
+            CommandError::Refused(no_such(what, id, distinct))
         };
         let find = |id: &str| at.get(id).ok_or_else(|| none(id));
         let mut chosen = Vec::new();
