@@ -48,7 +48,7 @@ pub fn elimination_order(k: &SymmetricSparse, places: Places, watch: &dyn Watch)
         points: &groups.points,
         side: (0..count).map(|_| AtomicU32::new(NONE)).collect(),
         done: AtomicUsize::new(0),
-        is_spread: can_spread(),
+        is_spread: count > WORTH_SPREADING && can_spread(),
         watch,
     };
     let mut all: Vec<u32> = (0..count as u32).collect();

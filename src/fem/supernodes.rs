@@ -21,6 +21,9 @@ mod numeric;
 /// Each dense operation on one thread: results do not depend on the machine's number of cores.
 const PAR: Par = Par::Seq;
 
+/// Entries that are not worth a second thread to write zeros to.
+const LARGE: usize = 1 << 20;
+
 /// The lower triangle of a symmetric matrix by columns, as terms that are summed; in any order.
 pub struct Terms {
     start: Vec<usize>,
@@ -155,7 +158,7 @@ impl Supernodes {
         let length = self.stored();
         self.values.clear();
         self.values.try_reserve_exact(length).map_err(|_| MainSystemError::OutOfMemory { doing: numeric::DOING })?;
-        if can_spread() {
+        if length > LARGE && can_spread() {
             // The first touch of so many pages takes its time.
             rayon::iter::repeat_n(0.0, length).collect_into_vec(&mut self.values);
         } else {

@@ -71,7 +71,8 @@ pub(super) fn factorize(
     let costs: Vec<f64> = (0..count).map(|s| shape.active(s) as f64 * (shape.height(s) as f64).powi(2)).collect();
     let branches = branches(shape, &owner, &costs);
     let progress = Progress { total: costs.iter().sum(), state: Mutex::default(), watch };
-    let work = Work { shape, matrix, shift, owner, costs, is_spread: can_spread(), progress };
+    let is_spread = progress.total >= SMALL && can_spread();
+    let work = Work { shape, matrix, shift, owner, costs, is_spread, progress };
     let mut links = vec![Link { first: NONE, next: NONE, done: 0 }; count];
     let done = work.branches(&branches, values, &mut links).and_then(|()| work.crown(&branches, values, &mut links));
     match done {
