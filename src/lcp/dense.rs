@@ -63,6 +63,22 @@ pub(crate) fn add_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
     add_product(target, matrix, x, rows, 1, x.len());
 }
 
+/// high + low += matrix · x, the rounding errors of every product and sum carried along in `low` (Ogita, Rump, Oishi
+/// 2005), column by column as the matrix is stored.
+pub(crate) fn add_doubled_response(high: &mut [f64], low: &mut [f64], matrix: &[f64], x: &[f64]) {
+    let columns = matrix.chunks_exact(high.len().max(1)).zip(x).filter(|(_, x)| **x != 0.0);
+    for (column, x) in columns {
+        let factor = Split::new(*x);
+        for ((high, low), entry) in high.iter_mut().zip(low.iter_mut()).zip(column) {
+            let (product, product_error) = Split::new(*entry).times(&factor);
+            let next = *high + product;
+            let back = next - *high;
+            *low += (*high - (next - back)) + (product - back) + product_error;
+            *high = next;
+        }
+    }
+}
+
 /// right := lower⁻¹ right, where `lower` (size × size, column-major) has ones on its diagonal.
 pub(crate) fn solve_unit_lower(lower: &[f64], right: &mut [f64], size: usize, columns: usize) {
     if size == 0 || columns == 0 {
@@ -124,21 +140,11 @@ impl Factor {
         Some(solution)
     }
 
-    /// b − A x, the rounding errors of every product and sum carried along (Ogita, Rump, Oishi 2005), column by
-    /// column as the matrix is stored.
+    /// b − A x in doubled precision, rounded.
     fn residual(&self, right: &DVector<f64>, x: &DVector<f64>) -> DVector<f64> {
         let mut sum = right.clone();
         let mut error = DVector::<f64>::zeros(right.len());
-        for (column, x) in self.matrix.column_iter().zip(x.iter()) {
-            let factor = Split::new(-x);
-            for ((sum, error), entry) in sum.iter_mut().zip(error.iter_mut()).zip(column.iter()) {
-                let (product, product_error) = Split::new(*entry).times(&factor);
-                let next = *sum + product;
-                let back = next - *sum;
-                *error += (*sum - (next - back)) + (product - back) + product_error;
-                *sum = next;
-            }
-        }
+        add_doubled_response(sum.as_mut_slice(), error.as_mut_slice(), self.matrix.as_slice(), (-x).as_slice());
         sum + error
     }
 }

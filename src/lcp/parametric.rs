@@ -184,6 +184,14 @@ impl Parametric {
         }
     }
 
+    /// The vertex where `row` of the whole LCP has both its variables at zero: as the dictionary holds it, refined from the
+    /// data; where that does not agree with them, or t is not basic, solved afresh.
+    fn knot(&self, row: usize) -> Point {
+        let sharp = self.stand.sharp_point();
+        let point = sharp.or_else(|| vertex(&self.stand.lcp, &self.knot_basis(row)));
+        point.unwrap_or_else(|| self.stand.point())
+    }
+
     /// The answer of the present scheme at t, from the data.
     fn point_at(&self, t: f64) -> Option<Point> {
         let mut lcp = MirroredLcp::clone(&self.stand.lcp);
@@ -390,7 +398,7 @@ impl Parametric {
         if step > 0.0 {
             met.clear();
             if let Some(knots) = knots {
-                let point = vertex(&self.stand.lcp, &self.knot_basis(row)).unwrap_or_else(|| self.stand.point());
+                let point = self.knot(row);
                 knots.push(Breakpoint { t: point.p, point, leaving: vec![name], scheme: scheme(self) });
             }
         } else {

@@ -343,21 +343,29 @@ impl PivotState {
 
     /// All variables at the vertex, as the dictionary holds them.
     pub(crate) fn point(&self) -> Point {
+        self.point_of(&self.dictionary.value)
+    }
+
+    /// All variables where the basic ones have the given values, row by row.
+    fn point_of(&self, values: &[f64]) -> Point {
         let (d, lcp) = (&self.dictionary, &self.lcp);
         let n = lcp.full_size;
         let mut point = Point { z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
-        for (&local, &value) in d.row.iter().zip(&d.value) {
+        for (&local, &value) in d.row.iter().zip(values) {
             match self.variable(local, false) {
                 Variable::W(k) => point.w[k] = value,
                 Variable::Z(k) => point.z[k] = value,
                 Variable::P => point.p = value,
             }
         }
-        for i in 0..lcp.size() {
-            if lcp.mirrors[i].is_some()
-                && let Variable::W(k) = self.variable(Slot::W(i), true)
-            {
-                point.w[k] = d.hidden_value(lcp, i);
+        let w = |row: usize| match d.place(Slot::W(row)) {
+            Place::Row(r) => values[r],
+            Place::Column(_) => 0.0,
+        };
+        for (i, mirror) in lcp.mirrors.iter().enumerate() {
+            if let (Some(mirror), Variable::W(k)) = (mirror, self.variable(Slot::W(i), true)) {
+                // Turned round it is the other member of the couple that is held.
+                point.w[k] = mirror.reflect(i, w, point.p, 1.0);
             }
         }
         point

@@ -1,5 +1,6 @@
-//! Random contact systems with a positive definite R and little friction, where the answer is unique: a load path
-//! must pass through the answers that cold runs find, and warm starts must agree with cold ones.
+//! Random contact systems: a load path must pass through the vertices that its schemes have by their own equations, and,
+//! where R is positive definite and friction small, so that the answer is unique, through the answers that cold runs find;
+//! warm starts must agree with cold ones.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -12,10 +13,12 @@ use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::load_path::path_lcp;
 use stickslip::contact::problem::ContactProblem;
 use stickslip::lcp::basis::Basis;
+use stickslip::lcp::basis_solution::vertex;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::lcp::outcome::Outcome;
-use stickslip::lcp::parametric::{End, Parametric, Reach};
+use stickslip::lcp::parametric::{End, Parametric, Path, Reach};
+use stickslip::lcp::variable::Variable;
 use stickslip::model::rules::{Covering, TieBreak};
 use stickslip::solve::warm::WarmStart;
 use stickslip::watch::Quiet;
@@ -128,4 +131,81 @@ fn warm_starts_follow_friction_to_the_answers_of_cold_runs() {
     }
     // Most small changes can be followed; the others are solved cold.
     assert!(followed * 10 >= all * 9, "{followed} of {all}");
+}
+
+/// The knots of a path, read from the kept dictionary, are the vertices of their schemes: for every knot the equations of
+/// the scheme before it, with t in the place of what left there, are solved afresh. Friction up to 2 (several answers), a
+/// kernel of R, stiffnesses of joints that differ by 1e±4, ties, loads on one side only.
+#[test]
+fn knots_are_the_vertices_that_their_equations_give() {
+    let mut rng = ChaCha8Rng::seed_from_u64(61);
+    let (mut compared, mut ends) = (0, std::collections::BTreeSet::new());
+    for k in 0..90 {
+        let m = 2 + k % 22;
+        let ties = k % 3 == 0;
+        let mut problem = random_system(&mut rng, m, ties);
+        let friction = [0.2, 0.6, 2.0][k % 3];
+        problem.laws = vec![PairLaw::rubbing(friction, if k % 7 == 0 { 0.1 } else { 0.0 }, 0.0); m];
+        let mut stiffness = problem.system.stiffness.clone();
+        if k % 4 == 1 {
+            let sizes: Vec<f64> = (0..2 * m).map(|_| 10f64.powf(rng.random_range(-2.0..2.0))).collect();
+            stiffness = DMatrix::from_fn(2 * m, 2 * m, |i, j| sizes[i] * stiffness[(i, j)] * sizes[j]);
+        }
+        if k % 4 == 2 {
+            // All pairs moved along by the same amount cost nothing.
+            let motion = DVector::from_fn(2 * m, |i, _| if i < m { 0.0 } else { 1.0 / (m as f64).sqrt() });
+            let free = DMatrix::identity(2 * m, 2 * m) - &motion * motion.transpose();
+            stiffness = &free * stiffness * &free;
+            stiffness = (&stiffness + stiffness.transpose()) * 0.5;
+        }
+        let law = problem.laws.clone();
+        problem = coulomb(stiffness, DVector::zeros(2 * m), friction);
+        problem.laws = law;
+        for i in 0..m {
+            problem.load[i] = 1.0;
+        }
+        let mut increment = DVector::zeros(2 * m);
+        let pushed = if k % 5 == 0 { 1 } else { m };
+        for i in 0..pushed {
+            increment[i] = if ties { -1.0 } else { rng.random_range(-1.0..0.2) };
+            increment[m + i] = if ties { f64::from(rng.random_range(-1..=1)) } else { rng.random_range(-1.0..1.0) };
+        }
+        let contact = path_lcp(&problem, &increment);
+        let held = Basis { z: Vec::new(), active: Vec::new(), p: false };
+        let mut engine = Parametric::new(Arc::clone(&contact.lcp), &held, order(&contact)).expect("all held");
+        let reach = Reach { target: 40.0, through: k % 2 == 0, pivots: 5_000 };
+        let path = engine.follow(reach, &mut |_| ControlFlow::Continue(()));
+        ends.insert(format!("{:?}", path.end).split(['(', ' ']).next().unwrap_or_default().to_owned());
+        compared += compare_with_equations(&path, &contact.lcp, k);
+    }
+    assert!(compared > 1_000, "{compared}");
+    for end in ["Target", "Limit", "Turning"] {
+        assert!(ends.contains(end), "{end}: {ends:?}");
+    }
+}
+
+/// Number of knots compared.
+fn compare_with_equations(path: &Path, lcp: &stickslip::lcp::mirrored::MirroredLcp, number: usize) -> usize {
+    let mut compared = 0;
+    for two in path.knots.windows(2) {
+        let (before, knot) = (&two[0], &two[1]);
+        let Some(Variable::W(row) | Variable::Z(row)) = knot.leaving.first().copied() else { continue };
+        let mut active = before.scheme.clone();
+        active.push(row);
+        active.sort_unstable();
+        active.dedup();
+        let z = before.scheme.iter().copied().filter(|&z| z != row).collect();
+        let Some(fresh) = vertex(lcp, &Basis { z, active, p: true }) else { continue };
+        let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let force = lcp.q.amax() + fresh.p.abs() * lcp.covering.amax();
+        for (found, fresh, size) in
+            [(&knot.point.z, &fresh.z, largest(&fresh.z)), (&knot.point.w, &fresh.w, force.max(largest(&fresh.w)))]
+        {
+            let off = found.iter().zip(fresh).fold(0.0, |off: f64, (found, fresh)| off.max((found - fresh).abs()));
+            assert!(off <= 1e-11 * size, "problem {number} at {}: {off:e} of {size:e}", knot.t);
+        }
+        assert!((knot.t - fresh.p).abs() <= 1e-11 * fresh.p.abs().max(1.0), "{number}: {} {}", knot.t, fresh.p);
+        compared += 1;
+    }
+    compared
 }

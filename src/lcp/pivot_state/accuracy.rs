@@ -3,7 +3,10 @@
 use nalgebra::DVector;
 
 use super::{Candidate, PivotState, SUSPICIOUS};
+use crate::doubled::{Doubled, Real};
+use crate::lcp::dense::add_doubled_response;
 use crate::lcp::dictionary::{Place, Slot};
+use crate::lcp::outcome::Point;
 
 /// Relative error of the dictionary against the data above which it is built afresh.
 const DRIFT: f64 = 1e-10;
@@ -42,6 +45,15 @@ impl PivotState {
         let row = self.lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b));
         let load = self.lcp.load_size().max(f64::MIN_POSITIVE);
         ROUNDING * row * self.size_of(&self.dictionary.value) / load
+    }
+
+    /// All variables at the vertex, as true to the data as solving its equations afresh would make them: one step of
+    /// refinement with residuals in doubled precision squares the error of the dictionary, which is built afresh where it
+    /// exceeds [`DRIFT`]. `None` where what comes of it does not agree with the data to rounding.
+    pub(crate) fn sharp_point(&self) -> Option<Point> {
+        let held = Numbers::doubled(self, &self.dictionary.value).corrected();
+        let error = Numbers::new(self, &held, None, 1.0).error(self.size_of(&held));
+        (error <= ROUNDING).then(|| self.point_of(&held))
     }
 
     /// Refines the values.
@@ -112,22 +124,47 @@ struct Numbers<'a> {
     p: f64,
     /// M z + shift q + d p over the primary rows.
     w: DVector<f64>,
+    /// The same in doubled precision, where that was asked for.
+    doubled: Option<Vec<Doubled>>,
 }
 
 impl<'a> Numbers<'a> {
     fn new(stand: &'a PivotState, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a> {
-        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: DVector::zeros(0) };
-        let z: Vec<f64> = std::iter::zip(0.., &stand.dictionary.turned)
-            .map(|(i, &turned)| {
-                let z = numbers.of(Slot::Z(i));
-                // z⁺ − z⁻ for couples.
-                if turned { -z } else { z }
-            })
-            .collect();
-        numbers.p = numbers.of(Slot::P);
+        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: DVector::zeros(0), doubled: None };
+        let z = numbers.take_unknowns();
         let lcp = &stand.lcp;
         numbers.w = lcp.times(&z) + shift * &lcp.q + numbers.p * &lcp.covering;
         numbers
+    }
+
+    /// Values, w in doubled precision.
+    fn doubled(stand: &'a PivotState, held: &'a [f64]) -> Numbers<'a> {
+        let (entering, shift, w) = (None, 1.0, DVector::zeros(0));
+        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w, doubled: None };
+        let z = numbers.take_unknowns();
+        let lcp = &stand.lcp;
+        let (mut high, mut low) = (vec![0.0; lcp.size()], vec![0.0; lcp.size()]);
+        add_doubled_response(&mut high, &mut low, lcp.base.as_slice(), &z);
+        let own = |i: usize| Doubled::sum(high[i], low[i]);
+        let w = (0..lcp.size()).map(|i| {
+            let coupled = lcp.coupling(i).map_or_else(Doubled::default, |(n, f)| Doubled::from(f) * own(n));
+            own(i) + coupled + Doubled::from(lcp.q[i]) + Doubled::product(lcp.covering[i], numbers.p)
+        });
+        let w: Vec<Doubled> = w.collect();
+        numbers.w = DVector::from_iterator(w.len(), w.iter().map(|w| w.to_f64()));
+        numbers.doubled = Some(w);
+        numbers
+    }
+
+    /// Takes p over; z of the primary rows, z⁺ − z⁻ for couples.
+    fn take_unknowns(&mut self) -> Vec<f64> {
+        self.p = self.of(Slot::P);
+        std::iter::zip(0.., &self.stand.dictionary.turned)
+            .map(|(i, &turned)| {
+                let z = self.of(Slot::Z(i));
+                if turned { -z } else { z }
+            })
+            .collect()
     }
 
     fn nonbasic(&self, c: usize) -> f64 {
@@ -150,6 +187,20 @@ impl<'a> Numbers<'a> {
         }
     }
 
+    /// w of row i as the data give it, in the orientation in which the dictionary holds it.
+    fn from_data(&self, i: usize) -> f64 {
+        let stand = self.stand;
+        match (&self.doubled, &stand.lcp.mirrors[i]) {
+            (Some(w), Some(mirror)) if stand.dictionary.turned[i] => {
+                let normal = mirror.normal.map_or_else(Doubled::default, |n| Doubled::from(2.0 * mirror.friction) * w[n]);
+                let given = Doubled::from(self.shift * mirror.constant) + Doubled::product(mirror.covering, self.p);
+                (normal + given - w[i]).to_f64()
+            }
+            (Some(w), _) => w[i].to_f64(),
+            (None, _) => self.turned(i, |row| self.w[row]),
+        }
+    }
+
     /// The largest difference between the dictionary and the data, relative to the natural sizes of the rows; `size`: Σ
     /// column_k |z_k|.
     fn error(&self, size: f64) -> f64 {
@@ -166,7 +217,7 @@ impl<'a> Numbers<'a> {
     /// One step of iterative refinement: the equations of the scheme as the data give them, solved by the dictionary.
     fn corrected(&self) -> Vec<f64> {
         let d = &self.stand.dictionary;
-        let from_data = |i: usize| self.turned(i, |row| self.w[row]);
+        let from_data = |i: usize| self.from_data(i);
         let wrong: Vec<(usize, f64)> = d
             .column
             .iter()
