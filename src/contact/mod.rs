@@ -33,4 +33,5 @@ pub mod self_stress;
 pub mod sum;
 pub mod sums;
 pub mod system;
+pub mod unique;
 pub mod written;

@@ -1,7 +1,7 @@
 //! The dense products and factorizations of the engine: the one file of `lcp` that names faer.
 
 use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::linalg::solvers::{Llt, PartialPivLu, Solve};
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 use nalgebra::{DMatrix, DVector};
@@ -89,6 +89,23 @@ pub(crate) fn solve_unit_lower(lower: &[f64], right: &mut [f64], size: usize, co
         MatMut::from_column_major_slice_mut(right, size, columns),
         Par::Seq,
     );
+}
+
+/// Cholesky factorization of a symmetric matrix.
+pub(crate) struct Cholesky(Llt<f64>);
+
+impl Cholesky {
+    /// `None` where a pivot is not positive.
+    pub(crate) fn new(matrix: &DMatrix<f64>) -> Option<Cholesky> {
+        let n = matrix.nrows();
+        MatRef::from_column_major_slice(matrix.as_slice(), n, n).llt(Side::Lower).ok().map(Cholesky)
+    }
+
+    /// right := matrix⁻¹ right.
+    pub(crate) fn solve(&self, right: &mut [f64]) {
+        let n = right.len();
+        self.0.solve_in_place(MatMut::from_column_major_slice_mut(right, n, 1));
+    }
 }
 
 /// LU factorization with partial pivoting of a square matrix, with the matrix kept for refinement.

@@ -3,7 +3,7 @@
 //! The history is followed by the rate problem ([`super::stages`]). The rates depend on the forces and on the gaps that are
 //! open, not on the slips committed before: where both come back after a cycle, every further cycle is the same.
 
-use super::stages::{Begin, History, HistoryEnd, StageResult, follow_factors};
+use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
 use super::start::PathError;
 use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::Ray;
@@ -16,7 +16,7 @@ use crate::solve::problem::factors;
 const SAME: f64 = 1e-12;
 /// What two cycles leave behind is the same where it differs by less than this share of it.
 const SAME_NET: f64 = 1e-6;
-/// Cycles followed first; then twice as many, and so on.
+/// Cycles after which they are judged first; then after twice as many, and so on.
 const FIRST: usize = 4;
 /// Cycles followed at most, where nothing else is said.
 pub const MOST: usize = 256;
@@ -146,21 +146,27 @@ pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Be
     let [a, b] = ends;
     let softest = softest(case);
     let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
-    let mut count = FIRST.min(most);
-    loop {
-        let mut targets = vec![start.clone()];
-        (0..count).for_each(|_| targets.extend([turned.clone(), start.clone()]));
-        let history = follow_factors(case, begin, &targets)?;
-        let mut found = judged(name, ends, history, softest);
-        if found.kind == Kind::ShakesDown || found.kind == Kind::Undecided && count == most {
-            let places = found.history.stages.iter().skip(1).take(2).flat_map(|stage| &stage.moments);
-            found.every_start = static_shakedown(case, places);
+    let mut targets = vec![start.clone()];
+    (0..most).for_each(|_| targets.extend([turned.clone(), start.clone()]));
+    let mut count = FIRST;
+    let mut decided = |stages: &[StageResult]| {
+        if stages.len() != 1 + 2 * count {
+            return false;
         }
-        if found.kind != Kind::Undecided || count == most {
-            return Ok(found);
+        count *= 2;
+        judged(stages, true, softest).0 != Kind::Undecided
+    };
+    let history = follow_until(case, begin, &targets, &mut decided)?;
+    let (kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, softest);
+    let every_start = match kind {
+        Kind::ShakesDown | Kind::Undecided => {
+            let places = history.stages.iter().skip(1).take(2).flat_map(|stage| &stage.moments);
+            static_shakedown(case, places)
         }
-        count = (2 * count).min(most);
-    }
+        _ => Static::NotAsked,
+    };
+    let sentence = said(kind, &turns, &history);
+    Ok(Cycle { name: name.to_owned(), ends, kind, turns, history, sentence, every_start })
 }
 
 /// The largest displacement of a tangential joint under a unit force, the others held.
@@ -171,25 +177,26 @@ fn softest(case: Case<'_>) -> f64 {
     stiffness.map(f64::recip).fold(0.0, f64::max)
 }
 
-/// The cycles of a history, and what they come to.
-fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
-    let end = |stage: usize| &history.stages[stage].end.pairs;
+/// What the cycles of a history come to, and those up to the first that repeats; the last stage of one that is not
+/// `complete` ends in a limit.
+fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Turn>) {
+    let end = |stage: usize| &stages[stage].end.pairs;
     let largest = |of: &dyn Fn(&crate::answer::record::PairState) -> f64| {
-        let pairs = history.stages.iter().flat_map(|stage| &stage.end.pairs);
+        let pairs = stages.iter().flat_map(|stage| &stage.end.pairs);
         pairs.map(|pair| of(pair).abs()).fold(0.0, f64::max)
     };
     let force = largest(&|pair| pair.x_n.abs().max(pair.x_t.abs()));
-    let slips = history.stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
+    let slips = stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
     // What the forces move at least by: rounding is small against it, also where nothing slips.
     let slips = slips.max(force * softest);
     let gap = largest(&|pair| pair.z_n).max(slips);
     let share = |off: f64, size: f64| if off == 0.0 { 0.0 } else { off / size };
-    let complete = (history.stages.len() - usize::from(history.end != HistoryEnd::Complete)).saturating_sub(1) / 2;
+    let cycles = (stages.len() - usize::from(!complete)).saturating_sub(1) / 2;
     let mut turns: Vec<Turn> = Vec::new();
     let mut kind = Kind::Undecided;
-    for number in 0..complete {
+    for number in 0..cycles {
         let (there, back) = (2 * number + 1, 2 * number + 2);
-        let halves: [&StageResult; 2] = [&history.stages[there], &history.stages[back]];
+        let halves: [&StageResult; 2] = [&stages[there], &stages[back]];
         let pairs = end(back).iter().enumerate().map(|(index, pair)| {
             let [there, back] = halves.map(|half| half.slip[index]);
             PairCycle { pair: pair.id.clone(), there, back, net: there + back, total: pair.z_t }
@@ -231,11 +238,10 @@ fn judged(name: &str, ends: [f64; 2], history: History, softest: f64) -> Cycle {
         };
         break;
     }
-    if kind == Kind::Undecided && history.end != HistoryEnd::Complete {
+    if kind == Kind::Undecided && !complete {
         kind = Kind::Collapses;
     }
-    let sentence = said(kind, &turns, &history);
-    Cycle { name: name.to_owned(), ends, kind, turns, history, sentence, every_start: Static::NotAsked }
+    (kind, turns)
 }
 
 fn said(kind: Kind, turns: &[Turn], history: &History) -> String {

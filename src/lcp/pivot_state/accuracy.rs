@@ -192,7 +192,8 @@ impl<'a> Numbers<'a> {
         let stand = self.stand;
         match (&self.doubled, &stand.lcp.mirrors[i]) {
             (Some(w), Some(mirror)) if stand.dictionary.turned[i] => {
-                let normal = mirror.normal.map_or_else(Doubled::default, |n| Doubled::from(2.0 * mirror.friction) * w[n]);
+                let normal =
+                    mirror.normal.map_or_else(Doubled::default, |n| Doubled::from(2.0 * mirror.friction) * w[n]);
                 let given = Doubled::from(self.shift * mirror.constant) + Doubled::product(mirror.covering, self.p);
                 (normal + given - w[i]).to_f64()
             }

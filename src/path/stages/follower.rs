@@ -46,6 +46,9 @@ pub(super) struct Way {
     pub(super) last_slip: DVector<f64>,
 }
 
+/// The factors of all load cases at the ends of the stages, and the question whether the stages followed are enough.
+pub(super) type Targets<'t> = (&'t [Vec<f64>], &'t mut dyn FnMut(&[StageResult]) -> bool);
+
 /// Where a stage ends in a limit: the place in it and the collapse.
 pub(super) type Limit = Option<(f64, Ray)>;
 
@@ -122,9 +125,9 @@ pub(super) trait Follower<'a> {
         }
     }
 
-    /// Follows the given factors of all load cases, stage by stage, up to the first limit. The record is without energies:
+    /// Follows the stages one after the other, up to the first limit or until they are enough. The record is without energies:
     /// see [`recorded`].
-    fn stages(&mut self, targets: &[Vec<f64>]) -> Result<(Vec<StageResult>, HistoryEnd), PathError> {
+    fn stages(&mut self, (targets, enough): Targets<'_>) -> Result<(Vec<StageResult>, HistoryEnd), PathError> {
         let mut stages = Vec::new();
         for (index, target) in targets.iter().enumerate() {
             let report = |t: f64| (index as f64 + t) / targets.len() as f64;
@@ -135,6 +138,9 @@ pub(super) trait Follower<'a> {
             stages.push(self.result(way, &before, limit.as_ref()));
             if let Some((t, collapse)) = limit {
                 return Ok((stages, HistoryEnd::Limit { stage: index, t, collapse: Box::new(collapse) }));
+            }
+            if enough(&stages) {
+                break;
             }
         }
         Ok((stages, HistoryEnd::Complete))

@@ -13,7 +13,7 @@ use nalgebra::DVector;
 use super::Begin;
 use super::beyond::explanation;
 use super::course::Course;
-use super::follower::{Follower, Limit, Place, Way, recorded};
+use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::record::History;
 use super::standing::Laws;
 use super::walk::breakdown;
@@ -66,7 +66,7 @@ pub(super) fn follow<'a>(
     prepared: &'a Prepared,
     laws: Laws<'a>,
     begin: &Begin,
-    targets: &[Vec<f64>],
+    targets: Targets<'_>,
     watch: &'a dyn Watch,
 ) -> Result<History, PathError> {
     let joints = laws.problem.system.joint_count();
@@ -82,7 +82,7 @@ pub(super) fn follow<'a>(
         let how = "in a ray: the gaps of the unloaded parts do not fit together".to_owned();
         return Err(PathError::NoStart { name: "interference".to_owned(), at: 0.0, how });
     }
-    walk.begin(begin, targets)?;
+    walk.begin(begin, targets.0)?;
     let (stages, end) = walk.stages(targets)?;
     Ok(recorded(&walk.place, stages, end))
 }

@@ -75,6 +75,19 @@ pub enum Begin {
 /// # Errors
 /// As [`follow`]; slips behind which there is no answer.
 pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Result<History, PathError> {
+    follow_until(case, begin, targets, &mut |_| false)
+}
+
+/// The same, up to the stage after which those that were followed are `enough`.
+///
+/// # Errors
+/// As [`follow_factors`].
+pub(super) fn follow_until(
+    case: Case<'_>,
+    begin: &Begin,
+    targets: &[Vec<f64>],
+    enough: &mut dyn FnMut(&[StageResult]) -> bool,
+) -> Result<History, PathError> {
     let Case { prepared, values, watch, .. } = case;
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let none = vec![0.0; prepared.cases.len()];
@@ -82,8 +95,8 @@ pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Re
     let start = Instant::now();
     let laws = Laws { problem: &problem };
     let mut history = match system.force_form {
-        Some(_) => force_form::follow(prepared, laws, begin, targets, watch)?,
-        None => Walk::start(prepared, laws, begin, targets, watch)?.follow(targets)?,
+        Some(_) => force_form::follow(prepared, laws, begin, (targets, enough), watch)?,
+        None => Walk::start(prepared, laws, begin, targets, watch)?.follow((targets, enough))?,
     };
     if let Some(stage) = history.stages.last_mut() {
         let timings = &mut stage.end.timings;

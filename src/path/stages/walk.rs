@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use super::Begin;
 use super::course::Course;
 use super::event::next_event;
-use super::follower::{Follower, Limit, Place, Way, recorded};
+use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::rate_problem::{Ended, RateProblem, Rates};
 use super::record::History;
 use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales, scheme_of};
@@ -65,8 +65,8 @@ impl<'a> Walk<'a> {
         Ok(walk)
     }
 
-    /// Follows the given factors of all load cases, stage by stage.
-    pub(super) fn follow(mut self, targets: &[Vec<f64>]) -> Result<History, PathError> {
+    /// Follows the stages one after the other.
+    pub(super) fn follow(mut self, targets: Targets<'_>) -> Result<History, PathError> {
         let (mut stages, end) = self.stages(targets)?;
         if let (Some(stage), Some((run, contact))) = (stages.last_mut(), &self.last_run) {
             stage.end.attempts.iter_mut().for_each(|attempt| attempt.outcome = kind(&run.outcome));
