@@ -9,3 +9,4 @@ pub mod record;
 pub mod rounding;
 pub mod same;
 pub mod stress;
+pub mod strict;

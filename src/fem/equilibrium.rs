@@ -31,6 +31,26 @@ const DOUBLED_ROW: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 /// The same of a row of R z with z from an LCP (method §4, "Zero").
 const JOINT_ROW: f64 = 64.0 * f64::EPSILON;
 
+/// A state whose equilibrium is asked for.
+pub struct BalancedState<'a> {
+    /// Factor of each load case.
+    pub factors: &'a [f64],
+    /// Mutual displacements of all joints.
+    pub dislocation: DVector<f64>,
+    /// Joint forces λ.
+    pub force: &'a DVector<f64>,
+}
+
+/// The largest residual beside the forces that meet there and what rounding may leave.
+fn largest_share(residual: &[f64], scale: &[f64], rounding: &[f64]) -> f64 {
+    let shares = residual.iter().zip(scale.iter().zip(rounding)).map(|(r, (scale, rounding))| {
+        let size = scale + rounding / TOLERANCE;
+        // A force where none can be is infinitely wrong; NaN stays NaN.
+        if *r == 0.0 { 0.0 } else { r.abs() / size }
+    });
+    shares.fold(0.0, |largest: f64, share| if share.is_nan() { f64::NAN } else { largest.max(share) })
+}
+
 impl MainSystem {
     /// Nodal forces K u − F − Bᵀ λ on the base dofs without those inside rigid bodies: what supports and ties have to
     /// give.
@@ -82,6 +102,40 @@ impl MainSystem {
         values
     }
 
+    /// Of each state an upper bound of its compatibility and equilibrium residuals, from displacements that nobody is shown:
+    /// 1e-9 or less where the residuals are. Where rounding alone explains what is left at every node, the forces that
+    /// meet there need not be known; elsewhere both are computed as for an answer that is shown.
+    pub fn equilibrium_bounds(&self, structure: &Structure, states: &[BalancedState<'_>]) -> Vec<f64> {
+        let whole = |state: &BalancedState<'_>| {
+            let u = self.displacements(state.factors, &state.dislocation);
+            self.compatibility_residual(&u, &state.dislocation)
+                + self.equilibrium_residual(structure, &u, state.force, state.factors)
+        };
+        if self.doubled.is_some() {
+            return states.iter().map(whole).collect();
+        }
+        let independent: Vec<(&[f64], DVector<f64>)> =
+            states.iter().map(|state| (state.factors, self.of_independent(&state.dislocation))).collect();
+        let found = self.unrefined_displacements(&independent);
+        (states.iter().zip(found))
+            .map(|(state, u)| {
+                let u = Displacements::from(self.dofs.scatter(&u));
+                let residual = self.unheld(self.unbalanced(&u, state.force, state.factors));
+                let rounding = self.handed_on(self.rounding(&u, state.factors));
+                let nothing = vec![0.0; residual.len()];
+                let bound =
+                    self.compatibility_residual(&u, &state.dislocation) + largest_share(&residual, &nothing, &rounding);
+                if bound <= TOLERANCE { bound } else { whole(state) }
+            })
+            .collect()
+    }
+
+    /// Magnitudes summed over ties and bodies, zero where a support holds.
+    fn handed_on(&self, mut magnitudes: Vec<f64>) -> Vec<f64> {
+        self.elimination.add_body_forces(&mut magnitudes);
+        self.unheld(magnitudes)
+    }
+
     /// Largest |K u − F − Bᵀ λ| of a component that no support holds beside the forces that meet there, in the sense
     /// of this module: at most 1e-9 if every node is balanced.
     pub fn equilibrium_residual(
@@ -92,18 +146,9 @@ impl MainSystem {
         factors: &[f64],
     ) -> f64 {
         let residual = self.unheld(self.unbalanced(u, lambda, factors));
-        let handed_on = |mut magnitudes: Vec<f64>| {
-            self.elimination.add_body_forces(&mut magnitudes);
-            self.unheld(magnitudes)
-        };
-        let scale = handed_on(self.meeting_forces(structure, u, lambda, factors));
-        let rounding = handed_on(self.rounding(u, factors));
-        let shares = residual.iter().zip(scale.iter().zip(&rounding)).map(|(r, (scale, rounding))| {
-            let size = scale + rounding / TOLERANCE;
-            // A force where none can be is infinitely wrong; NaN stays NaN.
-            if *r == 0.0 { 0.0 } else { r.abs() / size }
-        });
-        shares.fold(0.0, |largest: f64, share| if share.is_nan() { f64::NAN } else { largest.max(share) })
+        let scale = self.handed_on(self.meeting_forces(structure, u, lambda, factors));
+        let rounding = self.handed_on(self.rounding(u, factors));
+        largest_share(&residual, &scale, &rounding)
     }
 
     /// Σ |force| that elements, springs, loads and joints bring to each component: of translations the lengths of the

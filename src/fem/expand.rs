@@ -41,20 +41,7 @@ impl MainSystem {
     /// The base dofs from the f64 factor, with one step of refinement: then the error of each equation is a few ε of
     /// the terms of that equation (Skeel 1980), not of the largest of all.
     pub(super) fn plain_displacements(&self, factors: &[f64], z: &DVector<f64>) -> Vec<f64> {
-        assert_eq!(z.len(), self.joints.len(), "a z for every joint");
-        assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
-        let mut f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_else(|| vec![0.0; self.dofs.count()]);
-        let settled = self.settlement(factors);
-        if let Some(settled) = &settled {
-            for (f, k) in std::iter::zip(&mut f, self.k.times(settled)) {
-                *f -= k;
-            }
-        }
-        // K_m v = Tᵀ (F − K S s) − C z.
-        let mut v = on_masters(&self.elimination, &f);
-        for &(row, joint, value) in &self.c {
-            v[row as usize] -= value * z[joint as usize];
-        }
+        let RightSide { f, settled, mut v } = self.loaded(factors, z);
         self.factor.solve(&mut v);
         let u = self.elimination.expand(&v, z.as_slice());
         let mut rest = self.k.times(&u);
@@ -66,7 +53,39 @@ impl MainSystem {
         for (v, correction) in std::iter::zip(&mut v, correction) {
             *v += correction;
         }
-        let mut u = self.elimination.expand(&v, z.as_slice());
+        self.expanded(&v, z, settled.as_deref())
+    }
+
+    /// The base dofs of several states, (factors, z) each, from the f64 factor as it is.
+    pub(super) fn unrefined_displacements(&self, states: &[(&[f64], DVector<f64>)]) -> Vec<Vec<f64>> {
+        let loaded: Vec<RightSide> = states.iter().map(|(factors, z)| self.loaded(factors, z)).collect();
+        let (mut right, settled): (Vec<_>, Vec<_>) = loaded.into_iter().map(|state| (state.v, state.settled)).unzip();
+        self.factor.solve_many(&mut right);
+        let all = right.iter().zip(states).zip(settled);
+        all.map(|((v, (_, z)), settled)| self.expanded(v, z, settled.as_deref())).collect()
+    }
+
+    /// The right side of K_m v = Tᵀ (F − K S s) − C z, in the place of v.
+    fn loaded(&self, factors: &[f64], z: &DVector<f64>) -> RightSide {
+        assert_eq!(z.len(), self.joints.len(), "a z for every joint");
+        assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
+        let mut f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_else(|| vec![0.0; self.dofs.count()]);
+        let settled = self.settlement(factors);
+        if let Some(settled) = &settled {
+            for (f, k) in std::iter::zip(&mut f, self.k.times(settled)) {
+                *f -= k;
+            }
+        }
+        let mut v = on_masters(&self.elimination, &f);
+        for &(row, joint, value) in &self.c {
+            v[row as usize] -= value * z[joint as usize];
+        }
+        RightSide { f, settled, v }
+    }
+
+    /// u = T v + G z + S s.
+    fn expanded(&self, v: &[f64], z: &DVector<f64>, settled: Option<&[f64]>) -> Vec<f64> {
+        let mut u = self.elimination.expand(v, z.as_slice());
         for (u, settled) in std::iter::zip(&mut u, settled.into_iter().flatten()) {
             *u += settled;
         }
@@ -88,6 +107,9 @@ impl MainSystem {
     /// Largest difference of a repeated joint's z from B u, as a share of the displacements of its nodes. Nodes at rest
     /// have the rounding of the largest displacement.
     pub fn compatibility_residual(&self, u: &Displacements, z: &DVector<f64>) -> f64 {
+        if self.repeated.is_empty() {
+            return 0.0;
+        }
         let length = |u: &[f64; 3]| u[0].hypot(u[1]);
         let rounding = 64.0 * f64::EPSILON * u.0.iter().map(length).fold(0.0, f64::max);
         let share = |joint: usize| {
@@ -106,6 +128,16 @@ impl MainSystem {
         assert_eq!(z.len(), self.all_joints.len(), "a z for every joint");
         DVector::from_iterator(self.independent.len(), self.independent.iter().map(|&joint| z[joint]))
     }
+}
+
+/// What stands on the right side of the equations of the main system.
+struct RightSide {
+    /// F − K S s on the base dofs.
+    f: Vec<f64>,
+    /// S s, where supports settle.
+    settled: Option<Vec<f64>>,
+    /// On the masters.
+    v: Vec<f64>,
 }
 
 /// Σ factor·vector over the load cases that have one; `None` if none does.

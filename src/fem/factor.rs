@@ -174,6 +174,24 @@ impl Factor {
         }
     }
 
+    /// The same for several right sides, which share each look at L.
+    pub fn solve_many(&self, b: &mut [Vec<f64>]) {
+        let (n, cases) = (self.order(), b.len());
+        let mut x = vec![0.0; n * cases];
+        for (case, b) in b.iter().enumerate() {
+            for (i, b) in b.iter().enumerate() {
+                x[self.position[i] as usize * cases + case] = self.scale[i] * b;
+            }
+        }
+        self.supernodes.forward(MatMut::from_row_major_slice_mut(&mut x, n, cases));
+        self.supernodes.backward(MatMut::from_row_major_slice_mut(&mut x, n, cases));
+        for (case, b) in b.iter_mut().enumerate() {
+            for (i, b) in b.iter_mut().enumerate() {
+                *b = self.scale[i] * x[self.position[i] as usize * cases + case];
+            }
+        }
+    }
+
     /// Cᵀ K_m⁻¹ b = L_C L⁻¹ Pᵀ S b for every b, as columns.
     pub fn project(&self, b: &[Vec<f64>]) -> DMatrix<f64> {
         let (n, cases) = (self.order(), b.len());

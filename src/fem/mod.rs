@@ -69,6 +69,7 @@ mod tests;
 pub use displacements::Displacements;
 pub use element::bar_load::Piece;
 pub use energy::Loaded;
+pub use equilibrium::BalancedState;
 pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub(crate) use kernel::mutual_displacements;
 pub use loose::Motion;

@@ -21,7 +21,7 @@
 
 pub mod basis;
 pub mod basis_solution;
-mod dense;
+pub(crate) mod dense;
 mod dictionary;
 pub mod driver;
 pub mod exact;

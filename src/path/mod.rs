@@ -28,4 +28,5 @@ pub mod start;
 pub mod static_shakedown;
 pub mod sweep;
 pub mod sweep_file;
+mod sweep_points;
 pub mod way;

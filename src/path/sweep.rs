@@ -1,5 +1,5 @@
 //! A sweep: the answer at every point of a grid, one row each, in the order of the grid whatever the number of
-//! threads. Every point is solved cold, so that no row depends on another.
+//! threads. Each row tells what a cold run finds at its point, whichever way it was found ([`super::sweep_points`]).
 
 use std::io::Write;
 use std::time::Instant;
@@ -9,12 +9,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::grid::{Grid, Shard};
-use super::quantity::Facts;
 use super::sample::draw::Rule;
+use super::sweep_points::{Found, Points};
 use crate::answer::record::{Answer, State};
-use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
-use crate::solve::{Case, PrepareError};
+use crate::solve::Case;
 use crate::text::hash::Hash;
 use crate::text::printable;
 use crate::watch::Watch;
@@ -30,6 +29,17 @@ pub enum Format {
     Csv,
     /// A header object, then an object for each row, one a line.
     Json,
+}
+
+/// Whether points follow one another where that is proved to lead to the answer of a cold run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Following {
+    /// In large models and grids of many points.
+    WhereItPays,
+    /// In all.
+    Always,
+    /// In none.
+    Never,
 }
 
 /// What is swept.
@@ -95,7 +105,7 @@ impl Done {
 pub const CHECKSUM: &str = "checksum";
 
 /// Names of the columns between the parameters and the checksum.
-const COLUMNS: [&str; 16] = [
+pub(super) const COLUMNS: [&str; 16] = [
     "outcome",
     "class",
     "p",
@@ -175,6 +185,21 @@ impl Sweep<'_> {
     /// # Errors
     /// Where `out` cannot be written.
     pub fn run(&self, found: usize, out: &mut dyn Write, watch: &dyn Watch) -> std::io::Result<Done> {
+        self.run_by(Following::WhereItPays, found, out, watch)
+    }
+
+    /// The same, points following one another or not as asked for.
+    ///
+    /// # Errors
+    /// As [`Sweep::run`].
+    pub fn run_by(
+        &self,
+        following: Following,
+        found: usize,
+        out: &mut dyn Write,
+        watch: &dyn Watch,
+    ) -> std::io::Result<Done> {
+        let solver = Points::new(self, following);
         let points = self.shard.points(self.grid.len());
         let mut done = Done { written: 0, found, total: points.len(), answers: 0 };
         let hash = self.header().hash;
@@ -182,10 +207,19 @@ impl Sweep<'_> {
         let mut next = points.start + found;
         while next < points.end && !watch.stop() {
             let end = (next + CHUNK).min(points.end);
-            let rows: Vec<Option<Row>> = (next..end)
+            let stop_only = StopOnly(watch);
+            let rows: Vec<Vec<Option<Row>>> = solver
+                .blocks(next..end)
                 .into_par_iter()
-                .map(|index| if watch.stop() { None } else { self.row(index, &hash, watch) })
+                .map(|block| {
+                    if watch.stop() {
+                        return vec![None];
+                    }
+                    let found = solver.solve(block.clone(), &stop_only);
+                    block.zip(found).map(|(index, found)| self.row(index, found, &hash)).collect()
+                })
                 .collect();
+            let rows: Vec<Option<Row>> = rows.into_iter().flatten().collect();
             for row in rows.iter().map_while(Option::as_ref) {
                 out.write_all(row.line.as_bytes())?;
                 done.written += 1;
@@ -211,34 +245,12 @@ impl Sweep<'_> {
         key(self.grid, self.format, index)
     }
 
-    /// The answer at one point; a refusal in words, or `None` where `watch` asked to stop.
-    fn solve_at(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<(Vec<Value>, bool), Option<String>> {
-        let Case { scenario, prepared, .. } = self.case;
-        let renewed = prepared.renewed(scenario, values, watch).map_err(|error| match error {
-            PrepareError::Interrupted => None,
-            PrepareError::Problems(problems) => Some(problems.to_string()),
-        })?;
-        let prepared = renewed.as_ref().map_or(prepared, |(prepared, _)| prepared);
-        let case = Case { prepared, values, watch, ..self.case };
-        let solved = case.solve_briefly().map_err(|error| (!error.is_interrupted()).then(|| error.to_string()))?;
-        let mut fields = fields(&solved.answer);
-        let facts = Facts::of_answer(case, &solved);
-        let quantities = self.quantities.iter();
-        fields.extend(quantities.map(|quantity| facts.value(quantity).map_or(Value::Null, |value| value.json())));
-        if watch.stop() { Err(None) } else { Ok((fields, solved.answer.is_answer())) }
-    }
-
     /// `None` where `watch` asked to stop.
-    fn row(&self, index: usize, hash: &str, watch: &dyn Watch) -> Option<Row> {
-        let point = self.grid.point(index);
-        let mut values = self.case.values.clone();
-        for (axis, value) in self.grid.axes.iter().zip(&point) {
-            values.insert(axis.name.clone(), *value);
-        }
-        let (fields, is_answer) = match self.solve_at(&values, &StopOnly(watch)) {
-            Ok(found) => found,
-            Err(None) => return None,
-            Err(Some(refusal)) => {
+    fn row(&self, index: usize, found: Found, hash: &str) -> Option<Row> {
+        let (fields, is_answer) = match found {
+            Found::Solved(fields, is_answer) => (fields, is_answer),
+            Found::Stopped => return None,
+            Found::Refused(refusal) => {
                 let mut fields = vec![Value::Null; COLUMNS.len()];
                 fields[0] = json!("refused");
                 if let Some(failure) = fields.last_mut() {
@@ -363,7 +375,7 @@ fn cell(value: &Value) -> String {
 }
 
 /// The columns after the parameters.
-fn fields(answer: &Answer) -> Vec<Value> {
+pub(super) fn fields(answer: &Answer) -> Vec<Value> {
     let is_state = !answer.outcome.is_failure();
     let has_pairs = is_state && !answer.pairs.is_empty();
     let count = |state: State| {

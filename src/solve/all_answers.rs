@@ -107,7 +107,7 @@ impl Prepared {
         });
         if found.no_answer() {
             // At a limit on paper the numbers as stored may be just beyond it.
-            let near = self.attempt_contact(&problem, Rules::default(), watch)?;
+            let near = self.attempt_contact(&problem, (Rules::default(), Extent::Whole), watch)?;
             if near.answer.is_answer() {
                 return Ok(AllAnswers {
                     answers: vec![near],

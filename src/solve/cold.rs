@@ -32,6 +32,8 @@ pub(super) enum Extent {
     Whole,
     /// States and forces of the joints with their check; [`Case::whole`] works out the rest.
     Joints,
+    /// The same without the words for the pivots: for those who ask for the equilibrium of many answers at once.
+    Counted,
 }
 
 impl Case<'_> {
@@ -40,7 +42,7 @@ impl Case<'_> {
     /// # Errors
     /// See [`SolveError`]. A run that ends in a ray or breaks down is no error: the answer says so.
     pub fn solve(self) -> Result<Solved, SolveError> {
-        self.solve_as(false)
+        self.solve_as(false, Extent::Whole)
     }
 
     /// As [`Case::solve`], without looking for what would stop a collapse: for sweeps, which only count.
@@ -48,10 +50,10 @@ impl Case<'_> {
     /// # Errors
     /// As [`Case::solve`].
     pub fn solve_briefly(self) -> Result<Solved, SolveError> {
-        self.solve_as(true)
+        self.solve_as(true, Extent::Whole)
     }
 
-    fn solve_as(self, brief: bool) -> Result<Solved, SolveError> {
+    pub(super) fn solve_as(self, brief: bool, extent: Extent) -> Result<Solved, SolveError> {
         let Case { scenario, prepared, values, rules, watch } = self;
         if let Some(refusal) = scenario.law_refusal(values) {
             return Err(SolveError::Value(refusal));
@@ -66,7 +68,7 @@ impl Case<'_> {
                 solve_plain_judged(&problem, rules, watch)?
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                prepared.solve_contact_judged(system, values, rules, brief, watch)?
+                prepared.solve_contact_judged(system, values, (rules, extent), brief, watch)?
             }
         };
         if let Geometry::Contact { remarks, .. } = &*prepared.geometry {
@@ -96,24 +98,28 @@ impl Prepared {
     pub(super) fn attempt_contact(
         &self,
         problem: &ContactProblem,
-        rules: Rules,
+        (rules, extent): (Rules, Extent),
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
         let contact = contact_lcp(problem, rules.covering)?;
-        let solved = self.run_contact(problem, contact.clone(), rules, watch)?;
-        if !solved.answer.marginal || solved.answer.check.passed {
+        let mut solved = self.run_contact(problem, contact.clone(), (rules, extent), watch)?;
+        if !solved.answer.marginal {
+            return Ok(solved);
+        }
+        solved = solved.completed();
+        if solved.answer.check.passed {
             return Ok(solved);
         }
         let mut strict = contact;
         Arc::make_mut(&mut strict.lcp).scale.load = Some(0.0);
-        self.run_contact(problem, strict, rules, watch)
+        self.run_contact(problem, strict, (rules, extent), watch)
     }
 
     fn run_contact(
         &self,
         problem: &ContactProblem,
         contact: ContactLcp,
-        rules: Rules,
+        (rules, extent): (Rules, Extent),
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
         let system = &*problem.system;
@@ -132,11 +138,13 @@ impl Prepared {
             _ => {}
         }
         let seconds = start.elapsed().as_secs_f64();
-        let mut solved = self.state_of(problem, contact, run, rules.into(), Extent::Whole);
+        let mut solved = self.state_of(problem, contact, run, rules.into(), extent);
         solved.answer.timings.lemke = seconds;
         solved.answer.ray = solved.ray.as_ref().map(|report| report.record(system, rules.covering));
         if let RunData::Contact { contact, pivots, .. } = &solved.run {
-            solved.answer.pivots = sentence::pivot_records(pivots.recorded(), contact, system);
+            if extent != Extent::Counted {
+                solved.answer.pivots = sentence::pivot_records(pivots.recorded(), contact, system);
+            }
             if let Some(engine) = engine.filter(|_| solved.answer.is_answer()) {
                 let warm = WarmStart::new(engine, contact.clone(), problem.clone());
                 solved.warm = Some(Arc::new(Mutex::new(Some(warm))));
@@ -183,7 +191,7 @@ impl Prepared {
         let mut rest = None;
         match (extent, &*self.geometry) {
             _ if !answer.is_answer() => {}
-            (Extent::Joints, Geometry::Structure { .. }) => {
+            (Extent::Joints | Extent::Counted, Geometry::Structure { .. }) => {
                 self.complete_joints(&mut answer, problem, &state);
                 rest = Some(Arc::new(Rest { prepared: self.clone(), joints: state }));
             }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::cold::Extent;
 use super::error::SolveError;
 use super::plain::{PlainProblem, attempt_plain};
 use super::prepared::{Geometry, Prepared};
@@ -104,7 +105,7 @@ impl Prepared {
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
                 let problem = contact_problem(system, factors, values);
-                self.attempt_contact(&problem, rules, watch)
+                self.attempt_contact(&problem, (rules, Extent::Whole), watch)
             }
         }
     }

@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use super::case::Case;
+use super::cold::Extent;
 use super::prepared::{Geometry, Prepared};
 use super::problem::contact_problem;
 use super::state::{RunData, Solved};
@@ -117,7 +118,7 @@ impl Prepared {
         let budget = Budget::new(watch, REMEDY_TIME);
         let solves = |changed: &ContactProblem| {
             let rules = Rules { engine: Engine::Scheme, ..Rules::default() };
-            self.attempt_contact(changed, rules, &budget).is_ok_and(|found| found.answer.is_answer())
+            self.attempt_contact(changed, (rules, Extent::Whole), &budget).is_ok_and(|found| found.answer.is_answer())
         };
         let parts = report.mode.as_ref().map_or(&[][..], |mode| mode.parts.as_slice());
         Some(remedies(problem, &FreeMotions::new(&problem.system, self.built()), parts, &solves, &budget))

@@ -28,6 +28,7 @@ pub mod follow;
 mod from_zero_load;
 mod history_answer;
 mod ladder;
+pub mod line;
 pub mod load_rates;
 mod plain;
 pub mod plain_answers;

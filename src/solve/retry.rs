@@ -8,6 +8,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::cold::Extent;
 use super::engines::EXACT_PAIRS;
 use super::error::SolveError;
 use super::from_zero_load::AlongLoad;
@@ -55,13 +56,13 @@ impl Prepared {
         &self,
         system: &Arc<ContactSystem>,
         values: &ParameterValues,
-        rules: Rules,
+        (rules, extent): (Rules, Extent),
         brief: bool,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
         let problem = contact_problem(system, &factors(self, values), values);
         let job = Job { prepared: self, problem: &problem, rules, watch };
-        let mut solved = job.attempt(rules)?;
+        let mut solved = self.attempt_contact(&problem, (rules, extent), watch)?;
         if solved.answer.is_answer() {
             return Ok(solved);
         }
@@ -104,7 +105,7 @@ impl Job<'_> {
     }
 
     fn attempt_watched(&self, rules: Rules, watch: &dyn Watch) -> Result<Solved, SolveError> {
-        self.prepared.attempt_contact(self.problem, rules, watch)
+        self.prepared.attempt_contact(self.problem, (rules, Extent::Whole), watch)
     }
 
     /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run

@@ -1,0 +1,158 @@
+//! Answers at one set of numbers after another, for sweeps: each is what a cold run finds, character by character, taken from
+//! the one before it where that is proved to lead to the same.
+//!
+//! The proof has two parts: under this friction the system has one state of forces at most, whatever its load
+//! ([`Uniqueness`]); and the state reached lies clear of every change of scheme, so that a cold run ends in the same scheme.
+//! From there on both compute the same numbers.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::case::Case;
+use super::cold::Extent;
+use super::error::SolveError;
+use super::prepared::{Geometry, Prepared};
+use super::problem::{contact_problem, factors};
+use super::state::{RunData, Solved};
+use super::warm::WarmStart;
+use crate::answer::pairs::{JointState, joint_state};
+use crate::answer::record::{Answer, Start};
+use crate::answer::strict::is_strict;
+use crate::contact::lcp::contact_lcp_like;
+use crate::contact::problem::ContactProblem;
+use crate::contact::unique::Uniqueness;
+use crate::fem::BalancedState;
+use crate::lcp::basis_solution::vertex;
+use crate::model::rules::Engine;
+
+/// What has been proved of one system; shared by all lines of a sweep.
+#[derive(Debug)]
+pub struct Proofs(Mutex<Uniqueness>);
+
+impl Proofs {
+    /// Nothing yet; `None` for a bare LCP.
+    pub fn of(prepared: &Prepared) -> Option<Proofs> {
+        prepared.system().map(|system| Proofs(Mutex::new(Uniqueness::of(system))))
+    }
+}
+
+impl Case<'_> {
+    /// Whether it is proved that there is at most one answer here, whatever the load.
+    pub fn is_unique(self, proofs: &Proofs) -> bool {
+        let usual = self.rules.are_default() && self.rules.engine == Engine::Scheme;
+        let Some(system) = self.prepared.system().filter(|_| usual) else { return false };
+        if self.scenario.law_refusal(self.values).is_some() {
+            return false;
+        }
+        let problem = contact_problem(system, &factors(self.prepared, self.values), self.values);
+        proofs.0.lock().unwrap_or_else(PoisonError::into_inner).holds(&problem)
+    }
+
+    /// The answer, with the check over the joints; of a structure [`Unbalanced`] tells what is left to check. No words are
+    /// made for pivots or for what would stop a collapse.
+    ///
+    /// # Errors
+    /// As [`Case::solve`].
+    pub fn solve_counted(self) -> Result<Solved, SolveError> {
+        self.solve_as(true, Extent::Counted)
+    }
+
+    /// The same where [`Case::is_unique`], from the answer before it on this line where that leads there.
+    ///
+    /// # Errors
+    /// As [`Case::solve`].
+    pub fn solve_next(self, line: &mut Line) -> Result<Solved, SolveError> {
+        // Taken out, so that nothing half-way stays behind where the path fails.
+        if let Some(mut kept) = line.0.take()
+            && let Some(solved) = self.same_as_cold(&mut kept)
+        {
+            line.0 = Some(kept);
+            return Ok(solved);
+        }
+        let solved = self.solve_counted()?;
+        line.0 = solved.warm.as_ref().and_then(|slot| slot.lock().unwrap_or_else(PoisonError::into_inner).take());
+        Ok(solved)
+    }
+
+    /// What a cold run finds, from the kept answer; `None` where that is not certain.
+    fn same_as_cold(self, kept: &mut WarmStart) -> Option<Solved> {
+        let Case { prepared, values, rules, watch, .. } = self;
+        let system = prepared.system()?;
+        let problem = contact_problem(system, &factors(prepared, values), values);
+        if !Arc::ptr_eq(system, kept.system()) {
+            return None;
+        }
+        let changes = kept.follow(&problem, watch)?.pivots;
+        let basis = kept.basis();
+        if basis.z.is_empty() {
+            // A cold run ends at once.
+            return None;
+        }
+        let contact = contact_lcp_like(Some(kept.contact()), &problem, rules.covering).ok()?;
+        let point = vertex(&contact.lcp, &basis)?;
+        let mut solved = prepared.answer_at(&problem, contact, point, rules.into(), Extent::Counted);
+        solved.answer.start = Start::Warm { changes };
+        let strict = solved.answer.is_answer() && is_strict(&problem, &solved.joints()?);
+        strict.then_some(solved)
+    }
+}
+
+/// The answer before, in a dictionary.
+#[derive(Debug, Default)]
+pub struct Line(Option<WarmStart>);
+
+/// An answer of a structure whose equilibrium is still to be looked at.
+#[derive(Debug)]
+pub struct Unbalanced {
+    prepared: Prepared,
+    problem: ContactProblem,
+    joints: JointState,
+}
+
+impl Solved {
+    /// The joints of an answer.
+    fn joints(&self) -> Option<JointState> {
+        match (&self.rest, &self.run) {
+            (Some(rest), _) => Some(rest.joints.clone()),
+            (None, RunData::Contact { contact, problem, last, .. }) => Some(joint_state(problem, contact, last)),
+            (None, RunData::Plain { .. }) => None,
+        }
+    }
+
+    /// The answer alone, and what its equilibrium is told from where that is still to be looked at.
+    pub fn into_answer(self) -> (Answer, Option<Unbalanced>) {
+        let left = match (&self.rest, &self.run) {
+            (Some(rest), RunData::Contact { problem, .. }) => Some(Unbalanced {
+                prepared: rest.prepared.clone(),
+                problem: problem.clone(),
+                joints: rest.joints.clone(),
+            }),
+            _ => None,
+        };
+        (self.answer, left)
+    }
+}
+
+impl Unbalanced {
+    /// Of each whether the forces balance at every node.
+    pub fn are_balanced(all: &[&Unbalanced]) -> Vec<bool> {
+        let mut balanced = Vec::with_capacity(all.len());
+        // Those of one geometry share its factorization.
+        for same in all.chunk_by(|a, b| Arc::ptr_eq(&a.prepared.geometry, &b.prepared.geometry)) {
+            let Geometry::Structure { main, structure, .. } = &*same[0].prepared.geometry else {
+                balanced.extend(same.iter().map(|_| true));
+                continue;
+            };
+            let states: Vec<BalancedState<'_>> = same
+                .iter()
+                .map(|state| BalancedState {
+                    factors: &state.problem.factors,
+                    dislocation: state.problem.dislocation(&state.joints.z),
+                    force: &state.joints.force,
+                })
+                .collect();
+            let bounds = main.equilibrium_bounds(structure, &states);
+            balanced.extend(bounds.into_iter().map(|bound| bound <= crate::answer::check::TOLERANCE));
+        }
+        balanced
+    }
+}
