@@ -133,6 +133,14 @@ impl Solved {
 }
 
 impl Unbalanced {
+    /// The same with one joint force off by `amount`: for tests of the check.
+    #[must_use]
+    pub fn with_force_off(&self, joint: usize, amount: f64) -> Unbalanced {
+        let mut joints = self.joints.clone();
+        joints.force[joint] += amount;
+        Unbalanced { prepared: self.prepared.clone(), problem: self.problem.clone(), joints }
+    }
+
     /// Of each whether the forces balance at every node.
     pub fn are_balanced(all: &[&Unbalanced]) -> Vec<bool> {
         let mut balanced = Vec::with_capacity(all.len());

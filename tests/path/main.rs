@@ -18,3 +18,4 @@ mod sample;
 mod session;
 mod stages;
 mod sweep;
+mod sweep_following;

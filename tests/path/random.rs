@@ -172,7 +172,8 @@ fn knots_are_the_vertices_that_their_equations_give() {
         }
         let contact = path_lcp(&problem, &increment);
         let held = Basis { z: Vec::new(), active: Vec::new(), p: false };
-        let mut engine = Parametric::new(Arc::clone(&contact.lcp), &held, order(&contact)).expect("all held");
+        let mut engine =
+            Parametric::new(Arc::clone(&contact.lcp), &held, contact.lexicographic_order()).expect("all held");
         let reach = Reach { target: 40.0, through: k % 2 == 0, pivots: 5_000 };
         let path = engine.follow(reach, &mut |_| ControlFlow::Continue(()));
         ends.insert(format!("{:?}", path.end).split(['(', ' ']).next().unwrap_or_default().to_owned());

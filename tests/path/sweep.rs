@@ -14,11 +14,11 @@ use stickslip::path::sweep_file::{SweepFileError, run_to_file};
 use stickslip::solve::{Prepared, prepare};
 use stickslip::watch::{Quiet, Watch};
 
-struct Case {
-    scenario: Scenario,
-    prepared: Prepared,
-    values: ParameterValues,
-    grid: Grid,
+pub(crate) struct Case {
+    pub(crate) scenario: Scenario,
+    pub(crate) prepared: Prepared,
+    pub(crate) values: ParameterValues,
+    pub(crate) grid: Grid,
 }
 
 impl Case {
@@ -26,7 +26,7 @@ impl Case {
         Case::of(embedded::load(name).expect("embedded"), axes)
     }
 
-    fn of(scenario: Scenario, axes: &[&str]) -> Case {
+    pub(crate) fn of(scenario: Scenario, axes: &[&str]) -> Case {
         let axes = axes.iter().map(|axis| Axis::parse(axis).expect("an axis")).collect();
         Case {
             prepared: prepare(&scenario, &Quiet).expect("sound"),
@@ -36,7 +36,7 @@ impl Case {
         }
     }
 
-    fn sweep(&self, shard: &str, format: Format) -> Sweep<'_> {
+    pub(crate) fn sweep(&self, shard: &str, format: Format) -> Sweep<'_> {
         Sweep {
             case: self.prepared.case(&self.scenario, &self.values),
             grid: &self.grid,

@@ -1,0 +1,248 @@
+//! Points of a sweep that follow one another: to the last bit what cold runs find, wherever a shard begins.
+
+use nalgebra::DMatrix;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde_json::{Value, json};
+use stickslip::answer::record::{Answer, OutcomeKind, Start};
+use stickslip::model::load::load_text;
+use stickslip::path::sweep::{Following, Format};
+use stickslip::solve::line::{Line, Proofs, Unbalanced};
+use stickslip::watch::Quiet;
+
+use super::sweep::Case;
+
+/// What the random systems differ in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// R far from singular, normal and tangential joints hardly coupled.
+    Usual,
+    /// Integers: ties.
+    Ties,
+    /// Pairs without friction, R with a kernel along the normals, in integers.
+    Loose,
+    /// Much coupling and much friction: several answers.
+    Several,
+}
+
+const KINDS: [Kind; 4] = [Kind::Usual, Kind::Ties, Kind::Loose, Kind::Several];
+
+/// A random system under a steady load and one that grows with T on the first pairs alone; f is the friction of all pairs.
+fn random(kind: Kind, m: usize, rng: &mut ChaCha8Rng, axes: &[&str]) -> Case {
+    let n = 2 * m;
+    let mut number =
+        |whole: bool| if whole { f64::from(rng.random_range(-2..=2)) } else { rng.random_range(-1.0..1.0) };
+    let whole = matches!(kind, Kind::Ties | Kind::Loose);
+    let coupling = if kind == Kind::Several { 1.0 } else { 0.1 };
+    let a = DMatrix::from_fn(n, n, |i, j| {
+        let other = (i < m) != (j < m);
+        number(whole) * if other && !whole { coupling } else { 1.0 }
+    });
+    let mut a = a;
+    if kind == Kind::Several {
+        // What presses a pair pushes it along as well.
+        (0..m).for_each(|i| (0..n).for_each(|j| a[(m + i, j)] = 0.9 * a[(i, j)] + 0.3 * a[(m + i, j)]));
+    }
+    let mut r = match kind {
+        Kind::Several => &a * a.transpose() / n as f64 + DMatrix::identity(n, n) * 0.05,
+        Kind::Usual => &a * a.transpose() / n as f64 + DMatrix::identity(n, n),
+        Kind::Ties | Kind::Loose => &a * a.transpose() + DMatrix::identity(n, n) * 4.0,
+    };
+    if kind == Kind::Ties {
+        // The normals feel no tangential joint.
+        (0..m).for_each(|i| (m..n).for_each(|j| (r[(i, j)], r[(j, i)]) = (0.0, 0.0)));
+    }
+    if kind == Kind::Loose {
+        // Springs between the normals of neighbours: moved all alike they feel nothing.
+        r = DMatrix::identity(n, n) * 2.0;
+        for i in 0..m {
+            r[(i, i)] = if i == 0 || i + 1 == m { 1.0 } else { 2.0 };
+            if i + 1 < m {
+                (r[(i, i + 1)], r[(i + 1, i)]) = (-1.0, -1.0);
+            }
+        }
+    }
+    let matrix: Vec<Vec<f64>> = r.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let steady: Vec<f64> =
+        (0..n).map(|i| if i < m { 1.0 + number(whole).abs() } else { 0.3 * number(whole) }).collect();
+    let grows: Vec<f64> = (0..n).map(|i| if i % m <= m / 3 { number(whole) } else { 0.0 }).collect();
+    let (law, friction): (Vec<&str>, Vec<Value>) =
+        (0..m).map(|_| if kind == Kind::Loose { ("frictionless", json!(0)) } else { ("coulomb", json!("f")) }).unzip();
+    let text = json!({
+        "format": "stickslip/1", "title": "random", "parameters": { "f": 0.2, "T": 0.0 },
+        "contact_system": {
+            "pairs": (0..m).map(|i| format!("c{i}")).collect::<Vec<_>>(), "law": law, "friction": friction,
+            "stiffness": matrix,
+            "loads": { "w": { "vector": steady }, "p": { "factor": "T", "vector": grows } }
+        }
+    });
+    let scenario = load_text("random", &text.to_string(), None).unwrap_or_else(|error| panic!("{kind:?}: {error}"));
+    Case::of(scenario, axes)
+}
+
+fn same(found: &Answer, cold: &Answer, place: &str) {
+    assert_eq!(found.outcome, cold.outcome, "{place}");
+    // PartialEq of f64: to the last bit, but for the sign of zero.
+    assert_eq!(found.pairs, cold.pairs, "{place}");
+}
+
+#[test]
+fn answers_that_follow_one_another_are_those_of_cold_runs_to_the_last_bit() {
+    let mut rng = ChaCha8Rng::seed_from_u64(16);
+    let (mut followed, mut proved, mut all) = ([0; 4], [0; 4], 0);
+    for number in 0..72 {
+        let kind = KINDS[number % 4];
+        let case = random(kind, 1 + number % 9, &mut rng, &["T=0"]);
+        let here = case.prepared.case(&case.scenario, &case.values);
+        let proofs = Proofs::of(&case.prepared).expect("pairs");
+        for f in [0.05, 0.3, 6.0] {
+            let mut line = Line::default();
+            for step in 0..24 {
+                let mut values = case.values.clone();
+                values.insert("f".to_owned(), if step < 16 { f } else { f * (1.0 + 0.01 * f64::from(step - 16)) });
+                values.insert("T".to_owned(), f64::from(step.min(18)) * 0.2);
+                let there = stickslip::solve::Case { values: &values, ..here };
+                let cold = there.solve().expect("runs");
+                let place = format!("{kind:?} {number}, f {f}, step {step}");
+                all += 1;
+                if !there.is_unique(&proofs) {
+                    continue;
+                }
+                proved[number % 4] += 1;
+                assert!(cold.answer.outcome != OutcomeKind::Ray || kind == Kind::Loose, "{place}");
+                let found = there.solve_next(&mut line).expect("runs");
+                same(&found.answer, &cold.answer, &place);
+                followed[number % 4] += usize::from(matches!(found.answer.start, Start::Warm { .. }));
+            }
+        }
+    }
+    // Each kind is followed; where there may be several answers not all is claimed to be unique.
+    assert!(followed.iter().take(3).all(|followed| *followed > 150), "{followed:?} {proved:?} of {all}");
+    assert!(proved[3] < all / 5, "{proved:?} of {all}");
+}
+
+/// Where it is said that there is one answer at most, going through all working schemes finds no second one.
+#[test]
+fn where_answers_are_proved_to_be_unique_there_is_no_second() {
+    let mut rng = ChaCha8Rng::seed_from_u64(17);
+    let (mut proved, mut several) = (0, 0);
+    for number in 0..120 {
+        let kind = KINDS[number % 4];
+        let case = random(kind, 1 + number % 3, &mut rng, &["T=0"]);
+        let proofs = Proofs::of(&case.prepared).expect("pairs");
+        for f in [0.1, 0.6, 2.5, 10.0] {
+            for t in [-4.0, -1.5, 0.4, 2.0, 5.0] {
+                let mut values = case.values.clone();
+                values.insert("f".to_owned(), f);
+                values.insert("T".to_owned(), t);
+                let unique = case.prepared.case(&case.scenario, &values).is_unique(&proofs);
+                let found = case.prepared.all_answers(&values, &Quiet).expect("few pairs");
+                several += usize::from(found.answers.len() > 1);
+                proved += usize::from(unique);
+                let loose = kind == Kind::Loose;
+                assert!(
+                    !unique || found.answers.len() <= 1 && (loose || found.continua.is_empty()),
+                    "{kind:?} {number}"
+                );
+            }
+        }
+    }
+    assert!(proved > 400 && several > 10, "{proved} {several}");
+}
+
+/// The file without the columns that tell how a row was found.
+fn told(text: &[u8]) -> Vec<Vec<String>> {
+    let text = std::str::from_utf8(text).expect("text");
+    let rows = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    rows.map(|mut row| {
+        row.pop();
+        row.remove(5);
+        row
+    })
+    .collect()
+}
+
+fn bytes(case: &Case, shard: &str, following: Following) -> Vec<u8> {
+    let mut out = Vec::new();
+    let done = case.sweep(shard, Format::Csv).run_by(following, 0, &mut out, &Quiet).expect("a vector takes all");
+    assert!(done.is_complete());
+    out
+}
+
+#[test]
+fn sweeps_that_follow_are_the_same_on_any_threads_and_shards() {
+    let mut rng = ChaCha8Rng::seed_from_u64(18);
+    for (number, kind) in KINDS.into_iter().cycle().take(12).enumerate() {
+        let axes: &[&str] =
+            if number % 2 == 0 { &["f=0.05..0.6/3", "T=-1..3/37"] } else { &["T=-1..3/5", "f=0.05..0.6/29"] };
+        let case = random(kind, 2 + number % 5, &mut rng, axes);
+        let whole = bytes(&case, "1/1", Following::Always);
+        let cold = bytes(&case, "1/1", Following::Never);
+        assert_eq!(told(&whole), told(&cold), "{kind:?} {number}");
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            assert_eq!(pool.install(|| bytes(&case, "1/1", Following::Always)), whole);
+        }
+        for shards in [2, 5, 23] {
+            let parts = (1..=shards).flat_map(|k| bytes(&case, &format!("{k}/{shards}"), Following::Always));
+            assert!(parts.eq(whole.iter().copied()), "{kind:?} {number} in {shards}");
+        }
+        // A file that is continued anywhere.
+        let sweep = case.sweep("1/1", Format::Csv);
+        let lines: Vec<&[u8]> = whole.split_inclusive(|byte| *byte == b'\n').collect();
+        for found in [1, 17, 40, 63] {
+            let mut rest = Vec::new();
+            sweep.run_by(Following::Always, found, &mut rest, &Quiet).expect("a vector takes all");
+            assert_eq!(rest, lines[found..].concat());
+        }
+    }
+}
+
+/// Two blocks of quadrilaterals on one another, on a fixed base; the upper one held by springs.
+const BLOCKS: &str = r#"{ "format": "stickslip/1", "title": "blocks", "parameters": { "f": 0.3, "T": 10 },
+    "materials": { "m": { "E": 1e5, "nu": 0.3 } },
+    "plates": [
+        { "id": "a", "origin": [0, 0], "size": [6, 1], "divisions": [12, 2], "thickness": 0.1, "material": "m", "plane": "strain" },
+        { "id": "b", "origin": [0, 1], "size": [6, 1], "divisions": [12, 2], "thickness": 0.1, "material": "m", "plane": "strain" } ],
+    "supports": [ { "at": "a.bottom", "fixed": ["x", "y"] } ],
+    "springs": [ { "at": "b.left", "direction": [1, 0], "stiffness": 3000 }, { "at": "b.top", "direction": [0, 1], "stiffness": 20 } ],
+    "contacts": [ { "id": "j", "edge": "b.bottom", "against": "a.top", "friction": "f" } ],
+    "loads": { "w": { "items": [ { "traction": { "edge": "b.top", "value": [0, -100] } } ] },
+               "p": { "factor": "T", "items": [ { "traction": { "edge": "b.left", "value": [1, 0.7] } } ] } } }"#;
+
+#[test]
+fn of_a_structure_every_row_is_that_of_a_cold_run_with_its_whole_check() {
+    let scenario = || load_text("blocks", BLOCKS, None).unwrap_or_else(|error| panic!("{error}"));
+    for axes in [&["f=0.02..0.4/3", "T=0..120/33"][..], &["T=40..80/2", "f=0.01..0.5/21"]] {
+        let case = Case::of(scenario(), axes);
+        let (followed, cold) = (bytes(&case, "1/1", Following::Always), bytes(&case, "1/1", Following::Never));
+        assert_eq!(told(&followed), told(&cold));
+        // By its own run, the check with the equilibrium of all nodes included.
+        for (index, row) in told(&cold).iter().enumerate() {
+            let point = case.grid.point(index);
+            let mut values = case.values.clone();
+            case.grid.axes.iter().zip(point).for_each(|(axis, value)| {
+                values.insert(axis.name.clone(), value);
+            });
+            let solved = case.prepared.case(&case.scenario, &values).solve().expect("runs");
+            assert!(solved.answer.check.passed && solved.answer.check.equilibrium.is_some());
+            assert_eq!(row[2], json!(solved.answer.outcome).as_str().expect("a word"));
+            let largest = solved.answer.pairs.iter().map(|pair| pair.x_n.abs()).fold(0.0, f64::max);
+            assert_eq!(row[14], json!(largest).to_string(), "{row:?}");
+        }
+    }
+}
+
+/// The equilibrium that sweeps look at is that of the check: it sees a force that is off by a millionth.
+#[test]
+fn answers_out_of_balance_are_seen() {
+    let case = Case::of(load_text("blocks", BLOCKS, None).expect("sound"), &["T=0"]);
+    let here = case.prepared.case(&case.scenario, &case.values);
+    let (answer, left) = here.solve_counted().expect("runs").into_answer();
+    assert!(answer.is_answer());
+    let left = left.expect("a structure");
+    assert_eq!(Unbalanced::are_balanced(&[&left, &left]), [true, true]);
+    let pressed = (0..answer.pairs.len()).find(|pair| answer.pairs[*pair].x_n > 1.0).expect("the weight");
+    let off = left.with_force_off(pressed, 1e-6 * answer.pairs[pressed].x_n);
+    assert_eq!(Unbalanced::are_balanced(&[&left, &off]), [true, false]);
+}
