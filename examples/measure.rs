@@ -4,6 +4,9 @@
 //! measure engine PAIRS F T one-sided|symmetric [FOLDER]   exports M, q, d to FOLDER; a run per line read from stdin
 //! measure warm PAIRS F T REPETITIONS                      cold, load changed, friction changed
 //! measure resolve NX NY REPETITIONS                       a load inside the model moved, a size moved
+//! measure trace PAIRS F T                                 the pull followed from 0 to T: a breakpoint, a pivot of a cold run
+//! measure sweep PAIRS F T POINTS THREADS [stands]         pulls up to T cold and following one another; `stands`: the upper
+//!                                                         plate is held by springs, so that answers may be proved unique
 //! measure condense NX NY WIDTH HEIGHT CASES [plain]       two plates; `plain`: also faer's own factorization
 //! measure schur NX NY WIDTH HEIGHT FOLDER                 exports K_m and C of the same to FOLDER, and condenses it
 //! measure given PAIRS                                     the check of a matrix of a file beside a Cholesky factorization
@@ -37,6 +40,11 @@ use stickslip::lcp::lemke::SchemeEngine;
 use stickslip::model::pair::joints;
 use stickslip::model::rules::TieBreak;
 use stickslip::model::scenario::Source;
+use stickslip::path::grid::{Axis, Grid, Shard};
+use stickslip::path::load::{self, LoadReach};
+use stickslip::path::sweep::{Following, Format, Sweep};
+use stickslip::solve::engines::run_scheme;
+use stickslip::solve::line::Proofs;
 use stickslip::solve::prepare;
 use stickslip::watch::Quiet;
 
@@ -183,6 +191,84 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
     Ok(json!({
         "pairs": pairs, "f": friction,
         "cold_whole": median(colds.0), "cold_lemke": median(colds.1), "changed": changed,
+    }))
+}
+
+/// Seconds that all threads of this process have computed.
+fn cpu_seconds() -> f64 {
+    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return 0.0 };
+    let nanoseconds = |task: std::fs::DirEntry| -> Option<f64> {
+        std::fs::read_to_string(task.path().join("schedstat")).ok()?.split(' ').next()?.parse().ok()
+    };
+    1e-9 * tasks.flatten().filter_map(nanoseconds).sum::<f64>()
+}
+
+/// The work, its seconds by the clock and those that all threads computed.
+fn computed<T>(work: impl FnOnce() -> T) -> (f64, f64, T) {
+    let (clock, before) = (Instant::now(), cpu_seconds());
+    let result = work();
+    (clock.elapsed().as_secs_f64(), cpu_seconds() - before, result)
+}
+
+/// The path of a load: what a breakpoint costs, beside a pivot of a cold run at its end.
+fn trace(arguments: &[String]) -> Result<Value, Failure> {
+    let pairs: usize = number(arguments, 0, "PAIRS")?;
+    let (friction, traction): (f64, f64) = (number(arguments, 1, "F")?, number(arguments, 2, "T")?);
+    let ready = Ready::new(&Plates { traction, ..Plates::with_pairs(pairs, friction) });
+    let none = ready.values(&[("T", 0.0)]);
+    let start = ready.prepared.case(&ready.scenario, &none).solve()?;
+    let reach = LoadReach { to: Some(traction), through: false };
+    let mut seconds = Vec::new();
+    let mut knots = 0;
+    for _ in 0..5 {
+        let (_, cpu, path) =
+            computed(|| load::trace(ready.prepared.case(&ready.scenario, &none), Some(&start), "T", reach));
+        knots = path?.factors.len() - 1;
+        seconds.push(cpu);
+    }
+    let end = ready.values(&[]);
+    let contact = contact_lcp(&ready.problem(&end), ready.scenario.rules.covering)?;
+    let rule = contact.tie_rule(ready.scenario.rules.tie_break);
+    let (_, lemke, run) = computed(|| run_scheme(&contact.lcp, rule, &Quiet));
+    let a_knot = median(seconds.clone()) / knots as f64;
+    Ok(json!({
+        "pairs": pairs, "f": friction, "knots": knots, "seconds": median(seconds), "a_knot": a_knot,
+        "a_pivot": lemke / run.pivots.count() as f64,
+    }))
+}
+
+/// A sweep over the pull: cold, and neighbours following one another where that is proved; in turns.
+fn sweep(arguments: &[String]) -> Result<Value, Failure> {
+    let pairs: usize = number(arguments, 0, "PAIRS")?;
+    let (friction, traction): (f64, f64) = (number(arguments, 1, "F")?, number(arguments, 2, "T")?);
+    let (points, threads): (usize, usize) = (number(arguments, 3, "POINTS")?, number(arguments, 4, "THREADS")?);
+    let plates = Plates { traction, ..Plates::with_pairs(pairs, friction) };
+    let scenario = match arguments.get(5).map(String::as_str) {
+        Some("stands") => plates.standing_scenario(),
+        _ => plates.scenario(),
+    };
+    let (prepared, values) = (prepare(&scenario, &Quiet)?, scenario.parameter_values());
+    let grid = Grid::new(&scenario, vec![Axis::counted("T", 0.5 * traction, traction, points)?])?;
+    let case = prepared.case(&scenario, &values);
+    let sweep = Sweep { case, grid: &grid, shard: Shard::WHOLE, format: Format::Csv, quantities: &[] };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let (mut clocks, mut cpus) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+    for _ in 0..3 {
+        for (turn, following) in [Following::Never, Following::Always].into_iter().enumerate() {
+            let (clock, cpu, done) =
+                computed(|| pool.install(|| sweep.run_by(following, 0, &mut std::io::sink(), &Quiet)));
+            done?;
+            clocks[turn].push(clock / points as f64);
+            cpus[turn].push(cpu / points as f64);
+        }
+    }
+    let [cold, following] = cpus.map(median);
+    let [cold_clock, following_clock] = clocks.map(median);
+    let proofs = Proofs::of(&prepared).ok_or("no pairs")?;
+    let (_, proof, unique) = computed(|| case.is_unique(&proofs));
+    Ok(json!({
+        "pairs": pairs, "f": friction, "points": points, "threads": threads, "unique": unique, "proof": proof,
+        "cold": cold, "following": following, "cold_clock": cold_clock, "following_clock": following_clock,
     }))
 }
 
@@ -360,13 +446,15 @@ fn main() -> ExitCode {
         Some("engine") => engine(rest),
         Some("warm") => warm(rest).map(|result| println!("{result}")),
         Some("resolve") => resolve(rest).map(|result| println!("{result}")),
+        Some("trace") => trace(rest).map(|result| println!("{result}")),
+        Some("sweep") => sweep(rest).map(|result| println!("{result}")),
         Some("condense") => condense(rest).map(|result| println!("{result}")),
         Some("schur") => schur(rest).map(|result| println!("{result}")),
         Some("given") => given(rest).map(|result| println!("{result}")),
         Some("exact") => exact(rest).map(|result| println!("{result}")),
         _ => {
-            Err("expected engine, warm, resolve, condense, schur, given or exact; see the head of examples/measure.rs"
-                .into())
+            let known = "engine, warm, resolve, trace, sweep, condense, schur, given or exact";
+            Err(format!("expected {known}; see the head of examples/measure.rs").into())
         }
     };
     match done {

@@ -97,6 +97,13 @@ impl Plates {
         load_text("plates", &text, None).expect("the generated scenario is sound")
     }
 
+    /// The same with springs under the whole top of the upper plate as well: it stands without its contacts.
+    pub fn standing_scenario(&self) -> Scenario {
+        let held = r#""springs":[{"at":"upper.top","direction":[0,1],"stiffness":1},"#;
+        let text = self.text().replace(r#""springs":["#, held).replace(r#""stiffness":10}"#, r#""stiffness":3000}"#);
+        load_text("plates", &text, None).expect("the generated scenario is sound")
+    }
+
     /// The scenario, loaded.
     pub fn scenario(&self) -> Scenario {
         load_text("plates", &self.text(), None).expect("the generated scenario is sound")

@@ -73,7 +73,7 @@ pub struct Edge {
 /// No answer anywhere in the range; see [`PathError`].
 pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result<Edge, PathError> {
     let run = |value: f64| -> Result<Run, PathError> {
-        let solved = case.at(name, value)?.case(case).solve_briefly()?;
+        let solved = case.at(name, value)?.case(case).solve_pairs()?;
         let ray = solved.ray.as_ref();
         Ok(Run {
             value,
@@ -146,7 +146,7 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
 fn end_of_path(case: Case<'_>, name: &str, answer: &Run, collapse: &Run) -> Result<Option<f64>, PathError> {
     let there = case.at(name, answer.value)?;
     let here = there.case(case);
-    let solved = here.solve_briefly()?;
+    let solved = here.solve_pairs()?;
     let target = collapse.value + (collapse.value - answer.value);
     let target = if is_friction(here, name) { target.max(0.0) } else { target };
     let end = Way::follow(here, &solved, name, target).map(|way| match &way {

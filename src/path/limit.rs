@@ -126,7 +126,7 @@ fn beside(path: &LoadPath, case: Case<'_>, value: f64) -> Result<(Prepared, Vec<
 /// Whether a run of its own finds an answer at a value.
 fn beside_answers(path: &LoadPath, case: Case<'_>, value: f64) -> Result<bool, PathError> {
     let (there, _) = beside(path, case, value)?;
-    Ok(Case { prepared: &there, ..case }.under(Rules::default()).solve_briefly()?.answer.is_answer())
+    Ok(Case { prepared: &there, ..case }.under(Rules::default()).solve_pairs()?.answer.is_answer())
 }
 
 /// The size of a limit: one of 0 has none of its own.
@@ -199,7 +199,7 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
     };
     let outwards = if negative { -1.0 } else { 1.0 } * BESIDE * size(factor, present);
     let over = factor + outwards;
-    let solve = |prepared: &Prepared| Case { prepared, ..case }.under(Rules::default()).solve_briefly();
+    let solve = |prepared: &Prepared| Case { prepared, ..case }.under(Rules::default()).solve_pairs();
     let (there, factors) = beside(&limit.path, case, over)?;
     let Some(system) = there.system() else { return Ok(limit) };
     let above = solve(&there)?;

@@ -71,7 +71,7 @@ impl<'a> Route<'a> {
         let mut how = "";
         for (start, targets) in starts {
             let there = case.at(name, start)?;
-            let solved = there.case(case).solve_briefly()?;
+            let solved = there.case(case).solve_pairs()?;
             if !solved.answer.is_answer() {
                 how = solved.answer.outcome.word();
                 continue;

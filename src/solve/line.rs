@@ -56,7 +56,18 @@ impl Case<'_> {
         self.solve_as(true, Extent::Counted)
     }
 
-    /// The same where [`Case::is_unique`], from the answer before it on this line where that leads there.
+    /// As [`Case::solve_briefly`], of an answer only the pairs: checked as a whole, its displacements, members, reactions and
+    /// the words for its pivots are not there.
+    ///
+    /// # Errors
+    /// As [`Case::solve`].
+    pub fn solve_pairs(self) -> Result<Solved, SolveError> {
+        let solved = self.solve_counted()?;
+        let balanced = solved.unbalanced().is_none_or(|left| Unbalanced::are_balanced(&[&left]) == [true]);
+        if balanced { Ok(solved) } else { self.solve_briefly() }
+    }
+
+    /// As [`Case::solve_counted`] where [`Case::is_unique`], from the answer before it on this line where that leads there.
     ///
     /// # Errors
     /// As [`Case::solve`].
@@ -118,16 +129,21 @@ impl Solved {
         }
     }
 
-    /// The answer alone, and what its equilibrium is told from where that is still to be looked at.
-    pub fn into_answer(self) -> (Answer, Option<Unbalanced>) {
-        let left = match (&self.rest, &self.run) {
+    /// What the equilibrium of the answer is told from, where that is still to be looked at.
+    fn unbalanced(&self) -> Option<Unbalanced> {
+        match (&self.rest, &self.run) {
             (Some(rest), RunData::Contact { problem, .. }) => Some(Unbalanced {
                 prepared: rest.prepared.clone(),
                 problem: problem.clone(),
                 joints: rest.joints.clone(),
             }),
             _ => None,
-        };
+        }
+    }
+
+    /// The answer alone, and what its equilibrium is told from where that is still to be looked at.
+    pub fn into_answer(self) -> (Answer, Option<Unbalanced>) {
+        let left = self.unbalanced();
         (self.answer, left)
     }
 }

@@ -181,7 +181,7 @@ impl Lines<'_> {
         let probes = probes.filter(|_| again > 0 && (to - from).abs() > nearest);
         for (index, share) in probes.enumerate() {
             let at = from + share * (to - from);
-            if !case.at(self.along, at)?.case(case).solve_briefly()?.answer.is_answer() {
+            if !case.at(self.along, at)?.case(case).solve_pairs()?.answer.is_answer() {
                 continue;
             }
             // Both ways from there; what is before it has none at its other end.
@@ -203,7 +203,7 @@ impl Lines<'_> {
     /// Without an exact path: answers of their own at some places, each change between two of them narrowed.
     fn cells(&self, case: Case<'_>, [low, high]: [f64; 2], parts: &mut Vec<Part>) -> Result<(), PathError> {
         let look = |at: f64| -> Result<(f64, Scheme), PathError> {
-            let solved = case.at(self.along, at)?.case(case).solve_briefly()?;
+            let solved = case.at(self.along, at)?.case(case).solve_pairs()?;
             let found = if solved.answer.is_answer() { scheme(&solved.answer.pairs) } else { Scheme::NoAnswer };
             Ok((at, found))
         };
