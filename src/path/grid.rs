@@ -207,6 +207,14 @@ impl Grid {
         }
     }
 
+    /// Points of a line, along which the last parameter runs alone; points drawn at random make one line.
+    pub fn line_length(&self) -> usize {
+        match (&self.drawn, self.axes.last()) {
+            (None, Some(axis)) => axis.values.len().max(1),
+            _ => self.len().max(1),
+        }
+    }
+
     /// Whether there is no point.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

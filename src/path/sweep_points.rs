@@ -54,8 +54,9 @@ pub(super) struct Points<'s> {
 impl<'s> Points<'s> {
     pub(super) fn new(sweep: &'s Sweep<'s>, following: Following) -> Points<'s> {
         let prepared = sweep.case.prepared;
-        let pays =
-            || prepared.system().is_some_and(|system| system.pair_count() >= WARM_PAIRS) && sweep.grid.len() >= MANY;
+        let grid = sweep.grid;
+        let large = || prepared.system().is_some_and(|system| system.pair_count() >= WARM_PAIRS);
+        let pays = || grid.drawn.is_none() && grid.len() >= MANY && large();
         let wanted = match following {
             Following::WhereItPays => pays(),
             Following::Always => true,
@@ -67,7 +68,7 @@ impl<'s> Points<'s> {
 
     /// The blocks that share points with the range, each with its points from there.
     pub(super) fn blocks(&self, range: Range<usize>) -> Vec<Range<usize>> {
-        let line = self.sweep.grid.axes.last().map_or(1, |axis| axis.values.len());
+        let line = self.sweep.grid.line_length();
         let mut blocks = Vec::new();
         let mut next = range.start;
         while next < range.end {
@@ -81,7 +82,7 @@ impl<'s> Points<'s> {
 
     /// What is found at the points of a block.
     pub(super) fn solve(&self, wanted: Range<usize>, watch: &dyn Watch) -> Vec<Found> {
-        let line = self.sweep.grid.axes.last().map_or(1, |axis| axis.values.len());
+        let line = self.sweep.grid.line_length();
         let first = wanted.start - wanted.start % line % BLOCK;
         let unique: Vec<bool> = match &self.proofs {
             Some(proofs) => (first..wanted.end).map(|index| self.is_unique(index, proofs)).collect(),
