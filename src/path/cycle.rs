@@ -215,8 +215,8 @@ fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Tu
         // What moves to and fro without loss is open, or on a bound of 0.
         let lossless = lost.iter().all(|lost| *lost <= SAME * force * slips);
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
-        let schemes = |first: usize| stages_of(&history, first).flat_map(StageResult::schemes);
-        let repeated = (number + 1 < complete).then(|| schemes(there).eq(schemes(there + 2)));
+        let schemes = |first: usize| stages[first..].iter().take(2).flat_map(StageResult::schemes);
+        let repeated = (number + 1 < cycles).then(|| schemes(there).eq(schemes(there + 2)));
         let before = turns.last().and_then(|turn: &Turn| turn.difference);
         turns.push(Turn { dissipated: lost, pairs, difference, schemes: schemes(there).count(), repeated });
         // A cycle that only comes near to the one before is followed by others that come nearer: how far in all?
@@ -293,11 +293,6 @@ fn recurrence(turns: &[Turn]) -> String {
         "its forces and gaps are at its end what they were at its beginning, {near}, and the rates depend on nothing else: every \
          further cycle is the same{next}"
     )
-}
-
-/// The stages of the cycle that begins with one.
-fn stages_of(history: &History, first: usize) -> impl Iterator<Item = &StageResult> {
-    history.stages[first..].iter().take(2)
 }
 
 /// What is left to come where differences fall from one cycle to the next, in the same ratio from here on; 0 where they are
