@@ -9,6 +9,12 @@ use crate::session::{CommandError, Output, Session};
 use crate::view::plot::chart::Chart;
 use crate::view::plot::zone;
 
+/// States of the pairs that lie on edges, each with its title, and the length of edge of each of those pairs.
+pub(super) struct OnEdges {
+    pub(super) states: Vec<(String, Vec<PairState>)>,
+    pub(super) lengths: Vec<f64>,
+}
+
 /// Forces per length of edge.
 #[derive(Serialize)]
 struct Tractions<'a> {
@@ -42,7 +48,7 @@ impl Session {
         height: Option<usize>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let (states, lengths) = self.traction_states(at)?;
+        let OnEdges { states, lengths } = self.traction_states(at)?;
         let shown: Vec<Tractions<'_>> = states.iter().map(|(at, pairs)| Tractions::of(at, pairs, &lengths)).collect();
         io.show(&shown, |out, style| {
             let chart = zone::traction(&borrowed(&states), &lengths, &self.now.scenario.units);
@@ -52,10 +58,7 @@ impl Session {
     }
 
     /// The pairs on edges, as [`Session::zone_states`], and the length of edge of each of them.
-    pub(super) fn traction_states(
-        &self,
-        at: &[String],
-    ) -> Result<(Vec<(String, Vec<PairState>)>, Vec<f64>), CommandError> {
+    pub(super) fn traction_states(&self, at: &[String]) -> Result<OnEdges, CommandError> {
         let mut states = self.zone_states(at)?;
         let lengths = self.structure().map(tributary_lengths).unwrap_or_default();
         for (_, pairs) in &mut states {
@@ -70,6 +73,6 @@ impl Session {
                     .into(),
             ));
         }
-        Ok((states, lengths))
+        Ok(OnEdges { states, lengths })
     }
 }

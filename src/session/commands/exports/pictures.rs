@@ -6,6 +6,7 @@ use super::exported::Exported;
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::OutcomeKind;
 use crate::export::atomic;
+use crate::session::commands::plot_traction::OnEdges;
 use crate::session::commands::plots::Shape;
 use crate::session::{CommandError, Session};
 use crate::text::number::{heading, short, with_unit};
@@ -48,7 +49,7 @@ impl Session {
             Exported::Gap => zone(Quantity::Gap),
             Exported::Pressure => zone(Quantity::Pressure),
             Exported::Traction => {
-                let (states, lengths) = self.traction_states(of)?;
+                let OnEdges { states, lengths } = self.traction_states(of)?;
                 let borrowed: Vec<_> = states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect();
                 Ok(self.chart_figure(&zone::traction(&borrowed, &lengths, units), ""))
             }
