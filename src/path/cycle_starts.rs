@@ -64,6 +64,11 @@ impl Starts {
     pub fn sentence(&self) -> String {
         let lost = || self.starts.iter().map(|start| start.dissipated);
         let count = self.starts.len();
+        if !self.decides && self.starts.iter().all(|start| start.kind == Kind::ShakesDown) {
+            return format!(
+                "after all {count} starts it shakes down, whatever slips are left behind; starts between them were not followed"
+            );
+        }
         if !self.decides {
             return format!("all {count} starts come to the same cycle; starts between them were not followed");
         }
@@ -126,7 +131,10 @@ impl StartResult {
             slips: found.start(),
             kind: found.kind,
             cycles: found.turns.len(),
-            dissipated: last.map_or(0.0, |turn| turn.dissipated.iter().sum()),
+            // Where it shakes down what is left is rounding.
+            dissipated: last
+                .filter(|_| found.kind != Kind::ShakesDown)
+                .map_or(0.0, |turn| turn.dissipated.iter().sum()),
             net: last.filter(|_| found.kind == Kind::Ratchets).map_or(0.0, net),
         }
     }

@@ -191,6 +191,13 @@ fn uncoupled_the_start_does_not_decide_and_the_static_theorem_proves_it() {
     for start in found["starts"].as_array().unwrap() {
         near(&start["dissipated"], 0.4, 1e-12);
     }
+    let found = report(&mut session, "cycle L 0..0.9 from all").unwrap();
+    assert_eq!(found["decides"], false, "{found}");
+    assert!(found["sentence"].as_str().unwrap().contains("after all 5 starts it shakes down"), "{found}");
+    // Slow to come to rest, and nothing but rounding when it has.
+    let mut dam = super::find::session(embedded::load("dam").expect("embedded"));
+    let slow = report(&mut dam, "cycle water 0..1 from rock[1]=0.001").unwrap();
+    assert_eq!(slow["kind"], "shakes-down", "{slow}");
     let found = report(&mut session, "cycle L 0..0.9").unwrap();
     // Slips that shift both forces by −L/2: 1/2 − 0.45 is left on both sides.
     near(&found["static"]["least_reserve"], 0.05, 1e-7);
