@@ -82,7 +82,7 @@ impl Factor {
             FaerError::IndexOverflow => too_large(8 * (i32::MAX as u64)),
             _ => out_of_memory(),
         })?;
-        let position = ordered.position;
+        let position = ordered.into_position();
         let matrix = with_joints(k_m, &position, &scale, c, joints);
         let mut factor = Factor { supernodes, shift: 0.0, scale, position, joints };
         let needed = factor.bytes_needed();

@@ -62,7 +62,7 @@ fn dissected(unknowns: usize) -> f64 {
 /// K_m with the rows of z behind it, in some order of elimination.
 pub struct Ordered {
     /// Position of each row of K_m.
-    pub position: Vec<u32>,
+    position: Vec<u32>,
     /// Multiplications of the elimination: the sum of the squared lengths of its columns of L.
     operations: f64,
     /// Start of each column of the upper triangle.
@@ -123,6 +123,11 @@ impl Ordered {
 
     fn cheaper(self, other: Ordered) -> Ordered {
         if other.operations < self.operations { other } else { self }
+    }
+
+    /// The order alone.
+    pub fn into_position(self) -> Vec<u32> {
+        self.position
     }
 
     fn pattern(&self) -> SymbolicSparseColMatRef<'_, u32> {
