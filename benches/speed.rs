@@ -1,8 +1,6 @@
-//! `cargo bench`: Lemke by size, friction and ties; condensation; solving again; loading; a screen.
+//! `cargo bench -p stickslip-benches`: Lemke by size, friction and ties; condensation; solving again; loading; a screen.
 //!
 //! `STICKSLIP_BENCH_LARGE=1` adds m = 1000. What the numbers mean and the tables: `benches/README.md`.
-
-mod common;
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -12,7 +10,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
-use common::{Plates, Pull, Ready};
+use plates::{Plates, Pull, Ready};
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::written::ContactLcp;
 use stickslip::model::embedded;

@@ -9,7 +9,7 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, dvector};
+use nalgebra::{DMatrix, DVector};
 use stickslip::contact::law::PairLaw;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::problem::ContactProblem;
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             tangential: Some(1),
         }],
         stiffness: DMatrix::from_row_slice(2, 2, &[2.0, 1.5, 1.5, 2.0]),
-        loads: vec![JointLoad::exactly("load".to_owned(), dvector![1.0, -2.0])],
+        loads: vec![JointLoad::exactly("load".to_owned(), DVector::from_row_slice(&[1.0, -2.0]))],
         rounded: false,
         kernel: DMatrix::zeros(2, 0),
         corrected: None,
