@@ -31,6 +31,9 @@ use crate::model::pair::Joint;
 use crate::model::structure::Structure;
 use crate::watch::{Quiet, Watch};
 
+/// A term of C: row, joint, value.
+pub type Coupling = (u32, u32, f64);
+
 /// Size of the problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Unknowns {
@@ -226,7 +229,7 @@ impl MainSystem {
         }
     }
 
-    /// K_m and the terms (row, joint, value) of C, for measuring other solvers on the same matrices; the joints have to be
+    /// K_m and the terms of C, for measuring other solvers on the same matrices; the joints have to be
     /// independent.
     ///
     /// # Errors
@@ -235,7 +238,7 @@ impl MainSystem {
         structure: &Structure,
         joints: &[Joint],
         watch: &dyn Watch,
-    ) -> Result<(SymmetricSparse, Vec<(u32, u32, f64)>), MainSystemError> {
+    ) -> Result<(SymmetricSparse, Vec<Coupling>), MainSystemError> {
         let dofs = Dofs::new(structure);
         let elimination = Elimination::new(structure, &dofs, joints)?;
         let k: SymmetricSparse = assemble(structure, &dofs, &|| watch.stop())?;

@@ -62,7 +62,7 @@ impl<'s> Points<'s> {
             Following::Always => true,
             Following::Never => false,
         };
-        let counts = sweep.quantities.iter().any(|quantity| *quantity == Quantity::Answer(OfAnswer::Pivots));
+        let counts = sweep.quantities.contains(&Quantity::Answer(OfAnswer::Pivots));
         Points { sweep, proofs: if wanted && !counts { Proofs::of(prepared) } else { None } }
     }
 

@@ -65,9 +65,12 @@ pub struct Solved {
     pub(super) looked_at: LookedAt,
 }
 
+/// A pivot and the joints after it.
+type AtPivot = (usize, Arc<JointState>);
+
 /// The joints after one pivot of a run; shared by the copies of an answer.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LookedAt(Arc<Mutex<Option<(usize, Arc<JointState>)>>>);
+pub(super) struct LookedAt(Arc<Mutex<Option<AtPivot>>>);
 
 /// What displacements, members, reactions and the check of equilibrium follow from.
 #[derive(Clone, Debug)]

@@ -15,13 +15,16 @@ use super::shown::{Moment, Motion};
 use super::theme::Look;
 use super::viewport::Viewport;
 
+/// What the table of the pairs shows: rows in an order, on a sheet.
+type PairsKey = (The<Moment>, SortKey, bool, Sheet, Range<usize>);
+
 /// The pictures.
 #[derive(Default)]
 pub struct Pictures {
     /// Order of the pairs.
     pub order: Kept<(The<Moment>, SortKey, bool), Order>,
     /// Table of the pairs.
-    pub pairs: Kept<(The<Moment>, SortKey, bool, Sheet, Range<usize>), Listing>,
+    pub pairs: Kept<PairsKey, Listing>,
     /// Table of the pivots.
     pub pivots: Kept<(The<Solved>, Sheet), Listing>,
     /// The structure.

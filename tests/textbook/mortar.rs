@@ -1,6 +1,5 @@
 //! Contact of edges whose nodes do not match, against closed forms.
 
-#[allow(clippy::duplicate_mod)]
 use crate::common::{Case, balance, close, displacement, is_answer, mechanism, near, of_pairs};
 use serde_json::{Value, json};
 use stickslip::answer::record::State;

@@ -1,6 +1,5 @@
 //! Contact of a body of which only K and F are given, against the same body by elements and against closed forms.
 
-#[allow(clippy::duplicate_mod)]
 use std::path::{Path, PathBuf};
 
 use crate::common::{close, displacement, is_answer, mechanism, near, of_pairs};

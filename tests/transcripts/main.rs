@@ -4,6 +4,7 @@ mod book;
 mod explain_rays;
 mod export;
 mod export_tables;
+mod generated;
 mod help;
 mod numbers;
 mod plausibility;

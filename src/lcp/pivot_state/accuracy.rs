@@ -188,7 +188,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// w of row i as the data give it, in the orientation in which the dictionary holds it.
-    fn from_data(&self, i: usize) -> f64 {
+    fn of_data(&self, i: usize) -> f64 {
         let stand = self.stand;
         match (&self.doubled, &stand.lcp.mirrors[i]) {
             (Some(w), Some(mirror)) if stand.dictionary.turned[i] => {
@@ -218,20 +218,19 @@ impl<'a> Numbers<'a> {
     /// One step of iterative refinement: the equations of the scheme as the data give them, solved by the dictionary.
     fn corrected(&self) -> Vec<f64> {
         let d = &self.stand.dictionary;
-        let from_data = |i: usize| self.from_data(i);
         let wrong: Vec<(usize, f64)> = d
             .column
             .iter()
             .enumerate()
             .filter_map(|(c, &local)| match local {
-                Slot::W(i) => Some((c, self.nonbasic(c) - from_data(i))),
+                Slot::W(i) => Some((c, self.nonbasic(c) - self.of_data(i))),
                 _ => None,
             })
             .collect();
         let change = d.combined_columns(&wrong);
         std::iter::zip(&d.row, std::iter::zip(self.held, change))
             .map(|(&local, (held, change))| match local {
-                Slot::W(i) => from_data(i) + change,
+                Slot::W(i) => self.of_data(i) + change,
                 _ => held + change,
             })
             .collect()

@@ -14,14 +14,39 @@ const NO_MAP: &str = "no map yet: `:map P Q` draws one";
 
 /// Whether an action leaves the answer at the cursor in sight.
 pub(super) fn keeps_glance(what: Do) -> bool {
-    match what {
-        Do::Up | Do::Down | Do::PageUp | Do::PageDown | Do::Top | Do::Bottom | Do::Close => true,
-        Do::Across(_) | Do::SetHere | Do::NextRegion | Do::Search | Do::FindNext | Do::FindPrevious => true,
-        Do::Accept | Do::Cancel | Do::Edit(_) | Do::CopyValue | Do::CopyCommand | Do::Help => true,
-        Do::NextPlot | Do::PreviousPlot | Do::Mode | Do::Before | Do::Look(_) | Do::Maximize | Do::Explain => true,
-        Do::Redraw | Do::Suspend | Do::Mouse | Do::Focus(Pane::Map) => true,
-        _ => false,
-    }
+    matches!(
+        what,
+        Do::Up
+            | Do::Down
+            | Do::PageUp
+            | Do::PageDown
+            | Do::Top
+            | Do::Bottom
+            | Do::Close
+            | Do::Across(_)
+            | Do::SetHere
+            | Do::NextRegion
+            | Do::Search
+            | Do::FindNext
+            | Do::FindPrevious
+            | Do::Accept
+            | Do::Cancel
+            | Do::Edit(_)
+            | Do::CopyValue
+            | Do::CopyCommand
+            | Do::Help
+            | Do::NextPlot
+            | Do::PreviousPlot
+            | Do::Mode
+            | Do::Before
+            | Do::Look(_)
+            | Do::Maximize
+            | Do::Explain
+            | Do::Redraw
+            | Do::Suspend
+            | Do::Mouse
+            | Do::Focus(Pane::Map)
+    )
 }
 
 /// Shows the session again.
