@@ -5,8 +5,7 @@
     cargo build --release --example measure
     RAYON_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 python benches/schur.py [--pairs 401 1000 2000]
 
-Seconds of the processor, one thread each: those of the clock depend on what else the machine does. Every R is compared
-with that of MUMPS. Also LAPACK's Cholesky factorization and eigenvalues of a dense matrix of the order of R.
+Seconds of the processor, one thread each: those of the clock depend on what else the machine does. Also LAPACK's Cholesky factorization and eigenvalues of a dense matrix of the order of R.
 """
 
 import argparse

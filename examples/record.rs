@@ -87,11 +87,16 @@ fn colour(colour: Color, plain: &str) -> String {
     }
 }
 
-/// How a cell looks: letters and ground, bold.
-fn look(cell: &vt100::Cell) -> (String, String, bool) {
+/// How a cell looks: letters and ground, bold, and which font its sign may come from: letters, lines or dots.
+fn look(cell: &vt100::Cell) -> (String, String, bool, u8) {
     let (letters, ground) = (colour(cell.fgcolor(), "#dcdfe4"), colour(cell.bgcolor(), "#1e1e2e"));
     let (letters, ground) = if cell.inverse() { (ground, letters) } else { (letters, ground) };
-    (letters, ground, cell.bold())
+    let font = match cell.contents().chars().next() {
+        Some('\u{2800}'..='\u{28ff}') => 2,
+        Some('\u{2190}'..='\u{27ff}') => 1,
+        _ => 0,
+    };
+    (letters, ground, cell.bold(), font)
 }
 
 /// The screen as a picture: runs of equal look, each stretched to its columns, so that any monospaced font fits.
@@ -116,7 +121,7 @@ fn picture(screen: &vt100::Screen) -> Result<String, Failure> {
                 text.push_str(if contents.is_empty() { " " } else { contents });
                 end += 1;
             }
-            let (letters, ground, bold) = first;
+            let (letters, ground, bold, _) = first;
             let (x, y) = (8.0 + f64::from(column) * WIDE, 8.0 + f64::from(row) * HIGH);
             let long = f64::from(end - column) * WIDE;
             if ground != "#1e1e2e" {
