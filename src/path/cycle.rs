@@ -10,7 +10,8 @@ use crate::answer::record::Ray;
 use crate::lcp::problem::NOISE;
 use crate::solve::case::Case;
 use crate::solve::error::QuestionError;
-use crate::solve::problem::factors;
+use crate::solve::problem::{contact_problem, factors};
+use crate::text::number::short;
 
 /// Two states are one where they differ by less than this share of the largest of their kind.
 const SAME: f64 = 1e-12;
@@ -40,6 +41,9 @@ pub enum Kind {
     /// Not told apart within the cycles followed.
     Undecided,
 }
+
+/// Forces of starting slips over those of the loads: beyond, 10⁹ ε of the loads are rounding.
+const MOST_FORCE: f64 = 1e9;
 
 /// A slip of a pair.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -134,6 +138,25 @@ pub(super) fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>,
     Ok(found)
 }
 
+/// Refuses slips whose forces would leave no digits of those of the loads.
+fn within_reason(case: Case<'_>, factors: &[f64], slips: &[f64]) -> Result<(), PathError> {
+    let Some(system) = case.prepared.system() else { return Ok(()) };
+    let problem = contact_problem(system, factors, case.values);
+    let loads = problem.load_terms.amax();
+    for (pair, slip) in std::iter::zip(&system.pairs, slips) {
+        let Some(joint) = pair.tangential else { continue };
+        let force = system.stiffness.column(joint).amax() * slip.abs();
+        if !force.is_finite() || (loads > 0.0 && force > MOST_FORCE * loads) {
+            return Err(PathError::Missing(format!(
+                "cycle: a slip of {} at {} is too far: the forces it causes would drown those of the loads in rounding",
+                short(*slip),
+                pair.id
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Follows a load from the first value to the second and back, until a cycle repeats: the other loads stand at their
 /// present factors. It begins at the unloaded structure, or at the first value with slips left behind.
 ///
@@ -146,6 +169,9 @@ pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Be
     let [a, b] = ends;
     let softest = softest(case);
     let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
+    if let Begin::Slips(slips) = begin {
+        within_reason(case, &start, slips)?;
+    }
     let mut targets = vec![start.clone()];
     (0..most).for_each(|_| targets.extend([turned.clone(), start.clone()]));
     let mut count = FIRST;

@@ -38,6 +38,9 @@ fn group(found: &Group) -> String {
     text
 }
 
+/// Root of the mean square of the residuals over their errors beyond which a fit explains nothing.
+const MISFIT: f64 = 5.0;
+
 /// The groups, the measurements beside what is computed, what was looked at.
 pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Result<()> {
     for each in &found.groups {
@@ -64,7 +67,17 @@ pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Res
     table.write(out, style)?;
     let spare = match found.degrees_of_freedom {
         0 => "as many measurements as frictions: nothing is left to judge the fit by".to_owned(),
-        spare => format!("{spare} more than frictions"),
+        spare => {
+            let misfit = (found.squares / spare as f64).sqrt();
+            let errors = found.measurements.iter().all(|row| row.error.is_some());
+            match errors && misfit > MISFIT {
+                true => format!(
+                    "{spare} more than frictions: no friction explains these measurements, they are off by {} times their errors",
+                    short(misfit)
+                ),
+                false => format!("{spare} more than frictions"),
+            }
+        }
     };
     style.paragraph(out, Role::Plain, &format!("sum of squares {}; {spare}", short(found.squares)))?;
     for [value, squares] in &found.other_minima {

@@ -44,7 +44,8 @@ pub struct Centre {
 /// # Errors
 /// An interruption.
 pub fn centre(case: Case<'_>, draw: &Draw, verdict: &[Quantity]) -> Result<Option<Centre>, PathError> {
-    if case.prepared.system().is_none() {
+    // The search must not cost more than what was asked for.
+    if case.prepared.system().is_none() || draw.count < 2 * PILOT {
         return Ok(None);
     }
     let rule = Rule { seed: draw.rule.seed ^ PILOT_SEED, centre: None };

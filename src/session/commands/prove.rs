@@ -82,7 +82,7 @@ impl Session {
                 "prove: what stands is a moment of a history; `solve` goes back to the answer at once, which can be proved",
             );
         }
-        self.spare_scenario(path)?;
+        self.spare_scenarios(path)?;
         self.spare_scenario(&beside)?;
         let proof = self.ask(io, move |prepared, solved, watch| match all {
             true => prepared.prove_all(solved, watch),

@@ -10,6 +10,7 @@ pub(super) mod tables;
 mod vtu;
 
 use std::fs;
+use std::io::Read;
 use std::path::Path;
 
 use clap::Args;
@@ -97,6 +98,18 @@ fn words(asked: &Asked<'_>) -> Vec<Candidate> {
     all
 }
 
+/// How far into a file its format is looked for.
+const HEAD: u64 = 1 << 16;
+
+/// Whether a file says that it is a scenario.
+fn is_scenario(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    let head = String::from_utf8_lossy(&head);
+    let format = head.split_once("\"format\"").and_then(|(_, rest)| rest.trim_start().strip_prefix(':'));
+    read.is_ok() && format.is_some_and(|format| format.trim_start().starts_with("\"stickslip/1\""))
+}
+
 impl Session {
     /// `export WHAT [OF] FILE`.
     pub(super) fn export(&mut self, what: Exported, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
@@ -120,7 +133,10 @@ impl Session {
                 "export: `{word}` makes no sense here; `help export` says what does"
             )));
         }
-        self.spare_scenario(path)?;
+        match what {
+            Exported::Lcp | Exported::Stiffness | Exported::System => self.spare_scenario(path)?,
+            _ => self.spare_scenarios(path)?,
+        }
         match what {
             Exported::Lcp => return self.export_lcp(path, io),
             Exported::Stiffness => return self.export_stiffness(path, io),
@@ -131,6 +147,16 @@ impl Session {
             _ => self.export_table(what, of, path, ending == "csv", io),
         }?;
         Ok(io.say(&format!("wrote {}", path.display()))?)
+    }
+
+    /// Refuses to write what is no scenario over a file that is one.
+    pub(in crate::session) fn spare_scenarios(&self, path: &Path) -> Result<(), CommandError> {
+        self.spare_scenario(path)?;
+        if fs::metadata(path).is_ok_and(|file| file.is_file()) && is_scenario(path) {
+            let refusal = format!("{} is a scenario and stays as it is: write to another file", path.display());
+            return Err(CommandError::Refused(refusal));
+        }
+        Ok(())
     }
 
     /// Refuses to write over the scenario.
