@@ -27,6 +27,11 @@ pub fn sentence(parameter: &str, found: &CriticalFriction, ids: &[&str]) -> Stri
         .as_ref()
         .map_or(String::new(), |scheme| format!(" (working scheme {})", scheme_words(ids, scheme)));
     match (found.value, found.coverage) {
+        (Some(value), Coverage::Exact) if found.singular > 0 => format!(
+            "{parameter} up to {}: no working scheme loses its uniqueness, nothing is said of the singular ones; above it, more \
+             than one answer is possible{scheme}",
+            precise(value)
+        ),
         (Some(value), Coverage::Exact) => format!(
             "{parameter} up to {}: one answer for every load; above it, more than one is possible{scheme}",
             precise(value)
