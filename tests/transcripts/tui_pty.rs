@@ -465,7 +465,7 @@ fn panics_while_the_panes_are_shown() {
 #[test]
 fn a_panic_leaves_the_terminal_as_it_was() {
     let mut command = CommandBuilder::new(std::env::current_exe().unwrap());
-    command.args(["--exact", "panics_while_the_panes_are_shown", "--ignored", "--nocapture"]);
+    command.args(["--exact", "tui_pty::panics_while_the_panes_are_shown", "--ignored", "--nocapture"]);
     command.env("STICKSLIP_TEST_PANIC", "1");
     // the message must not be scrolled away
     command.env("RUST_BACKTRACE", "0");
