@@ -519,7 +519,7 @@ fn tight_memory_ends_in_a_message() {
     fs::write(&bars, text).unwrap();
     let program = env!("CARGO_BIN_EXE_stickslip");
     for (kilobytes, file, estimated) in
-        [(40_000, "beam", false), (250_000, &*fine, true), (250_000, &bars, true), (600_000, &bars, true)]
+        [(56_000, "beam", false), (250_000, &*fine, true), (250_000, &bars, true), (600_000, &bars, true)]
     {
         let limited = format!("ulimit -v {kilobytes}; exec {program} solve {file}");
         let output = Command::new("sh").args(["-c", &limited]).output().unwrap();
