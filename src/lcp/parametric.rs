@@ -185,9 +185,10 @@ impl Parametric {
     }
 
     /// The vertex where `row` of the whole LCP has both its variables at zero: as the dictionary holds it, refined from the
-    /// data; where that does not agree with them, or t is not basic, solved afresh.
+    /// data; solved afresh where that does not agree with them, or agrees only because displacements are so large that their
+    /// rounding hides the load.
     fn knot(&self, row: usize) -> Point {
-        let sharp = self.stand.sharp_point();
+        let sharp = if self.stand.blur() <= BLURRED { self.stand.sharp_point() } else { None };
         let point = sharp.or_else(|| vertex(&self.stand.lcp, &self.knot_basis(row)));
         point.unwrap_or_else(|| self.stand.point())
     }

@@ -236,7 +236,7 @@ fn long_results_are_paged_and_keys_answer() {
     terminal.type_by_hand("help");
     terminal.wait("the question", |screen| screen.contains("more: space page"));
     terminal.send("a");
-    terminal.wait("the end", |screen| screen.contains("a parameter"));
+    terminal.wait("the end", |screen| screen.contains("more: of a command with an example"));
     terminal.prompt();
     // what is no answer to the question is the next command
     terminal.type_by_hand("help");

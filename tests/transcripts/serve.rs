@@ -97,9 +97,9 @@ fn what_is_no_request_is_answered_too() {
         (long.as_bytes(), Value::Null, "1048576 bytes"),
         (b"{\"id\": 7}", json!(7), "`command` is missing"),
         (b"{\"id\": \"a\", \"command\": [\"pairs\"]}", json!("a"), "must be a string"),
-        (b"{\"id\": null, \"comand\": \"pairs\"}", Value::Null, "did you mean"),
+        (b"{\"id\": null, \"comand\": \"pairs\"}", Value::Null, "did you mean `command`"),
         (b"{\"id\": 8, \"command\": \"pairs\", \"timeout\": 3}", json!(8), "unknown key `timeout`"),
-        (b"{\"id\": 9, \"command\": \"piars\"}", json!(9), "did you mean"),
+        (b"{\"id\": 9, \"command\": \"piars\"}", json!(9), "did you mean `pairs`"),
         (b"{\"id\": 10, \"command\": \"tui\"}", json!(10), "full screen"),
         (b"{\"id\": 11, \"command\": \"pairs c99; quit\"}", json!(11), "c99"),
     ] {
