@@ -96,13 +96,16 @@ pub fn given_entries(structure: &Structure, dofs: &Dofs, mut visit: impl FnMut(u
     }
 }
 
+/// A term of C: row, joint, value.
+pub type Coupling = (u32, u32, f64);
+
 /// K_m, C and D of the main system.
 #[derive(Clone, Debug)]
 pub struct MainMatrices {
     /// K_m = Tᵀ K T.
     pub k_m: SymmetricSparse,
-    /// C = Tᵀ K G as terms (row, joint, value), perhaps repeated.
-    pub c: Vec<(u32, u32, f64)>,
+    /// C = Tᵀ K G as terms, perhaps repeated.
+    pub c: Vec<Coupling>,
     /// D = Gᵀ K G.
     pub d: DMatrix<f64>,
 }

@@ -14,6 +14,7 @@ use faer::sparse::FaerError;
 use faer::{Mat, MatMut};
 use nalgebra::DMatrix;
 
+use super::assembly::Coupling;
 use super::error::MainSystemError;
 use super::fill::{best_order, out_of_memory};
 use super::order::Places;
@@ -54,7 +55,7 @@ impl Factor {
     /// Too large; out of memory; interrupted.
     pub fn new(
         k_m: &mut SymmetricSparse,
-        c: &[(u32, u32, f64)],
+        c: &[Coupling],
         places: Places,
         joints: usize,
         watch: &dyn Watch,
@@ -209,7 +210,7 @@ impl Factor {
 }
 
 /// The lower triangle of [K_m .; Cᵀ 0], K_m permuted, the rows of z behind it.
-fn with_joints(k_m: &SymmetricSparse, position: &[u32], scale: &[f64], c: &[(u32, u32, f64)], joints: usize) -> Terms {
+fn with_joints(k_m: &SymmetricSparse, position: &[u32], scale: &[f64], c: &[Coupling], joints: usize) -> Terms {
     let n = k_m.order();
     Terms::new(n + joints, |visit| {
         for column in 0..n {

@@ -14,6 +14,7 @@ use faer::sparse::linalg::cholesky::supernodal::{
 };
 use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 
+use super::assembly::Coupling;
 use super::error::MainSystemError;
 use super::order::{Places, elimination_order};
 use super::sparse::SymmetricSparse;
@@ -27,7 +28,7 @@ use crate::watch::Watch;
 pub fn best_order(
     k_m: &SymmetricSparse,
     places: Places,
-    c: &[(u32, u32, f64)],
+    c: &[Coupling],
     joints: usize,
     watch: &dyn Watch,
 ) -> Result<Ordered, MainSystemError> {
@@ -80,7 +81,7 @@ impl Ordered {
     fn new(
         k_m: &SymmetricSparse,
         places: Places,
-        c: &[(u32, u32, f64)],
+        c: &[Coupling],
         joints: usize,
         watch: &dyn Watch,
     ) -> Result<Ordered, MainSystemError> {

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::assembly::{assemble, main_matrices};
+use super::assembly::{Coupling, assemble, main_matrices};
 use super::contrast;
 use super::dof::Dofs;
 use super::elimination::Elimination;
@@ -30,9 +30,6 @@ use crate::doubled::Doubled;
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
 use crate::watch::{Quiet, Watch};
-
-/// A term of C: row, joint, value.
-pub type Coupling = (u32, u32, f64);
 
 /// Size of the problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -78,7 +75,7 @@ pub struct MainSystem {
     /// Σ|u||K||u| over uᵀ K u, the largest that was met: how much R and RF lose to rounding.
     pub(super) amplification: f64,
     pub(super) factor: Arc<Factor>,
-    pub(super) c: Vec<(u32, u32, f64)>,
+    pub(super) c: Vec<Coupling>,
     pub(super) r: DMatrix<f64>,
     pub(super) rf: Vec<DVector<f64>>,
     pub(super) z: DMatrix<f64>,

@@ -5,23 +5,13 @@ use crate::tui::action::Loading;
 
 use super::*;
 
-/// A block of weight W on the ground, pulled by P and held by a spring of stiffness 1000: it slips where P > f W, and
-/// then by (P − f W)/1000.
-const BLOCK: &str = r#"{ "format": "stickslip/1", "title": "block on a spring",
-  "parameters": { "f": { "value": 0.4, "min": 0, "max": 1, "step": 0.1 } },
-  "materials": { "m": { "E": 1000, "nu": 0 } }, "sections": { "s": { "area": 1 } },
-  "nodes": { "A": [0, 0], "B": [1, 0] },
-  "bars": [ { "id": "AB", "nodes": ["A", "B"], "kind": "truss", "material": "m", "section": "s" } ],
-  "supports": [ { "at": "A", "fixed": ["x", "y"] } ],
-  "contacts": [ { "id": "c", "node": "B", "against": "ground", "normal": [0, 1], "friction": "f" } ],
-  "loads": { "weight": { "factor": 10, "items": [ { "point": { "at": "B", "force": [0, -1] } } ] },
-             "pull": { "factor": 2, "items": [ { "point": { "at": "B", "force": [1, 0] } } ] } },
+const LISTS: &str = r#",
   "probes": { "press": "x_n c" },
   "combinations": { "ULS": { "weight": 1, "pull": 3 }, "SLS": { "weight": 1, "pull": 1 } },
-  "stages": [ { "weight": 1, "pull": 0 }, { "weight": 1, "pull": 3 }, { "weight": 1, "pull": 0 } ] }"#;
+  "stages": [ { "weight": 1, "pull": 0 }, { "weight": 1, "pull": 3 }, { "weight": 1, "pull": 0 } ]"#;
 
 fn block(width: u16, height: u16) -> Rig {
-    Rig::of(load_text("block", BLOCK, None).unwrap(), width, height)
+    Rig::of(block_on_a_spring("", "2", LISTS), width, height)
 }
 
 fn slip(rig: &Rig) -> f64 {

@@ -2,20 +2,13 @@
 
 use super::*;
 
-/// A block of weight 10 on the ground, pulled by P and held by a spring of stiffness 1000: it slips where P > 10 f, and
-/// then by (P − 10 f)/1000.
-const BLOCK: &str = r#"{ "format": "stickslip/1", "title": "block on a spring",
-  "parameters": { "f": { "value": 0.4, "min": 0, "max": 1, "step": 0.1 }, "P": { "value": 2, "min": 0, "max": 10 } },
-  "materials": { "m": { "E": 1000, "nu": 0 } }, "sections": { "s": { "area": 1 } },
-  "nodes": { "A": [0, 0], "B": [1, 0] },
-  "bars": [ { "id": "AB", "nodes": ["A", "B"], "kind": "truss", "material": "m", "section": "s" } ],
-  "supports": [ { "at": "A", "fixed": ["x", "y"] } ],
-  "contacts": [ { "id": "c", "node": "B", "against": "ground", "normal": [0, 1], "friction": "f" } ],
-  "loads": { "weight": { "factor": 10, "items": [ { "point": { "at": "B", "force": [0, -1] } } ] },
-             "pull": { "factor": "P", "items": [ { "point": { "at": "B", "force": [1, 0] } } ] } } }"#;
+/// The block pulled by a parameter P: it slips where P > 10 f.
+fn block() -> Scenario {
+    block_on_a_spring(r#", "P": { "value": 2, "min": 0, "max": 10 }"#, r#""P""#, "")
+}
 
 fn mapped(width: u16, height: u16) -> Rig {
-    let mut rig = Rig::of(load_text("block", BLOCK, None).unwrap(), width, height);
+    let mut rig = Rig::of(block(), width, height);
     rig.press(&["9"]);
     assert!(rig.screen().contains("no map yet"), "{}", rig.screen());
     rig.command("map f P");
@@ -108,7 +101,7 @@ fn regions_are_stepped_through_searched_and_copied() {
 
 #[test]
 fn a_load_case_is_looked_at_and_not_set() {
-    let mut rig = Rig::of(load_text("block", BLOCK, None).unwrap(), 100, 30);
+    let mut rig = Rig::of(block(), 100, 30);
     rig.command("map f 0..1 pull 0..10");
     rig.press(&["up", "up", "up"]);
     near(slip(&rig), expected(&rig));

@@ -121,6 +121,23 @@ impl Rig {
     }
 }
 
+/// A block of weight 10 on the ground, pulled by `pull` and held by a spring of stiffness 1000: it slips where the pull is
+/// more than 10 f, and then by (pull − 10 f)/1000. Beside f stand `parameters`, behind the loads `rest`.
+fn block_on_a_spring(parameters: &str, pull: &str, rest: &str) -> Scenario {
+    let text = format!(
+        r#"{{ "format": "stickslip/1", "title": "block on a spring",
+  "parameters": {{ "f": {{ "value": 0.4, "min": 0, "max": 1, "step": 0.1 }}{parameters} }},
+  "materials": {{ "m": {{ "E": 1000, "nu": 0 }} }}, "sections": {{ "s": {{ "area": 1 }} }},
+  "nodes": {{ "A": [0, 0], "B": [1, 0] }},
+  "bars": [ {{ "id": "AB", "nodes": ["A", "B"], "kind": "truss", "material": "m", "section": "s" }} ],
+  "supports": [ {{ "at": "A", "fixed": ["x", "y"] }} ],
+  "contacts": [ {{ "id": "c", "node": "B", "against": "ground", "normal": [0, 1], "friction": "f" }} ],
+  "loads": {{ "weight": {{ "factor": 10, "items": [ {{ "point": {{ "at": "B", "force": [0, -1] }} }} ] }},
+             "pull": {{ "factor": {pull}, "items": [ {{ "point": {{ "at": "B", "force": [1, 0] }} }} ] }} }}{rest} }}"#
+    );
+    load_text("block", &text, None).unwrap()
+}
+
 fn event(key: &str) -> KeyEvent {
     let (code, modifiers) = match key {
         "left" => (KeyCode::Left, KeyModifiers::NONE),
