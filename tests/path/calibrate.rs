@@ -120,6 +120,43 @@ fn two_groups_are_told_apart_where_the_measurements_do() {
 }
 
 /// Of a node that is lifted off nothing shows.
+/// c1 slips by P − f on a spring of stiffness 1 under weight 1, c2 likewise by P/2 − f; measured is c2 alone, or both so that
+/// it is met where c2 comes to rest, at f = 1/2: from there on c2 tells nothing, below it does.
+#[test]
+fn a_kink_at_the_end_of_a_level_stretch_is_no_friction_found() {
+    let text = r#"{ "format": "stickslip/1", "title": "t",
+      "parameters": { "f": { "value": 0.9, "min": 0, "max": 1 }, "P": 1 },
+      "contact_system": { "pairs": ["c1", "c2"], "stiffness": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+        "loads": { "weight": { "vector": [1, 1, 0, 0] }, "pull": { "factor": "P", "vector": [0, 0, -1, -0.5] } },
+        "friction": ["f", "f"] } }"#;
+    let mut session = session(load_text("t.json", text, None).unwrap());
+    for measured in ["z_t c2 = 0", "z_t c2 = -0.001", "z_t c2 = -0.001 ± 0.01"] {
+        let found = report(&mut session, &format!("calibrate f 0.1..0.9 where {measured}")).unwrap();
+        let group = &found["groups"][0];
+        assert_eq!(group["identifiable"], false, "{measured}: {found}");
+        assert!(group["standard_error"].is_null(), "{measured}: {found}");
+        near(&group["interval"][0], 0.5, 1e-6);
+        near(&group["interval"][1], 0.9, 1e-9);
+    }
+    // c1 shows it all the same.
+    let found = report(&mut session, "calibrate f 0.1..0.9 where z_t c2 = 0, z_t c1 = 0.4").unwrap();
+    assert_eq!(found["groups"][0]["identifiable"], true, "{found}");
+    near(&found["groups"][0]["value"], 0.6, 1e-9);
+}
+
+/// A measurement that the model meets to the last digit over a whole stretch.
+#[test]
+fn a_stretch_that_meets_the_measurements_ends() {
+    let text = r#"{ "format": "stickslip/1", "title": "t", "parameters": { "f": { "value": 0.6, "min": 0, "max": 2 } },
+      "contact_system": { "pairs": ["c1", "c2"], "stiffness": [[3, 0, 0, 0], [0, 3, 0, 0], [0, 0, 3, 1], [0, 0, 1, 3]],
+        "loads": { "weight": { "vector": [1, 1, 0, 0] }, "pull": { "vector": [0, 0, -0.7, -0.1] } },
+        "friction": ["f", 0.3] } }"#;
+    let mut session = session(load_text("t.json", text, None).unwrap());
+    let measured = as_computed(&mut session, "x_t c1, x_t c2");
+    let found = report(&mut session, &format!("calibrate f 0.75..2 where {measured}")).unwrap();
+    assert_eq!(found["groups"][0]["identifiable"], false, "{found}");
+}
+
 #[test]
 fn open_pairs_tell_nothing() {
     let text = r#"{"format": "stickslip/1", "title": "lifted", "parameters": {"f": 0.5}, "measured": {"z_t a": 0.2},

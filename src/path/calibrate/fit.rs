@@ -37,9 +37,25 @@ pub(super) struct Along {
 }
 
 impl Along {
-    /// From where to where around a value it is as good as there.
+    /// From where to where around a value it is as good as there, to what measuring could tell.
+    pub(super) fn as_good(&self, at: f64, squares: f64, size: f64) -> [f64; 2] {
+        self.around(at, squares * (1.0 + AS_GOOD) + self.rounding(size))
+    }
+
+    /// From where to where around a value it is the same as there, to rounding.
     pub(super) fn level(&self, at: f64, squares: f64, size: f64) -> [f64; 2] {
-        let good = |(_, found): &&(f64, f64)| *found <= squares * (1.0 + AS_GOOD) + (ROUNDING * size).powi(2);
+        self.around(at, squares * (1.0 + ROUNDING) + self.rounding(size))
+    }
+
+    /// A sum of squares that is rounding beside what was measured and computed anywhere.
+    fn rounding(&self, size: f64) -> f64 {
+        let most = self.points.iter().fold(0.0, |most: f64, (_, squares)| most.max(*squares));
+        ROUNDING.powi(2) * (size * size + most)
+    }
+
+    /// From where to where around a value no more than a sum of squares was found.
+    fn around(&self, at: f64, most: f64) -> [f64; 2] {
+        let good = |(_, found): &&(f64, f64)| *found <= most;
         let from = self.points.iter().rev().skip_while(|(value, _)| *value > at).take_while(good).last();
         let to = self.points.iter().skip_while(|(value, _)| *value < at).take_while(good).last();
         [from.map_or(at, |point| point.0.min(at)), to.map_or(at, |point| point.0.max(at))]
@@ -137,7 +153,9 @@ impl Model<'_> {
             let squares = |value: f64| -> Option<f64> {
                 let read = |measured: &Measurement| route.value(stretch, value, &measured.quantity).ok()?.number();
                 let values: Option<Vec<f64>> = self.measured.iter().map(read).collect();
-                Some(self.residuals(&values?).norm_squared())
+                let squares = self.residuals(&values?).norm_squared();
+                // Of measurements that are met what is left is rounding, and no curve.
+                Some(if squares <= (ROUNDING * self.size()).powi(2) { 0.0 } else { squares })
             };
             points.extend(curve_of(&squares, stretch).unwrap_or_default());
         }

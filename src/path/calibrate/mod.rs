@@ -21,6 +21,8 @@ use crate::text::number::short;
 use fit::{Along, BLIND, Fit};
 use model::Model;
 
+/// A stretch of a friction over which the measurements tell nothing is one from this share of its range on.
+const LEVEL: f64 = 1e-6;
 /// Minima of one friction that are gone downhill from.
 const MINIMA: usize = 12;
 /// Rounds of each friction alone after the descents.
@@ -144,8 +146,9 @@ impl Model<'_> {
         }
         fits.sort_by(|a, b| a.squares.total_cmp(&b.squares));
         fits.dedup_by(|a, b| (a.at[0] - b.at[0]).abs() <= 1e-7 * a.at[0].abs().max(b.at[0].abs()));
+        let near = fits.first().map(|best| along.as_good(best.at[0], best.squares, self.size()));
         let level = fits.first().map(|best| along.level(best.at[0], best.squares, self.size()));
-        let elsewhere = |fit: &&Fit| level.is_none_or(|[from, to]| fit.at[0] < from || fit.at[0] > to);
+        let elsewhere = |fit: &&Fit| near.is_none_or(|[from, to]| fit.at[0] < from || fit.at[0] > to);
         let others = fits.iter().skip(1).filter(elsewhere).map(|fit| [fit.at[0], fit.squares]).collect();
         let name = &self.groups[0].0;
         let [low, high] = along.covered;
@@ -156,7 +159,8 @@ impl Model<'_> {
             short(low),
             short(high)
         );
-        self.told(&best, (true, others, sentence))
+        let level = level.filter(|[from, to]| to - from > LEVEL * (high - low));
+        self.told(&best, level, (true, others, sentence))
     }
 
     /// From several starts, then each friction alone.
@@ -198,7 +202,7 @@ impl Model<'_> {
         let along = if alone { "; each friction alone is at the least of its whole exact path" } else { "" };
         let place = if self.history { ", by differences between histories of their own" } else { "" };
         let sentence = format!("the best of {tried} descents{place}{along}; a better one elsewhere is not ruled out");
-        self.told(&best, (false, Vec::new(), sentence))
+        self.told(&best, None, (false, Vec::new(), sentence))
     }
 
     /// The present values, the middle, and places between it and the corners.
@@ -231,11 +235,14 @@ impl Model<'_> {
     fn told(
         &self,
         best: &Fit,
+        level: Option<[f64; 2]>,
         (global, other_minima, sentence): (bool, Vec<[f64; 2]>, String),
     ) -> Result<Calibration, PathError> {
         let slopes = self.slopes(&best.at, &best.look)?;
         let seen = Seen::of(self, &slopes);
-        let known = (0..self.groups.len()).filter(|&k| seen.why[k].is_none()).count();
+        // Level around the best place, though it slopes on one side of it.
+        let why = |k: usize| seen.why[k].or(level.map(|_| Blind::Alone));
+        let known = (0..self.groups.len()).filter(|&k| why(k).is_none()).count();
         let degrees_of_freedom = self.measured.len() - known;
         let scatter = match self.measured.iter().all(|measured| measured.error.is_some()) {
             true => Some(1.0),
@@ -245,12 +252,12 @@ impl Model<'_> {
         for (k, (name, range)) in self.groups.iter().enumerate() {
             let mut group = self.group(k, &best.look.pairs);
             (group.parameter, group.value, group.at_end) = (name.clone(), best.at[k], range.contains(&best.at[k]));
-            match &seen.why[k] {
+            match why(k) {
                 None => {
                     let [low, high] = *range;
                     group.standard_error = scatter.map(|scatter| (scatter * seen.variance[k]).sqrt() * (high - low));
                 }
-                Some(blind) => self.explain(&mut group, best, k, *blind)?,
+                Some(blind) => self.explain(&mut group, best, k, blind)?,
             }
             groups.push(group);
         }
@@ -308,7 +315,7 @@ impl Model<'_> {
     fn explain(&self, group: &mut Group, best: &Fit, k: usize, blind: Blind) -> Result<(), PathError> {
         group.identifiable = false;
         let along = if self.history || blind == Blind::Mixed { None } else { self.along(&best.at, k).ok().flatten() };
-        group.interval = along.map(|along| along.level(best.at[k], best.squares, self.size()));
+        group.interval = along.map(|along| along.as_good(best.at[k], best.squares, self.size()));
         group.why = Some(match blind {
             Blind::Mixed => "it cannot be told apart from others: only a combination of them shows".to_owned(),
             Blind::Alone if group.slip == 0 && group.stick == 0 => "its pairs are open: nothing shows of it".to_owned(),
