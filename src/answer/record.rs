@@ -97,6 +97,11 @@ impl Verdict {
             Verdict::Undecided => "undecided",
         }
     }
+
+    /// Whether it is proved that there is no answer.
+    pub fn is_proof(self) -> bool {
+        self != Verdict::Undecided
+    }
 }
 
 /// Direction of a ray at one pair.

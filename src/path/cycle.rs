@@ -7,6 +7,8 @@ use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
 use super::start::PathError;
 use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::Ray;
+use crate::contact::problem::ContactProblem;
+use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
 use crate::solve::case::Case;
 use crate::solve::error::QuestionError;
@@ -139,10 +141,8 @@ pub(super) fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>,
 }
 
 /// Refuses slips whose forces would leave no digits of those of the loads.
-fn within_reason(case: Case<'_>, factors: &[f64], slips: &[f64]) -> Result<(), PathError> {
-    let Some(system) = case.prepared.system() else { return Ok(()) };
-    let problem = contact_problem(system, factors, case.values);
-    let loads = problem.load_terms.amax();
+fn within_reason(problem: &ContactProblem, slips: &[f64]) -> Result<(), PathError> {
+    let (system, loads) = (&problem.system, problem.load_terms.amax());
     for (pair, slip) in std::iter::zip(&system.pairs, slips) {
         let Some(joint) = pair.tangential else { continue };
         let force = system.stiffness.column(joint).amax() * slip.abs();
@@ -163,14 +163,31 @@ fn within_reason(case: Case<'_>, factors: &[f64], slips: &[f64]) -> Result<(), P
 /// # Errors
 /// A name that is no load, a bare LCP, slips that cannot be, a history that breaks down; see [`PathError`].
 pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Begin) -> Result<Cycle, PathError> {
-    if case.prepared.system().is_none() {
-        return Err(PathError::Plain("cycle"));
-    }
+    let found = followed(case, name, ends, most, begin)?;
+    let every_start = match found.kind {
+        Kind::ShakesDown | Kind::Undecided => {
+            let places = found.history.stages.iter().skip(1).take(2).flat_map(|stage| &stage.moments);
+            static_shakedown(case, places)
+        }
+        _ => Static::NotAsked,
+    };
+    Ok(Cycle { every_start, ..found })
+}
+
+/// As [`cycle`], without asking the static theorem.
+pub(super) fn followed(
+    case: Case<'_>,
+    name: &str,
+    ends: [f64; 2],
+    most: usize,
+    begin: &Begin,
+) -> Result<Cycle, PathError> {
+    let system = case.prepared.system().ok_or(PathError::Plain("cycle"))?;
     let [a, b] = ends;
-    let softest = softest(case);
+    let softest = softest(system);
     let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
     if let Begin::Slips(slips) = begin {
-        within_reason(case, &start, slips)?;
+        within_reason(&contact_problem(system, &start, case.values), slips)?;
     }
     let mut targets = vec![start.clone()];
     (0..most).for_each(|_| targets.extend([turned.clone(), start.clone()]));
@@ -184,20 +201,12 @@ pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Be
     };
     let history = follow_until(case, begin, &targets, &mut decided)?;
     let (kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, softest);
-    let every_start = match kind {
-        Kind::ShakesDown | Kind::Undecided => {
-            let places = history.stages.iter().skip(1).take(2).flat_map(|stage| &stage.moments);
-            static_shakedown(case, places)
-        }
-        _ => Static::NotAsked,
-    };
     let sentence = said(kind, &turns, &history);
-    Ok(Cycle { name: name.to_owned(), ends, kind, turns, history, sentence, every_start })
+    Ok(Cycle { name: name.to_owned(), ends, kind, turns, history, sentence, every_start: Static::NotAsked })
 }
 
 /// The largest displacement of a tangential joint under a unit force, the others held.
-fn softest(case: Case<'_>) -> f64 {
-    let Some(system) = case.prepared.system() else { return 0.0 };
+fn softest(system: &ContactSystem) -> f64 {
     let joints = system.pairs.iter().filter_map(|pair| pair.tangential);
     let stiffness = joints.map(|joint| system.stiffness[(joint, joint)]).filter(|stiffness| *stiffness > 0.0);
     stiffness.map(f64::recip).fold(0.0, f64::max)
@@ -345,7 +354,7 @@ pub struct ShakedownLimit {
 /// # Errors
 /// As [`cycle`].
 pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> Result<ShakedownLimit, PathError> {
-    let kind = |to: f64| cycle(case, name, [from, to], MOST, &Begin::Unloaded).map(|found| found.kind);
+    let kind = |to: f64| followed(case, name, [from, to], MOST, &Begin::Unloaded).map(|found| found.kind);
     let (mut good, mut bad) = (from, None);
     let mut to = first;
     for round in 0..DOUBLINGS {

@@ -9,7 +9,7 @@
 
 use nalgebra::DVector;
 
-use super::cycle::{Cycle, Kind, PairSlip, Turn, cycle, target};
+use super::cycle::{Cycle, Kind, PairSlip, Turn, cycle, followed, target};
 use super::stages::{Begin, loose_motions};
 use super::start::PathError;
 use super::static_shakedown::Static;
@@ -108,7 +108,7 @@ pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Resu
     let every_start = zero.every_start;
     for (index, (label, slips)) in begins.iter().enumerate() {
         case.watch.progress(&format!("start {label}"), index as f64 / begins.len() as f64);
-        let found = cycle(case, name, ends, most, &Begin::Slips(slips.clone()))?;
+        let found = followed(case, name, ends, most, &Begin::Slips(slips.clone()))?;
         starts.push(StartResult::of(label.clone(), &found));
     }
     let largest = |of: fn(&StartResult) -> f64| starts.iter().map(of).fold(0.0, f64::max);

@@ -48,7 +48,7 @@ impl Run {
 
     /// Whether it is proved that there is no answer.
     pub fn is_proved(&self) -> bool {
-        matches!(self.verdict, Some(Verdict::Certified | Verdict::Proved))
+        self.verdict.is_some_and(Verdict::is_proof)
     }
 }
 

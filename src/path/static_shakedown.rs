@@ -44,6 +44,8 @@ pub enum Static {
 
 /// A place of the cycle: what bounds the pairs there, and what the loads alone do in the tangential joints.
 struct Place {
+    /// Share of the way.
+    t: f64,
     /// By pair; `None` without a tangential joint.
     bounds: Vec<Option<f64>>,
     /// By joint.
@@ -92,7 +94,7 @@ impl Place {
         let there = problem.clone().with_factors(&moment.factors);
         let pairs = problem.system.pairs.iter().zip(&moment.pairs);
         let bounds = pairs.map(|(pair, state)| pair.tangential.map(|_| state.bound)).collect();
-        Place { bounds, load: there.load, terms: there.load_terms }
+        Place { t: moment.t, bounds, load: there.load, terms: there.load_terms }
     }
 }
 
@@ -200,11 +202,9 @@ pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<
     let targets = [target(case, name, from)?, target(case, name, to)?];
     let history = follow_factors(case, &Begin::Unloaded, &targets)?;
     let Some(stage) = history.stages.get(1) else { return Ok((None, Static::Nothing)) };
-    let places: Vec<(f64, Place)> =
-        stage.moments.iter().map(|moment| (moment.t, Place::of(&problem, moment))).collect();
-    let all: Vec<Place> = stage.moments.iter().map(|moment| Place::of(&problem, moment)).collect();
-    let search = Search::new(&problem, &all);
-    let (Some((t, slips)), Some(first)) = (search.farthest(&places), search.most_reserve(&all[..1])) else {
+    let places: Vec<Place> = stage.moments.iter().map(|moment| Place::of(&problem, moment)).collect();
+    let search = Search::new(&problem, &places);
+    let (Some((t, slips)), Some(first)) = (search.farthest(&places), search.most_reserve(&places[..1])) else {
         return Ok((None, Static::Nothing));
     };
     for share in BEFORE {
@@ -220,38 +220,38 @@ pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<
 }
 
 /// Between two places: everything is affine there.
-fn between(places: &[(f64, Place)], k: usize, t: f64) -> Place {
-    let ((a, from), (b, to)) = (&places[k - 1], &places[k]);
-    let share = if b > a { (t - a) / (b - a) } else { 1.0 };
+fn between(places: &[Place], k: usize, t: f64) -> Place {
+    let (from, to) = (&places[k - 1], &places[k]);
+    let share = if to.t > from.t { (t - from.t) / (to.t - from.t) } else { 1.0 };
     let mix = |a: f64, b: f64| a + share * (b - a);
     let bounds = from.bounds.iter().zip(&to.bounds).map(|(a, b)| Some(mix((*a)?, (*b)?))).collect();
     let load = from.load.zip_map(&to.load, mix);
-    Place { bounds, load, terms: from.terms.zip_map(&to.terms, f64::max) }
+    Place { t, bounds, load, terms: from.terms.zip_map(&to.terms, f64::max) }
 }
 
 /// The places up to t, t included.
-fn passed(places: &[(f64, Place)], t: f64) -> Vec<Place> {
-    let before = places.iter().take_while(|(at, _)| *at < t).count().clamp(1, places.len() - 1);
-    let mut all: Vec<Place> = (1..before).map(|k| between(places, k, places[k].0)).collect();
-    all.push(between(places, 1, places[0].0));
+fn passed(places: &[Place], t: f64) -> Vec<Place> {
+    let before = places.iter().take_while(|place| place.t < t).count().clamp(1, places.len() - 1);
+    let mut all: Vec<Place> = (1..before).map(|k| between(places, k, places[k].t)).collect();
+    all.push(between(places, 1, places[0].t));
     all.push(between(places, before, t));
     all
 }
 
 impl Search<'_> {
     /// The farthest place of the way up to which one choice of slips holds all pairs, and that choice.
-    fn farthest(&self, places: &[(f64, Place)]) -> Option<(f64, DVector<f64>)> {
+    fn farthest(&self, places: &[Place]) -> Option<(f64, DVector<f64>)> {
         let mut best = None;
         for k in 1..places.len() {
-            let ((a, from), (b, to)) = (&places[k - 1], &places[k]);
-            if b <= a {
+            let (from, to) = (&places[k - 1], &places[k]);
+            if to.t <= from.t {
                 continue;
             }
             let mut program = self.program();
             let share = program.variable(-1.0);
             program.at_most(vec![(share, 1.0)], 1.0);
             program.at_most(vec![(share, -1.0)], 0.0);
-            places[..k].iter().for_each(|(_, place)| self.demand(&mut program, place, None));
+            places[..k].iter().for_each(|place| self.demand(&mut program, place, None));
             for (j, &(pair, joint)) in self.joints.iter().enumerate() {
                 let (Some(start), Some(end)) = (from.bounds[pair], to.bounds[pair]) else { continue };
                 for sign in [1.0, -1.0] {
@@ -263,7 +263,7 @@ impl Search<'_> {
             }
             let Outcome::Optimum(found) = program.solve(SECONDS) else { break };
             let reached = found.x[share].clamp(0.0, 1.0);
-            best = Some((a + reached * (b - a), self.slips(&found.x)));
+            best = Some((from.t + reached * (to.t - from.t), self.slips(&found.x)));
             if reached < 1.0 - 1e-7 {
                 break;
             }

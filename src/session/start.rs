@@ -7,6 +7,7 @@ use crate::solve::{Case, Prepared, Solved};
 use crate::watch::Watch;
 
 /// The present setup, solved.
+#[derive(Clone)]
 pub(in crate::session) struct PathStart {
     pub(in crate::session) setup: Setup,
     pub(in crate::session) prepared: Arc<Prepared>,

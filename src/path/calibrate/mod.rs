@@ -16,6 +16,7 @@ use super::start::PathError;
 use crate::answer::record::{PairState, State};
 use crate::model::jet::Dependence;
 use crate::model::measurement::Measurement;
+use crate::model::words::counted;
 use crate::solve::Case;
 use crate::text::number::short;
 use fit::{Along, BLIND, Fit};
@@ -112,7 +113,7 @@ pub fn calibrate(
     if measured.len() < groups.len() {
         return Err(PathError::Missing(format!(
             "calibrate: {} cannot tell {} frictions; measure at least as many quantities, or name fewer",
-            counted(measured.len(), "measurement"),
+            counted(measured.len(), "measurement", "measurements"),
             groups.len()
         )));
     }
@@ -124,10 +125,6 @@ pub fn calibrate(
         }
     }
     model.of_several()
-}
-
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 impl Model<'_> {

@@ -45,10 +45,7 @@ pub struct Exact {
 
 /// Whether a ray is proved to have no answer.
 pub fn judged(verdict: Option<Verdict>) -> Found {
-    match verdict {
-        Some(Verdict::Certified | Verdict::Proved) => Found::Collapse,
-        Some(Verdict::Undecided) | None => Found::Undecided,
-    }
+    if verdict.is_some_and(Verdict::is_proof) { Found::Collapse } else { Found::Undecided }
 }
 
 /// Of one parameter; `None` where no exact path leads over it.

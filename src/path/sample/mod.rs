@@ -237,7 +237,7 @@ pub fn of_file(sweep: &Sweep<'_>, path: &std::path::Path) -> std::io::Result<Vec
 ///
 /// # Errors
 /// An interruption; a value that the scenario cannot take.
-pub fn sample(case: Case<'_>, request: &Request, units: &[Option<String>]) -> Result<Sampled, PathError> {
+pub fn sample(case: Case<'_>, request: &Request) -> Result<Sampled, PathError> {
     let mut exact = None;
     if !request.crude && case.prepared.system().is_some() {
         let found = match &request.variables[..] {
@@ -251,33 +251,29 @@ pub fn sample(case: Case<'_>, request: &Request, units: &[Option<String>]) -> Re
             found => found.ok().flatten(),
         };
     }
-    let mut found = match &exact {
-        Some(exact) => Sampled::of_exact(request, exact),
-        None => Sampled::of_draws(request, &[], None),
+    let exact = match exact.map(|exact| Sampled::of_exact(request, &exact)) {
+        Some(found) if found.quantities.len() == request.quantities.len() => return Ok(found),
+        other => other,
     };
-    let all = exact.as_ref().is_some_and(|exact| exact.spreads.len() == request.quantities.len());
-    if !all {
-        // Draws near the limit would tell the quantities badly and the collapse is known.
-        let (draw, near) = match exact {
-            Some(_) => Request { crude: true, ..request.clone() }.draw(case)?,
-            None => request.draw(case)?,
-        };
-        let asked = draw.count;
-        let quantities = with_verdict(&request.quantities);
-        let draws = Sampler { case, draw, quantities: &quantities }.run()?;
-        let drawn = Sampled::of_draws(request, &draws, near);
-        found = match exact {
-            None => drawn,
-            Some(_) => {
-                let notes = found.notes.into_iter().chain(["the quantities are drawn".to_owned()]).collect();
-                Sampled { draws: drawn.draws, quantities: drawn.quantities, notes, ..found }
-            }
-        };
-        if draws.len() < asked {
-            found.notes.push(format!("stopped after {} of {asked} draws", draws.len()));
+    // Draws near the limit would tell the quantities badly where the collapse is known.
+    let (draw, near) = match exact {
+        Some(_) => Request { crude: true, ..request.clone() }.draw(case)?,
+        None => request.draw(case)?,
+    };
+    let asked = draw.count;
+    let quantities = with_verdict(&request.quantities);
+    let draws = Sampler { case, draw, quantities: &quantities }.run()?;
+    let drawn = Sampled::of_draws(request, &draws, near);
+    let mut found = match exact {
+        None => drawn,
+        Some(mut exact) => {
+            exact.notes.push("the quantities are drawn".to_owned());
+            Sampled { draws: drawn.draws, quantities: drawn.quantities, ..exact }
         }
+    };
+    if draws.len() < asked {
+        found.notes.push(format!("stopped after {} of {asked} draws", draws.len()));
     }
-    found.quantities.iter_mut().zip(units).for_each(|(spread, unit)| spread.unit.clone_from(unit));
     Ok(found)
 }
 
@@ -296,7 +292,7 @@ impl Sampled {
     pub fn of_draws(request: &Request, draws: &[Drawn], near: Option<String>) -> Sampled {
         let collapse = Share::of(draws, Found::Collapse);
         let undecided = Share::of(draws, Found::Undecided);
-        let spread = |(column, quantity): (usize, &Quantity)| Spread::of(draws, column, quantity.to_string(), None);
+        let spread = |(column, quantity): (usize, &Quantity)| Spread::of(draws, column, quantity.to_string());
         let mut notes = Vec::new();
         if let Some(load) = &near {
             notes.push(format!(

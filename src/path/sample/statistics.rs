@@ -94,7 +94,7 @@ impl Share {
 
 impl Spread {
     /// From drawn points; `column` is that of the quantity.
-    pub fn of(draws: &[Drawn], column: usize, quantity: String, unit: Option<String>) -> Spread {
+    pub fn of(draws: &[Drawn], column: usize, quantity: String) -> Spread {
         let all: f64 = draws.iter().map(|draw| draw.weight).sum();
         let mut values: Vec<(f64, f64)> = Vec::new();
         let mut words: Vec<(String, f64)> = Vec::new();
@@ -107,12 +107,12 @@ impl Spread {
                 value => values.extend(value.as_f64().map(|value| (value, draw.weight))),
             }
         }
-        let told: f64 = values.iter().chain([]).map(|(_, weight)| weight).sum::<f64>()
-            + words.iter().map(|(_, weight)| weight).sum::<f64>();
+        let told: f64 =
+            values.iter().map(|(_, weight)| weight).sum::<f64>() + words.iter().map(|(_, weight)| weight).sum::<f64>();
         let known = if all > 0.0 { told / all } else { 0.0 };
         words.iter_mut().for_each(|(_, weight)| *weight /= told);
         words.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut spread = Spread { quantity, unit, known, words, ..Spread::default() };
+        let mut spread = Spread { quantity, known, words, ..Spread::default() };
         spread.take(values);
         spread
     }

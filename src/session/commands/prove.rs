@@ -1,6 +1,6 @@
 //! `prove`: the proof of what stands, for somebody else to check.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
 use serde::Serialize;
@@ -89,10 +89,9 @@ impl Session {
             false => prepared.prove(solved, watch),
         })?;
         let system = self.write_system(&proof.system, &beside)?;
-        write(
-            path,
-            &serde_json::to_string_pretty(&proof_export::proof(&proof, &system)).map_err(std::io::Error::other)?,
-        )?;
+        let text =
+            serde_json::to_string_pretty(&proof_export::proof(&proof, &system)).map_err(std::io::Error::other)?;
+        write(path, &(text + "\n"))?;
         let (claim, answers) = match &proof.claim {
             Claim::Answer(_) => ("answer", None),
             Claim::Collapse(_) => ("collapse", None),
@@ -117,7 +116,7 @@ impl Session {
         let title = format!("System of {}: {}", self.now.scenario.name, self.now.scenario.title);
         let value = proof_export::system(system, &title);
         let text = printable::json(serde_json::to_string(&value).map_err(std::io::Error::other)?) + "\n";
-        write(path, text.trim_end())?;
+        write(path, &text)?;
         Ok(text)
     }
 
@@ -129,8 +128,7 @@ impl Session {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), CommandError> {
-    atomic::write(&PathBuf::from(path), |out| writeln!(out, "{text}"))
-        .map_err(|error| CommandError::Refused(error.to_string()))
+    atomic::write(path, |out| out.write_all(text.as_bytes())).map_err(|error| CommandError::Refused(error.to_string()))
 }
 
 /// What is proved.

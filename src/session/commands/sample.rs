@@ -1,6 +1,6 @@
 //! `sample`: the probability of collapse, and how quantities are spread.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -135,10 +135,8 @@ impl Session {
 
     fn sample(&mut self, asked: &Sample, io: &mut Output<'_>) -> Result<(), CommandError> {
         let (request, notes) = self.sample_request(asked)?;
-        let units: Vec<Option<String>> =
-            request.quantities.iter().map(|quantity| quantity.unit(&self.now.scenario.units)).collect();
         let mut found = match &asked.out {
-            Some(_) => match self.sample_into(asked, &request, &units, io)? {
+            Some(path) => match self.sample_into(asked, path, &request, io)? {
                 Some(found) => found,
                 None => return Ok(()),
             },
@@ -148,11 +146,12 @@ impl Session {
             None => {
                 let ground = self.ground(io.watch)?;
                 let asked = request.clone();
-                worker::run_patiently(io.watch, PATIENCE, move |watch| {
-                    sample::sample(ground.case(watch), &asked, &units)
-                })??
+                worker::run_patiently(io.watch, PATIENCE, move |watch| sample::sample(ground.case(watch), &asked))??
             }
         };
+        for (spread, quantity) in found.quantities.iter_mut().zip(&request.quantities) {
+            spread.unit = quantity.unit(&self.now.scenario.units);
+        }
         found.notes.splice(0..0, notes);
         let found = Arc::new(found);
         io.show(&*found, |out, style| view::sample::write(out, &found, style))?;
@@ -164,15 +163,14 @@ impl Session {
     fn sample_into(
         &self,
         asked: &Sample,
+        path: &Path,
         request: &Request,
-        units: &[Option<String>],
         io: &mut Output<'_>,
     ) -> Result<Option<Sampled>, CommandError> {
-        let Some(path) = &asked.out else { return Ok(None) };
         let format = format_of(path)?;
         let ground = self.ground(io.watch)?;
         let (draw, near) = {
-            let (ground, request) = (self.ground(io.watch)?, request.clone());
+            let (ground, request) = (ground.clone(), request.clone());
             worker::run(io.watch, move |watch| request.draw(ground.case(watch)))??
         };
         let grid = Grid::of_draw(draw);
@@ -191,7 +189,6 @@ impl Session {
         }
         let draws = sample::of_file(&sweep, path)?;
         let mut found = Sampled::of_draws(request, &draws, near);
-        found.quantities.iter_mut().zip(units).for_each(|(spread, unit)| spread.unit.clone_from(unit));
         found.notes.push(done_sentence(&done, path));
         Ok(Some(found))
     }

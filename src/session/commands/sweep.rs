@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::export::atomic;
 use crate::export::table::Table;
 use crate::model::quantity::{self, Quantity};
-use crate::model::scenario::{Scenario, Source};
+use crate::model::scenario::Source;
 use crate::path::grid::{Axis, Grid, POINTS};
 use crate::path::merge::Shards;
 use crate::path::sweep;
@@ -86,10 +86,11 @@ impl Session {
 
     /// The columns of a sweep with their units: parameters, what every sweep has, quantities.
     fn with_units(&self, columns: &[String], grid: &Grid, quantities: &[Quantity]) -> Vec<(String, Option<String>)> {
-        let Scenario { parameters, units, .. } = &*self.now.scenario;
-        let is_plain = matches!(self.now.scenario.source, Source::Lcp(_));
+        let scenario = &*self.now.scenario;
+        let units = &scenario.units;
+        let is_plain = matches!(scenario.source, Source::Lcp(_));
         let unit = |(k, name): (usize, &String)| match quantities.iter().find(|one| one.to_string() == *name) {
-            _ if k < grid.axes.len() => parameters.get(name).and_then(|parameter| parameter.unit.clone()),
+            _ if k < grid.axes.len() => scenario.unit_of(name).map(str::to_owned),
             Some(quantity) => quantity.unit(units),
             None if is_plain => None,
             None => view::sweep::unit_of(name, units),
