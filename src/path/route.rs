@@ -154,13 +154,19 @@ impl Route<'_> {
     /// # Errors
     /// Where it has none.
     pub fn value(&self, stretch: &Stretch, at: f64, quantity: &Quantity) -> Result<Value, NoValue> {
+        let value = self.with_facts(stretch, at, |facts| facts.value(quantity));
+        value.unwrap_or_else(|| Err(NoValue("no answer".to_owned())))
+    }
+
+    /// What is read at a value within a stretch; `None` where there is no answer.
+    pub fn with_facts<T>(&self, stretch: &Stretch, at: f64, read: impl FnOnce(&Facts<'_>) -> T) -> Option<T> {
         let leg = &self.legs[stretch.leg];
         let values = self.values_at(leg, at);
-        let pairs = self.pairs(stretch, at).ok_or_else(|| NoValue("no answer".to_owned()))?;
+        let pairs = self.pairs(stretch, at)?;
         let (prepared, factors) = match &leg.way {
             Way::Load(path) => (path.ground(&leg.there.prepared), path.case_factors(at)),
             Way::Friction(_) => (&*leg.there.prepared, factors(&leg.there.prepared, &values)),
         };
-        Facts::of_state(Case { prepared, values: &values, ..self.case }, factors, &pairs).value(quantity)
+        Some(read(&Facts::of_state(Case { prepared, values: &values, ..self.case }, factors, &pairs)))
     }
 }

@@ -3,7 +3,6 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::model::{Look, Model};
-use crate::model::measurement::Measurement;
 use crate::path::profile::curve_of;
 use crate::path::route::Route;
 use crate::path::start::PathError;
@@ -151,9 +150,8 @@ impl Model<'_> {
             }
             case.watch.progress(&format!("calibrate {name}"), index as f64 / route.stretches.len() as f64);
             let squares = |value: f64| -> Option<f64> {
-                let read = |measured: &Measurement| route.value(stretch, value, &measured.quantity).ok()?.number();
-                let values: Option<Vec<f64>> = self.measured.iter().map(read).collect();
-                let squares = self.residuals(&values?).norm_squared();
+                let values = route.with_facts(stretch, value, |facts| self.read(facts))?.ok()?;
+                let squares = self.residuals(&values).norm_squared();
                 // Of measurements that are met what is left is rounding, and no curve.
                 Some(if squares <= (ROUNDING * self.size()).powi(2) { 0.0 } else { squares })
             };

@@ -9,10 +9,10 @@ use crate::path::quantity::{Facts, Value};
 use crate::path::sensitivity::{PairRate, sensitivity};
 use crate::path::stages::{self, HistoryEnd};
 use crate::path::start::PathError;
-use crate::solve::Case;
 use crate::solve::case::There;
 use crate::solve::error::QuestionError;
 use crate::solve::problem::factors;
+use crate::solve::{Case, Solved};
 
 /// The state is moved by this share of its size along its exact rates: what is linear in it (displacements, forces) then
 /// has its exact derivative, the rest one to about as many digits.
@@ -34,6 +34,8 @@ pub(super) struct Model<'a> {
 pub(super) struct Look {
     pub(super) values: Vec<f64>,
     pub(super) pairs: Vec<PairState>,
+    /// The answer; `None` of a history.
+    solved: Option<Solved>,
 }
 
 impl Model<'_> {
@@ -61,18 +63,18 @@ impl Model<'_> {
             }
             let facts = Facts::of_state(case, Vec::new(), &[]).of_history(&history);
             let pairs = history.answer().map_or_else(Vec::new, |end| end.pairs.clone());
-            return Ok(self.read(&facts).map(|values| Look { values, pairs }));
+            return Ok(self.read(&facts).map(|values| Look { values, pairs, solved: None }));
         }
         let solved = case.solve_briefly()?;
         if !solved.answer.is_answer() {
             return Ok(Err(format!("the outcome is {}", solved.answer.outcome.word())));
         }
-        let pairs = solved.answer.pairs;
+        let pairs = solved.answer.pairs.clone();
         let values = self.read(&Facts::of_state(case, factors(case.prepared, case.values), &pairs));
-        Ok(values.map(|values| Look { values, pairs }))
+        Ok(values.map(|values| Look { values, pairs, solved: Some(solved) }))
     }
 
-    fn read(&self, facts: &Facts<'_>) -> Result<Vec<f64>, String> {
+    pub(super) fn read(&self, facts: &Facts<'_>) -> Result<Vec<f64>, String> {
         let value = |measured: &Measurement| match facts.value(&measured.quantity) {
             Ok(Value::Number(value)) => Ok(value),
             Ok(Value::Word(_)) => Err(format!("{} is a word", measured.quantity)),
@@ -95,15 +97,17 @@ impl Model<'_> {
     /// d(quantity)/d(friction), a column for each group: from the exact rates within the working scheme, in a history by
     /// differences.
     pub(super) fn slopes(&self, at: &[f64], here: &Look) -> Result<DMatrix<f64>, PathError> {
-        let rates = if self.history { None } else { self.rates(at)? };
+        let exact = self.measured.iter().all(|measured| is_of_rates(&measured.quantity));
+        let rates = match &here.solved {
+            Some(solved) if exact => self.rates(at, solved)?,
+            _ => None,
+        };
         let mut slopes = DMatrix::zeros(self.measured.len(), self.groups.len());
         for k in 0..self.groups.len() {
             let own = rates.as_ref().and_then(|rates| rates[k].as_ref());
             let column = match own {
-                Some(rates) if self.measured.iter().all(|measured| is_of_rates(&measured.quantity)) => {
-                    self.along_rates(at, here, rates)?
-                }
-                _ => self.difference(at, here, k)?,
+                Some(rates) => self.along_rates(at, here, rates)?,
+                None => self.difference(at, here, k)?,
             };
             slopes.set_column(k, &column);
         }
@@ -111,11 +115,9 @@ impl Model<'_> {
     }
 
     /// The exact rates of the pairs over each group; `None` where there are none.
-    fn rates(&self, at: &[f64]) -> Result<Option<Vec<Option<Vec<PairRate>>>>, PathError> {
+    fn rates(&self, at: &[f64], solved: &Solved) -> Result<Option<Vec<Option<Vec<PairRate>>>>, PathError> {
         let there = self.there(at)?;
-        let case = there.case(self.case);
-        let solved = case.solve_briefly()?;
-        match sensitivity(case, &solved) {
+        match sensitivity(there.case(self.case), solved) {
             Ok(found) => {
                 let of = |name: &String| found.parameters.iter().find(|rate| rate.parameter == *name);
                 Ok(Some(self.groups.iter().map(|(name, _)| of(name).map(|rate| rate.pairs.clone())).collect()))
