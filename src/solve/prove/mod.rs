@@ -19,7 +19,7 @@ use super::state::{RunData, Solved};
 use crate::answer::attempt::AttemptEngine;
 use crate::answer::record::{OutcomeKind, RayClass};
 use crate::contact::law::PairLaw;
-use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::contact::schemes::scheme::PairScheme;
 use crate::watch::Watch;
 use answer::answer_of;
 pub use collapse::Collapse;
@@ -202,11 +202,7 @@ fn prove_answer(system: ProvedSystem, solved: &Solved, watch: &dyn Watch) -> Res
 
 /// The branch that a working scheme means; 0 where it names none.
 fn branch_of(group: &Group, law: &PairLaw, scheme: PairScheme) -> usize {
-    let slips = match scheme.tangential {
-        Tangential::Stick => "stick",
-        Tangential::SlipPlus => "slip+",
-        Tangential::SlipMinus => "slip-",
-    };
+    let slips = scheme.tangential.word();
     let open = scheme.open && !law.is_bilateral();
     let word = match open {
         true => format!("open {slips}"),
