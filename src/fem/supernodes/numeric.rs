@@ -267,10 +267,7 @@ impl Work<'_> {
             |product, (strip, values)| self.collect(&target, strip * columns, values, product),
         )?;
         self.eliminate(s, own, scratch, in_strips)?;
-        if shape.active(s) > 0 {
-            stretch.links[s - stretch.supernodes.start].done = 0;
-            self.enlist(s, stretch);
-        }
+        self.enlist(s, stretch);
         self.progress.add(self.costs[s], shape.active(s), shape.eliminated)?;
         Ok(())
     }
