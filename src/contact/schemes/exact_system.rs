@@ -94,10 +94,10 @@ impl<'a> ExactSystem<'a> {
         let slips: Vec<usize> = self.problem.system.pairs.iter().filter_map(|pair| pair.tangential).collect();
         let mut made = Polyhedron::new(k, rows, &slips);
         let mut state = made.restore(go_on);
-        for i in 0..self.problem.system.pair_count() {
-            if self.problem.system.pairs[i].law.is_bilateral() && state == State::Feasible {
-                state = made.fix(i, go_on);
-            }
+        if state == State::Feasible {
+            let pairs = &self.problem.system.pairs;
+            let bilateral = (0..pairs.len()).filter(|&i| pairs[i].law.is_bilateral());
+            (state, _) = made.fix_all(bilateral, go_on);
         }
         (made, state)
     }

@@ -309,6 +309,20 @@ impl Polyhedron {
         }
     }
 
+    /// [Fixes](Polyhedron::fix) variables at zero, one after the other as long as anything is left; beside the state the
+    /// one that was fixed last.
+    pub fn fix_all(&mut self, variables: impl IntoIterator<Item = usize>, go_on: &mut GoOn) -> (State, Option<usize>) {
+        let mut last = None;
+        for variable in variables {
+            last = Some(variable);
+            let state = self.fix(variable, go_on);
+            if state != State::Feasible {
+                return (state, last);
+            }
+        }
+        (State::Feasible, last)
+    }
+
     /// The column of least index along which the variable of `row` can grow.
     fn helps(&self, row: usize) -> Option<usize> {
         self.towards(row, &-BigInt::one())

@@ -74,13 +74,7 @@ fn solution(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<Bi
 /// A point of the scheme, all signs kept, as a linear program.
 fn completed(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<BigRational>> {
     let mut go_on = || !watch.stop();
-    let mut polyhedron = forms.polyhedron();
-    let mut state = polyhedron.restore(&mut go_on);
-    for &variable in &forms.zero {
-        if state == State::Feasible {
-            state = polyhedron.fix(variable, &mut go_on);
-        }
-    }
+    let (mut polyhedron, (mut state, _)) = forms.start(&mut go_on);
     for branch in chosen(forms, scheme) {
         if state == State::Feasible {
             (state, _) = impose(&mut polyhedron, branch, &mut go_on);
@@ -97,21 +91,19 @@ fn chosen<'a>(forms: &'a Forms, scheme: &'a [usize]) -> impl Iterator<Item = &'a
 fn exchange(forms: &Forms, scheme: &mut [usize], values: &[BigRational]) -> bool {
     let mut changed = false;
     for (group, now) in forms.groups.iter().zip(scheme) {
-        let fails = |branch: &Branch| {
-            let sign = branch.sign.is_some_and(|(variable, up)| match up {
-                true => values[variable].is_negative(),
-                false => values[variable].is_positive(),
-            });
-            sign || branch.zero.iter().any(|&variable| forms.signed[variable] && values[variable].is_negative())
+        let present = &group.branches[*now];
+        let leaves = |branch: &Branch| {
+            branch.zero.iter().any(|&variable| forms.signed[variable] && values[variable].is_negative())
         };
         let kept = |branch: &Branch| -> usize {
-            branch.zero.iter().filter(|variable| group.branches[*now].zero.contains(variable)).count()
+            branch.zero.iter().filter(|variable| present.zero.contains(variable)).count()
         };
-        let slips_wrong = fails(&group.branches[*now]);
-        let candidates = group.branches.iter().enumerate().filter(|(other, branch)| {
-            let leaves = branch.zero.iter().any(|&variable| forms.signed[variable] && values[variable].is_negative());
-            *other != *now && (leaves || slips_wrong && branch.sign.is_none())
-        });
+        let is_wrong = !present.sign_holds(values) || leaves(present);
+        let candidates = group
+            .branches
+            .iter()
+            .enumerate()
+            .filter(|(other, branch)| *other != *now && (leaves(branch) || is_wrong && branch.sign.is_none()));
         if let Some((other, _)) = candidates.max_by_key(|(_, branch)| kept(branch)) {
             *now = other;
             changed = true;

@@ -56,16 +56,7 @@ pub fn collapse(
         return None;
     }
     let forms = Forms::of(&super::system::ProvedSystem::Contact(contact.clone()));
-    let mut polyhedron = forms.polyhedron();
-    let mut go_on = || !watch.stop();
-    let mut state = polyhedron.restore(&mut go_on);
-    let mut pinned = None;
-    for &variable in &forms.zero {
-        if state == State::Feasible {
-            pinned = Some(variable);
-            state = polyhedron.fix(variable, &mut go_on);
-        }
-    }
+    let (polyhedron, (state, pinned)) = forms.start(&mut || !watch.stop());
     if state != State::Empty {
         return None;
     }

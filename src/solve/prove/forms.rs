@@ -15,7 +15,7 @@ use num_traits::{One, Signed, Zero};
 use super::system::{ProvedContact, ProvedSystem};
 use crate::contact::law::{PairLaw, TangentialJoint};
 use crate::lcp::exact::dyadic::{WholeRows, rational};
-use crate::lcp::exact::polyhedron::Polyhedron;
+use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
 use crate::lcp::exact::rational_solve::clear_denominators;
 use crate::lcp::exact::scalar::BigInt;
 
@@ -121,23 +121,33 @@ impl Forms {
         self.groups.iter().map(|group| Some(group.branches.iter().find(|branch| branch.holds(values))?.name)).collect()
     }
 
-    /// All signs but those of the slips, nothing decided yet; not yet feasible.
-    pub fn polyhedron(&self) -> Polyhedron {
+    /// All signs but those of the slips and all that is zero in every answer, nothing decided yet; beside the state the
+    /// variable that was fixed last.
+    pub(super) fn start(&self, go_on: &mut GoOn) -> (Polyhedron, (State, Option<usize>)) {
         let mut rows = WholeRows::default();
         self.forms.iter().for_each(|form| rows.push_rational(form));
         let free: Vec<usize> = (0..self.names.len()).filter(|&variable| !self.signed[variable]).collect();
-        Polyhedron::new(self.unknowns, rows, &free).keep_fixed()
+        let mut made = Polyhedron::new(self.unknowns, rows, &free).keep_fixed();
+        let state = match made.restore(go_on) {
+            State::Feasible => made.fix_all(self.zero.iter().copied(), go_on),
+            other => (other, None),
+        };
+        (made, state)
     }
 }
 
 impl Branch {
-    /// Whether its zeros and its sign hold.
-    pub fn holds(&self, values: &[BigRational]) -> bool {
-        let sign = self.sign.is_none_or(|(variable, up)| match up {
+    /// Whether its displacement has its sign, if there is one.
+    pub(super) fn sign_holds(&self, values: &[BigRational]) -> bool {
+        self.sign.is_none_or(|(variable, up)| match up {
             true => !values[variable].is_negative(),
             false => !values[variable].is_positive(),
-        });
-        sign && self.zero.iter().all(|&variable| values[variable].is_zero())
+        })
+    }
+
+    /// Whether its zeros and its sign hold.
+    pub fn holds(&self, values: &[BigRational]) -> bool {
+        self.sign_holds(values) && self.zero.iter().all(|&variable| values[variable].is_zero())
     }
 }
 

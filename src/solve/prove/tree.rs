@@ -65,16 +65,8 @@ pub enum NoTree {
 /// [`NoTree`].
 pub fn grow(forms: &Forms, progress: &mut dyn FnMut(usize, f64) -> bool) -> Result<AllAnswers, NoTree> {
     let mut search = Search { forms, progress, nodes: 0, share: 0.0, answers: Vec::new(), sets: 0 };
-    let mut root = forms.polyhedron();
-    let mut state = root.restore(&mut search.go_on());
-    let mut pinned = None;
-    for &variable in &forms.zero {
-        if state == State::Feasible {
-            pinned = Some(variable);
-            state = root.fix(variable, &mut search.go_on());
-        }
-    }
-    let tree = search.node(&root, (state, pinned), &mut vec![None; forms.groups.len()], 1.0)?;
+    let (root, state) = forms.start(&mut search.go_on());
+    let tree = search.node(&root, state, &mut vec![None; forms.groups.len()], 1.0)?;
     Ok(AllAnswers { tree, answers: search.answers, sets: search.sets, nodes: search.nodes })
 }
 
@@ -89,13 +81,7 @@ struct Search<'a> {
 
 /// What a branch asks for; the state, and the variable that was fixed last.
 pub(super) fn impose(polyhedron: &mut Polyhedron, branch: &Branch, go_on: &mut GoOn) -> (State, Option<usize>) {
-    let (mut state, mut pinned) = (State::Feasible, None);
-    for &variable in &branch.zero {
-        if state == State::Feasible {
-            pinned = Some(variable);
-            state = polyhedron.fix(variable, go_on);
-        }
-    }
+    let (mut state, mut pinned) = polyhedron.fix_all(branch.zero.iter().copied(), go_on);
     if let (Some((variable, up)), State::Feasible) = (branch.sign, state) {
         if !up {
             polyhedron.negate(variable);
