@@ -5,11 +5,13 @@
 //! ```
 //! On ζ forces within the laws' bounds take at most the bound, and the loads do more: nothing balances them.
 
+use std::collections::HashMap;
+
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use super::MOST_MOTIONS;
-use super::forms::Forms;
+use super::forms::of_contact;
 use super::system::ProvedContact;
 use super::tree::{Sum, contradiction};
 use crate::contact::law::TangentialJoint;
@@ -55,13 +57,18 @@ pub fn collapse(
     if contact.ids.len() > MOST_PAIRS || contact.kernel.len() > MOST_MOTIONS {
         return None;
     }
-    let forms = Forms::of(&super::system::ProvedSystem::Contact(contact.clone()));
+    let stiffness = contact.exact_stiffness();
+    let forms = of_contact(contact, &stiffness);
     let (polyhedron, (state, pinned)) = forms.start(&mut || !watch.stop());
     if state != State::Empty {
         return None;
     }
     let sum = contradiction(&forms, &polyhedron, pinned)?;
-    let motion = motion_of(contact, &forms, &sum);
+    let motion = motion_of(contact, sum);
+    let force = |row: &Vec<BigRational>| row.iter().zip(&motion).map(|(r, z)| r * z).sum::<BigRational>();
+    if stiffness.iter().any(|row| !force(row).is_zero()) {
+        return None;
+    }
     verified(contact, motion, Vec::new())
 }
 
@@ -78,36 +85,30 @@ fn made_of(contact: &ProvedContact, amounts: Vec<BigRational>) -> Option<Collaps
 
 /// The motion behind a contradiction of the signs of forces: the factors of x_n, x+, x- and x_t over the joints. With R
 /// positive semidefinite R ζ = 0, because ζᵀR ζ ≤ 0.
-fn motion_of(contact: &ProvedContact, forms: &Forms, sum: &Sum) -> Vec<BigRational> {
+fn motion_of(contact: &ProvedContact, sum: Sum) -> Vec<BigRational> {
     let m = contact.ids.len();
+    let mut factors: HashMap<usize, BigRational> = sum.into_iter().collect();
+    // The forms follow the unknowns, those of a pair one another.
+    let mut variables = 2 * m..;
+    let mut next = || variables.next().and_then(|variable| factors.remove(&variable)).unwrap_or_default();
     let mut motion = vec![BigRational::zero(); 2 * m];
-    for (variable, factor) in sum {
-        let (word, id) = forms.names[*variable].split_once(' ').unwrap_or_default();
-        let Some(pair) = contact.ids.iter().position(|known| known == id) else { continue };
-        let f = rational(contact.laws[pair].friction());
-        match word {
-            "x_n" => motion[pair] += factor,
-            "x_t" => motion[m + pair] += factor,
-            "x+" | "x-" => {
-                motion[pair] += &f * factor;
-                motion[m + pair] += if word == "x+" { factor.clone() } else { -factor };
+    for (pair, law) in contact.laws.iter().enumerate() {
+        motion[pair] = next();
+        motion[m + pair] = match law.tangential {
+            TangentialJoint::Free => next(),
+            TangentialJoint::Bounded { friction, .. } => {
+                let (plus, minus) = (next(), next());
+                motion[pair] += rational(friction) * (&plus + &minus);
+                plus - minus
             }
-            _ => {}
-        }
+        };
     }
     motion
 }
 
-/// Every sign of the proof; of a motion that is not made of the kernel R ζ = 0 too.
+/// The proof of a motion with R ζ = 0, if every sign of it holds.
 fn verified(contact: &ProvedContact, motion: Vec<BigRational>, amounts: Vec<BigRational>) -> Option<Collapse> {
     let m = contact.ids.len();
-    if amounts.is_empty() {
-        let stiffness = contact.exact_stiffness();
-        let force = |row: &Vec<BigRational>| row.iter().zip(&motion).map(|(r, z)| r * z).sum::<BigRational>();
-        if stiffness.iter().any(|row| !force(row).is_zero()) {
-            return None;
-        }
-    }
     let mut bound = BigRational::zero();
     for (pair, law) in contact.laws.iter().enumerate() {
         let (normal, slip) = (&motion[pair], motion[m + pair].abs());

@@ -60,7 +60,7 @@ impl Forms {
     /// Of a system.
     pub fn of(system: &ProvedSystem) -> Forms {
         match system {
-            ProvedSystem::Contact(contact) => of_contact(contact),
+            ProvedSystem::Contact(contact) => of_contact(contact, &contact.exact_stiffness()),
             ProvedSystem::Plain { matrix, q, names } => {
                 let n = q.len();
                 let row =
@@ -151,9 +151,9 @@ impl Branch {
     }
 }
 
-fn of_contact(contact: &ProvedContact) -> Forms {
+/// Of a contact system with this R. Forms pair by pair: x_n, then x_t of a frictionless one, else x+ and x-.
+pub(super) fn of_contact(contact: &ProvedContact, stiffness: &[Vec<BigRational>]) -> Forms {
     let m = contact.ids.len();
-    let stiffness = contact.exact_stiffness();
     let force = |joint: usize| -> Vec<BigRational> {
         let row = &stiffness[joint];
         let gaps = contact.laws.iter().map(PairLaw::gap).zip(row).filter(|(gap, _)| *gap != 0.0);
