@@ -71,15 +71,16 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
             (Next::Continue, Some(error.to_string()), interrupted)
         }
     };
-    let mut shown = Shown::after(last, session);
-    match (&job, glance) {
-        (Job::Motion, _) => shown.complete(session),
-        (Job::Show(Loading::Stage(stage)), _) => shown = shown.at_stage(*stage, session),
-        (Job::Glance { settings: [(_, x), (_, y)] }, Some(glance)) => {
-            shown = Shown::beside(last, session, glance, [*x, *y]);
+    let shown = match (&job, glance) {
+        (Job::Glance { settings: [(_, x), (_, y)] }, Some(glance)) => Shown::beside(last, session, glance, [*x, *y]),
+        (Job::Show(Loading::Stage(stage)), _) => Shown::after(last, session).at_stage(*stage, session),
+        (Job::Motion, _) => {
+            let mut shown = Shown::after(last, session);
+            shown.complete(session);
+            shown
         }
-        _ => {}
-    }
+        _ => Shown::after(last, session),
+    };
     Done {
         job,
         shown: Arc::new(shown),
