@@ -56,6 +56,14 @@ pub fn force_unit(units: &Units) -> Option<String> {
     units.force.clone()
 }
 
+/// Unit of a force per length, `kN/m`, if the author named both its parts.
+pub fn line_load_unit(units: &Units) -> Option<String> {
+    match (&units.force, &units.length) {
+        (Some(force), Some(length)) => Some(format!("{force}/{length}")),
+        _ => None,
+    }
+}
+
 /// Unit of a moment, `kN·m`, if the author named both its parts.
 pub fn moment_unit(units: &Units) -> Option<String> {
     match (&units.force, &units.length) {

@@ -32,10 +32,7 @@ pub fn write(out: &mut dyn Write, found: &Sampled, style: &Style) -> io::Result<
         writeln!(out, "{} points drawn{counted}; seed {}", found.draws, found.seed)?;
     }
     for note in &found.notes {
-        style
-            .wrap(&style.text(note), style.width)
-            .iter()
-            .try_for_each(|line| writeln!(out, "{}", style.paint(Role::Muted, line)))?;
+        style.paragraph(out, Role::Muted, note)?;
     }
     quantiles(out, &found.quantities, style)?;
     found.quantities.iter().try_for_each(|spread| histogram(out, spread, style))

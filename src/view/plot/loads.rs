@@ -9,7 +9,7 @@ use crate::model::structure::{ElementKind, ElementLoad, Load, LoadCase, Structur
 use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
 use crate::view::style::Role;
-use crate::view::{force_unit, length_unit};
+use crate::view::{force_unit, line_load_unit};
 
 /// Most load cases that a legend names.
 const NAMED: usize = 3;
@@ -189,7 +189,7 @@ impl Loads {
     /// The kinds that occur with their largest value: `load up to 250 kN`, `weight + quake up to 30 kN`.
     pub fn legend(&self, arrows: &Arrows, units: &Units) -> Vec<(LoadKind, String)> {
         let force = force_unit(units);
-        let line = force.as_ref().zip(length_unit(units)).map(|(force, length)| format!("{force}/{length}"));
+        let line = line_load_unit(units);
         let words = |kind: LoadKind| {
             let of_kind = arrows.arrows.iter().filter(|arrow| arrow.kind == kind);
             let most = of_kind.map(|arrow| size(arrow.force)).reduce(f64::max)?;

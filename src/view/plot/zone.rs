@@ -8,7 +8,7 @@ use crate::answer::record::{PairState, Ray};
 use crate::answer::rounding::{denoised, largest};
 use crate::model::units::Units;
 use crate::view::style::Style;
-use crate::view::{force_unit, length_unit};
+use crate::view::{force_unit, length_unit, line_load_unit};
 
 /// What is drawn over the contact zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,15 +174,7 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
             }
         }
     }
-    let pairs = states.first().map_or(&[][..], |(_, pairs)| pairs);
-    let mut chart = Chart { ordinate: unit, ..chart(name, curves, pairs, units) };
-    // A single state is named in the title, several in the legend.
-    if let [(label, _)] = states
-        && !label.is_empty()
-    {
-        chart.about = format!(" · {label}");
-    }
-    chart
+    over_states(name, unit, curves, states, units)
 }
 
 /// The chart of x_n and x_τ per length of edge, for states of pairs that all lie on edges; `lengths` are those of the
@@ -210,10 +202,19 @@ pub fn traction(states: &[(&str, &[PairState])], lengths: &[f64], units: &Units)
             push(force);
         }
     }
+    over_states("Contact traction, force per length a of the edge", line_load_unit(units), curves, states, units)
+}
+
+/// The chart of `curves`, those of `states`; a single state is named in its title, several in the legend.
+fn over_states(
+    name: &str,
+    ordinate: Option<String>,
+    curves: Vec<Curve>,
+    states: &[(&str, &[PairState])],
+    units: &Units,
+) -> Chart {
     let pairs = states.first().map_or(&[][..], |(_, pairs)| pairs);
-    let unit = force_unit(units).zip(length_unit(units)).map(|(force, length)| format!("{force}/{length}"));
-    let mut chart =
-        Chart { ordinate: unit, ..chart("Contact traction, force per length a of the edge", curves, pairs, units) };
+    let mut chart = Chart { ordinate, ..chart(name, curves, pairs, units) };
     if let [(label, _)] = states
         && !label.is_empty()
     {
