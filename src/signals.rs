@@ -251,6 +251,9 @@ impl Watch for TerminalWatch {
     }
 }
 
+/// Why a terminal is taken to understand no cursor codes: see [`is_dumb`].
+pub const DUMB: &str = "TERM is not set, or dumb";
+
 /// Whether the terminal understands no cursor codes.
 pub fn is_dumb() -> bool {
     std::env::var_os("TERM").is_none_or(|term| term.is_empty() || term == "dumb")

@@ -12,7 +12,7 @@ use super::look::{self, Look};
 use crate::export::json as json_export;
 use crate::model::memory;
 use crate::session::places;
-use crate::signals::is_dumb;
+use crate::signals::{DUMB, is_dumb};
 use crate::view::style::{Role, Style};
 
 /// Say what this program finds around it: the terminal, its folders, the threads
@@ -114,12 +114,12 @@ impl Surroundings {
             terminals,
             size: (terminals[1]).then(|| crossterm::terminal::size().ok()).flatten(),
             term: look::variable("TERM"),
-            no_cursor: is_dumb().then_some("TERM is not set, or dumb"),
+            no_cursor: is_dumb().then_some(DUMB),
             no_color: (!style.color).then(|| look.why_no_color(terminals[1])),
             no_unicode: look.why_ascii(),
             state: Folder::of(places::state().ok_or_else(|| places::NO_STATE.to_owned())),
             work: Folder::of(std::env::current_dir().map_err(|error| format!("it cannot be named: {error}"))),
-            configuration: places::configuration().map(|folder| folder.join("config.json")),
+            configuration: places::configuration(),
             threads: rayon::current_num_threads(),
             memory: memory::available_memory(),
         }

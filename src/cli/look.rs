@@ -5,7 +5,7 @@ use std::io::IsTerminal;
 
 use clap::{Args, ValueEnum};
 
-use crate::signals::{is_dumb, terminal_width};
+use crate::signals::{DUMB, is_dumb, terminal_width};
 use crate::view::style::Style;
 
 /// How the output looks.
@@ -56,7 +56,7 @@ impl Look {
         match self.color {
             Color::Never => "--color never",
             _ if !terminal => "stdout is no terminal",
-            _ if is_dumb() => "TERM is not set, or dumb",
+            _ if is_dumb() => DUMB,
             _ => "NO_COLOR is set",
         }
         .to_owned()

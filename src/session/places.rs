@@ -11,9 +11,10 @@ pub fn state() -> Option<PathBuf> {
     folder("XDG_STATE_HOME", ".local/state")
 }
 
-/// The folder of the configuration: `$XDG_CONFIG_HOME/stickslip` or `~/.config/stickslip`.
+/// The file of the configuration: `$XDG_CONFIG_HOME/stickslip/config.json` or `~/.config/stickslip/config.json`; `None`
+/// where neither variable is set to an absolute path.
 pub fn configuration() -> Option<PathBuf> {
-    folder("XDG_CONFIG_HOME", ".config")
+    folder("XDG_CONFIG_HOME", ".config").map(|folder| folder.join("config.json"))
 }
 
 fn folder(named: &str, under_home: &str) -> Option<PathBuf> {

@@ -4,7 +4,7 @@
 //! { "keys": { "leave": "x", "step-on": ["right", "l"] }, "mouse": false, "explain": false }
 //! ```
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::{fs, io};
 
 use serde_json::Value;
@@ -31,14 +31,9 @@ impl Default for Config {
     }
 }
 
-/// Where the configuration stands; `None` where no variable names a folder.
-pub fn path() -> Option<PathBuf> {
-    places::configuration().map(|folder| folder.join("config.json"))
-}
-
 /// The configuration of the user; the defaults if there is none.
 pub fn load() -> Config {
-    path().map_or_else(Config::default, |path| read(&path))
+    places::configuration().map_or_else(Config::default, |path| read(&path))
 }
 
 fn read(path: &Path) -> Config {
