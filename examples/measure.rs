@@ -194,9 +194,10 @@ fn warm(arguments: &[String]) -> Result<Value, Failure> {
     }))
 }
 
-/// Seconds that all threads of this process have computed.
+/// Seconds that the present threads of this process have computed; no number (`null` in JSON) where the system does not
+/// tell.
 fn cpu_seconds() -> f64 {
-    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return 0.0 };
+    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return f64::NAN };
     let nanoseconds = |task: std::fs::DirEntry| -> Option<f64> {
         std::fs::read_to_string(task.path().join("schedstat")).ok()?.split(' ').next()?.parse().ok()
     };
@@ -297,19 +298,9 @@ fn resolve(arguments: &[String]) -> Result<Value, Failure> {
     Ok(json!({ "unknowns": size, "medians": medians }))
 }
 
-/// Seconds of processor time that this process has used on all its threads.
-fn processor_seconds() -> Option<f64> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    // utime and stime, in hundredths on Linux.
-    Some((fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?) / 100.0)
-}
-
 /// Seconds on the clock and of the processor.
 fn spent<T>(work: impl FnOnce() -> T) -> (Value, T) {
-    let before = processor_seconds();
-    let (seconds, result) = timed(work);
-    let processor = before.zip(processor_seconds()).map(|(before, after)| after - before);
+    let (seconds, processor, result) = computed(work);
     (json!({ "seconds": seconds, "processor": processor }), result)
 }
 
