@@ -139,8 +139,8 @@ const ROWS: &[(&str, &[&str], &[&str])] = &[
     ("letter of a command", &["2", ":"], &["x"]),
     ("help", &["2"], &["?", "esc"]),
     ("pivot back", &["4"], &["left"]),
-    ("slider, first", &["2", "down"], &["+", "-"]),
-    ("slider, all", &["2", "down"], &["+", "-"]),
+    ("slider of a load, first", &["2", "down"], &["+", "-"]),
+    ("slider of a load, all", &["2", "down"], &["+", "-"]),
     ("slider of f, first", &["2", "up"], &["+", "-"]),
     ("slider of f, all", &["2", "up"], &["+", "-"]),
 ];
