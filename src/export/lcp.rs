@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use crate::lcp::problem::Lcp;
+use crate::model::scenario::FORMAT;
 
 /// A variable's name as an id of the format: `x+[joint[0]]` becomes `x_plus_joint_0`, `1` becomes `w_1`.
 fn id(name: &str) -> String {
@@ -19,7 +20,7 @@ fn id(name: &str) -> String {
 pub fn scenario(lcp: &Lcp<f64>, names: &[String], title: &str) -> Value {
     let names: Vec<String> = names.iter().map(|name| id(name)).collect();
     json!({
-        "format": "stickslip/1",
+        "format": FORMAT,
         "title": title,
         "lcp": { "M": lcp.matrix, "q": lcp.q, "covering": lcp.covering, "names": names },
     })
@@ -33,7 +34,7 @@ pub fn scenario_text(out: &mut dyn Write, title: &str, matrix: &[Vec<f64>], q: &
     let text = |value: Value| value.to_string();
     writeln!(
         out,
-        "{{\n  \"format\": \"stickslip/1\",\n  \"title\": {},\n  \"lcp\": {{\n    \"M\": [",
+        "{{\n  \"format\": \"{FORMAT}\",\n  \"title\": {},\n  \"lcp\": {{\n    \"M\": [",
         text(json!(title))
     )?;
     for (i, row) in matrix.iter().enumerate() {

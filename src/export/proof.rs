@@ -4,6 +4,7 @@ use num_rational::BigRational;
 use serde_json::{Map, Value, json};
 
 use crate::contact::law::PairLaw;
+use crate::model::scenario::FORMAT;
 use crate::solve::prove::forms::Forms;
 use crate::solve::prove::system::{ProvedContact, ProvedSystem};
 use crate::solve::prove::tree::{Sum, Tree};
@@ -19,7 +20,7 @@ pub fn system(system: &ProvedSystem, title: &str) -> Value {
             ("lcp", json!({"names": names, "M": rows, "q": q.as_slice()}))
         }
     };
-    json!({"format": "stickslip/1", "title": title, key: source})
+    json!({"format": FORMAT, "title": title, key: source})
 }
 
 fn of_contact(contact: &ProvedContact) -> Value {

@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::fem::matrices::Matrices;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
+use crate::model::scenario::FORMAT;
 use crate::model::structure::{Component, Load, Spring, Structure};
 use crate::model::units::Units;
 
@@ -75,7 +76,7 @@ impl Stiffness<'_> {
         let contacts = told.into_iter().map(|pair| self.contact(pair, &nodes, ids.of(&pair.id)));
         let contacts: Vec<Value> = contacts.collect();
         let mut scenario = json!({
-            "format": "stickslip/1",
+            "format": FORMAT,
             "title": title,
             "superelement": {
                 "stiffness": {"file": file(None)},

@@ -18,6 +18,9 @@ use super::units::Units;
 use super::uses::Uses;
 use crate::text::hash::Hash;
 
+/// Value of the key `format` of a file.
+pub const FORMAT: &str = "stickslip/1";
+
 /// A contact system computed elsewhere (CSM and CLV given).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenContactSystem {

@@ -45,13 +45,11 @@ use super::mesh::MeshFiles;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::rules::{Covering, Engine, Rules, TieBreak, UnknownChoice};
-use super::scenario::{Places, Scenario, Source};
+use super::scenario::{FORMAT, Places, Scenario, Source};
 use super::units::Units;
 use super::uses::Uses;
 use super::words::{self, quoted};
 use reader::{Cursor, Entry, Fields, Reading};
-
-const FORMAT: &str = "stickslip/1";
 
 /// Keys of any scenario.
 const COMMON: [&str; 11] = [

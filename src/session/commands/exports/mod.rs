@@ -15,6 +15,7 @@ use std::path::Path;
 
 use clap::Args;
 
+use crate::model::scenario::FORMAT;
 use crate::session::commands::find;
 use crate::session::commands::plots::of_path;
 use crate::session::language::candidates::{Asked, Candidate};
@@ -107,7 +108,7 @@ fn is_scenario(path: &Path) -> bool {
     let read = fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
     let head = String::from_utf8_lossy(&head);
     let format = head.split_once("\"format\"").and_then(|(_, rest)| rest.trim_start().strip_prefix(':'));
-    read.is_ok() && format.is_some_and(|format| format.trim_start().starts_with("\"stickslip/1\""))
+    read.is_ok() && format.is_some_and(|format| format.trim_start().starts_with(&format!("\"{FORMAT}\"")))
 }
 
 impl Session {

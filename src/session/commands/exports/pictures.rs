@@ -7,7 +7,7 @@ use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::OutcomeKind;
 use crate::export::atomic;
 use crate::session::commands::plot_traction::OnEdges;
-use crate::session::commands::plots::Shape;
+use crate::session::commands::plots::{Shape, borrowed};
 use crate::session::{CommandError, Session};
 use crate::text::number::{heading, short, with_unit};
 use crate::view::members::extremes;
@@ -40,8 +40,7 @@ impl Session {
         let units = &self.now.scenario.units;
         let zone = |quantity| -> Result<String, CommandError> {
             let states = self.zone_states(of)?;
-            let borrowed: Vec<_> = states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect();
-            Ok(self.chart_figure(&zone::drawing(quantity, &borrowed, units), ""))
+            Ok(self.chart_figure(&zone::drawing(quantity, &borrowed(&states), units), ""))
         };
         match what {
             Exported::Slip => zone(Quantity::Slip),
@@ -50,8 +49,7 @@ impl Session {
             Exported::Pressure => zone(Quantity::Pressure),
             Exported::Traction => {
                 let OnEdges { states, lengths } = self.traction_states(of)?;
-                let borrowed: Vec<_> = states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect();
-                Ok(self.chart_figure(&zone::traction(&borrowed, &lengths, units), ""))
+                Ok(self.chart_figure(&zone::traction(&borrowed(&states), &lengths, units), ""))
             }
             Exported::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
             Exported::Path => {
