@@ -80,15 +80,15 @@ mod tests {
     /// 14 at the jump of Q from 4 to −4.
     #[test]
     fn extremes_and_jumps() {
-        let member = |element: usize, start: [f64; 3]| MemberForces {
+        let member = |element: usize, [n, q, m]: [f64; 3]| MemberForces {
             bar: "b".into(),
             element,
             start: EndForces::default(),
             end: EndForces::default(),
             pieces: vec![Piece {
                 range: [2.0 * element as f64, 2.0 * element as f64 + 2.0],
-                start,
-                q: [[0.0, -3.0]; 2],
+                start: [n, q, m, 0.0, 0.0, 0.0],
+                q: [[0.0, -3.0, 0.0]; 2],
             }],
         };
         let members = [member(0, [1.0, 10.0, 0.0]), member(1, [1.0, -4.0, 14.0])];

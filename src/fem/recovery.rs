@@ -104,7 +104,7 @@ impl MainSystem {
                 }
                 take_out_slivers(&mut forces.pieces);
                 from += forces.length;
-                let [start, end] = forces.ends.map(|[normal, shear, moment]| EndForces { normal, shear, moment });
+                let [start, end] = forces.ends.map(|[normal, shear, moment, ..]| EndForces { normal, shear, moment });
                 members.push(MemberForces { bar, element: position, start, end, pieces: forces.pieces });
             }
         }
@@ -245,7 +245,8 @@ mod tests {
 
     #[test]
     fn pieces_without_length_are_taken_out_and_leave_no_gap() {
-        let piece = |a: f64, b: f64| Piece { range: [a, b], start: [1.0, 2.0, 3.0], q: [[0.0, -1.0]; 2] };
+        let piece =
+            |a: f64, b: f64| Piece { range: [a, b], start: [1.0, 2.0, 3.0, 0.0, 0.0, 0.0], q: [[0.0, -1.0, 0.0]; 2] };
         let beside = |x: f64| x * (1.0 + 2.0 * f64::EPSILON);
         let mut pieces = vec![piece(1.7, 1.7), piece(1.7, 2.0), piece(2.0, beside(2.0)), piece(beside(2.0), 2.5)];
         take_out_slivers(&mut pieces);

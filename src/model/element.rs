@@ -18,6 +18,13 @@ pub struct Material {
     pub expansion: f64,
 }
 
+impl Material {
+    /// G = E/2(1 + ν).
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+}
+
 /// Stress state of a plate or quad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {

@@ -4,6 +4,7 @@
 //! plates, `mortar` joins edges) → `scenario` (what everything later works on).
 
 pub mod amend;
+pub mod bar_axes;
 pub mod catalog;
 mod decode;
 pub mod edge;

@@ -1,21 +1,26 @@
 //! Loads between the ends of a bar element, and the internal forces along it that they leave.
 //!
 //! ```text
-//!     N' = −q_x     Q' = q_y     M' = Q        bar axes: x from start to end, y = x turned +90°
-//!     at a point:   N jumps by −F_x,  Q by F_y,  M by −m (m counter-clockwise)
+//!     N' = −q_x     V_y' = q_y   M_z' = V_y     V_z' = q_z   M_y' = V_z     T' = 0
+//!     at a point:   N jumps by −F_x;  V_y by F_y, M_z by −m_z;  V_z by F_z, M_y by m_y;  T by −m_x
 //! ```
+//! in bar axes (x from start to end; in the plane y = x turned +90°), moments right-handed. In the plane V_y is Q and
+//! M_z is M. In the x–z plane a bar bends as in x–y, with its rotation from x to z: −r_y.
 
 use super::Acting;
-use super::axis::Axis;
+use crate::model::bar_axes::BarAxes;
 use crate::model::structure::ElementLoad;
+
+/// Displacements of a place of a bar, then its rotations: u_x, u_y, u_z, r_x, r_y, r_z; or forces and moments on it.
+pub type Motion = [f64; 6];
 
 /// A force per length that varies linearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// Distances from the start of the element between which it acts.
     pub range: [f64; 2],
-    /// (q_x, q_y) at both of them, bar axes.
-    pub force: [[f64; 2]; 2],
+    /// (q_x, q_y, q_z) at both of them, bar axes.
+    pub force: [[f64; 3]; 2],
 }
 
 /// A force and a moment at one place.
@@ -23,10 +28,8 @@ pub struct Span {
 pub struct PointForce {
     /// Distance from the start of the element.
     pub at: f64,
-    /// (F_x, F_y), bar axes.
-    pub force: [f64; 2],
-    /// Moment, counter-clockwise.
-    pub moment: f64,
+    /// (F_x, F_y, F_z, m_x, m_y, m_z), bar axes.
+    pub force: Motion,
 }
 
 /// All that acts on one bar element between its nodes.
@@ -38,12 +41,22 @@ pub struct BarLoad {
     pub points: Vec<PointForce>,
     /// Free axial strain (temperature, lack of fit): N = EA (ε − strain).
     pub strain: f64,
-    /// Free curvature, > 0 when the −y side is the longer one: M = EI (κ − curvature).
-    pub curvature: f64,
+    /// Free curvature in x–y, > 0 when the −y side is the longer one, and in x–z likewise: M = EI (κ − curvature).
+    pub curvature: [f64; 2],
 }
 
-/// Internal forces (N, Q, M) at one place: N > 0 tension, Q = dM/dx, M > 0 tension on the −y side.
-pub type Internal = [f64; 3];
+/// Internal forces at one place: N, V_y, M_z, V_z, M_y, T. N > 0 tension; V_y = dM_z/dx, M_z > 0 tension on the −y side;
+/// V_z = dM_y/dx, M_y > 0 tension on the −z side; T along +x on the cut that faces it. The plane has the first three.
+pub type Internal = [f64; 6];
+
+/// The two planes in which a bar bends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bending {
+    /// The local x–y plane: V_y, M_z.
+    Xy,
+    /// The local x–z plane: V_z, M_y.
+    Xz,
+}
 
 /// Internal forces of a bar element.
 pub struct BarForces {
@@ -55,9 +68,36 @@ pub struct BarForces {
     pub pieces: Vec<Piece>,
 }
 
+impl Bending {
+    /// Motion of a place that moves by `u` along the bar and by `v` across it, and turns by `turn` from x to the other
+    /// axis.
+    pub fn motion(self, [u, v, turn]: [f64; 3]) -> Motion {
+        match self {
+            Bending::Xy => [u, v, 0.0, 0.0, 0.0, turn],
+            Bending::Xz => [u, 0.0, v, 0.0, -turn, 0.0],
+        }
+    }
+
+    /// Shear force and bending moment among the internal forces.
+    fn forces(self) -> [usize; 2] {
+        match self {
+            Bending::Xy => [1, 2],
+            Bending::Xz => [3, 4],
+        }
+    }
+
+    /// The component of q that bends.
+    fn across(self) -> usize {
+        match self {
+            Bending::Xy => 1,
+            Bending::Xz => 2,
+        }
+    }
+}
+
 impl Span {
-    /// (q_x, q_y) at a distance from the start of the element.
-    pub fn at(&self, s: f64) -> [f64; 2] {
+    /// (q_x, q_y, q_z) at a distance from the start of the element.
+    pub fn at(&self, s: f64) -> [f64; 3] {
         let [a, b] = self.range;
         let t = (s - a) / (b - a);
         std::array::from_fn(|i| (1.0 - t) * self.force[0][i] + t * self.force[1][i])
@@ -66,18 +106,22 @@ impl Span {
 
 impl BarLoad {
     /// All that acts on a bar element of this cross-section.
-    pub fn of(acting: &Acting, axis: &Axis, area: f64) -> BarLoad {
+    pub fn of(acting: &Acting, axes: &BarAxes, area: f64) -> BarLoad {
         let mut all = BarLoad::default();
         for &(factor, load) in acting {
             match *load {
-                ElementLoad::Line { range, value } => all.add_line(axis, range, value, factor),
-                ElementLoad::Point { distance, force, moment } => all.add_point(axis, distance, force, moment, factor),
-                ElementLoad::Body(value) => {
-                    all.add_line(axis, [0.0, axis.length], [value.map(|b| area * b); 2], factor);
+                ElementLoad::Line { range, value } => {
+                    all.add_line(axes, range, value.map(|[x, y]| [x, y, 0.0]), factor);
+                }
+                ElementLoad::Point { distance, force: [x, y], moment } => {
+                    all.add_point(axes, distance, [x, y, 0.0], [0.0, 0.0, moment], factor);
+                }
+                ElementLoad::Body([x, y]) => {
+                    all.add_line(axes, [0.0, axes.length], [[x, y, 0.0].map(|b| area * b); 2], factor);
                 }
                 ElementLoad::FreeStrain { strain, curvature } => {
                     all.strain += factor * strain;
-                    all.curvature += factor * curvature;
+                    all.curvature[0] += factor * curvature;
                 }
             }
         }
@@ -85,24 +129,25 @@ impl BarLoad {
     }
 
     /// Adds a linear force per length given in global axes.
-    fn add_line(&mut self, axis: &Axis, range: [f64; 2], force: [[f64; 2]; 2], factor: f64) {
-        let force = force.map(|q| axis.to_local(q).map(|q| factor * q));
-        if range[1] > range[0] && force != [[0.0; 2]; 2] {
+    fn add_line(&mut self, axes: &BarAxes, range: [f64; 2], force: [[f64; 3]; 2], factor: f64) {
+        let force = force.map(|q| axes.to_local(q).map(|q| factor * q));
+        if range[1] > range[0] && force != [[0.0; 3]; 2] {
             self.spans.push(Span { range, force });
         }
     }
 
-    /// Adds a force in global axes and a moment at one place.
-    fn add_point(&mut self, axis: &Axis, at: f64, force: [f64; 2], moment: f64, factor: f64) {
-        let force = axis.to_local(force).map(|f| factor * f);
-        if force != [0.0; 2] || moment * factor != 0.0 {
-            self.points.push(PointForce { at, force, moment: factor * moment });
+    /// Adds a force and a moment in global axes at one place.
+    fn add_point(&mut self, axes: &BarAxes, at: f64, force: [f64; 3], moment: [f64; 3], factor: f64) {
+        let ([x, y, z], [mx, my, mz]) = (axes.to_local(force), axes.to_local(moment));
+        let force = [x, y, z, mx, my, mz].map(|f| factor * f);
+        if force != [0.0; 6] {
+            self.points.push(PointForce { at, force });
         }
     }
 
     /// ∫ weight(s)·q(s) ds + Σ weight(s)·F: what the distributed and single forces do on the displacements `weight`
-    /// = (along x, along y, rotation) of the places. Exact for weights up to the fourth degree.
-    pub fn work(&self, weight: &dyn Fn(f64) -> [f64; 3]) -> f64 {
+    /// of the places. Exact for weights up to the fourth degree.
+    pub fn work(&self, weight: &dyn Fn(f64) -> Motion) -> f64 {
         // Three Gauss points: exact to degree 5, of which the load takes one.
         let g = 0.6_f64.sqrt();
         let mut sum = 0.0;
@@ -112,12 +157,12 @@ impl BarLoad {
             for (x, w) in [(-g, 5.0 / 9.0), (0.0, 8.0 / 9.0), (g, 5.0 / 9.0)] {
                 let s = middle + half * x;
                 let (q, n) = (span.at(s), weight(s));
-                sum += w * half * (q[0] * n[0] + q[1] * n[1]);
+                sum += w * half * (q[0] * n[0] + q[1] * n[1] + q[2] * n[2]);
             }
         }
         for point in &self.points {
             let n = weight(point.at);
-            sum += point.force[0] * n[0] + point.force[1] * n[1] + point.moment * n[2];
+            sum += point.force.iter().zip(n).map(|(force, n)| force * n).sum::<f64>();
         }
         sum
     }
@@ -140,14 +185,15 @@ impl BarLoad {
         let mut now = start;
         for ends in cuts.windows(2) {
             for point in self.points.iter().filter(|point| point.at == ends[0]) {
-                now = [now[0] - point.force[0], now[1] + point.force[1], now[2] - point.moment];
+                let [x, y, z, mx, my, mz] = point.force;
+                let jumps = [-x, y, -mz, z, my, -mx];
+                now.iter_mut().zip(jumps).for_each(|(force, jump)| *force += jump);
             }
             let middle = 0.5 * (ends[0] + ends[1]);
-            let mut q = [[0.0; 2]; 2];
+            let mut q = [[0.0; 3]; 2];
             for span in self.spans.iter().filter(|span| span.range[0] < middle && middle < span.range[1]) {
                 for (q, s) in q.iter_mut().zip(ends) {
-                    let [x, y] = span.at(*s);
-                    *q = [q[0] + x, q[1] + y];
+                    q.iter_mut().zip(span.at(*s)).for_each(|(q, more)| *q += more);
                 }
             }
             let piece = Piece { range: [ends[0], ends[1]], start: now, q };
@@ -158,61 +204,77 @@ impl BarLoad {
     }
 }
 
-/// A stretch of a bar without a jump: N and Q are quadratic, M is cubic.
+/// A stretch of a bar without a jump: N and the shear forces are quadratic, the bending moments cubic, T is constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// Distances of its ends.
     pub range: [f64; 2],
-    /// (N, Q, M) at its start.
+    /// The internal forces at its start.
     pub start: Internal,
-    /// (q_x, q_y) at its ends, bar axes.
-    pub q: [[f64; 2]; 2],
+    /// (q_x, q_y, q_z) at its ends, bar axes.
+    pub q: [[f64; 3]; 2],
 }
 
 impl Piece {
-    /// (N, Q, M) at a distance inside it.
+    /// The internal forces at a distance inside it.
     pub fn at(&self, s: f64) -> Internal {
-        let length = self.range[1] - self.range[0];
         let x = s - self.range[0];
-        let slope = |i: usize| (self.q[1][i] - self.q[0][i]) / length;
-        let [n, q, m] = self.start;
-        let (qx, qy) = (self.q[0][0], self.q[0][1]);
-        [
-            n - x * (qx + 0.5 * slope(0) * x),
-            q + x * (qy + 0.5 * slope(1) * x),
-            m + x * (q + x * (0.5 * qy + slope(1) * x / 6.0)),
-        ]
+        let mut all = self.start;
+        let (qx, slope) = self.load(0);
+        all[0] = self.start[0] - x * (qx + 0.5 * slope * x);
+        for bending in [Bending::Xy, Bending::Xz] {
+            let [shear, moment] = bending.forces();
+            let (v, (q, slope)) = (self.start[shear], self.load(bending.across()));
+            all[shear] = v + x * (q + 0.5 * slope * x);
+            all[moment] = self.start[moment] + x * (v + x * (0.5 * q + slope * x / 6.0));
+        }
+        all
     }
 
-    /// N, Q and M as polynomials in the distance from the start of the piece: coefficients of its powers from 0 on,
-    /// without zeros at the end.
-    pub fn polynomials(&self) -> [Vec<f64>; 3] {
-        let length = self.range[1] - self.range[0];
-        let slope = |i: usize| (self.q[1][i] - self.q[0][i]) / length;
-        let [n, q, m] = self.start;
-        let (qx, qy) = (self.q[0][0], self.q[0][1]);
-        let all = [vec![n, -qx, -0.5 * slope(0)], vec![q, qy, 0.5 * slope(1)], vec![m, q, 0.5 * qy, slope(1) / 6.0]];
+    /// A component of q at the start, and by how much it grows per length.
+    fn load(&self, component: usize) -> (f64, f64) {
+        let [a, b] = self.q.map(|q| q[component]);
+        (a, (b - a) / (self.range[1] - self.range[0]))
+    }
+
+    /// The internal forces as polynomials in the distance from the start of the piece: coefficients of its powers from 0
+    /// on, without zeros at the end.
+    pub fn polynomials(&self) -> [Vec<f64>; 6] {
+        let mut all = self.start.map(|constant| vec![constant]);
+        let (qx, slope) = self.load(0);
+        all[0].extend([-qx, -0.5 * slope]);
+        for bending in [Bending::Xy, Bending::Xz] {
+            let [shear, moment] = bending.forces();
+            let (q, slope) = self.load(bending.across());
+            all[shear].extend([q, 0.5 * slope]);
+            all[moment].extend([self.start[shear], 0.5 * q, slope / 6.0]);
+        }
         all.map(|mut powers| {
             powers.truncate(powers.iter().rposition(|c| *c != 0.0).map_or(1, |last| last + 1));
             powers
         })
     }
 
-    /// Places where N (0), Q (1) or M (2) may be largest or smallest: the ends and where the derivative vanishes.
+    /// Places where the internal force number `which` may be largest or smallest: the ends and where its derivative
+    /// vanishes.
     pub fn candidates(&self, which: usize) -> Vec<f64> {
         let [from, to] = self.range;
         let length = to - from;
-        let slope = |i: usize| (self.q[1][i] - self.q[0][i]) / length;
+        let vanishes = |(q, slope): (f64, f64)| vec![-q / slope];
         let inside: Vec<f64> = match which {
-            0 => vec![-self.q[0][0] / slope(0)],
-            1 => vec![-self.q[0][1] / slope(1)],
-            _ => {
-                // Q(x) = Q0 + q0 x + slope x²/2 = 0, without cancellation.
-                let (a, b, c) = (0.5 * slope(1), self.q[0][1], self.start[1]);
+            0 => vanishes(self.load(0)),
+            1 => vanishes(self.load(1)),
+            3 => vanishes(self.load(2)),
+            2 | 4 => {
+                let bending = if which == 2 { Bending::Xy } else { Bending::Xz };
+                // V(x) = V0 + q0 x + slope x²/2 = 0, without cancellation.
+                let (q, slope) = self.load(bending.across());
+                let (a, b, c) = (0.5 * slope, q, self.start[bending.forces()[0]]);
                 let root = (b * b - 4.0 * a * c).sqrt();
                 let r = -0.5 * (b + b.signum() * root);
                 vec![r / a, c / r]
             }
+            _ => Vec::new(),
         };
         let inside = inside.into_iter().filter(|x| *x > 0.0 && *x < length).map(|x| from + x);
         [from].into_iter().chain(inside).chain([to]).collect()
@@ -229,10 +291,10 @@ mod tests {
     fn triangle_on_a_simple_beam() {
         let (w, length) = (3.0, 4.0);
         let load = BarLoad {
-            spans: vec![Span { range: [0.0, length], force: [[0.0, 0.0], [0.0, -w]] }],
+            spans: vec![Span { range: [0.0, length], force: [[0.0; 3], [0.0, -w, 0.0]] }],
             ..BarLoad::default()
         };
-        let pieces = load.pieces([0.0, w * length / 6.0, 0.0], length);
+        let pieces = load.pieces([0.0, w * length / 6.0, 0.0, 0.0, 0.0, 0.0], length);
         let [piece] = &pieces[..] else { panic!("{pieces:?}") };
         let end = piece.at(length);
         assert!((end[1] + w * length / 3.0).abs() < 1e-14 && end[2].abs() < 1e-14);
@@ -242,24 +304,45 @@ mod tests {
         assert!((m - w * length * length / (9.0 * 3.0_f64.sqrt())).abs() < 1e-14);
     }
 
-    /// A force, a couple and a part load: the jumps stand where they act, and the far end is what statics says.
+    /// A force, a couple and a part load: the jumps stand where they act, and the far end is what statics says. The same
+    /// across z, where a couple from x to z is −m_y.
     #[test]
     fn jumps_and_part_loads() {
         let load = BarLoad {
-            spans: vec![Span { range: [1.0, 2.0], force: [[2.0, -6.0], [2.0, -6.0]] }],
+            spans: vec![Span { range: [1.0, 2.0], force: [[2.0, -6.0, -3.0]; 2] }],
             points: vec![
-                PointForce { at: 0.5, force: [1.0, -4.0], moment: 0.0 },
-                PointForce { at: 2.5, force: [0.0, 0.0], moment: 3.0 },
+                PointForce { at: 0.5, force: [1.0, -4.0, -2.0, 5.0, 0.0, 0.0] },
+                PointForce { at: 2.5, force: [0.0, 0.0, 0.0, 1.0, -1.5, 3.0] },
             ],
             ..BarLoad::default()
         };
-        let pieces = load.pieces([10.0, 7.0, 1.0], 3.0);
+        let pieces = load.pieces([10.0, 7.0, 1.0, 3.5, 0.5, 2.0], 3.0);
         assert_eq!(pieces.len(), 5);
         let end = pieces[4].at(3.0);
-        // N: 10 − 1 − 2; Q: 7 − 4 − 6; M: 1 + 7·3 − 4·2.5 − 6·1.5 − 3.
-        for (found, right) in end.into_iter().zip([7.0, -3.0, 0.0]) {
+        // N: 10 − 1 − 2; V_y: 7 − 4 − 6; M_z: 1 + 7·3 − 4·2.5 − 6·1.5 − 3; V_z and M_y half of them; T: 2 − 5 − 1.
+        for (found, right) in end.into_iter().zip([7.0, -3.0, 0.0, -1.5, 0.0, -4.0]) {
             assert!((found - right).abs() < 1e-14, "{end:?}");
         }
-        assert_eq!(pieces[1].start, [9.0, 3.0, 1.0 + 3.5]);
+        assert_eq!(pieces[1].start, [9.0, 3.0, 1.0 + 3.5, 1.5, 0.5 + 1.75, -3.0]);
+    }
+
+    /// Polynomials are what [`Piece::at`] says, and extremes lie at the zeros of the derivative: V_z = 1 − s + s²/4 − …
+    #[test]
+    fn both_planes_alike() {
+        let start = [1.0, 2.0, -0.5, 2.0, -0.5, 4.0];
+        let piece = Piece { range: [1.0, 3.0], start, q: [[0.5, -1.5, -1.5], [-0.25, -2.5, -2.5]] };
+        let polynomials = piece.polynomials();
+        for s in [1.0, 1.3, 2.9] {
+            for (powers, value) in polynomials.iter().zip(piece.at(s)) {
+                let sum: f64 = powers.iter().rev().fold(0.0, |sum, power| sum * (s - 1.0) + power);
+                assert!((sum - value).abs() < 1e-14);
+            }
+        }
+        assert_eq!((&polynomials[3], &polynomials[4]), (&polynomials[1], &polynomials[2]));
+        assert_eq!((piece.candidates(1), piece.candidates(2)), (piece.candidates(3), piece.candidates(4)));
+        // 2 − 1.5 x − 0.25 x² = 0 at x = −3 + √17.
+        let at = piece.candidates(4)[1];
+        assert!((at - (17.0_f64.sqrt() - 2.0)).abs() < 1e-15);
+        assert_eq!(piece.candidates(5), [1.0, 3.0]);
     }
 }

@@ -42,7 +42,7 @@ fn elasticity(material: &Material, plane: Plane) -> Matrix3 {
             (c * (1.0 - nu), c * nu)
         }
     };
-    let shear = e / (2.0 * (1.0 + nu));
+    let shear = material.shear_modulus();
     Matrix3::new(direct, cross, 0.0, cross, direct, 0.0, 0.0, 0.0, shear)
 }
 

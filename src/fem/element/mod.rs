@@ -4,8 +4,8 @@
 //! Which displacements its rows are is told by [`slots`], and how it lies among others by
 //! [`Element`](crate::model::structure::Element).
 
-mod axis;
 pub mod bar_load;
+mod beam;
 mod frame;
 mod incompatible;
 mod jacobian;
@@ -82,7 +82,7 @@ pub fn finite_element(structure: &Structure, index: usize) -> Result<Box<dyn Fin
         ElementKind::Frame { area, inertia, shear_area, hinges } => {
             Box::new(Frame::new(ends(), material, [area, inertia], shear_area, hinges).ok_or(NO_LENGTH)?)
         }
-        ElementKind::Truss { area } => Box::new(Truss::new(ends(), material, area).ok_or(NO_LENGTH)?),
+        ElementKind::Truss { area } => Box::new(Truss::in_plane(ends(), material, area).ok_or(NO_LENGTH)?),
         ElementKind::Membrane { thickness, plane, incompatible } => {
             Box::new(Membrane { nodes: nodes().collect(), material, plane, thickness, incompatible })
         }

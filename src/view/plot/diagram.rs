@@ -23,7 +23,7 @@ pub fn series(members: &[MemberForces], bar: &str, force: Internal) -> Option<Se
     let mut points = Vec::new();
     for piece in diagram.pieces() {
         let [from, to] = piece.range;
-        let [[ax, ay], [bx, by]] = piece.q;
+        let [[ax, ay, _], [bx, by, _]] = piece.q;
         let straight = match force {
             Internal::Axial => ax == 0.0 && bx == 0.0,
             Internal::Shear => ay == by,

@@ -212,8 +212,8 @@ proptest! {
                 end: EndForces { n: u[element + 9][0], q: u[element + 9][1], m: u[element + 9][2] },
                 pieces: vec![Piece {
                     range: [element as f64, element as f64 + 1.0],
-                    start: u[element],
-                    q: [0, 1].map(|end| [u[element + 9][end], u[element + 9][end + 1]]),
+                    start: [u[element][0], u[element][1], u[element][2], 0.0, 0.0, 0.0],
+                    q: [0, 1].map(|end| [u[element + 9][end], u[element + 9][end + 1], 0.0]),
                 }],
             }).collect();
             for force in [Internal::Axial, Internal::Shear, Internal::Moment] {

@@ -93,7 +93,11 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
                     let n: f64 = pull + pairs[element + 1..].iter().map(|p| p.x_t).sum::<f64>();
                     let end = EndForces { n, q: 0.0, m: 0.0 };
                     let along = element as f64;
-                    let pieces = vec![Piece { range: [along, along + 1.0], start: [n, 0.0, 0.0], q: [[0.0; 2]; 2] }];
+                    let pieces = vec![Piece {
+                        range: [along, along + 1.0],
+                        start: [n, 0.0, 0.0, 0.0, 0.0, 0.0],
+                        q: [[0.0; 3]; 2],
+                    }];
                     MemberForces { bar: "AF".into(), element, start: end, end, pieces }
                 })
                 .collect(),
@@ -275,7 +279,8 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
     let members = [(0, 0.0, 2.0), (1, 2.0, 4.0)]
         .map(|(element, start, end)| {
             let EndForces { n, q: shear, m } = at(start);
-            let pieces = vec![Piece { range: [start, end], start: [n, shear, m], q: [[0.0, -q]; 2] }];
+            let pieces =
+                vec![Piece { range: [start, end], start: [n, shear, m, 0.0, 0.0, 0.0], q: [[0.0, -q, 0.0]; 2] }];
             MemberForces { bar: "AF".into(), element, start: at(start), end: at(end), pieces }
         })
         .to_vec();
