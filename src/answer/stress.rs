@@ -33,8 +33,8 @@ pub struct Stress {
 }
 
 impl Stress {
-    /// From (σ_xx, σ_yy, σ_xy, σ_zz).
-    pub fn new(place: StressPlace, [x, y, xy, z]: [f64; 4]) -> Stress {
+    /// From (σ_xx, σ_yy, σ_xy, σ_zz, …).
+    pub fn new(place: StressPlace, [x, y, xy, z, ..]: [f64; 6]) -> Stress {
         let (middle, radius) = (0.5 * (x + y), (0.5 * (x - y)).hypot(xy));
         let distortion = 0.5 * ((x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2)) + 3.0 * xy * xy;
         Stress { place, sx: x, sy: y, sxy: xy, s1: middle + radius, s2: middle - radius, mises: distortion.sqrt() }

@@ -125,7 +125,7 @@ impl Mesh<'_> {
         if !self.0.node_stresses.is_empty() {
             let mut stresses = vec![[0.0; 4]; self.0.structure.nodes.len()];
             for at in &self.0.node_stresses {
-                stresses[at.node] = at.stress;
+                stresses[at.node].copy_from_slice(&at.stress[..4]);
             }
             array(out, "stress", &STRESS, &self.over_points(|node| stresses[node]))?;
         }
@@ -153,7 +153,7 @@ impl Mesh<'_> {
         if !self.0.element_stresses.is_empty() {
             let mut stresses = vec![[0.0; 4]; cells];
             for of in &self.0.element_stresses {
-                stresses[of.element] = of.stress;
+                stresses[of.element].copy_from_slice(&of.stress[..4]);
             }
             array(out, "stress", &STRESS, &stresses)?;
         }

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::displacements::Displacements;
 use super::element::bar_load::Piece;
-use super::element::{finite_element, slots, spring};
+use super::element::{Stress, finite_element, slots, spring};
 use super::loads::ActingLoads;
 use super::main_system::MainSystem;
 use crate::doubled::{Doubled, Real};
@@ -41,8 +41,8 @@ pub struct MemberForces {
 pub struct MembraneStress {
     /// Index into [`Structure::elements`].
     pub element: usize,
-    /// (σ_xx, σ_yy, σ_xy, σ_zz).
-    pub stress: [f64; 4],
+    /// Its components.
+    pub stress: Stress,
 }
 
 /// Stress at a node, tension positive: the mean of what its membrane elements say there.
@@ -50,8 +50,8 @@ pub struct MembraneStress {
 pub struct NodeStress {
     /// The node.
     pub node: usize,
-    /// (σ_xx, σ_yy, σ_xy, σ_zz).
-    pub stress: [f64; 4],
+    /// Its components.
+    pub stress: Stress,
 }
 
 /// Force of the supports and springs of a node on the structure, global axes, in the units of the loads.
@@ -126,7 +126,7 @@ impl MainSystem {
     /// each extrapolated from the points where its stresses are best.
     pub fn node_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<NodeStress> {
         let loads = ActingLoads::of(structure, factors);
-        let mut sums = vec![([0.0; 4], 0_u32); structure.nodes.len()];
+        let mut sums = vec![(Stress::default(), 0_u32); structure.nodes.len()];
         for (index, element) in structure.elements.iter().enumerate() {
             let Ok(finite) = finite_element(structure, index) else { continue };
             let stresses = finite.node_stresses(&own_displacements(structure, index, u), loads.on(index));

@@ -31,6 +31,16 @@ pub enum AxesFault {
     Orientation,
 }
 
+impl AxesFault {
+    /// In words that follow the bar's name.
+    pub fn words(self) -> &'static str {
+        match self {
+            AxesFault::NoLength => "its two nodes are at the same place",
+            AxesFault::Orientation => "its orientation points along it, and should lie across it",
+        }
+    }
+}
+
 impl<T: Real> BarAxes<T> {
     /// Of a bar in the plane; `None` if its ends coincide.
     pub fn in_plane(ends: [[f64; 2]; 2]) -> Option<BarAxes<T>> {

@@ -34,6 +34,7 @@ pub mod scenario;
 pub mod schema;
 pub mod shape;
 pub mod siconos;
+pub mod space_section;
 pub mod structure;
 pub mod superelement;
 pub mod support;

@@ -67,7 +67,7 @@ impl Frame {
     ///
     /// With f the forces on the element's ends, start (−f_x1, f_y1, −m_1), end (f_x2, −f_y2, m_2). What is no more than
     /// rounding of the terms of a force is 0.
-    fn end_forces(&self, u: &[f64; 6], load: &BarLoad) -> [Internal; 2] {
+    pub fn end_forces(&self, u: &[f64; 6], load: &BarLoad) -> [Internal; 2] {
         let length = self.axes.length;
         let local = rotation(&self.axes) * Vector6::from(*u);
         let (stiffness, loads) = (self.beam.stiffness(length), self.beam.forces(load, length));

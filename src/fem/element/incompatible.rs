@@ -1,9 +1,10 @@
-//! Incompatible modes of the four-node membrane: 1 − ξ² and 1 − η² beside the functions of its nodes, so that it
-//! bends as a beam does. They belong to the element alone and are eliminated in it.
+//! Incompatible modes of the four-node membrane, 1 − ξ² and 1 − η², and of the brick of eight nodes, with 1 − ζ² more,
+//! beside the functions of their nodes, so that they bend as a beam does. They belong to the element alone and are
+//! eliminated in it.
 //!
 //! ```text
 //!     k = k_uu − k_uα k_αα⁻¹ k_αu,     α = −k_αα⁻¹ k_αu u
-//!     (∂N/∂x, ∂N/∂y) = (det J₀/det J) J₀⁻¹ (∂N/∂ξ, ∂N/∂η)    J₀ at the centre
+//!     (∂N/∂x, ∂N/∂y) = (det J₀/det J) J₀⁻¹ (∂N/∂ξ, ∂N/∂η)    J₀ at the centre; likewise in space
 //! ```
 //! With gradients taken by J₀ their integral over the element vanishes, and constant stresses stay exact in any shape
 //! (Taylor, Beresford, Wilson, *A non-conforming element for stress analysis*, 1976). Loads and free strains act on
@@ -12,7 +13,7 @@
 use std::ops::Range;
 
 use super::Stiffness;
-use super::jacobian::{determinant, in_plane};
+use super::jacobian::{SpaceJacobian, Triple, determinant, in_plane};
 use crate::doubled::Real;
 
 /// Modes, each along x and along y.
@@ -22,6 +23,16 @@ pub const MODES: usize = 2;
 pub fn gradients<T: Real>([x, y]: [f64; 2], centre: &[[T; 2]; 2], ratio: T) -> [[T; 2]; MODES] {
     let natural = [[T::from(-2.0 * x), T::zero()], [T::zero(), T::from(-2.0 * y)]];
     natural.map(|natural| in_plane(centre, determinant(centre), natural).map(|value| value * ratio))
+}
+
+/// Those of the brick at (ξ, η, ζ), each along x, y and z, with the Jacobian at the centre.
+pub fn gradients_in_space<T: Real>(at: [f64; 3], centre: &SpaceJacobian<T>, determinant: T) -> [Triple<T>; 3] {
+    let ratio = centre.determinant / determinant;
+    [0, 1, 2].map(|mode| {
+        let mut natural = [T::zero(); 3];
+        natural[mode] = T::from(-2.0 * at[mode]);
+        centre.turn(natural).map(|value| value * ratio)
+    })
 }
 
 /// Eliminates `rows`, the last one first; each keeps its entries as they are when its turn comes.
@@ -65,7 +76,7 @@ mod tests {
         let u: Vec<f64> = nodes.iter().flat_map(|[x, y]| [0.1 + 0.02 * x - 0.05 * y, 0.07 * x + 0.03 * y]).collect();
         // ε = (0.02, 0.03, 0.02), plane stress.
         let c = 3.0 / (1.0 - 0.09);
-        let exact = [c * (0.02 + 0.3 * 0.03), c * (0.03 + 0.3 * 0.02), 3.0 / 2.6 * 0.02, 0.0];
+        let exact = [c * (0.02 + 0.3 * 0.03), c * (0.03 + 0.3 * 0.02), 3.0 / 2.6 * 0.02, 0.0, 0.0, 0.0];
         with(&nodes, true, |element| {
             let centre = element.stress(&u, &[]).unwrap();
             for found in element.node_stresses(&u, &[]).unwrap().into_iter().chain([centre]) {

@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
 use super::incompatible;
 use super::jacobian::{determinant, in_plane};
 use super::shape::{MOST, Shape};
-use super::{Acting, FiniteElement, Stiffness, Stress};
+use super::{Acting, FiniteElement, Stiffness, Stress, free_strain};
 use crate::doubled::{Doubled, Real};
 use crate::model::structure::{ElementLoad, Material, Plane};
 
@@ -144,7 +144,7 @@ impl Membrane<'_> {
     /// Stress at (ξ, η) for the displacements `u`, [modes](Self::with_modes) included, and the free expansion
     /// `strain` = α ΔT: extrapolated from the points where the element's stresses are best.
     fn stress_at(&self, at: [f64; 2], u: &[f64], strain: f64) -> Stress {
-        let mut sum = [0.0; 4];
+        let mut sum = Stress::default();
         for (point, weight) in self.shape().stress_points().into_iter().zip(self.shape().extrapolation(at)) {
             for (sum, value) in sum.iter_mut().zip(self.stress_at_point(point, u, strain)) {
                 *sum += weight * value;
@@ -170,7 +170,7 @@ impl Membrane<'_> {
                 self.material.poisson_ratio * (stress[0] + stress[1]) - self.material.youngs_modulus * strain
             }
         };
-        [stress[0], stress[1], stress[2], across]
+        [stress[0], stress[1], stress[2], across, 0.0, 0.0]
     }
 
     fn initial_strain(&self, strain: f64) -> SVector<f64, 3> {
@@ -242,15 +242,6 @@ impl FiniteElement for Membrane<'_> {
 }
 
 const INSIDE_OUT: &str = "it is not convex, or its nodes do not go round counter-clockwise";
-
-/// α ΔT.
-fn free_strain(acting: &Acting) -> f64 {
-    let strains = acting.iter().map(|(factor, load)| match load {
-        ElementLoad::FreeStrain { strain, .. } => factor * strain,
-        ElementLoad::Body(_) | ElementLoad::Line { .. } | ElementLoad::Point { .. } => 0.0,
-    });
-    strains.sum()
-}
 
 #[cfg(test)]
 mod tests {

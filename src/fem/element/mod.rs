@@ -11,6 +11,8 @@ mod incompatible;
 mod jacobian;
 mod membrane;
 mod shape;
+#[allow(dead_code, unused_imports)]
+mod space;
 pub mod spring;
 mod truss;
 
@@ -33,8 +35,8 @@ pub type Stiffness<T = f64> = DMatrix<T>;
 /// What acts on one element beside its nodes, each load with its factor.
 pub type Acting<'a> = [(f64, &'a ElementLoad)];
 
-/// σ_xx, σ_yy, σ_xy and σ_zz, tension positive.
-pub type Stress = [f64; 4];
+/// σ_xx, σ_yy, σ_xy, σ_zz, σ_yz and σ_zx, tension positive; the last two are 0 in the plane.
+pub type Stress = [f64; 6];
 
 /// What an element does with displacements and loads. Vectors and matrices have rows as in [`slots`].
 pub trait FiniteElement {
@@ -58,12 +60,12 @@ pub trait FiniteElement {
         None
     }
 
-    /// Stress of an area at its centre for its displacements `u`.
+    /// Stress of an area or a solid at its centre for its displacements `u`.
     fn stress(&self, _u: &[f64], _acting: &Acting) -> Option<Stress> {
         None
     }
 
-    /// Stresses of an area at its nodes for its displacements `u`.
+    /// Stresses of an area or a solid at its nodes for its displacements `u`.
     fn node_stresses(&self, _u: &[f64], _acting: &Acting) -> Option<Vec<Stress>> {
         None
     }
@@ -90,6 +92,15 @@ pub fn finite_element(structure: &Structure, index: usize) -> Result<Box<dyn Fin
 }
 
 const NO_LENGTH: &str = "its two nodes are at the same place";
+
+/// α ΔT of what acts.
+fn free_strain(acting: &Acting) -> f64 {
+    let strains = acting.iter().map(|(factor, load)| match load {
+        ElementLoad::FreeStrain { strain, .. } => factor * strain,
+        ElementLoad::Body(_) | ElementLoad::Line { .. } | ElementLoad::Point { .. } => 0.0,
+    });
+    strains.sum()
+}
 
 /// The displacements of an element's rows in their order, node by node.
 pub fn slots(element: &Element) -> Vec<Slot> {
