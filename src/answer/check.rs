@@ -45,10 +45,10 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
             None if system.is_forced(i) => couple(Sum::exactly(1.0), state.z[i], share(i)),
             None => {}
         }
-        if let (Some([plus, minus]), Some(joint)) = (sums.reserves, pair.tangential) {
-            let (slip, share) = (state.z[joint], share(joint));
-            couple(plus, slip.max(0.0), share);
-            couple(minus, (-slip).max(0.0), share);
+        let share = pair.tangential.clone().map(share).fold(0.0, f64::max);
+        let slips = problem.polygon.slips(state.slip(pair));
+        for (reserve, slip) in sums.reserves.into_iter().zip(slips) {
+            couple(reserve, slip, share);
         }
     }
     for left in &state.left {

@@ -2,13 +2,13 @@
 
 use nalgebra::DVector;
 
-use super::record::{PairState, State};
+use super::record::{InSpace, PairState, State};
 use crate::contact::force_form::unknowns;
 use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::least_norm;
 use crate::contact::sum::Sum;
 use crate::contact::sums::{StateForces, is_still, state_forces};
-use crate::contact::system::ContactSystem;
+use crate::contact::system::{ContactPair, ContactSystem};
 use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::Point;
 
@@ -105,6 +105,13 @@ impl JointState {
         (unknowns, responses)
     }
 
+    /// z_τ of a pair, along t or along t1 and t2; 0 where it has no tangential joint.
+    pub fn slip(&self, pair: &ContactPair) -> [f64; 2] {
+        let mut slip = [0.0; 2];
+        slip.iter_mut().zip(pair.tangential.clone()).for_each(|(slip, joint)| *slip = self.z[joint]);
+        slip
+    }
+
     /// λ of a joint with the magnitudes of its terms.
     pub fn sum(&self, joint: usize) -> Sum {
         Sum { value: self.force[joint], magnitude: self.terms[joint] }
@@ -130,7 +137,11 @@ pub fn pair_states(problem: &ContactProblem, contact: &ContactLcp, state: &Joint
     pairs
         .map(|(i, pair)| {
             let cover = Cover { force: contact.covering_of(i), distance: contact.covered_distance(i, state.p) };
-            pair_state(problem, cover, state, (i, pair.tangential))
+            if pair.is_in_space() || (!pair.rubs() && system.is_in_space()) {
+                pair_in_space(problem, &cover, state, i)
+            } else {
+                pair_state(problem, &cover, state, (i, pair.plane_tangential()))
+            }
         })
         .collect()
 }
@@ -146,7 +157,7 @@ struct Cover {
 /// One pair; `joints` are its normal and its tangential joint.
 fn pair_state(
     problem: &ContactProblem,
-    Cover { force: (d_n, d_t), distance }: Cover,
+    &Cover { force: (d_n, d_t), distance }: &Cover,
     state: &JointState,
     joints: (usize, Option<usize>),
 ) -> PairState {
@@ -215,5 +226,49 @@ fn pair_state(
         reserve_minus: bound - x_t,
         position: pair.position,
         joint: pair.joint,
+        space: None,
+    }
+}
+
+/// One pair in space. Its tangential force is told as it is: on a polygon it may exceed the bound between two facets.
+fn pair_in_space(problem: &ContactProblem, cover: &Cover, state: &JointState, i: usize) -> PairState {
+    let pair = &problem.system.pairs[i];
+    let law = &problem.laws[i];
+    let (d_n, d_t) = cover.force;
+    let z_n = if law.is_bilateral() { 0.0 } else { state.z[i] };
+    let open = z_n > 0.0;
+    let x_n = if open { Sum::default() } else { state.sum(i).plus(d_n, Sum::exactly(state.p)) };
+    let z_t = state.slip(pair);
+    let mut x_t = [0.0; 2];
+    x_t.iter_mut().zip(pair.tangential.clone()).for_each(|(force, joint)| *force = state.sum(joint).cleaned());
+    let f = law.friction();
+    let bound = match pair.rubs() {
+        true => {
+            law.fixed_bound() + Sum::exactly(d_t).plus(-f, Sum::exactly(d_n)).cleaned() * state.p + f * x_n.cleaned()
+        }
+        false => 0.0,
+    };
+    let size = |[along, across]: [f64; 2]| along.hypot(across);
+    let slip = if size(z_t) > 0.0 { State::Slip } else { State::Stick };
+    let (word, held) = match () {
+        () if open => (State::Open, (bound > 0.0).then_some(slip)),
+        () if !pair.rubs() => (State::Closed, None),
+        () => (slip, None),
+    };
+    PairState {
+        id: pair.id.clone(),
+        law: pair.law.kind(),
+        state: word,
+        held,
+        x_n: x_n.cleaned(),
+        x_t: size(x_t),
+        z_n,
+        z_t: size(z_t),
+        bound,
+        reserve_plus: bound + size(x_t),
+        reserve_minus: bound - size(x_t),
+        position: pair.position,
+        joint: pair.joint,
+        space: Some(InSpace { x_t, z_t, frame: pair.frame }),
     }
 }

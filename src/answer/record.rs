@@ -4,8 +4,8 @@
 use serde::Serialize;
 
 pub use super::attempt::{Attempt, AttemptRules};
+pub use super::pair_record::{InSpace, PairState};
 use crate::fem::Piece;
-use crate::model::pair::LawKind;
 use crate::model::uses::Redone;
 
 /// How the run ended, as the user reads it.
@@ -231,6 +231,9 @@ pub enum State {
     /// Slips along −t.
     #[serde(rename = "slip-")]
     SlipMinus,
+    /// Slips in space, in a direction of its own.
+    #[serde(rename = "slip")]
+    Slip,
     /// A frictionless pair in contact.
     #[serde(rename = "closed")]
     Closed,
@@ -244,41 +247,10 @@ impl State {
             State::Stick => "stick",
             State::SlipPlus => "slip+",
             State::SlipMinus => "slip-",
+            State::Slip => "slip",
             State::Closed => "closed",
         }
     }
-}
-
-/// Forces, displacements and reserves of one pair, in the user's units of force and length; signs of method §1.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PairState {
-    /// Pair id.
-    pub id: String,
-    /// `coulomb`, `frictionless`, `bound`.
-    pub law: LawKind,
-    /// Its state.
-    pub state: State,
-    /// What holds an open pair (cohesion, or p > 0): `stick`, `slip+`, `slip-`.
-    pub held: Option<State>,
-    /// Contact force along n, > 0 pressed together.
-    pub x_n: f64,
-    /// Tangential force on the second side, > 0 along +t: −bound while the pair slips +.
-    pub x_t: f64,
-    /// Opening, ≥ 0.
-    pub z_n: f64,
-    /// Slip of the second side, > 0 along +t.
-    pub z_t: f64,
-    /// Friction bound r_f = f x_n + c ≥ 0, a force (with the covering at p > 0).
-    pub bound: f64,
-    /// x⁺ = bound + x_t ≥ 0, a force: what is left before the pair slips +.
-    pub reserve_plus: f64,
-    /// x⁻ = bound − x_t ≥ 0, a force: what is left before the pair slips −.
-    pub reserve_minus: f64,
-    /// Place; for a contact system [s, 0] or null.
-    pub position: Option<[f64; 2]>,
-    /// Number of the joint it belongs to; for pictures.
-    #[serde(skip)]
-    pub joint: usize,
 }
 
 /// Fresh check of an answer from R, RF, f and K: numbers without unit. A force or reserve is measured by the magnitudes of

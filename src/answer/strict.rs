@@ -14,6 +14,10 @@ const CLEAR: f64 = 1e-7;
 /// kernel is left to what is not held. Where the forces are the only ones, such a state is the only one.
 pub fn is_strict(problem: &ContactProblem, state: &JointState) -> bool {
     let system = &*problem.system;
+    if system.is_in_space() {
+        // Of a slip that may turn nothing is examined.
+        return false;
+    }
     let forces: Vec<Sum> = (0..system.joint_count()).map(|joint| state.sum(joint)).collect();
     let mut held = vec![false; forces.len()];
     for (i, pair) in system.pairs.iter().enumerate() {
@@ -22,7 +26,7 @@ pub fn is_strict(problem: &ContactProblem, state: &JointState) -> bool {
         let sums = pair_sums(problem, &forces, (i, is_open));
         held[i] = !is_open;
         let normal = sums.normal.is_none_or(|normal| if is_open { moves(i) } else { normal.share() >= CLEAR });
-        let (Some(joint), Some([plus, minus])) = (pair.tangential, sums.reserves) else {
+        let (Some(joint), &[plus, minus]) = (pair.plane_tangential(), &sums.reserves[..]) else {
             if !normal {
                 return false;
             }

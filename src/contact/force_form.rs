@@ -25,6 +25,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::pivoted::orthonormal;
+use super::polygon::Polygon;
 use super::problem::ContactProblem;
 use super::sum::Sum;
 use super::sums::joint_forces;
@@ -127,12 +128,12 @@ pub fn unknowns(
     for (row, meaning) in contact.rows.iter().enumerate() {
         let unit = if contact.swapped[row] { contact.force_unit } else { contact.length_unit };
         let value = z[row] * unit;
-        match (meaning.couple, system.pairs[meaning.pair].tangential) {
+        match (meaning.couple, system.pairs[meaning.pair].plane_tangential()) {
             (RowKind::Normal, _) => unknowns[meaning.pair] += value,
-            (RowKind::Plus, Some(joint)) if system.is_forced(joint) => slipping.push((meaning.pair, joint, value)),
-            (RowKind::Minus, Some(joint)) if system.is_forced(joint) => {}
-            (RowKind::Plus, Some(joint)) => unknowns[joint] += value,
-            (RowKind::Minus, Some(joint)) => unknowns[joint] -= value,
+            (RowKind::PLUS, Some(joint)) if system.is_forced(joint) => slipping.push((meaning.pair, joint, value)),
+            (RowKind::PLUS, Some(joint)) => unknowns[joint] += value,
+            (RowKind::Facet(_), Some(joint)) if system.is_forced(joint) => {}
+            (RowKind::Facet(_), Some(joint)) => unknowns[joint] -= value,
             (_, None) => {}
         }
     }
@@ -224,9 +225,9 @@ impl Writer<'_> {
         for (r, meaning) in self.rows.iter().enumerate().take(width) {
             let joint = match meaning.couple {
                 RowKind::Normal => meaning.pair,
-                _ => system.pairs[meaning.pair].tangential.unwrap_or(meaning.pair),
+                _ => system.pairs[meaning.pair].plane_tangential().unwrap_or(meaning.pair),
             };
-            let sign = if meaning.couple == RowKind::Minus { -1.0 } else { 1.0 };
+            let sign = if meaning.couple == RowKind::MINUS { -1.0 } else { 1.0 };
             match (meaning.couple, self.forced(joint)) {
                 (RowKind::Normal, true) => force[(joint, r)] = 1.0,
                 // x⁺ follows below; z⁻ moves nothing but its own couple.
@@ -245,7 +246,7 @@ impl Writer<'_> {
             let pressed = force.row(pair) * self.friction[pair];
             let mut own = -pressed;
             own[width] -= constants.fixed[pair];
-            if with_unknowns && let Some(plus) = self.row_of(pair, RowKind::Plus) {
+            if with_unknowns && let Some(plus) = self.row_of(pair, RowKind::PLUS) {
                 own[plus] += 1.0;
             }
             for i in 0..k {
@@ -269,7 +270,9 @@ impl Writer<'_> {
 
     fn forced_tangentials(&self) -> impl Iterator<Item = (usize, usize)> {
         let pairs = self.system.pairs.iter().enumerate();
-        pairs.filter_map(|(i, pair)| pair.tangential.map(|joint| (i, joint))).filter(|(_, joint)| self.forced(*joint))
+        pairs
+            .filter_map(|(i, pair)| pair.plane_tangential().map(|joint| (i, joint)))
+            .filter(|(_, joint)| self.forced(*joint))
     }
 
     fn row_of(&self, pair: usize, couple: RowKind) -> Option<usize> {
@@ -292,17 +295,17 @@ impl Writer<'_> {
                     row.copy_from(&forms.force.row(i));
                     continue;
                 }
-                RowKind::Plus => 1.0,
-                RowKind::Minus => -1.0,
+                RowKind::PLUS => 1.0,
+                RowKind::Facet(_) => -1.0,
             };
-            let joint = self.system.pairs[i].tangential.unwrap_or(i);
+            let joint = self.system.pairs[i].plane_tangential().unwrap_or(i);
             let mut bound = forms.force.row(i) * self.friction[i];
             bound[width] += constants.fixed[i];
             match (meaning.couple, self.forced(joint)) {
-                (RowKind::Plus, true) => {
+                (RowKind::PLUS, true) => {
                     row.copy_from(&forms.displacement.row(joint));
                     if width > 0
-                        && let Some(minus) = self.row_of(i, RowKind::Minus)
+                        && let Some(minus) = self.row_of(i, RowKind::MINUS)
                     {
                         row[minus] += 1.0;
                     }
@@ -310,7 +313,7 @@ impl Writer<'_> {
                 (_, true) => {
                     row.copy_from(&(bound * 2.0));
                     if width > 0
-                        && let Some(plus) = self.row_of(i, RowKind::Plus)
+                        && let Some(plus) = self.row_of(i, RowKind::PLUS)
                     {
                         row[plus] -= 1.0;
                     }
@@ -326,8 +329,8 @@ impl Writer<'_> {
 fn is_swapped(system: &ContactSystem, row: RowId) -> bool {
     match row.couple {
         RowKind::Normal => system.is_forced(row.pair),
-        RowKind::Plus => system.pairs[row.pair].tangential.is_some_and(|joint| system.is_forced(joint)),
-        RowKind::Minus => false,
+        RowKind::PLUS => system.pairs[row.pair].plane_tangential().is_some_and(|joint| system.is_forced(joint)),
+        RowKind::Facet(_) => false,
     }
 }
 
@@ -368,7 +371,7 @@ pub fn contact_lcp(problem: &ContactProblem, covering: Covering) -> Result<Conta
 /// The same whatever the covering covers.
 pub fn written_lcp(problem: &ContactProblem, covering: Covering) -> ContactLcp {
     let system = &*problem.system;
-    let rows = rows(system);
+    let rows = rows(system, Polygon::PLANE);
     let frictions = problem.frictions();
     let stiffness_unit = stiffness_unit(system);
     let writer = Writer { system, rows: &rows, friction: &frictions, stiffness_unit };
@@ -391,13 +394,13 @@ pub fn written_lcp(problem: &ContactProblem, covering: Covering) -> ContactLcp {
     let of = |couple: RowKind| (0..system.pairs.len()).map(|pair| writer.row_of(pair, couple)).collect::<Vec<_>>();
     let scale = Scale::plain(&matrix);
     let lcp = MirroredLcp::plain(&Lcp { matrix, q, covering: cover, scale });
-    let [normal_row, plus_row, minus_row] = [RowKind::Normal, RowKind::Plus, RowKind::Minus].map(of);
+    let (normal_row, facet_rows) = (of(RowKind::Normal), vec![of(RowKind::PLUS), of(RowKind::MINUS)]);
     ContactLcp {
         lcp: Arc::new(lcp),
         friction: frictions,
         normal_row,
-        plus_row,
-        minus_row,
+        facet_rows,
+        polygon: Polygon::PLANE,
         force_unit,
         length_unit: force_unit / stiffness_unit,
         swapped,
@@ -413,7 +416,7 @@ fn cover(problem: &ContactProblem, row: RowId, swapped: bool, covering: Covering
         return 1.0;
     }
     let own = problem.laws[row.pair].covering(covering);
-    let forced = system.pairs[row.pair].tangential.is_some_and(|joint| system.is_forced(joint));
+    let forced = system.pairs[row.pair].plane_tangential().is_some_and(|joint| system.is_forced(joint));
     if forced { 2.0 * own } else { own }
 }
 

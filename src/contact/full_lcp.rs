@@ -20,17 +20,22 @@ use crate::model::rules::Covering;
 
 /// The force of a row as a combination of joints: Σ factor·λ_joint + fixed.
 fn combination<T: Scalar>(problem: &ContactProblem, row: RowId) -> (Vec<(usize, T)>, T) {
+    let mut terms = displacement(problem, row);
+    if row.couple == RowKind::Normal {
+        return (terms, T::zero());
+    }
     let law = &problem.laws[row.pair];
-    let joint = row.joint(&problem.system);
-    let Some(direction) = row.couple.direction() else {
-        return (vec![(joint, T::one())], T::zero());
-    };
-    let mut terms = vec![(joint, T::from_f64(direction))];
     let f = T::from_f64(law.friction());
     if !f.is_zero() {
         terms.push((row.pair, f));
     }
     (terms, T::from_f64(law.fixed_bound()))
+}
+
+/// The joints that a displacement of the row moves, and by how much.
+fn displacement<T: Scalar>(problem: &ContactProblem, row: RowId) -> Vec<(usize, T)> {
+    let joints = row.joints(&problem.system, problem.polygon).filter(|(_, factor)| *factor != 0.0);
+    joints.map(|(joint, factor)| (joint, T::from_f64(factor))).collect()
 }
 
 /// R in another number type, exactly where that type can.
@@ -47,7 +52,8 @@ pub fn full_lcp<T: Scalar>(problem: &ContactProblem, covering: Covering) -> Lcp<
 /// Forms the LCP with an R of its own, one row per joint, in place of that of the system.
 pub fn full_lcp_of<T: Scalar>(problem: &ContactProblem, covering: Covering, stiffness: &[Vec<T>]) -> Lcp<T> {
     let system = &*problem.system;
-    let rows = rows(system);
+    let rows = rows(system, problem.polygon);
+    let moved: Vec<Vec<(usize, T)>> = rows.iter().map(|row| displacement(problem, *row)).collect();
     let combinations: Vec<(Vec<(usize, T)>, T)> = rows.iter().map(|row| combination(problem, *row)).collect();
     let constants = problem.constants_with(&|i, j| stiffness[i][j].clone());
     let matrix = combinations
@@ -56,11 +62,10 @@ pub fn full_lcp_of<T: Scalar>(problem: &ContactProblem, covering: Covering, stif
             let responses: Vec<T> = (0..system.joint_count())
                 .map(|j| terms.iter().fold(T::zero(), |sum, (i, factor)| sum.add(&factor.mul(&stiffness[*i][j]))))
                 .collect();
-            let entry = |column: &RowId| match column.couple {
-                RowKind::Normal | RowKind::Plus => responses[column.joint(system)].clone(),
-                RowKind::Minus => responses[column.joint(system)].neg(),
+            let entry = |column: &Vec<(usize, T)>| {
+                column.iter().fold(T::zero(), |sum, (joint, factor)| sum.add(&factor.mul(&responses[*joint])))
             };
-            rows.iter().map(entry).collect()
+            moved.iter().map(entry).collect()
         })
         .collect();
     let q = combinations
@@ -70,12 +75,13 @@ pub fn full_lcp_of<T: Scalar>(problem: &ContactProblem, covering: Covering, stif
     let loads = combinations.iter().flat_map(|(terms, _)| terms);
     let loads = loads.map(|(i, factor)| (factor.to_f64() * constants[*i].to_f64()).abs());
     let root = |i: usize| system.stiffness[(i, i)].max(0.0).sqrt();
+    let own = |row: &RowId| row.joints(system, problem.polygon).map(|(joint, d)| d.abs() * root(joint)).sum::<f64>();
     let row_scale = |row: &RowId| match row.couple {
-        RowKind::Normal => root(row.pair),
-        RowKind::Plus | RowKind::Minus => problem.laws[row.pair].friction() * root(row.pair) + root(row.joint(system)),
+        RowKind::Normal => own(row),
+        RowKind::Facet(_) => problem.laws[row.pair].friction() * root(row.pair) + own(row),
     };
     let column_scale = |row: &RowId| {
-        let root = root(row.joint(system));
+        let root = own(row);
         if root > 0.0 { root } else { 1.0 }
     };
     let scale = Scale {

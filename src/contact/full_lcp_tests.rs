@@ -8,6 +8,7 @@ use num_rational::BigRational;
 
 use super::*;
 use crate::contact::law::PairLaw;
+use crate::contact::polygon::Polygon;
 use crate::contact::system::{ContactPair, ContactSystem};
 use crate::lcp::driver::run;
 use crate::lcp::exact::lemke::Exact;
@@ -28,8 +29,9 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
                 id: format!("c{}", i + 1),
                 law: Law::Coulomb { friction: zero(), cohesion: zero(), gap: zero() },
                 position: None,
+                frame: None,
                 joint: 0,
-                tangential: Some(m + i),
+                tangential: m + i..m + i + 1,
             })
             .collect(),
         kernel: DMatrix::zeros(2 * m, 0),
@@ -50,7 +52,7 @@ pub(crate) fn plain(system: &ContactSystem, f: f64, load: &[f64]) -> ContactProb
 
 /// Normals last: the default rule.
 pub(crate) fn tangential_first(system: &ContactSystem) -> TieRule {
-    let rows = rows(system);
+    let rows = rows(system, Polygon::PLANE);
     let normals = rows.iter().filter(|r| r.couple == RowKind::Normal).count();
     TieRule::Lexicographic((normals..rows.len()).chain(0..normals).collect())
 }
@@ -123,19 +125,35 @@ fn check<T: Scalar>(problem: &ContactProblem, covering: Covering, expected: Opti
 fn laws_mix() {
     let mut system = coulomb(DMatrix::from_fn(5, 5, |i, j| if i == j { 2.0 } else { 0.1 * (i + j) as f64 }));
     let zero = Number::Value(0.0);
-    let pair = |id: &str, law, tangential| ContactPair { id: id.into(), law, position: None, joint: 0, tangential };
+    let pair = |id: &str, law, tangential| ContactPair {
+        id: id.into(),
+        law,
+        position: None,
+        frame: None,
+        joint: 0,
+        tangential,
+    };
     system.pairs = vec![
-        pair("a", Law::Frictionless { gap: zero.clone() }, None),
-        pair("b", Law::Bound { bound: zero.clone() }, Some(3)),
-        pair("c", Law::Coulomb { friction: zero.clone(), cohesion: zero.clone(), gap: zero }, Some(4)),
+        pair("a", Law::Frictionless { gap: zero.clone() }, 3..3),
+        pair("b", Law::Bound { bound: zero.clone() }, 3..4),
+        pair("c", Law::Coulomb { friction: zero.clone(), cohesion: zero.clone(), gap: zero }, 4..5),
     ];
     let laws = vec![PairLaw::smooth(1.0), PairLaw::bilateral(3.0), PairLaw::rubbing(0.5, 0.25, 0.0)];
     let problem =
         ContactProblem::exactly(&Arc::new(system.clone()), laws, DVector::from_row_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]));
     let lcp = full_lcp::<f64>(&problem, Covering::Cohesive);
-    let kinds: Vec<_> = rows(&system).iter().map(|r| (r.pair, r.couple)).collect();
-    use RowKind::*;
-    assert_eq!(kinds, [(0, Normal), (2, Normal), (1, Plus), (2, Plus), (1, Minus), (2, Minus)]);
+    let kinds: Vec<_> = rows(&system, Polygon::PLANE).iter().map(|r| (r.pair, r.couple)).collect();
+    assert_eq!(
+        kinds,
+        [
+            (0, RowKind::Normal),
+            (2, RowKind::Normal),
+            (1, RowKind::PLUS),
+            (2, RowKind::PLUS),
+            (1, RowKind::MINUS),
+            (2, RowKind::MINUS)
+        ]
+    );
     let r = |i: usize, j: usize| system.stiffness[(i, j)];
     let v = |i: usize| problem.load[i] - r(i, 0);
     let expected = [v(0), v(2), 3.0 + v(3), 0.25 + 0.5 * v(2) + v(4), 3.0 - v(3), 0.25 + 0.5 * v(2) - v(4)];

@@ -349,16 +349,15 @@ fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
     let mut next = given.pairs.len();
     (given.pairs.iter().enumerate())
         .map(|(i, id)| {
-            let tangential = given.laws[i].has_tangential_joint().then(|| {
-                next += 1;
-                next - 1
-            });
+            let first = next;
+            next += usize::from(given.laws[i].has_tangential_joint());
             ContactPair {
                 id: id.clone(),
                 law: given.laws[i].clone(),
                 position: given.positions.as_ref().map(|s| [s[i], 0.0]),
+                frame: None,
                 joint: 0,
-                tangential,
+                tangential: first..next,
             }
         })
         .collect()

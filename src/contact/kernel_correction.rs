@@ -29,13 +29,12 @@ fn balanced_rows(problem: &ContactProblem, contact: &ContactLcp, point: &Point) 
         .map(|row| {
             let i = row.pair;
             let (d_n, d_t) = contact.covering_of(i);
-            let tangential = system.pairs[i].tangential.map_or(0.0, |joint| force[joint]);
-            let bound = problem.laws[i].friction() * force[i] + problem.laws[i].fixed_bound();
-            match row.couple {
-                RowKind::Normal => force[i] / contact.force_unit + d_n * point.p,
-                RowKind::Plus => (bound + tangential) / contact.force_unit + d_t * point.p,
-                RowKind::Minus => (bound - tangential) / contact.force_unit + d_t * point.p,
+            let own: f64 = row.joints(system, contact.polygon).map(|(joint, d)| d * force[joint]).sum();
+            if row.couple == RowKind::Normal {
+                return own / contact.force_unit + d_n * point.p;
             }
+            let bound = problem.laws[i].friction() * force[i] + problem.laws[i].fixed_bound();
+            (bound + own) / contact.force_unit + d_t * point.p
         })
         .collect()
 }

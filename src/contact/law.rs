@@ -5,15 +5,14 @@
 //!   tangential joint   free: x_τ = 0;   bounded: |x_τ| ≤ f x_n + c
 //! ```
 //! Which word a file has for this is known to the decoder and to the report of the law; a known friction bound r_f is
-//! f = 0 and c = r_f. The direction of friction is one of a list of facets (method §7): a pair in the plane has two.
+//! f = 0 and c = r_f. The directions of friction are those of [`super::polygon`]: a pair in the plane has two.
 
 use crate::model::pair::{Law, LawKind};
 use crate::model::parameter::Number;
 use crate::model::rules::Covering;
 
-/// Unit vectors d_k of the tangential directions in which a pair can slip, as components along t: its reserves are
-/// x^k = f x_n + c + d_k x_τ, its slips ζ_k ≥ 0 make z_τ = Σ ζ_k d_k. Facet 0 is that of x⁺ and z⁺, facet 1 its mirror.
-pub const FACETS: [f64; 2] = [1.0, -1.0];
+/// The two senses in which a pair in the plane slips along t.
+pub const SENSES: [f64; 2] = [1.0, -1.0];
 
 /// What a pair can do along n.
 #[derive(Clone, Copy, Debug, PartialEq)]

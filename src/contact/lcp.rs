@@ -1,7 +1,8 @@
 //! Contact problem → LCP, eqs. (1), (2), (8) of method §3, laws mixed, dimensionless inside.
 //!
-//! Rows of the full LCP: all x_n, then all x⁺, then all x⁻, each in the order of the pairs. Only x_n and x⁺ are stored; x⁻
-//! is the mirror of x⁺ (see `lcp::mirrored`), so the 3m rows of M are never formed.
+//! Rows of the full LCP: all x_n, then all x⁺, then all x⁻, each in the order of the pairs; in space facet by facet of the
+//! polygon. Only x_n and the first half of the facets are stored, in the plane x⁺; the others are their mirrors (see
+//! `lcp::mirrored`), so the 3m rows of M, in space (1 + K) m, are never formed.
 //!
 //! Forces are divided by `force_unit`, displacements by `length_unit`, both exact powers of two (up to the ratio
 //! given by R), so that results scale back without rounding.
@@ -12,8 +13,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::contact::force_form;
 use crate::contact::law::PairLaw;
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::rows::{RowId, RowKind, rows, rows_of};
+use crate::contact::rows::{RowId, RowKind, facet_rows, rows, rows_of};
 use crate::contact::sums::joint_forces;
 use crate::contact::system::ContactSystem;
 use crate::contact::written::{ContactLcp, CoveringError, power_of_two};
@@ -51,24 +53,25 @@ pub fn contact_lcp_like(
     if system.force_form.is_some() {
         return force_form::contact_lcp(problem, covering);
     }
-    let rows = earlier.map_or_else(|| rows(system), |earlier| earlier.rows.clone());
-    let [normal_row, plus_row, minus_row] =
-        [RowKind::Normal, RowKind::Plus, RowKind::Minus].map(|couple| rows_of(&rows, system.pair_count(), couple));
-    // x⁻ is not stored: its rows are the last ones.
-    let stored = &rows[..rows.len() - minus_row.iter().flatten().count()];
-    let joints: Vec<usize> = stored.iter().map(|row| row.joint(system)).collect();
+    let polygon = problem.polygon;
+    let rows = earlier.map_or_else(|| rows(system, polygon), |earlier| earlier.rows.clone());
+    let normal_row = rows_of(&rows, system.pair_count(), RowKind::Normal);
+    let facet_rows = facet_rows(&rows, system.pair_count(), polygon);
+    // The mirrors are not stored: their rows are the last ones.
+    let mirrored = facet_rows[polygon.half()..].iter().flatten().flatten().count();
+    let stored = &rows[..rows.len() - mirrored];
     let written = LoadAndUnits::of(earlier, problem, stored);
-    let joint_scale = match earlier {
-        Some(earlier) => {
-            let mut scale = vec![0.0; system.joint_count()];
-            joints.iter().zip(&earlier.lcp.scale.column).for_each(|(&joint, own)| scale[joint] = *own);
-            scale
+    let scales: Vec<f64> = match earlier {
+        Some(earlier) => earlier.lcp.scale.column.clone(),
+        None => {
+            let joint_scale = joint_scales(system, written.stiffness_unit);
+            let own = |row: &RowId| row.joints(system, polygon).map(|(joint, d)| d.abs() * joint_scale[joint]).sum();
+            stored.iter().map(own).collect()
         }
-        None => joint_scales(system, written.stiffness_unit),
     };
     let base = match earlier {
         Some(earlier) => Arc::clone(&earlier.lcp.base),
-        None => Arc::new(stiffness_of(system, &joints, written.stiffness_unit)),
+        None => Arc::new(base_of(problem, stored, written.stiffness_unit)),
     };
     let mut lcp = MirroredLcp {
         base,
@@ -76,26 +79,24 @@ pub fn contact_lcp_like(
         covering: DVector::from_element(stored.len(), 1.0),
         whole: (0..stored.len()).collect(),
         mirrors: vec![None; stored.len()],
-        scale: Scale {
-            row: joints.iter().map(|&joint| joint_scale[joint]).collect(),
-            column: joints.iter().map(|&joint| joint_scale[joint]).collect(),
-            load: Some(written.load_size()),
-        },
+        scale: Scale { row: scales.clone(), column: scales.clone(), load: Some(written.load_size()) },
         full_size: rows.len(),
     };
     for (row, id) in stored.iter().enumerate() {
         let (i, law) = (id.pair, &problem.laws[id.pair]);
-        if id.couple == RowKind::Normal {
+        let Some(facet) = id.couple.facet() else {
             lcp.q[row] = written.load[i] / written.force_unit;
             continue;
-        }
-        lcp.q[row] = written.reserve(law, i, joints[row]);
+        };
+        let along = written.along(problem, *id);
+        lcp.q[row] = written.reserve(law, i, &along);
         lcp.covering[row] = law.covering(covering);
-        if lcp.covering[row] == 0.0 && written.least_reserve(law, i, joints[row]) < 0.0 {
+        if lcp.covering[row] == 0.0 && written.least_reserve(law, i, &along) < 0.0 {
             return Err(CoveringError::WeightWithoutFriction { pair: system.pairs[i].id.clone() });
         }
-        lcp.scale.row[row] += law.friction() * joint_scale[i];
-        lcp.mirrors[row] = minus_row[i].map(|minus| Mirror {
+        // A pair without a normal row holds both ways: its bound does not hang on x_n.
+        lcp.scale.row[row] += law.friction() * normal_row[i].map_or(0.0, |normal| scales[normal]);
+        lcp.mirrors[row] = facet_rows[facet + polygon.half()][i].map(|minus| Mirror {
             whole: minus,
             normal: normal_row[i],
             friction: law.friction(),
@@ -106,25 +107,47 @@ pub fn contact_lcp_like(
     Ok(ContactLcp {
         lcp: Arc::new(lcp),
         friction: problem.frictions(),
+        polygon,
         swapped: vec![false; rows.len()],
         force_unit: written.force_unit,
         length_unit: written.length_unit(),
         rows,
         normal_row,
-        plus_row,
-        minus_row,
+        facet_rows,
     })
 }
 
-/// R over some joints, dimensionless.
-fn stiffness_of(system: &ContactSystem, joints: &[usize], unit: f64) -> DMatrix<f64> {
+/// D R Dᵀ over the stored rows, dimensionless: D has the directions of the rows over the joints.
+fn base_of(problem: &ContactProblem, stored: &[RowId], unit: f64) -> DMatrix<f64> {
+    let system = &*problem.system;
     let stiffness = system.pivot_stiffness();
-    let mut entries = Vec::with_capacity(joints.len() * joints.len());
-    for &joint in joints {
-        let column = stiffness.column(joint);
-        entries.extend(joints.iter().map(|&row| column[row] / unit));
+    let joints: Vec<Vec<(usize, f64)>> =
+        stored.iter().map(|row| row.joints(system, problem.polygon).filter(|(_, d)| *d != 0.0).collect()).collect();
+    let mut entries = Vec::with_capacity(stored.len() * stored.len());
+    for column in &joints {
+        if let [(joint, 1.0)] = column[..] {
+            let response = stiffness.column(joint);
+            entries.extend(joints.iter().map(|row| combined(row, |joint| response[joint] / unit)));
+        } else {
+            let mut response = DVector::zeros(stiffness.nrows());
+            column.iter().for_each(|&(joint, d)| response.axpy(d, &stiffness.column(joint), 1.0));
+            entries.extend(joints.iter().map(|row| combined(row, |joint| response[joint] / unit)));
+        }
     }
-    DMatrix::from_vec(joints.len(), joints.len(), entries)
+    let mut base = DMatrix::from_vec(stored.len(), stored.len(), entries);
+    if problem.polygon != Polygon::PLANE {
+        // The sums of both triangles round differently.
+        base.fill_upper_triangle_with_lower_triangle();
+    }
+    base
+}
+
+/// Σ d value(joint).
+fn combined(joints: &[(usize, f64)], value: impl Fn(usize) -> f64) -> f64 {
+    match joints {
+        [(joint, 1.0)] => value(*joint),
+        _ => joints.iter().map(|&(joint, d)| d * value(joint)).sum(),
+    }
 }
 
 /// The constants of an LCP and its units.
@@ -145,7 +168,8 @@ impl LoadAndUnits {
         let load: Vec<f64> = constants.iter().map(|sum| sum.cleaned()).collect();
         let (mut largest, mut largest_load) = (0f64, 0f64);
         for row in stored {
-            let (normal, own, law) = (load[row.pair], load[row.joint(system)], &problem.laws[row.pair]);
+            let own: f64 = row.joints(system, problem.polygon).map(|(joint, d)| d * load[joint]).sum();
+            let (normal, law) = (load[row.pair], &problem.laws[row.pair]);
             if row.couple == RowKind::Normal {
                 largest = largest.max(normal.abs());
                 largest_load = largest_load.max(normal.abs());
@@ -171,26 +195,29 @@ impl LoadAndUnits {
         (if self.largest_load > 0.0 { self.largest_load } else { self.largest }) / self.force_unit
     }
 
-    /// q of x⁺, dimensionless; 0 where it is rounding.
-    fn reserve(&self, law: &PairLaw, pair: usize, joint: usize) -> f64 {
-        let terms = [
-            self.load[joint] / self.force_unit,
-            law.friction() * (self.load[pair] / self.force_unit),
-            law.fixed_bound() / self.force_unit,
-        ];
+    /// The terms of the force along the direction of a row, forces.
+    fn along(&self, problem: &ContactProblem, row: RowId) -> Vec<f64> {
+        row.joints(&problem.system, problem.polygon).map(|(joint, d)| d * self.load[joint]).collect()
+    }
+
+    /// q of a reserve, dimensionless; 0 where it is rounding. `along` has the terms of the force along its facet.
+    fn reserve(&self, law: &PairLaw, pair: usize, along: &[f64]) -> f64 {
+        let force = along.iter().map(|term| term / self.force_unit);
+        let bound = [law.friction() * (self.load[pair] / self.force_unit), law.fixed_bound() / self.force_unit];
+        let terms: Vec<f64> = force.chain(bound).collect();
         let sum: f64 = terms.iter().sum();
         let noise = NOISE * terms.iter().map(|term| term.abs()).sum::<f64>();
         if sum.abs() <= noise { 0.0 } else { sum }
     }
 
-    /// The smaller reserve in the main system, a force.
-    fn least_reserve(&self, law: &PairLaw, pair: usize, joint: usize) -> f64 {
-        law.friction() * self.load[pair] + law.fixed_bound() - self.load[joint].abs()
+    /// The smaller of a reserve and its mirror in the main system, a force.
+    fn least_reserve(&self, law: &PairLaw, pair: usize, along: &[f64]) -> f64 {
+        law.friction() * self.load[pair] + law.fixed_bound() - along.iter().sum::<f64>().abs()
     }
 }
 
 impl ContactLcp {
-    /// z over the joints (z_n, z_τ = z⁺ − z⁻) of a point or direction, dimensionless. With joints in force form: of a
+    /// z over the joints (z_n, z_τ = Σ ζ_k d_k, in the plane z⁺ − z⁻) of a point or direction, dimensionless. With joints in force form: of a
     /// direction.
     pub fn joint_displacements(&self, system: &ContactSystem, z: &[f64]) -> DVector<f64> {
         if system.force_form.is_some() {
@@ -198,12 +225,7 @@ impl ContactLcp {
         }
         let mut joints = DVector::zeros(system.joint_count());
         for (row, meaning) in self.rows.iter().enumerate() {
-            match (meaning.couple, system.pairs[meaning.pair].tangential) {
-                (RowKind::Normal, _) => joints[meaning.pair] += z[row],
-                (RowKind::Plus, Some(joint)) => joints[joint] += z[row],
-                (RowKind::Minus, Some(joint)) => joints[joint] -= z[row],
-                (_, None) => {}
-            }
+            meaning.joints(system, self.polygon).for_each(|(joint, d)| joints[joint] += d * z[row]);
         }
         joints
     }

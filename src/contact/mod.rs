@@ -25,6 +25,7 @@ pub mod law;
 pub mod lcp;
 pub mod load_path;
 pub mod pivoted;
+pub mod polygon;
 pub mod problem;
 pub mod refine;
 pub mod rows;

@@ -6,8 +6,10 @@ use nalgebra::DVector;
 
 use super::file_data::FileLoad;
 use super::law::PairLaw;
+use super::polygon::Polygon;
 use super::system::ContactSystem;
 use crate::lcp::exact::scalar::Scalar;
+use crate::model::rules::FACETS;
 
 /// λ = R (z − (g, 0)) + load over the joints, and what the laws demand of λ and z. The system is shared: what changes when
 /// a parameter moves is the rest.
@@ -17,6 +19,8 @@ pub struct ContactProblem {
     pub system: Arc<ContactSystem>,
     /// The law of every pair.
     pub laws: Vec<PairLaw>,
+    /// The directions in which pairs slip.
+    pub polygon: Polygon,
     /// Factor of every load case; with none the load is not made of them.
     pub factors: Vec<f64>,
     /// Σ factor·RF over the joints, forces; a history adds what its committed slips do, R z.
@@ -35,9 +39,11 @@ impl ContactProblem {
 
     /// The problem under a load whose entries are exact.
     pub fn exactly(system: &Arc<ContactSystem>, laws: Vec<PairLaw>, load: DVector<f64>) -> ContactProblem {
+        let polygon = if system.is_in_space() { Polygon::regular(FACETS, 0.0) } else { Polygon::PLANE };
         ContactProblem {
             system: Arc::clone(system),
             laws,
+            polygon,
             factors: Vec::new(),
             load_terms: load.abs(),
             load,
@@ -56,6 +62,15 @@ impl ContactProblem {
         }
         self.file_load = self.system.file.as_ref().map(|file| file.load(factors));
         self.factors = factors.to_vec();
+        self
+    }
+
+    /// The same with another polygon, where pairs are in space.
+    #[must_use]
+    pub fn with_polygon(mut self, polygon: Polygon) -> ContactProblem {
+        if self.system.is_in_space() {
+            self.polygon = polygon;
+        }
         self
     }
 

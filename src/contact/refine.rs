@@ -57,7 +57,7 @@ fn released(point: &Point) -> Basis {
     Basis { active: rows.clone(), z: rows, p: false }
 }
 
-/// An open pair that nothing holds slides either way: z⁺ < 0 is z⁻. Elsewhere what is below zero is rounding.
+/// An open pair that nothing holds slides either way: z⁺ < 0 is z⁻, and ζ < 0 of any facet that of its mirror. Elsewhere what is below zero is rounding.
 fn settle_signs(problem: &ContactProblem, contact: &ContactLcp, point: &mut Point) {
     for (row, meaning) in contact.rows.iter().enumerate() {
         if point.z[row] >= 0.0 {
@@ -65,11 +65,8 @@ fn settle_signs(problem: &ContactProblem, contact: &ContactLcp, point: &mut Poin
         }
         let i = meaning.pair;
         let is_open = contact.normal_row[i].is_some_and(|normal| point.z[normal] > 0.0);
-        let other = match meaning.couple {
-            RowKind::Normal => None,
-            RowKind::Plus => contact.minus_row[i],
-            RowKind::Minus => contact.plus_row[i],
-        };
+        let mirror = |facet: usize| (facet + contact.polygon.half()) % contact.polygon.facets();
+        let other = meaning.couple.facet().and_then(|facet| contact.facet_rows[mirror(facet)][i]);
         let moved = std::mem::take(&mut point.z[row]);
         if let Some(other) = other.filter(|_| is_open && problem.laws[i].fixed_bound() == 0.0) {
             point.z[other] -= moved;
@@ -109,11 +106,9 @@ fn rows(problem: &ContactProblem, contact: &ContactLcp, point: &Point, doubled: 
     (contact.rows.iter())
         .map(|row| {
             let sums = pair_sums(problem, &forces, (row.pair, unpressed[row.pair]));
-            let reserve = |side: usize| sums.reserves.map(|reserves| reserves[side]);
-            let sum = match row.couple {
-                RowKind::Normal => sums.normal,
-                RowKind::Plus => reserve(0),
-                RowKind::Minus => reserve(1),
+            let sum = match row.couple.facet() {
+                None => sums.normal,
+                Some(facet) => sums.reserves.get(facet).copied(),
             };
             sum.unwrap_or_default()
         })

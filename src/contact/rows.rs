@@ -1,6 +1,6 @@
 //! What each row of the LCP of a contact problem is: which pair, which of its complementary couples.
 
-use super::law::FACETS;
+use super::polygon::Polygon;
 use super::system::{ContactPair, ContactSystem};
 
 /// What a row of the full LCP stands for.
@@ -8,19 +8,21 @@ use super::system::{ContactPair, ContactSystem};
 pub enum RowKind {
     /// (x_n, z_n).
     Normal,
-    /// (x⁺, z⁺): the facet of +t.
-    Plus,
-    /// (x⁻, z⁻): the facet of −t.
-    Minus,
+    /// (x^k, ζ_k) of facet k of the friction polygon. In the plane facet 0 is (x⁺, z⁺), facet 1 (x⁻, z⁻).
+    Facet(u16),
 }
 
 impl RowKind {
-    /// d_k of the facet of a reserve (see [`FACETS`]); `None` for the normal couple.
-    pub fn direction(self) -> Option<f64> {
+    /// (x⁺, z⁺) of a pair in the plane: the facet of +t.
+    pub const PLUS: RowKind = RowKind::Facet(0);
+    /// (x⁻, z⁻): the facet of −t.
+    pub const MINUS: RowKind = RowKind::Facet(1);
+
+    /// The facet of a reserve; `None` for the normal couple.
+    pub fn facet(self) -> Option<usize> {
         match self {
             RowKind::Normal => None,
-            RowKind::Plus => Some(FACETS[0]),
-            RowKind::Minus => Some(FACETS[1]),
+            RowKind::Facet(facet) => Some(usize::from(facet)),
         }
     }
 }
@@ -44,34 +46,38 @@ pub struct RowId {
 }
 
 impl RowId {
-    /// Name of the force (`letter` x) or displacement (z) of this row: `x_n[c1]`, `z+[c1]`.
+    /// Name of the force (`letter` x) or displacement (z) of this row: `x_n[c1]`, `z+[c1]`, in space `z^3[c1]`.
     pub fn name(self, letter: char, system: &ContactSystem) -> String {
+        let pair = &system.pairs[self.pair];
         let index = match self.couple {
-            RowKind::Normal => "_n",
-            RowKind::Plus => "+",
-            RowKind::Minus => "-",
+            RowKind::Normal => "_n".to_owned(),
+            RowKind::Facet(facet) if pair.is_in_space() => format!("^{facet}"),
+            RowKind::PLUS => "+".to_owned(),
+            RowKind::Facet(_) => "-".to_owned(),
         };
-        format!("{letter}{index}[{}]", system.pairs[self.pair].id)
+        format!("{letter}{index}[{}]", pair.id)
     }
 
-    /// The joint whose displacement this row's is, or a part of it.
-    pub fn joint(self, system: &ContactSystem) -> usize {
-        match self.couple {
-            RowKind::Normal => self.pair,
-            RowKind::Plus | RowKind::Minus => tangential_joint(system, self.pair),
-        }
+    /// The joints whose displacements this row's goes into, with its components along them: the normal joint, or those of
+    /// d_k along the tangential ones. The force of the row feels the same joints by the same factors.
+    pub fn joints(self, system: &ContactSystem, polygon: Polygon) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let (joints, components) = match self.couple.facet() {
+            None => (self.pair..self.pair + 1, [1.0, 0.0]),
+            Some(facet) => (system.pairs[self.pair].tangential.clone(), polygon.direction(facet)),
+        };
+        joints.zip(components)
     }
 }
 
-/// The rows of the full LCP: x_n of all pairs that open, then x⁺ of all that have a tangential joint, then their x⁻.
-pub fn rows(system: &ContactSystem) -> Vec<RowId> {
+/// The rows of the full LCP: x_n of all pairs that open, then facet by facet the reserves of all that have tangential joints.
+/// Those of the second half of the facets are mirrors of the first half.
+pub fn rows(system: &ContactSystem, polygon: Polygon) -> Vec<RowId> {
     let of = |couple: RowKind, has: fn(&ContactPair) -> bool| {
         let pairs = system.pairs.iter().enumerate().filter(move |(_, pair)| has(pair));
         pairs.map(move |(pair, _)| RowId { pair, couple })
     };
-    let opens: fn(&ContactPair) -> bool = |pair| !pair.law.is_bilateral();
-    let slips: fn(&ContactPair) -> bool = |pair| pair.tangential.is_some();
-    of(RowKind::Normal, opens).chain(of(RowKind::Plus, slips)).chain(of(RowKind::Minus, slips)).collect()
+    let facets = (0..polygon.facets()).flat_map(|facet| of(RowKind::Facet(facet as u16), ContactPair::rubs));
+    of(RowKind::Normal, |pair| !pair.law.is_bilateral()).chain(facets).collect()
 }
 
 /// For each pair the row of one of its couples.
@@ -81,10 +87,7 @@ pub fn rows_of(rows: &[RowId], pairs: usize, couple: RowKind) -> Vec<Option<usiz
     of
 }
 
-/// Row of R of the tangential joint of a pair that has one.
-///
-/// # Panics
-/// If the pair has none: only pairs with a bound have rows of reserves.
-pub(crate) fn tangential_joint(system: &ContactSystem, pair: usize) -> usize {
-    system.pairs[pair].tangential.expect("a pair with a friction bound has a tangential joint")
+/// The same of every facet of the polygon.
+pub fn facet_rows(rows: &[RowId], pairs: usize, polygon: Polygon) -> Vec<Vec<Option<usize>>> {
+    (0..polygon.facets()).map(|facet| rows_of(rows, pairs, RowKind::Facet(facet as u16))).collect()
 }

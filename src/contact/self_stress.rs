@@ -56,7 +56,7 @@ pub fn may_hold_otherwise(problem: &ContactProblem, z: &DVector<f64>) -> Vec<usi
     };
     // Another motion need not slip where this one does.
     let mut sticking = z.clone();
-    system.pairs.iter().filter_map(|pair| pair.tangential).for_each(|joint| sticking[joint] = 0.0);
+    system.pairs.iter().flat_map(|pair| pair.tangential.clone()).for_each(|joint| sticking[joint] = 0.0);
     let mut pairs: Vec<usize> = (clusters(system, &form.self_stress).into_iter())
         .map(|pairs| Cluster { problem, z: &sticking, pairs })
         .filter(|cluster| cluster.pairs.iter().any(|&pair| problem.laws[pair].friction() > 0.0))
@@ -67,7 +67,7 @@ pub fn may_hold_otherwise(problem: &ContactProblem, z: &DVector<f64>) -> Vec<usi
 }
 
 fn joints_of(system: &ContactSystem, pair: usize) -> impl Iterator<Item = usize> {
-    std::iter::once(pair).chain(system.pairs[pair].tangential)
+    std::iter::once(pair).chain(system.pairs[pair].plane_tangential())
 }
 
 /// Groups of pairs that self-stress connects.
@@ -127,7 +127,7 @@ impl Cluster<'_> {
             } else if !pair.law.is_bilateral() {
                 positive.push(normal());
             }
-            let Some(joint) = pair.tangential else { continue };
+            let Some(joint) = pair.plane_tangential() else { continue };
             let f = if open { 0.0 } else { self.problem.laws[i].friction() };
             let constant = self.problem.laws[i].fixed_bound();
             let reserve = |side: f64| {

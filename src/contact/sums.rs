@@ -94,25 +94,34 @@ fn condensed_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
 }
 
 /// What the laws bound from below in a pair: each ≥ 0 in an answer.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PairSums {
     /// x_n; `None` where the normal joint is bilateral.
     pub normal: Option<Sum>,
-    /// x⁺ and x⁻; `None` without friction.
-    pub reserves: Option<[Sum; 2]>,
+    /// The reserve of every facet, in the plane x⁺ and x⁻; none without friction.
+    pub reserves: Vec<Sum>,
 }
 
 /// x_n and the reserves of a pair under joint forces. An open pair has x_n = 0, not the rounding of a stiff joint's λ, in
 /// its bound.
 pub fn pair_sums(problem: &ContactProblem, forces: &[Sum], (pair, is_open): (usize, bool)) -> PairSums {
-    let system = &*problem.system;
-    let normal = (!system.pairs[pair].law.is_bilateral()).then(|| forces[pair]);
-    let reserves = system.pairs[pair].tangential.map(|joint| {
-        let fixed = Sum::exactly(problem.laws[pair].fixed_bound());
-        let bound = if is_open { fixed } else { fixed.plus(problem.laws[pair].friction(), forces[pair]) };
-        [bound.plus(1.0, forces[joint]), bound.plus(-1.0, forces[joint])]
-    });
-    PairSums { normal, reserves }
+    let of = &problem.system.pairs[pair];
+    let normal = (!of.law.is_bilateral()).then(|| forces[pair]);
+    if !of.rubs() {
+        return PairSums { normal, reserves: Vec::new() };
+    }
+    let bound = friction_bound(problem, forces, (pair, is_open));
+    let reserve = |facet: usize| {
+        let along = of.tangential.clone().zip(problem.polygon.direction(facet));
+        along.fold(bound, |sum, (joint, d)| sum.plus(d, forces[joint]))
+    };
+    PairSums { normal, reserves: (0..problem.polygon.facets()).map(reserve).collect() }
+}
+
+/// f x_n + c of a pair under joint forces, x_n = 0 where it is open.
+pub fn friction_bound(problem: &ContactProblem, forces: &[Sum], (pair, is_open): (usize, bool)) -> Sum {
+    let fixed = Sum::exactly(problem.laws[pair].fixed_bound());
+    if is_open { fixed } else { fixed.plus(problem.laws[pair].friction(), forces[pair]) }
 }
 
 /// What share of the forces hangs on the displacement of a joint: max over the rows of |R_ik z_k| / Σ |terms|, 0 … 1. A z

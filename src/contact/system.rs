@@ -1,5 +1,6 @@
 //! The structure condensed to its contact joints: CSM, CLV per load case, and what is known of the pairs.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
@@ -20,10 +21,31 @@ pub struct ContactPair {
     pub law: Law,
     /// Place in the plane; for a contact system read from a file [s, 0], or `None` without positions.
     pub position: Option<[f64; 2]>,
+    /// n and t1 of a pair of a structure in space.
+    pub frame: Option<[[f64; 3]; 2]>,
     /// Number of the joint it belongs to: a line along which its pairs follow one another.
     pub joint: usize,
-    /// Row of the tangential joint in R; `None` for a frictionless pair. The normal joint of pair i is row i.
-    pub tangential: Option<usize>,
+    /// Rows of its tangential joints in R: one along t in the plane, t1 and t2 in space, none of a frictionless pair. The
+    /// normal joint of pair i is row i.
+    pub tangential: Range<usize>,
+}
+
+impl ContactPair {
+    /// Whether it has tangential joints.
+    pub fn rubs(&self) -> bool {
+        !self.tangential.is_empty()
+    }
+
+    /// Whether it slips in a plane of directions, along t1 and t2.
+    pub fn is_in_space(&self) -> bool {
+        self.tangential.len() == 2
+    }
+
+    /// The tangential joint of a pair in the plane: for what [`ContactSystem::space_refusal`] keeps out of space.
+    pub fn plane_tangential(&self) -> Option<usize> {
+        debug_assert!(!self.is_in_space(), "pair {} has two tangential joints", self.id);
+        self.tangential.clone().next()
+    }
 }
 
 /// A load case on the joints.
@@ -87,6 +109,16 @@ impl ContactSystem {
         self.stiffness.nrows()
     }
 
+    /// Whether pairs slip in a plane of directions: what their friction polygon has more than two facets for.
+    pub fn is_in_space(&self) -> bool {
+        self.pairs.iter().any(ContactPair::is_in_space)
+    }
+
+    /// Why `command` cannot be used in space; `None` in the plane.
+    pub fn space_refusal(&self, command: &str) -> Option<String> {
+        self.is_in_space().then(|| format!("`{command}` works in the plane only so far; this problem is in space"))
+    }
+
     /// Whether the force of a joint is the unknown.
     pub fn is_forced(&self, joint: usize) -> bool {
         self.force_form.as_ref().is_some_and(|form| form.joints[joint])
@@ -96,7 +128,7 @@ impl ContactSystem {
     pub fn refusal(&self, command: &str) -> Option<String> {
         let form = self.force_form.as_ref()?;
         let felt = |joint: usize| form.self_stress.row(joint).amax() > 0.0;
-        let of_pair = |(i, pair): &(usize, &ContactPair)| felt(*i) || pair.tangential.is_some_and(felt);
+        let of_pair = |(i, pair): &(usize, &ContactPair)| felt(*i) || pair.tangential.clone().any(felt);
         let ids: Vec<&str> = self.pairs.iter().enumerate().filter(of_pair).map(|(_, pair)| pair.id.as_str()).collect();
         if ids.is_empty() {
             return Some(format!("`{command}` needs a contact stiffness matrix, and a singular compliance has none"));

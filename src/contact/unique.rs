@@ -119,7 +119,7 @@ impl Form {
             motion.normalize_mut();
         });
         let stretch: Vec<f64> = (system.pairs.iter().enumerate())
-            .map(|(i, pair)| pair.tangential.map_or(0.0, |joint| sizes[joint] / sizes[i]))
+            .map(|(i, pair)| pair.plane_tangential().map_or(0.0, |joint| sizes[joint] / sizes[i]))
             .collect();
         let form = |weight: f64| {
             let normals = system.pair_count();
@@ -157,7 +157,7 @@ impl Form {
         let slips = |v: &DVector<f64>| {
             let mut slipped = DVector::zeros(k);
             for (i, pair) in system.pairs.iter().enumerate() {
-                if let Some(joint) = pair.tangential {
+                if let Some(joint) = pair.plane_tangential() {
                     slipped[joint] = frictions[i] * self.stretch[i] * v[joint];
                 }
             }
@@ -194,7 +194,7 @@ impl Form {
             });
             a -= &pressed * pressed.transpose();
             for &i in &columns {
-                if let Some(joint) = system.pairs[i].tangential {
+                if let Some(joint) = system.pairs[i].plane_tangential() {
                     a[(joint, joint)] -= 0.5 * share(i) / self.alpha;
                 }
             }

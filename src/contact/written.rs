@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::polygon::Polygon;
 use super::rows::{Quantity, RowId, RowKind};
 use super::system::ContactSystem;
 use nalgebra::DVector;
@@ -41,10 +42,10 @@ pub struct ContactLcp {
     pub length_unit: f64,
     /// Row of the full LCP of each pair's couples.
     pub normal_row: Vec<Option<usize>>,
-    /// Likewise for x⁺.
-    pub plus_row: Vec<Option<usize>>,
-    /// Likewise for x⁻.
-    pub minus_row: Vec<Option<usize>>,
+    /// Likewise facet by facet; in the plane x⁺, then x⁻.
+    pub facet_rows: Vec<Vec<Option<usize>>>,
+    /// The facets.
+    pub polygon: Polygon,
     /// Of each row of the full LCP: whether its w is the displacement and its z the force ([`super::force_form`]).
     pub swapped: Vec<bool>,
 }
@@ -86,8 +87,11 @@ impl ContactLcp {
             if let Some(row) = self.normal_row[i] {
                 rows[row] = forces[i] / unit;
             }
-            if let (Some(row), Some(joint)) = (self.plus_row[i], pair.tangential) {
-                rows[row] = forces[joint] / unit + friction[i] * (forces[i] / unit) + fixed[i] / unit;
+            for facet in 0..self.polygon.half() {
+                let Some(row) = self.facet_rows[facet][i] else { continue };
+                let along = pair.tangential.clone().zip(self.polygon.direction(facet));
+                let force = along.map(|(joint, d)| d * (forces[joint] / unit)).sum::<f64>();
+                rows[row] = force + friction[i] * (forces[i] / unit) + fixed[i] / unit;
             }
         }
         rows
@@ -124,7 +128,7 @@ impl ContactLcp {
     pub fn covering_of(&self, pair: usize) -> (f64, f64) {
         let covers = |row: &usize| !self.swapped[*row];
         let read = |row: Option<usize>| row.filter(covers).map_or(0.0, |row| self.lcp.covering[row]);
-        (read(self.normal_row[pair]), read(self.plus_row[pair]))
+        (read(self.normal_row[pair]), read(self.facet_rows[0][pair]))
     }
 
     /// What p (user's units) adds to z_n of a pair whose normal joint is in force form; 0 for all others.

@@ -5,7 +5,7 @@
 use nalgebra::DVector;
 
 use super::motions::FreeMotions;
-use crate::contact::law::FACETS;
+use crate::contact::law::SENSES;
 use crate::contact::problem::ContactProblem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 
@@ -48,7 +48,7 @@ fn forces(problem: &ContactProblem, motions: &FreeMotions, size: f64) -> Forces 
         }
     };
     for (pair, law) in problem.laws.iter().enumerate() {
-        let tangential = system.pairs[pair].tangential;
+        let tangential = system.pairs[pair].plane_tangential();
         let touched = |joint: usize| !motions.row(joint).is_empty();
         if !touched(pair) && !tangential.is_some_and(touched) {
             continue;
@@ -62,7 +62,7 @@ fn forces(problem: &ContactProblem, motions: &FreeMotions, size: f64) -> Forces 
         let Some(joint) = tangential.filter(|_| f > 0.0 || c > 0.0) else { continue };
         let slip = program.variable(0.0);
         put(slip, joint);
-        for sign in FACETS {
+        for sign in SENSES {
             program.at_most(vec![(slip, sign), (normal, -f)], c);
         }
     }

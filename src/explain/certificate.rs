@@ -23,7 +23,7 @@ use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved};
 use super::motions::{Entry, FreeMotions};
 use super::proof::{BUDGET, Certificate, CertificateSearch};
-use crate::contact::law::FACETS;
+use crate::contact::law::SENSES;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::lcp::exact::dyadic::{nearest, rational};
@@ -89,7 +89,7 @@ fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Vec<(usize, f64)> {
 
 impl MotionProgram<'_> {
     fn tangential(&self, pair: usize) -> &[Entry] {
-        self.problem.system.pairs[pair].tangential.map_or(&[], |joint| self.motions.row(joint))
+        self.problem.system.pairs[pair].plane_tangential().map_or(&[], |joint| self.motions.row(joint))
     }
 
     /// Every inequality that some motion touches.
@@ -98,7 +98,7 @@ impl MotionProgram<'_> {
         for (pair, law) in self.problem.laws.iter().enumerate().filter(|(_, law)| !law.is_bilateral()) {
             let normal = self.motions.row(pair);
             let f = law.friction();
-            let sides: &[f64] = if f > 0.0 { &FACETS } else { &[0.0] };
+            let sides: &[f64] = if f > 0.0 { &SENSES } else { &[0.0] };
             for &side in sides {
                 let terms = combined(normal, -side * f, self.tangential(pair));
                 if !terms.is_empty() {
@@ -266,7 +266,7 @@ impl MotionProgram<'_> {
         for (pair, law) in self.problem.laws.iter().enumerate() {
             let normal = self.motions.displacement(pair, amounts);
             let slip = self.problem.system.pairs[pair]
-                .tangential
+                .plane_tangential()
                 .map_or(Sum::default(), |joint| self.motions.displacement(joint, amounts));
             let (f, c) = (law.friction(), law.fixed_bound());
             taken = taken.plus(c, Sum { value: slip.value.abs(), ..slip });
@@ -285,7 +285,7 @@ impl MotionProgram<'_> {
             let holds = if law.is_bilateral() {
                 value(self.exact_terms(pair, 0.0)).is_zero()
             } else {
-                FACETS.iter().all(|side| {
+                SENSES.iter().all(|side| {
                     let slack = value(self.exact_terms(pair, *side));
                     slack.is_zero() || nearest(&slack) > error
                 })

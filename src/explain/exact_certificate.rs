@@ -14,7 +14,7 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 
 use super::proof::{Certificate, CertificateSearch};
-use crate::contact::law::{FACETS, PairLaw};
+use crate::contact::law::{PairLaw, SENSES};
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::exact_system::ExactSystem;
 use crate::lcp::exact::dyadic::{WholeRows, nearest, rational};
@@ -51,7 +51,7 @@ pub(super) fn certify_exactly(problem: &ContactProblem, end: Instant) -> Certifi
         .map(|joint| (0..motions.len()).map(|k| polyhedron.value(k) * &motions[k][joint]).sum())
         .collect();
     let power: BigRational = -direction.iter().zip(&exact.constants).map(|(z, load)| z * load).sum::<BigRational>();
-    let slip = |pair: usize| system.pairs[pair].tangential.map_or(0.0, |joint| nearest(&direction[joint]));
+    let slip = |pair: usize| system.pairs[pair].plane_tangential().map_or(0.0, |joint| nearest(&direction[joint]));
     let dissipation: f64 = laws.iter().enumerate().map(|(i, law)| law.fixed_bound() * slip(i).abs()).sum();
     let direction = DVector::from_iterator(direction.len(), direction.iter().map(nearest));
     let largest = direction.amax();
@@ -80,8 +80,9 @@ fn program(exact: &ExactSystem<'_>, laws: &[PairLaw], motions: &[Vec<BigRational
     let mut add = |pair: usize, [by_n, by_t]: [BigRational; 2], v: Option<usize>| {
         let mut row = vec![BigRational::zero(); width];
         for (entry, motion) in row.iter_mut().zip(motions) {
-            let tangential =
-                exact.problem.system.pairs[pair].tangential.map_or(BigRational::zero(), |joint| motion[joint].clone());
+            let tangential = exact.problem.system.pairs[pair]
+                .plane_tangential()
+                .map_or(BigRational::zero(), |joint| motion[joint].clone());
             *entry = &by_n * &motion[pair] + &by_t * tangential;
         }
         if let Some(v) = v {
@@ -96,7 +97,7 @@ fn program(exact: &ExactSystem<'_>, laws: &[PairLaw], motions: &[Vec<BigRational
             add(pair, [one(), zero()], None);
             add(pair, [-one(), zero()], None);
         } else if f > 0.0 {
-            FACETS.iter().for_each(|side| add(pair, [one(), rational(side * f)], None));
+            SENSES.iter().for_each(|side| add(pair, [one(), rational(side * f)], None));
         } else {
             add(pair, [one(), zero()], None);
         }

@@ -93,8 +93,8 @@ fn what(scheme: &FinalScheme, variable: Variable) -> (usize, &'static str) {
     let words = match (meaning.couple, force) {
         (RowKind::Normal, true) => "loses its contact force",
         (RowKind::Normal, false) => "comes into contact",
-        (RowKind::Plus, true) => "uses up its reserve x+",
-        (RowKind::Minus, true) => "uses up its reserve x-",
+        (RowKind::PLUS, true) => "uses up its reserve x+",
+        (RowKind::Facet(_), true) => "uses up its reserve x-",
         (_, false) => "stops slipping",
     };
     (meaning.pair, words)

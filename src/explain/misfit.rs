@@ -64,7 +64,7 @@ pub fn misfit(problem: &ContactProblem) -> Option<Misfit> {
     let unilateral: Vec<usize> =
         (0..system.pairs.len()).filter(|&i| !system.pairs[i].law.is_bilateral() && !row(i).is_empty()).collect();
     let tangential: Vec<usize> =
-        system.pairs.iter().filter_map(|pair| pair.tangential).filter(|&joint| !row(joint).is_empty()).collect();
+        system.pairs.iter().flat_map(|pair| pair.tangential.clone()).filter(|&joint| !row(joint).is_empty()).collect();
     let mut program = LinearProgram::default();
     let size = rooms.iter().fold(0.0, |a: f64, (_, size)| a.max(*size));
     for (k, (room, _)) in rooms.iter().enumerate() {

@@ -266,7 +266,7 @@ pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<Strin
     let mut kinds: HashMap<&str, Vec<usize>> = HashMap::new();
     for i in 0..system.pairs.len() {
         let z_n = direction[i];
-        let z_t = system.pairs[i].tangential.map_or(0.0, |joint| direction[joint]);
+        let z_t = system.pairs[i].plane_tangential().map_or(0.0, |joint| direction[joint]);
         let kind = if z_n > STILL * largest {
             "open"
         } else if z_n < -STILL * largest {

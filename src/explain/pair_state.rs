@@ -19,6 +19,11 @@ pub fn cause(pair: &PairState, units: &Units) -> String {
         State::Closed => {
             format!("it is pressed together with x_n = {}, and without friction x_t = 0", force(pair.x_n))
         }
+        State::Stick if pair.space.is_some() => format!(
+            "its friction force |x_t| = {} does not exceed the bound {bound}; its reserve is {}",
+            force(x_t),
+            force(pair.reserve())
+        ),
         State::Stick if pair.reserve_plus.min(pair.reserve_minus) <= AT_LIMIT * pair.bound.abs() => {
             format!("it stands exactly at its limit, |x_t| = {} = bound {bound}, but has not moved", force(x_t.abs()))
         }
@@ -32,6 +37,11 @@ pub fn cause(pair: &PairState, units: &Units) -> String {
             "its reserve x+ is used up: x_t = {} stands at the bound -{bound}, and it has slipped {} along +t",
             force(x_t),
             length(pair.z_t)
+        ),
+        State::Slip => format!(
+            "friction stands at its bound {bound} against the slip, and it has slipped {} towards {}° from t1",
+            length(pair.z_t),
+            short(pair.direction().unwrap_or_default())
         ),
         State::SlipMinus => format!(
             "its reserve x- is used up: x_t = {} stands at the bound {bound}, and it has slipped {} along -t",

@@ -100,7 +100,7 @@ pub fn classify(
         let pair = (0..system.pairs.len()).find(|&i| {
             let grows =
                 |row: Option<usize>| row.is_some_and(|row| !contact.swapped[row] && ray.z[row] > 0.5 * largest_z);
-            grows(contact.plus_row[i]) && grows(contact.minus_row[i])
+            grows(contact.facet_rows[0][i]) && grows(contact.facet_rows[1][i])
         });
         if pair.is_some() {
             return (DVector::zeros(system.joint_count()), RayClass::Artefact, pair);
@@ -377,7 +377,7 @@ impl RayReport {
                     .map(|(i, pair)| PairDirection {
                         pair: pair.id.clone(),
                         z_n: self.direction[i],
-                        z_t: pair.tangential.map_or(0.0, |joint| self.direction[joint]),
+                        z_t: pair.plane_tangential().map_or(0.0, |joint| self.direction[joint]),
                     })
                     .collect(),
             ),

@@ -57,7 +57,7 @@ fn turn(
     let released = quantity == Quantity::Displacement;
     let meaning = contact.rows[row];
     let scheme = &mut schemes[meaning.pair];
-    let frictionless = system.pairs[meaning.pair].tangential.is_none();
+    let frictionless = !system.pairs[meaning.pair].rubs();
     let closed_word = if frictionless { "closed" } else { scheme.tangential.word() };
     let (joint, from, to) = match (meaning.couple, released) {
         (RowKind::Normal, true) => {
@@ -71,8 +71,8 @@ fn turn(
         (couple, released) => {
             let from = scheme.tangential.word();
             scheme.tangential = match (couple, released) {
-                (RowKind::Plus, true) => Tangential::SlipPlus,
-                (RowKind::Minus, true) => Tangential::SlipMinus,
+                (RowKind::PLUS, true) => Tangential::SlipPlus,
+                (RowKind::Facet(_), true) => Tangential::SlipMinus,
                 _ => Tangential::Stick,
             };
             (TurnedJoint::Tangential, from, scheme.tangential.word())
@@ -144,8 +144,8 @@ impl Sentence<'_> {
         match (meaning.couple, force) {
             (RowKind::Normal, true) => format!("pair {pair} loses its contact force"),
             (RowKind::Normal, false) => format!("pair {pair} comes back into contact"),
-            (RowKind::Plus, true) => format!("pair {pair} uses up its reserve x+"),
-            (RowKind::Minus, true) => format!("pair {pair} uses up its reserve x-"),
+            (RowKind::PLUS, true) => format!("pair {pair} uses up its reserve x+"),
+            (RowKind::Facet(_), true) => format!("pair {pair} uses up its reserve x-"),
             (_, false) if open => format!("the slip of open pair {pair} comes back to zero"),
             (_, false) => format!("pair {pair} has slipped back to zero"),
         }

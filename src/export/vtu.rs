@@ -20,6 +20,7 @@ pub fn state_number(state: State) -> i32 {
         State::SlipPlus => 2,
         State::SlipMinus => 3,
         State::Closed => 4,
+        State::Slip => 5,
     }
 }
 

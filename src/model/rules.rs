@@ -55,8 +55,11 @@ pub struct UnknownChoice {
     pub expected: &'static str,
 }
 
-/// The three choices together.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// K of the friction polygon in space where nothing else is said.
+pub const FACETS: u16 = 8;
+
+/// The choices together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rules {
     /// Covering vector.
     pub covering: Covering,
@@ -64,6 +67,22 @@ pub struct Rules {
     pub tie_break: TieBreak,
     /// Engine.
     pub engine: Engine,
+    /// K, the facets of the friction polygon of pairs in space: even, at least 4.
+    pub facets: u16,
+    /// Whether the answer of a problem in space is taken from the polygon to Coulomb's cone.
+    pub cone: bool,
+}
+
+impl Default for Rules {
+    fn default() -> Rules {
+        Rules {
+            covering: Covering::default(),
+            tie_break: TieBreak::default(),
+            engine: Engine::default(),
+            facets: FACETS,
+            cone: true,
+        }
+    }
 }
 
 impl Rules {

@@ -144,7 +144,7 @@ pub(super) fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>,
 fn within_reason(problem: &ContactProblem, slips: &[f64]) -> Result<(), PathError> {
     let (system, loads) = (&problem.system, problem.load_terms.amax());
     for (pair, slip) in std::iter::zip(&system.pairs, slips) {
-        let Some(joint) = pair.tangential else { continue };
+        let Some(joint) = pair.plane_tangential() else { continue };
         let force = system.stiffness.column(joint).amax() * slip.abs();
         if !force.is_finite() || (loads > 0.0 && force > MOST_FORCE * loads) {
             return Err(PathError::Missing(format!(
@@ -207,7 +207,7 @@ pub(super) fn followed(
 
 /// The largest displacement of a tangential joint under a unit force, the others held.
 fn softest(system: &ContactSystem) -> f64 {
-    let joints = system.pairs.iter().filter_map(|pair| pair.tangential);
+    let joints = system.pairs.iter().flat_map(|pair| pair.tangential.clone());
     let stiffness = joints.map(|joint| system.stiffness[(joint, joint)]).filter(|stiffness| *stiffness > 0.0);
     stiffness.map(f64::recip).fold(0.0, f64::max)
 }

@@ -153,7 +153,7 @@ fn extreme_slips(
 ) -> Result<Vec<(String, Vec<f64>)>, PathError> {
     let system = &*problem.system;
     let mut moving: Vec<usize> = (0..system.pair_count()).filter(|&i| open[i]).collect();
-    moving.extend(system.pairs.iter().filter_map(|pair| pair.tangential));
+    moving.extend(system.pairs.iter().flat_map(|pair| pair.tangential.clone()));
     let constants = problem.joint_constants();
     let stiffness = system.stiffness.diagonal().amax();
     let force = constants.amax();
@@ -174,7 +174,7 @@ fn extreme_slips(
         } else if !law.is_bilateral() {
             program.at_most(row(i, -1.0), constants[i] / force);
         }
-        let Some(joint) = pair.tangential else { continue };
+        let Some(joint) = pair.plane_tangential() else { continue };
         let (f, c) = (if open[i] { 0.0 } else { law.friction() }, law.fixed_bound());
         for sign in [1.0, -1.0] {
             let mut terms = row(joint, sign);
@@ -187,7 +187,7 @@ fn extreme_slips(
     }
     let mut found = Vec::new();
     for (place, &joint) in moving.iter().enumerate() {
-        let Some(pair) = system.pairs.iter().position(|pair| pair.tangential == Some(joint)) else { continue };
+        let Some(pair) = system.pairs.iter().position(|pair| pair.plane_tangential() == Some(joint)) else { continue };
         if open[pair] {
             continue;
         }
@@ -199,7 +199,7 @@ fn extreme_slips(
             let Outcome::Optimum(optimum) = program.solve(SECONDS) else { continue };
             let mut slips = DVector::zeros(system.joint_count());
             moving.iter().zip(&optimum.x).for_each(|(&joint, x)| slips[joint] = x * length);
-            let of_pair = |pair: &ContactPair| pair.tangential.map_or(0.0, |joint| slips[joint]);
+            let of_pair = |pair: &ContactPair| pair.plane_tangential().map_or(0.0, |joint| slips[joint]);
             found.push((format!("{word} {}", system.pairs[pair].id), system.pairs.iter().map(of_pair).collect()));
         }
     }

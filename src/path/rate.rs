@@ -74,7 +74,7 @@ pub(crate) fn rate_lcp(
         if let Some(row) = contact.normal_row[i] {
             lcp.covering[row] = load[i];
         }
-        let (Some(row), Some(joint)) = (contact.plus_row[i], pair.tangential) else {
+        let (Some(row), Some(joint)) = (contact.facet_rows[0][i], pair.plane_tangential()) else {
             continue;
         };
         let rate = &rates.laws[i];

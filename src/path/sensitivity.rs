@@ -115,16 +115,16 @@ pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathE
                 let row = |row: Option<usize>| row.map(|row| direction.w[row] * contact.force_unit);
                 let of_joint = |value: f64, joint: usize| if forces[joint].is_zero() { 0.0 } else { value };
                 let x_n = of_joint(row(contact.normal_row[i]).unwrap_or(forces[i].value), i);
-                let reserves = (row(contact.plus_row[i]), row(contact.minus_row[i]));
+                let reserves = (row(contact.facet_rows[0][i]), row(contact.facet_rows[1][i]));
                 PairRate {
                     pair: pair.id.clone(),
                     x_n,
-                    x_t: match (reserves, pair.tangential) {
+                    x_t: match (reserves, pair.plane_tangential()) {
                         ((Some(plus), Some(minus)), Some(joint)) => of_joint(0.5 * (plus - minus), joint),
                         _ => 0.0,
                     },
                     z_n: contact.normal_row[i].map_or(0.0, |_| z[i]),
-                    z_t: pair.tangential.map_or(shown[i].z_t, |joint| z[joint]),
+                    z_t: pair.plane_tangential().map_or(shown[i].z_t, |joint| z[joint]),
                 }
             })
             .collect();
@@ -144,9 +144,9 @@ fn rates_of_state(system: &ContactSystem, state: &JointState, shown: &[PairState
         .map(|(i, (pair, shown))| PairRate {
             pair: pair.id.clone(),
             x_n: force(i),
-            x_t: pair.tangential.map_or(0.0, force),
+            x_t: pair.plane_tangential().map_or(0.0, force),
             z_n: state.z[i],
-            z_t: pair.tangential.map_or(shown.z_t, |joint| state.z[joint]),
+            z_t: pair.plane_tangential().map_or(shown.z_t, |joint| state.z[joint]),
         })
         .collect()
 }

@@ -83,7 +83,7 @@ fn coupled(problem: &ContactProblem) -> Option<(usize, usize)> {
     let floor = if system.rounded { STORED_ZERO } else { 0.0 };
     let unilateral = (0..system.pair_count()).filter(|&i| !problem.laws[i].is_bilateral());
     unilateral.into_iter().find_map(|i| {
-        let slips = system.pairs.iter().enumerate().filter_map(|(j, pair)| Some((j, pair.tangential?)));
+        let slips = system.pairs.iter().enumerate().filter_map(|(j, pair)| Some((j, pair.plane_tangential()?)));
         let strong = |t: usize| r[(i, t)].abs() > floor * (r[(i, i)] * r[(t, t)]).max(0.0).sqrt();
         slips.into_iter().find(|&(_, t)| strong(t)).map(|(j, _)| (i, j))
     })
@@ -93,7 +93,7 @@ impl Place {
     fn of(problem: &ContactProblem, moment: &Moment) -> Place {
         let there = problem.clone().with_factors(&moment.factors);
         let pairs = problem.system.pairs.iter().zip(&moment.pairs);
-        let bounds = pairs.map(|(pair, state)| pair.tangential.map(|_| state.bound)).collect();
+        let bounds = pairs.map(|(pair, state)| pair.plane_tangential().map(|_| state.bound)).collect();
         Place { t: moment.t, bounds, load: there.load, terms: there.load_terms }
     }
 }
@@ -101,7 +101,7 @@ impl Place {
 impl Search<'_> {
     fn new<'p>(problem: &'p ContactProblem, places: &[Place]) -> Search<'p> {
         let pairs = problem.system.pairs.iter().enumerate();
-        let joints: Vec<(usize, usize)> = pairs.filter_map(|(i, pair)| Some((i, pair.tangential?))).collect();
+        let joints: Vec<(usize, usize)> = pairs.filter_map(|(i, pair)| Some((i, pair.plane_tangential()?))).collect();
         let bounds = places.iter().flat_map(|place| place.bounds.iter().flatten());
         let loads = places.iter().flat_map(|place| joints.iter().map(|&(_, t)| &place.load[t]));
         let force = bounds.chain(loads).fold(0.0, |most: f64, value| most.max(value.abs()));

@@ -132,7 +132,7 @@ impl Prepared {
             let pair = |(i, pair): (usize, &ContactPair)| PairDirection {
                 pair: pair.id.clone(),
                 z_n: direction[i],
-                z_t: pair.tangential.map_or(0.0, |joint| direction[joint]),
+                z_t: pair.plane_tangential().map_or(0.0, |joint| direction[joint]),
             };
             Moving::Pairs(system.pairs.iter().enumerate().map(pair).collect())
         };
@@ -163,7 +163,7 @@ impl Prepared {
         let contact = contact_lcp(problem, Covering::default())?;
         let mut z = vec![0.0; contact.rows.len()];
         for (value, row) in z.iter_mut().zip(&contact.rows) {
-            let tangential = system.pairs[row.pair].tangential;
+            let tangential = system.pairs[row.pair].plane_tangential();
             let slip = tangential.map_or(0.0, |joint| candidate.state.z[joint]);
             // What the scheme holds is zero, not the rounding of a linear program.
             let scheme = candidate.schemes.first().map(|scheme| scheme[row.pair]);
@@ -179,9 +179,9 @@ impl Prepared {
             *value = match row.couple {
                 RowKind::Normal if scheme.is_some_and(|scheme| !scheme.open) => 0.0,
                 RowKind::Normal => candidate.state.z[row.pair].max(0.0),
-                RowKind::Plus if free(true) => slip.max(0.0),
-                RowKind::Minus if free(false) => (-slip).max(0.0),
-                RowKind::Plus | RowKind::Minus => 0.0,
+                RowKind::PLUS if free(true) => slip.max(0.0),
+                RowKind::Facet(_) if free(false) => (-slip).max(0.0),
+                RowKind::Facet(_) => 0.0,
             } / contact.length_unit;
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };

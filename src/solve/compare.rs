@@ -53,7 +53,7 @@ impl Prepared {
     ///
     /// # Errors
     /// Stopped from outside.
-    pub fn compare(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<Comparison, SolveError> {
+    pub fn compare(&self, values: &ParameterValues, rules: Rules, watch: &dyn Watch) -> Result<Comparison, SolveError> {
         let factors = factors(self, values);
         let pairs = match &*self.geometry {
             Geometry::Plain { lcp, .. } => lcp.size().div_ceil(3),
@@ -82,7 +82,7 @@ impl Prepared {
             for &tie_break in ties {
                 for &engine in &engines {
                     watch.progress("comparing rules", rows.len() as f64 / all as f64);
-                    let rules = Rules { covering, tie_break, engine };
+                    let rules = Rules { covering, tie_break, engine, ..rules };
                     let solved = self.attempt(values, &factors, rules, watch);
                     rows.push(row(rules, solved, &mut found)?);
                 }

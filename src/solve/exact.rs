@@ -131,7 +131,8 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
             },
             (State::SlipPlus, _) => PairScheme::SLIP_PLUS,
             (State::SlipMinus, _) => PairScheme::SLIP_MINUS,
-            (State::Stick | State::Closed, _) => PairScheme::STICK,
+            // A slip in space is none of these; who asks for schemes refuses it.
+            (State::Stick | State::Closed | State::Slip, _) => PairScheme::STICK,
         })
         .collect();
     let RunData::Contact { contact, problem, pivots, .. } = &solved.run else {
@@ -146,8 +147,8 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
         let scheme = &mut schemes[meaning.pair];
         match meaning.couple {
             RowKind::Normal => scheme.open = true,
-            RowKind::Plus => scheme.tangential = Tangential::SlipPlus,
-            RowKind::Minus => scheme.tangential = Tangential::SlipMinus,
+            RowKind::PLUS => scheme.tangential = Tangential::SlipPlus,
+            RowKind::Facet(_) => scheme.tangential = Tangential::SlipMinus,
         }
     }
     for (i, scheme) in schemes.iter_mut().enumerate() {

@@ -129,7 +129,7 @@ impl Prepared {
                     let mut forces = DVector::zeros(system.joint_count());
                     for (i, (pair, shown)) in system.pairs.iter().zip(&*pairs).enumerate() {
                         forces[i] = shown.x_n;
-                        pair.tangential.into_iter().for_each(|joint| forces[joint] = shown.x_t);
+                        pair.plane_tangential().into_iter().for_each(|joint| forces[joint] = shown.x_t);
                     }
                     let slips = file.slips_under(&forces, &file.load(&problem.factors));
                     for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {

@@ -7,6 +7,7 @@ use super::prepared::{Geometry, Prepared};
 use crate::answer::check::check_contact;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{Answer, PairState, Size};
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::rows;
 use crate::lcp::outcome::{Outcome, Point, Run};
@@ -28,7 +29,7 @@ impl Prepared {
         let system = &*problem.system;
         let run =
             Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point: Point::default() };
-        let mut size = Size { pairs: system.pairs.len(), lcp: rows(system).len(), ..Size::default() };
+        let mut size = Size { pairs: system.pairs.len(), lcp: rows(system, Polygon::PLANE).len(), ..Size::default() };
         if let Geometry::Structure { main, .. } = &*self.geometry {
             (size.unknowns, size.free) = (Some(main.size().all), Some(main.size().free));
         }
@@ -37,7 +38,7 @@ impl Prepared {
         let equilibrium = self.recover(&mut answer, problem, state);
         // λ afresh: the history keeps exact values where the laws give them.
         let mut moved = JointState::at(problem, state.in_forms(system).0, 0.0);
-        for joint in system.pairs.iter().filter_map(|pair| pair.tangential) {
+        for joint in system.pairs.iter().flat_map(|pair| pair.tangential.clone()) {
             moved.z[joint] = last_slip[joint];
         }
         judge(&mut answer, check_contact(problem, &moved, equilibrium));

@@ -16,7 +16,7 @@ use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
 use crate::model::joints::joint_numbers;
 use crate::model::load::at_values;
-use crate::model::pair::{JointDirection, joints};
+use crate::model::pair::{Joint, JointDirection, joints};
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::problem::{LISTED, Problems};
 use crate::model::scenario::{GivenLcp, Scenario, Source};
@@ -239,8 +239,11 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     let joints = joints(&structure.pairs);
     let main =
         MainSystem::new(structure, &joints, watch).map_err(|error| main_system_problem(scenario, structure, error))?;
+    // The joints of a pair along its tangents follow one another.
     let tangential = |pair: usize| {
-        joints.iter().position(|joint| joint.pair == pair && joint.direction == JointDirection::Tangential)
+        let of_pair = |joint: &Joint| joint.pair == pair && joint.direction != JointDirection::Normal;
+        let first = joints.iter().position(of_pair).unwrap_or_default();
+        first..first + joints.iter().filter(|joint| of_pair(joint)).count()
     };
     let numbers = joint_numbers(structure);
     let pairs = structure
@@ -251,6 +254,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
             id: pair.id.clone(),
             law: pair.law.clone(),
             position: Some(structure.nodes[pair.node].position),
+            frame: None,
             joint: numbers[i],
             tangential: tangential(i),
         })

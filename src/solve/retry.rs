@@ -34,7 +34,7 @@ const FEW_PAIRS: usize = 300;
 
 /// The rules tried after the default ones, in order.
 pub fn retries(exact: bool) -> Vec<Rules> {
-    let with = |covering, tie_break, engine| Rules { covering, tie_break, engine };
+    let with = |covering, tie_break, engine| Rules { covering, tie_break, engine, ..Rules::default() };
     let mut rules = Vec::new();
     if exact {
         rules.push(with(Covering::Cohesive, TieBreak::Lexicographic, Engine::Exact));

@@ -118,7 +118,7 @@ impl WarmStart {
     /// Values per pair on the primary rows of x⁺, divided by `unit`.
     fn per_row(&self, per_pair: &[f64], unit: f64) -> Vec<f64> {
         let mut rows = vec![0.0; self.contact.lcp.size()];
-        for (value, row) in per_pair.iter().zip(&self.contact.plus_row) {
+        for (value, row) in per_pair.iter().zip(&self.contact.facet_rows[0]) {
             if let Some(row) = row {
                 rows[*row] = value / unit;
             }

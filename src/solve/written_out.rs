@@ -23,7 +23,7 @@ impl Prepared {
                     return written_in_force_form(&problem, covering);
                 }
                 let lcp = full_lcp(&problem, covering);
-                let names = rows(system).iter().map(|row| row.name('x', system)).collect();
+                let names = rows(system, problem.polygon).iter().map(|row| row.name('x', system)).collect();
                 (lcp, names)
             }
             Geometry::Plain { lcp, q, names, .. } => {
@@ -53,6 +53,7 @@ fn written_in_force_form(problem: &ContactProblem, covering: Covering) -> (Lcp<f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::polygon::Polygon;
     use crate::contact::rows::RowKind;
     use crate::export::lcp::scenario;
     use crate::model::embedded;
@@ -75,14 +76,14 @@ mod tests {
             let direct = prepared.case(&loaded, &values).solve().expect("solved");
             let expected: Vec<f64> = match (&direct.answer.solution, prepared.system()) {
                 (Some(solution), _) => solution.z.clone(),
-                (None, system) => rows(system.expect("contact"))
+                (None, system) => rows(system.expect("contact"), Polygon::PLANE)
                     .iter()
                     .map(|row| {
                         let pair = &direct.answer.pairs[row.pair];
                         match row.couple {
                             RowKind::Normal => pair.z_n,
-                            RowKind::Plus => pair.z_t.max(0.0),
-                            RowKind::Minus => (-pair.z_t).max(0.0),
+                            RowKind::PLUS => pair.z_t.max(0.0),
+                            RowKind::Facet(_) => (-pair.z_t).max(0.0),
                         }
                     })
                     .collect(),

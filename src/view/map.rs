@@ -159,7 +159,7 @@ pub fn picture(
 /// `slip+ c5 c6; stick c1 to c4`: the pairs by their states.
 pub fn states(states: &[(String, State)]) -> String {
     let mut parts = Vec::new();
-    for state in [State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Closed] {
+    for state in [State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Slip, State::Closed] {
         let word = state.word();
         let ids: Vec<&str> = states.iter().filter(|(_, found)| *found == state).map(|(id, _)| id.as_str()).collect();
         if ids.is_empty() {

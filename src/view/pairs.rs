@@ -16,6 +16,7 @@ pub fn state_words(pair: &PairState) -> &'static str {
         (State::Open, Some(State::Stick)) => "open (held)",
         (State::Open, Some(State::SlipPlus)) => "open (slip +)",
         (State::Open, Some(State::SlipMinus)) => "open (slip -)",
+        (State::Open, Some(State::Slip)) => "open (slip)",
         (state, _) => state.word(),
     }
 }
@@ -39,28 +40,43 @@ pub fn part(some: &[&PairState], all: &[PairState], units: &Units) -> Table {
     let force = |head: &str| Column::numbers(head, force_unit(units)).clean().of(1);
     let length = |head: &str| Column::numbers(head, length_unit(units)).clean().of(2);
     let friction = all.iter().any(|pair| pair.law.has_tangential_joint());
-    let mut columns = vec![
-        Column::words("pair"),
-        Column::words("state"),
-        column(force("x_n"), |pair| pair.x_n),
-        column(force("x_τ").droppable(1), |pair| pair.x_t),
-        column(length("z_n").droppable(2), |pair| pair.z_n),
-        column(length("z_τ"), |pair| pair.z_t),
-    ];
-    if friction {
+    let mut columns: Vec<(Column, fn(&PairState) -> f64)> = Vec::new();
+    if all.iter().any(|pair| pair.space.is_some()) {
         columns.extend([
-            column(force("bound").droppable(3), |pair| pair.bound),
-            column(force("x⁺").droppable(4), |pair| pair.reserve_plus),
-            column(force("x⁻").droppable(5), |pair| pair.reserve_minus),
+            (force("x_n"), (|pair| pair.x_n) as fn(&PairState) -> f64),
+            (force("x_t1").droppable(1), |pair| pair.friction()[0]),
+            (force("x_t2").droppable(1), |pair| pair.friction()[1]),
+            (length("z_n").droppable(2), |pair| pair.z_n),
+            (length("z_t1"), |pair| pair.slip()[0]),
+            (length("z_t2"), |pair| pair.slip()[1]),
         ]);
+        if friction {
+            columns.extend([
+                (force("bound").droppable(3), (|pair| pair.bound) as fn(&PairState) -> f64),
+                (force("reserve").droppable(4), PairState::reserve),
+            ]);
+        }
+    } else {
+        columns.extend([
+            (force("x_n"), (|pair| pair.x_n) as fn(&PairState) -> f64),
+            (force("x_τ").droppable(1), |pair| pair.x_t),
+            (length("z_n").droppable(2), |pair| pair.z_n),
+            (length("z_τ"), |pair| pair.z_t),
+        ]);
+        if friction {
+            columns.extend([
+                (force("bound").droppable(3), (|pair| pair.bound) as fn(&PairState) -> f64),
+                (force("x⁺").droppable(4), |pair| pair.reserve_plus),
+                (force("x⁻").droppable(5), |pair| pair.reserve_minus),
+            ]);
+        }
     }
-    let mut table = Table::new(columns);
+    let values: Vec<fn(&PairState) -> f64> = columns.iter().map(|(_, value)| *value).collect();
+    let numbers = columns.into_iter().map(|(head, value)| column(head, value));
+    let mut table = Table::new([Column::words("pair"), Column::words("state")].into_iter().chain(numbers).collect());
     for pair in some {
         let mut cells = vec![Cell::from(pair.id.as_str()), Cell::new(state_words(pair), Role::State(pair.state))];
-        cells.extend([pair.x_n, pair.x_t, pair.z_n, pair.z_t].map(Cell::number));
-        if friction {
-            cells.extend([pair.bound, pair.reserve_plus, pair.reserve_minus].map(Cell::number));
-        }
+        cells.extend(values.iter().map(|value| Cell::number(value(pair))));
         table.rows.push(Row::new(cells));
     }
     table

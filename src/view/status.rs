@@ -44,7 +44,10 @@ pub fn state_counts(pairs: &[PairState]) -> String {
     if friction {
         parts.push(format!("{} stick", count(State::Stick)));
     }
-    if friction && (plus > 0 || minus == 0) {
+    let in_space = pairs.iter().any(|pair| pair.space.is_some());
+    if friction && in_space {
+        parts.push(format!("{} slip", count(State::Slip)));
+    } else if friction && (plus > 0 || minus == 0) {
         parts.push(format!("{plus} slip+"));
     }
     if minus > 0 {
@@ -63,7 +66,7 @@ pub fn state_counts(pairs: &[PairState]) -> String {
 pub fn max_slip(pairs: &[PairState]) -> Option<(f64, &PairState)> {
     pairs
         .iter()
-        .filter(|pair| matches!(pair.state, State::SlipPlus | State::SlipMinus))
+        .filter(|pair| matches!(pair.state, State::SlipPlus | State::SlipMinus | State::Slip))
         .map(|pair| (pair.z_t.abs(), pair))
         .filter(|(slip, _)| slip.is_finite())
         // The first of equals, so that the line does not depend on the order of evaluation.

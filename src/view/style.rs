@@ -73,7 +73,7 @@ impl Role {
             Role::Bad => Some("1;31"),
             Role::Accent => Some("1;36"),
             Role::State(State::Stick) => Some("32"),
-            Role::State(State::SlipPlus) => Some("33"),
+            Role::State(State::SlipPlus | State::Slip) => Some("33"),
             Role::State(State::SlipMinus) => Some("35"),
             Role::State(State::Open) => Some("34"),
             Role::State(State::Closed) => Some("36"),

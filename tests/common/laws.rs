@@ -50,6 +50,7 @@ pub fn violation(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
             State::SlipPlus => assert!(pair.z_t > 0.0, "{pair:?}"),
             State::SlipMinus => assert!(pair.z_t < 0.0, "{pair:?}"),
             State::Stick => assert!(pair.z_t == 0.0, "{pair:?}"),
+            State::Slip => panic!("{pair:?} slips in space"),
             State::Open | State::Closed => {}
         }
     }

@@ -18,8 +18,9 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> Co
             id: format!("c{}", i + 1),
             law: law.clone(),
             position: None,
+            frame: None,
             joint: 0,
-            tangential: Some(m + i),
+            tangential: m + i..m + i + 1,
         })
         .collect();
     let system = ContactSystem {

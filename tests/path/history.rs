@@ -36,7 +36,7 @@ impl Data {
         let problem = contact_problem(system, &vec![0.0; system.loads.len()], values);
         let pairs = system.pairs.iter().enumerate().map(|(i, pair)| Pair {
             normal: i,
-            tangential: pair.tangential,
+            tangential: pair.plane_tangential(),
             friction: problem.laws[i].friction(),
             constant: problem.laws[i].fixed_bound(),
             gap: problem.laws[i].gap(),

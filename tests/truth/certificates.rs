@@ -34,11 +34,16 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> ContactProblem {
                 gap: number(0.0),
             },
         };
-        let tangential = law.has_tangential_joint().then(|| {
-            next += 1;
-            next - 1
+        let first = next;
+        next += usize::from(law.has_tangential_joint());
+        pairs.push(ContactPair {
+            id: format!("c{i}"),
+            law,
+            position: None,
+            frame: None,
+            joint: 0,
+            tangential: first..next,
         });
-        pairs.push(ContactPair { id: format!("c{i}"), law, position: None, joint: 0, tangential });
     }
     let k = next;
     let motions = rng.random_range(1..=4usize.min(k));

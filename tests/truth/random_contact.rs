@@ -270,7 +270,7 @@ fn loose_parts_stand_or_their_ray_is_a_motion_the_loads_drive() {
             if joint < m {
                 return ray.direction.pairs()[joint].z_n;
             }
-            let pair = system.pairs.iter().position(|pair| pair.tangential == Some(joint));
+            let pair = system.pairs.iter().position(|pair| pair.plane_tangential() == Some(joint));
             ray.direction.pairs()[pair.unwrap()].z_t
         });
         assert!((&system.stiffness * &z).amax() <= 1e-9 * system.stiffness.amax(), "{what}");

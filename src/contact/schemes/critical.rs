@@ -94,7 +94,7 @@ pub fn critical_friction(
 /// The states of a pair. The sign of a slip without friction, or under a known bound, does not matter.
 fn choices(pair: &ContactPair, is_smooth: bool) -> Vec<PairScheme> {
     let slip = PairScheme::SLIP_PLUS;
-    match pair.tangential {
+    match pair.plane_tangential() {
         None => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
         Some(_) if pair.law.is_bilateral() => vec![PairScheme::STICK, slip],
         Some(_) if is_smooth => vec![PairScheme::STICK, slip, PairScheme::OPEN],
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
         let (at_0, at_1) = (friction(0.0), friction(1.0));
         let m = system.pair_count();
         // The friction of a pair that never opens does not hang on x_n.
-        let ratio = |pair: usize| match system.pairs[pair].tangential {
+        let ratio = |pair: usize| match system.pairs[pair].plane_tangential() {
             Some(joint) if !system.pairs[pair].law.is_bilateral() => root[pair] / root[joint],
             _ => 0.0,
         };
@@ -236,7 +236,7 @@ impl<'a> Search<'a> {
     /// First sign change of the block's determinant below `limit`.
     fn root(&self, scheme: &[PairScheme], limit: f64) -> Root {
         let m = scheme.len();
-        let tangential = |pair: usize| self.system.pairs[pair].tangential;
+        let tangential = |pair: usize| self.system.pairs[pair].plane_tangential();
         // (joint, pair whose friction acts in this row, sign of the slip)
         let mut rows: Vec<(usize, Option<usize>, f64)> = Vec::new();
         for (pair, state) in scheme.iter().enumerate().take(m) {

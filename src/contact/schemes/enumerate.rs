@@ -155,7 +155,7 @@ impl<'a> Search<'a> {
         let mut offsets = vec![0];
         for pair in 0..m {
             joints.push(pair);
-            joints.extend(system.pairs[pair].tangential);
+            joints.extend(system.pairs[pair].plane_tangential());
             offsets.push(joints.len());
         }
         let exact = ExactSystem::new(problem);
@@ -465,7 +465,7 @@ impl<'a> Search<'a> {
         for (pair, chosen) in scheme.iter_mut().enumerate() {
             if *chosen == PairScheme::OPEN
                 && self.exact.problem.laws[pair].fixed_bound() == 0.0
-                && self.exact.problem.system.pairs[pair].tangential.is_some_and(|joint| state.z[joint] < 0.0)
+                && self.exact.problem.system.pairs[pair].plane_tangential().is_some_and(|joint| state.z[joint] < 0.0)
             {
                 chosen.tangential = Tangential::SlipMinus;
             }

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::contact::full_lcp::full_lcp;
 use crate::contact::full_lcp::tests::{beam, beam_problem, coulomb, plain, tangential_first};
-use crate::contact::rows::{RowKind, rows};
+use crate::contact::rows::rows;
 use crate::contact::schemes::critical::tests::unit_square;
 use crate::lcp::driver::run;
 use crate::lcp::exact::scalar::Scalar;
@@ -117,13 +117,8 @@ fn lemke(problem: &ContactProblem) -> Option<DVector<f64>> {
         return None;
     }
     let mut z = DVector::zeros(system.joint_count());
-    for (row, value) in rows(system).iter().zip(&run.point.z) {
-        let value = value.to_f64();
-        match row.couple {
-            RowKind::Normal => z[row.pair] += value,
-            RowKind::Plus => z[row.joint(system)] += value,
-            RowKind::Minus => z[row.joint(system)] -= value,
-        }
+    for (row, value) in rows(system, problem.polygon).iter().zip(&run.point.z) {
+        row.joints(system, problem.polygon).for_each(|(joint, d)| z[joint] += d * value.to_f64());
     }
     Some(z)
 }
@@ -196,11 +191,11 @@ fn random_mixture(random: &mut ChaCha8Rng, m: usize, ties: bool) -> ContactProbl
     let zero = crate::model::parameter::Number::Value(0.0);
     let mut keep: Vec<usize> = (0..m).collect();
     for pair in 0..m {
-        system.pairs[pair].tangential = Some(keep.len());
+        system.pairs[pair].tangential = keep.len()..keep.len() + 1;
         match random.random_range(0..3) {
             0 => {
                 system.pairs[pair].law = Law::Frictionless { gap: zero.clone() };
-                system.pairs[pair].tangential = None;
+                system.pairs[pair].tangential = 0..0;
                 problem.laws[pair] = PairLaw::smooth(problem.laws[pair].gap());
                 continue;
             }

@@ -13,7 +13,6 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use crate::contact::problem::ContactProblem;
-use crate::contact::rows::tangential_joint;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
 use crate::lcp::exact::dyadic::{product, rational, shifted};
@@ -188,7 +187,7 @@ impl Forms<'_> {
     /// x⁺ (side 1) or x⁻ (side −1).
     fn reserve(&self, pair: usize, side: f64) -> Form {
         let f = self.problem.laws[pair].friction();
-        let tangential = self.data.row[tangential_joint(&self.problem.system, pair)];
+        let tangential = self.data.row[self.problem.system.pairs[pair].tangential.start];
         self.form(&[(tangential, side), (self.data.row[pair], f)], self.problem.laws[pair].fixed_bound())
     }
 }
@@ -202,10 +201,10 @@ pub fn exact_check(
 ) -> ExactCheck {
     let system = &*problem.system;
     let opens = |pair: usize| scheme[pair].open && !system.pairs[pair].law.is_bilateral();
-    let slip = |pair: usize| system.pairs[pair].tangential.map_or(0.0, |_| scheme[pair].tangential.sign());
+    let slip = |pair: usize| system.pairs[pair].plane_tangential().map_or(0.0, |_| scheme[pair].tangential.sign());
     let m = system.pair_count();
     let normals = (0..m).filter(|pair| opens(*pair));
-    let tangentials = (0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| tangential_joint(system, pair));
+    let tangentials = (0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| system.pairs[pair].tangential.start);
     let data = Data::of(problem);
     let unknown: Vec<usize> = normals.chain(tangentials).map(|joint| data.row[joint]).collect();
     let released = unknown.len();
@@ -302,7 +301,7 @@ impl Signs<'_> {
             let x_n = self.value(&self.forms.normal(pair));
             self.tell(pair, Quantity::Xn, x_n);
         }
-        if of.tangential.is_none() {
+        if !of.rubs() {
             return;
         }
         let plus = (tangential != Tangential::SlipPlus).then(|| self.value(&self.forms.reserve(pair, 1.0)));
@@ -320,7 +319,7 @@ impl Signs<'_> {
             self.tell(pair, Quantity::XMinus, minus);
         }
         if slip != 0.0 {
-            let (z, scale) = self.displacement(tangential_joint(self.system, pair));
+            let (z, scale) = self.displacement(self.system.pairs[pair].tangential.start);
             if slip > 0.0 {
                 self.tell(pair, Quantity::ZPlus, (z, scale));
             } else {

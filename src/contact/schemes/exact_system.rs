@@ -62,7 +62,7 @@ impl<'a> ExactSystem<'a> {
             .map(|(i, pair)| PairVariables {
                 z_n: i,
                 x_n: (!pair.law.is_bilateral()).then(&mut take),
-                tangential: pair.tangential.map(|joint| [joint, take(), take()]),
+                tangential: pair.plane_tangential().map(|joint| [joint, take(), take()]),
             })
             .collect()
     }
@@ -76,7 +76,7 @@ impl<'a> ExactSystem<'a> {
             if !self.problem.system.pairs[i].law.is_bilateral() {
                 rows.push_rational(&self.form(i, None));
             }
-            if self.problem.system.pairs[i].tangential.is_some() {
+            if self.problem.system.pairs[i].rubs() {
                 rows.push_rational(&self.form(i, Some(true)));
                 rows.push_rational(&self.form(i, Some(false)));
             }
@@ -91,7 +91,7 @@ impl<'a> ExactSystem<'a> {
                 }
             }
         }
-        let slips: Vec<usize> = self.problem.system.pairs.iter().filter_map(|pair| pair.tangential).collect();
+        let slips: Vec<usize> = self.problem.system.pairs.iter().flat_map(|pair| pair.tangential.clone()).collect();
         let mut made = Polyhedron::new(k, rows, &slips);
         let mut state = made.restore(go_on);
         if state == State::Feasible {
@@ -105,7 +105,7 @@ impl<'a> ExactSystem<'a> {
     /// x_n of a pair, or its x⁺ or x⁻: coefficients over z, the constant last.
     fn form(&self, pair: usize, reserve: Option<bool>) -> Vec<BigRational> {
         let whole = |joint: usize| self.stiffness[joint].iter().chain([&self.constants[joint]]);
-        let Some((plus, joint)) = reserve.zip(self.problem.system.pairs[pair].tangential) else {
+        let Some((plus, joint)) = reserve.zip(self.problem.system.pairs[pair].plane_tangential()) else {
             return whole(pair).cloned().collect();
         };
         let f = rational(self.problem.laws[pair].friction());

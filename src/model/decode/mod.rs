@@ -246,6 +246,7 @@ fn rules(cursor: Cursor<'_>) -> Option<Rules> {
         covering: rule::<Covering>(&fields, "covering"),
         tie_break: rule::<TieBreak>(&fields, "tie_break"),
         engine: rule::<Engine>(&fields, "engine"),
+        ..Rules::default()
     })
 }
 

@@ -245,7 +245,7 @@ const fn chosen(word: &'static str, meaning: Meaning, choices: &'static [&'stati
 }
 
 /// The states of pairs.
-pub const STATES: &[&str] = &["open", "stick", "slip+", "slip-", "closed"];
+pub const STATES: &[&str] = &["open", "stick", "slip+", "slip-", "slip", "closed"];
 
 /// How a run can end; `answer` stands for trivial and normal.
 const OUTCOMES: &[&str] = &["trivial", "normal", "answer", "ray", "pivot-limit", "breakdown", "check-failed"];
@@ -285,7 +285,7 @@ pub static WORDS: &[Word] = &[
     number("reserve_plus", M::Pair(OfPair::ReservePlus), D::Force, "bound + x_t"),
     number("reserve_minus", M::Pair(OfPair::ReserveMinus), D::Force, "bound − x_t"),
     number("reserve", M::Pair(OfPair::Reserve), D::Force, "bound − |x_t|"),
-    chosen("state", M::State, STATES, "open, stick, slip+, slip- or closed"),
+    chosen("state", M::State, STATES, "open, stick, slip+, slip- (in space: slip) or closed"),
     number("sum", M::Over(Over::Sum), D::Inner, "sum over pairs: sum x_n joint[*]"),
     number("max", M::Over(Over::Max), D::Inner, "largest over pairs, along a bar, or |u|: max M AB, max u"),
     number("min", M::Over(Over::Min), D::Inner, "least over pairs or along a bar"),

@@ -302,7 +302,7 @@ impl Model<'_> {
             match state.state {
                 State::Open | State::Closed => group.open += 1,
                 State::Stick => group.stick += 1,
-                State::SlipPlus | State::SlipMinus => group.slip += 1,
+                State::SlipPlus | State::SlipMinus | State::Slip => group.slip += 1,
             }
         }
         group

@@ -145,7 +145,7 @@ impl<'a> Facts<'a> {
         for (i, (pair, state)) in system.pairs.iter().zip(self.pairs).enumerate() {
             let [normal, tangential] = read(state);
             joints[i] = normal;
-            if let Some(joint) = pair.tangential {
+            if let Some(joint) = pair.plane_tangential() {
                 joints[joint] = tangential;
             }
         }

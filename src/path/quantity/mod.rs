@@ -80,7 +80,7 @@ mod tests {
         use RayClass::{Artefact, Fault, Mechanism, NoEquilibrium};
         same_words("class", &[], RayClass::word, &[Mechanism, Artefact, Fault, NoEquilibrium]);
         same_words("verdict", &[], Verdict::word, &[Verdict::Certified, Verdict::Proved, Verdict::Undecided]);
-        let states = [State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Closed];
+        let states = [State::Open, State::Stick, State::SlipPlus, State::SlipMinus, State::Slip, State::Closed];
         same_words("state", &[], State::word, &states);
     }
 

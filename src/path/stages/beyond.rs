@@ -68,10 +68,10 @@ impl Walk<'_> {
             contact_lcp(&problem, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
         let mut z = vec![0.0; contact.rows.len()];
         for (row, meaning) in contact.rows.iter().enumerate() {
-            z[row] = match (meaning.couple, system.pairs[meaning.pair].tangential) {
+            z[row] = match (meaning.couple, system.pairs[meaning.pair].plane_tangential()) {
                 (RowKind::Normal, _) => motion[meaning.pair],
-                (RowKind::Plus, Some(joint)) => motion[joint].max(0.0),
-                (RowKind::Minus, Some(joint)) => (-motion[joint]).max(0.0),
+                (RowKind::PLUS, Some(joint)) => motion[joint].max(0.0),
+                (RowKind::Facet(_), Some(joint)) => (-motion[joint]).max(0.0),
                 (_, None) => 0.0,
             };
         }

@@ -13,7 +13,7 @@ pub(super) fn dissipated(system: &ContactSystem, moments: &[Moment]) -> f64 {
     let mut sum = 0.0;
     for ends in moments.windows(2) {
         let [a, b] = [&ends[0].state, &ends[1].state];
-        for joint in system.pairs.iter().filter_map(|pair| pair.tangential) {
+        for joint in system.pairs.iter().flat_map(|pair| pair.tangential.clone()) {
             sum -= 0.5 * (a.force[joint] + b.force[joint]) * (b.z[joint] - a.z[joint]);
         }
     }

@@ -38,7 +38,7 @@ pub(super) fn next_event(
             Normal::Closed => watch(standing.force[i], rates.force[i], force_noise[i], Reached::Opening(i)),
             Normal::Grazing | Normal::Bilateral => {}
         }
-        let (Some(joint), false) = (pair.tangential, standing.tangential[i] == Tangential::Free) else {
+        let (Some(joint), false) = (pair.plane_tangential(), standing.tangential[i] == Tangential::Free) else {
             continue;
         };
         let f = if standing.is_open(i) { 0.0 } else { laws.friction(i) };

@@ -79,7 +79,7 @@ pub(super) trait Follower<'a> {
         let system = &*self.place().laws.problem.system;
         let mut over_joints = DVector::zeros(system.joint_count());
         for (pair, slip) in system.pairs.iter().zip(slips) {
-            if let Some(joint) = pair.tangential {
+            if let Some(joint) = pair.plane_tangential() {
                 over_joints[joint] = *slip;
             }
         }

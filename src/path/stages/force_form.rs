@@ -124,7 +124,7 @@ impl ForcedWalk<'_> {
         let mut pairs = pair_states(problem, contact, &state);
         self.place.way = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
         for (i, (pair, shown)) in system.pairs.iter().zip(&mut pairs).enumerate() {
-            let Some(joint) = pair.tangential else { continue };
+            let Some(joint) = pair.plane_tangential() else { continue };
             if state.z[joint] != 0.0 {
                 self.last_slip[i] = state.z[joint].signum();
             }

@@ -15,6 +15,7 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::released::Released;
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
+use crate::contact::polygon::Polygon;
 use crate::contact::rows::{RowId, RowKind};
 use crate::contact::written::{ContactLcp, power_of_two};
 use crate::lcp::basis::Basis;
@@ -74,11 +75,11 @@ fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
     let RowId { pair, couple } = meaning;
     let sign = match couple {
         RowKind::Normal => return vec![(pair, 1.0)],
-        RowKind::Plus => 1.0,
-        RowKind::Minus => -1.0,
+        RowKind::PLUS => 1.0,
+        RowKind::Facet(_) => -1.0,
     };
     let mut terms: Vec<(usize, f64)> =
-        laws.problem.system.pairs[pair].tangential.map(|joint| (joint, sign)).into_iter().collect();
+        laws.problem.system.pairs[pair].plane_tangential().map(|joint| (joint, sign)).into_iter().collect();
     if !open && laws.friction(pair) > 0.0 {
         terms.push((pair, laws.friction(pair)));
     }
@@ -87,11 +88,11 @@ fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
 
 /// The joint that the z of a couple moves, and in which sense.
 fn moved(laws: Laws<'_>, meaning: RowId) -> (usize, f64) {
-    let tangential = laws.problem.system.pairs[meaning.pair].tangential.unwrap_or(meaning.pair);
+    let tangential = laws.problem.system.pairs[meaning.pair].plane_tangential().unwrap_or(meaning.pair);
     match meaning.couple {
         RowKind::Normal => (meaning.pair, 1.0),
-        RowKind::Plus => (tangential, 1.0),
-        RowKind::Minus => (tangential, -1.0),
+        RowKind::PLUS => (tangential, 1.0),
+        RowKind::Facet(_) => (tangential, -1.0),
     }
 }
 
@@ -102,7 +103,7 @@ impl<'a> RateProblem<'a> {
         let pairs = &laws.problem.system.pairs;
         let mut joints: Vec<usize> = (0..pairs.len()).filter(|&i| standing.is_open(i)).collect();
         let free = (0..pairs.len()).filter(|&i| standing.tangential[i] == Tangential::Free);
-        joints.extend(free.filter_map(|i| pairs[i].tangential));
+        joints.extend(free.filter_map(|i| pairs[i].plane_tangential()));
         let released = Released::new(&laws.problem.system, joints)?;
         let contact = write(laws, standing, &released, rate);
         Some(RateProblem { laws, contact, released, rate })
@@ -293,11 +294,11 @@ fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
     let grazing = (0..pairs.len()).filter(|&i| standing.normal[i] == Normal::Grazing);
     let normals = grazing.map(|pair| Row { pair, joint: pair, couple: RowKind::Normal, mirrored: false });
     let tangentials = (0..pairs.len()).filter_map(|pair| {
-        let joint = pairs[pair].tangential?;
+        let joint = pairs[pair].plane_tangential()?;
         let (couple, mirrored) = match standing.tangential[pair] {
-            Tangential::Limit(Sense::Plus) => (RowKind::Plus, false),
-            Tangential::Limit(Sense::Minus) => (RowKind::Minus, false),
-            Tangential::Both => (RowKind::Plus, true),
+            Tangential::Limit(Sense::Plus) => (RowKind::PLUS, false),
+            Tangential::Limit(Sense::Minus) => (RowKind::MINUS, false),
+            Tangential::Both => (RowKind::PLUS, true),
             Tangential::Absent | Tangential::Free | Tangential::Held => return None,
         };
         Some(Row { pair, joint, couple, mirrored })
@@ -359,11 +360,12 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
             constant: 0.0,
             covering: 2.0,
         });
-        rows.push(RowId { pair: row.pair, couple: RowKind::Minus });
+        rows.push(RowId { pair: row.pair, couple: RowKind::MINUS });
     }
     let find = |pair: usize, couple: RowKind| rows.iter().position(|row| *row == RowId { pair, couple });
     let rows_of = |couple: RowKind| (0..system.pairs.len()).map(|pair| find(pair, couple)).collect();
-    let (normal_row, plus_row, minus_row) = (rows_of(RowKind::Normal), rows_of(RowKind::Plus), rows_of(RowKind::Minus));
+    let normal_row = rows_of(RowKind::Normal);
+    let facet_rows = vec![rows_of(RowKind::PLUS), rows_of(RowKind::MINUS)];
     let lcp = MirroredLcp {
         base: Arc::new(base),
         q,
@@ -398,7 +400,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
         force_unit,
         length_unit: force_unit / stiffness_unit,
         normal_row,
-        plus_row,
-        minus_row,
+        facet_rows,
+        polygon: Polygon::PLANE,
     }
 }

@@ -195,7 +195,7 @@ impl Standing {
                 let opening = reached.contains(&Reached::Opening(i));
                 if self.force[i] > self.force_noise(i) && !opening { Normal::Closed } else { Normal::Grazing }
             };
-            self.tangential[i] = match pair.tangential {
+            self.tangential[i] = match pair.plane_tangential() {
                 None => Tangential::Absent,
                 Some(joint) => self.tangential_of(laws, i, joint, reached),
             };
@@ -243,15 +243,15 @@ impl Standing {
                     Normal::Open | Normal::Grazing => 0.0,
                     Normal::Closed | Normal::Bilateral => drop(self.force[i], self.force_noise(i)),
                 };
-                let bound = if pair.tangential.is_some() { self.bound(laws, i) } else { 0.0 };
-                let x_t = match (self.tangential[i], pair.tangential) {
+                let bound = if pair.rubs() { self.bound(laws, i) } else { 0.0 };
+                let x_t = match (self.tangential[i], pair.plane_tangential()) {
                     (Tangential::Held, Some(joint)) => drop(self.force[joint], self.force_noise(joint)),
                     (Tangential::Limit(sense), _) => 0.0 - sense.sign() * bound,
                     _ => 0.0,
                 };
                 let slips = self.last_slip[i].filter(|&sense| self.at_limit(i, sense));
                 let slips = slips.map_or(State::Stick, Sense::state);
-                let (state, held) = scheme_of(self.is_open(i), pair.tangential.is_some(), slips, bound);
+                let (state, held) = scheme_of(self.is_open(i), pair.rubs(), slips, bound);
                 PairState {
                     id: pair.id.clone(),
                     law: pair.law.kind(),
@@ -260,12 +260,13 @@ impl Standing {
                     x_n,
                     x_t,
                     z_n: if self.is_open(i) { self.z[i] } else { 0.0 },
-                    z_t: pair.tangential.map_or(0.0, |joint| self.z[joint]),
+                    z_t: pair.plane_tangential().map_or(0.0, |joint| self.z[joint]),
                     bound,
                     reserve_plus: bound + x_t,
                     reserve_minus: bound - x_t,
                     position: pair.position,
                     joint: pair.joint,
+                    space: None,
                 }
             })
             .collect()

@@ -145,8 +145,8 @@ impl<'a> Walk<'a> {
         for meaning in &rates.moving {
             let sense = match meaning.couple {
                 RowKind::Normal => continue,
-                RowKind::Plus => Sense::Plus,
-                RowKind::Minus => Sense::Minus,
+                RowKind::PLUS => Sense::Plus,
+                RowKind::Facet(_) => Sense::Minus,
             };
             self.standing.last_slip[meaning.pair] = Some(sense);
         }
@@ -171,14 +171,14 @@ impl<'a> Walk<'a> {
                     Normal::Grazing => moves(i, RowKind::Normal),
                     Normal::Closed | Normal::Bilateral => false,
                 };
-                let slips = match (moves(i, RowKind::Plus), moves(i, RowKind::Minus)) {
-                    _ if !slides(pair.tangential) => State::Stick,
+                let slips = match (moves(i, RowKind::PLUS), moves(i, RowKind::MINUS)) {
+                    _ if !slides(pair.plane_tangential()) => State::Stick,
                     (true, _) => State::SlipPlus,
                     (_, true) => State::SlipMinus,
                     _ => State::Stick,
                 };
-                let held = if open && pair.tangential.is_some() { self.place.laws.constant(i) } else { 0.0 };
-                scheme_of(open, pair.tangential.is_some(), slips, held)
+                let held = if open && pair.rubs() { self.place.laws.constant(i) } else { 0.0 };
+                scheme_of(open, pair.rubs(), slips, held)
             })
             .collect()
     }
@@ -187,7 +187,7 @@ impl<'a> Walk<'a> {
     pub(super) fn stand_at(&mut self, course: &Course, t: f64, z: DVector<f64>, way: Vec<(State, Option<State>)>) {
         let system = &*self.place.laws.problem.system;
         for (i, pair) in system.pairs.iter().enumerate() {
-            let Some(joint) = pair.tangential else {
+            let Some(joint) = pair.plane_tangential() else {
                 continue;
             };
             let slip = z[joint] - self.standing.z[joint];

@@ -27,7 +27,8 @@ impl Action for Compare {
 impl Session {
     pub(in crate::session) fn compare(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let values = self.now.values.clone();
-        let comparison = self.ask(io, move |prepared, _, watch| Ok(prepared.compare(&values, watch)?))?;
+        let rules = self.rules();
+        let comparison = self.ask(io, move |prepared, _, watch| Ok(prepared.compare(&values, rules, watch)?))?;
         io.show(&comparison, |out, style| view::compare::write(out, &comparison, style))?;
         Ok(())
     }

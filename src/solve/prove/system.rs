@@ -75,7 +75,7 @@ impl ProvedContact {
                 return joint;
             }
             // Every joint beyond the normals is the tangential one of a pair.
-            m + system.pairs.iter().position(|pair| pair.tangential == Some(joint)).unwrap_or_default()
+            m + system.pairs.iter().position(|pair| pair.plane_tangential() == Some(joint)).unwrap_or_default()
         };
         let places: Vec<usize> = (0..system.joint_count()).map(place).collect();
         let spread = |of: &dyn Fn(usize) -> f64| {

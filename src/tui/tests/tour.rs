@@ -22,6 +22,7 @@ fn states(rig: &Rig) -> String {
         PairMotion::SlipPlus => '+',
         PairMotion::SlipMinus => '-',
         PairMotion::Closed => 'c',
+        PairMotion::Slip => '~',
     };
     rig.state.shown.pairs().iter().map(|pair| word(pair.state)).collect()
 }

@@ -40,6 +40,8 @@ pub fn pair_sign(state: State, tangent: [f64; 2], ascii: bool) -> char {
         (State::Closed, true) => '#',
         (State::SlipPlus, _) => towards(tangent),
         (State::SlipMinus, _) => towards([-tangent[0], -tangent[1]]),
+        (State::Slip, false) => '◆',
+        (State::Slip, true) => '%',
     }
 }
 

@@ -58,6 +58,7 @@ fn pair() -> impl Strategy<Value = PairState> {
             reserve_minus: minus,
             position,
             joint,
+            space: None,
         },
     )
 }

@@ -54,6 +54,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             reserve_minus: r - x_t,
             position: Some([i as f64, 0.0]),
             joint: 0,
+            space: None,
         });
     }
     let pivots = pivots(friction, pull, n as usize);
