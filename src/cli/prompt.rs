@@ -13,20 +13,32 @@ use crate::session::language::help;
 use crate::text::printable;
 use crate::view::style::Style;
 
-/// The word of `stickslip help WORD`, where that is no command of the shell, and how its help is to look.
+/// The word of `stickslip help WORD` or `stickslip WORD --help`, where that is no command of the shell, and how its help is
+/// to look.
 pub fn asked_help(arguments: &[OsString]) -> Option<(String, Look)> {
     let (program, rest) = arguments.split_first()?;
-    let (help, rest) = rest.split_first()?;
+    let (first, rest) = rest.split_first()?;
     let is_word = |word: &&OsString| word.to_str().is_some_and(|word| !word.starts_with('-'));
-    // options stand on one side of the word
-    let (word, options) = match rest.split_first()? {
-        (first, options) if is_word(&first) => (first, options),
-        _ => rest.split_last()?,
+    let (word, options) = if first == "help" {
+        // options stand on one side of the word
+        match rest.split_first()? {
+            (word, options) if is_word(&word) => (word.to_str()?, options),
+            _ => {
+                let (word, options) = rest.split_last().filter(|(word, _)| is_word(word))?;
+                (word.to_str()?, options)
+            }
+        }
+    } else {
+        let (help, options) = rest.split_last()?;
+        let word = exact(first.to_str()?).filter(|_| help == "--help" || help == "-h")?;
+        (word.name, options)
     };
-    let word = word.to_str().filter(|_| help == "help")?;
-    let is_of_the_shell = word == "help" || Cli::command().find_subcommand(word).is_some();
     let look = Cli::try_parse_from(std::iter::once(program).chain(options)).ok()?;
-    (!is_of_the_shell && look.command.is_none()).then(|| (word.to_owned(), look.look))
+    (!is_of_the_shell(word) && look.command.is_none()).then(|| (word.to_owned(), look.look))
+}
+
+fn is_of_the_shell(word: &str) -> bool {
+    word == "help" || Cli::command().find_subcommand(word).is_some()
 }
 
 /// Writes what the prompt says of a command, a topic or a quantity.
@@ -42,10 +54,11 @@ pub fn write_help(word: &str, style: &Style, out: &mut dyn Write) -> Result<u8, 
     Ok(0)
 }
 
-/// How to give a command of the prompt that was given to the shell; `None` where the arguments begin with none.
+/// How to give a command of the prompt that was given to the shell; `None` where the arguments begin with none, or with one
+/// that the shell has too.
 pub fn hint(arguments: &[OsString]) -> Option<String> {
     let words: Vec<String> = arguments.get(1..)?.iter().map(|word| printable::line(&word.to_string_lossy())).collect();
-    let command = exact(words.first()?)?;
+    let command = exact(words.first()?).filter(|command| !is_of_the_shell(command.name))?;
     let line = command.name;
     Some(format!(
         "`{line}` is a command of the prompt: `stickslip SCENARIO`, then `{line} …`, or `echo '{line} …' | stickslip \

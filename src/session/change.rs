@@ -116,6 +116,8 @@ impl Session {
     /// The one line after a change.
     pub(super) fn say_what_changed(&self, notes: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let previous = self.previous_answer();
+        // what the line before said of its answer is not said again
+        let said = previous.filter(|_| notes.is_empty()).map_or(&[][..], |previous| &previous.notes);
         let units = &self.now.scenario.units;
         let mut report = self.status_json();
         if !notes.is_empty() {
@@ -128,10 +130,8 @@ impl Session {
             match self.answer() {
                 Some(answer) => {
                     writeln!(out, "{}", status::line(answer, previous, units, style))?;
-                    for note in &answer.notes {
-                        style.paragraph(out, Role::Warning, note)?;
-                    }
-                    Ok(())
+                    let fresh = answer.notes.iter().filter(|note| !said.contains(note));
+                    fresh.into_iter().try_for_each(|note| style.paragraph(out, Role::Warning, note))
                 }
                 None => writeln!(out, "not solved yet: `solve`, or `set auto on`"),
             }

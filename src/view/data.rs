@@ -94,7 +94,8 @@ impl Reader<'_> {
             keys.extend(fields.keys().map(String::as_str).filter(|key| !keys.contains(key)).collect::<Vec<_>>());
         }
         let plain = entries.iter().any(|(_, entry)| !entry.is_object());
-        let heads = named.then_some("name").into_iter().chain(keys.iter().copied()).chain(plain.then_some("value"));
+        let what = if of == "nodes" { "position" } else { "value" };
+        let heads = named.then_some("name").into_iter().chain(keys.iter().copied()).chain(plain.then_some(what));
         let mut table = Table::new(heads.map(Column::words).collect());
         for (name, entry) in entries {
             let mut cells: Vec<Cell> = named.then(|| Cell::from(name)).into_iter().collect();

@@ -74,7 +74,7 @@ impl Report {
         for block in &self.blocks {
             match block {
                 Block::Heading(heading) => text.push_str(&format!("<h2>{}</h2>\n", escaped(heading))),
-                Block::Text(words) => text.push_str(&format!("<p>{}</p>\n", escaped(words))),
+                Block::Text(words) => text.push_str(&format!("<p>{}</p>\n", html_text(words))),
                 Block::Table(table, how) => text.push_str(&html_table(table, how)),
                 Block::Figure { svg, .. } => text.push_str(&format!("<figure>\n{svg}</figure>\n")),
             }
@@ -99,6 +99,19 @@ impl Report {
         text.push_str(&format!("---\n\n{}\n", plain(footer)));
         text
     }
+}
+
+/// Words with what stands in backticks as code, where they come in pairs.
+fn html_text(words: &str) -> String {
+    let parts: Vec<&str> = words.split('`').collect();
+    if parts.len() % 2 == 0 {
+        return escaped(words);
+    }
+    let part = |(index, part): (usize, &&str)| match index % 2 {
+        0 => escaped(part),
+        _ => format!("<code>{}</code>", escaped(part)),
+    };
+    parts.iter().enumerate().map(part).collect()
 }
 
 fn html_table(table: &Table, how: &str) -> String {
@@ -208,8 +221,10 @@ mod tests {
 
     #[test]
     fn a_long_table_shows_its_ends_and_says_what_is_left_out() {
-        let report = Report { title: "T<1>".into(), blocks: vec![Block::Table(long(), "`export pairs`")] };
+        let text = Block::Text("`limit <a>` says so".into());
+        let report = Report { title: "T<1>".into(), blocks: vec![text, Block::Table(long(), "`export pairs`")] };
         let html = report.html("end");
+        assert!(html.contains("<p><code>limit &lt;a&gt;</code> says so</p>"), "{html}");
         assert!(html.contains("<title>T&lt;1&gt;</title>"));
         assert!(html.contains("<th class=\"n\">x_n [kN]</th>"));
         assert!(html.contains("colspan=\"2\">… 60 rows left out: `export pairs`"));

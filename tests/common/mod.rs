@@ -4,6 +4,7 @@
 
 pub mod balance;
 pub mod laws;
+pub mod lines;
 pub mod systems;
 
 use std::path::Path;

@@ -3,33 +3,15 @@
 use serde_json::Value;
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
-use stickslip::model::scenario::Scenario;
-use stickslip::session::{Format, Output, Session};
+use stickslip::session::{Output, Session};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
-pub(super) fn session(scenario: Scenario) -> Session {
-    Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"))
-}
+use super::common::lines;
+pub(super) use super::common::lines::{report, session, text};
 
 pub(super) fn beam() -> Session {
-    session(embedded::load("beam").expect("embedded"))
-}
-
-pub(super) fn report(session: &mut Session, command: &str) -> Result<Value, String> {
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, Style::default(), &Quiet);
-    io.format = Format::JsonLines;
-    session.execute(command, &mut io).map_err(|error| error.to_string())?;
-    let line: Value = serde_json::from_slice(&text).expect("JSON");
-    Ok(line["report"].clone())
-}
-
-pub(super) fn text(session: &mut Session, command: &str) -> String {
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, Style::default(), &Quiet);
-    session.execute(command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
-    String::from_utf8(text).expect("text")
+    lines::embedded("beam")
 }
 
 pub(super) fn number(value: &Value) -> f64 {

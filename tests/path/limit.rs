@@ -1,35 +1,13 @@
 //! What `limit` claims: the way it looks, the end of a path beyond which there are answers, limits of 0.
 
-use stickslip::model::load::load_text;
-use stickslip::session::{Format, Output, Session};
-use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
-
-fn session(text: &str) -> Session {
-    let scenario = load_text("limit", text, None).unwrap_or_else(|problems| panic!("{problems}"));
-    Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn told(session: &mut Session, command: &str, format: Format) -> String {
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, Style::default(), &Quiet);
-    io.format = format;
-    session.execute(command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
-    String::from_utf8(text).expect("UTF-8")
-}
-
-fn report(session: &mut Session, command: &str) -> serde_json::Value {
-    let line: serde_json::Value =
-        serde_json::from_str(&told(session, command, Format::JsonLines)).expect("one line of JSON");
-    line["report"].clone()
-}
+use super::common::lines::{read, report, text};
 
 /// Four blocks in two courses: the path of the push ends at 1.2444, yet `solve` finds checked answers at 1.25 and
 /// beyond. The end of the path is no limit then, and nothing calls it confirmed.
 #[test]
 fn the_end_of_a_path_with_answers_beyond_is_no_limit() {
-    let mut wall = session(include_str!("wall.json"));
-    let found = report(&mut wall, "limit h");
+    let mut wall = read(include_str!("wall.json"));
+    let found = report(&mut wall, "limit h").unwrap();
     assert_eq!(found["confirmed"], false, "{found}");
     assert!(found["limit"].is_null() && found["safety"].is_null() && found["collapse"].is_null(), "{found}");
     let beyond = found["answer_beyond"].as_f64().expect("an answer beyond");
@@ -37,17 +15,18 @@ fn the_end_of_a_path_with_answers_beyond_is_no_limit() {
     // The command that the sentence names is one.
     let further = found["end"].as_str().and_then(|end| end.split('`').nth(1)).expect("a command").to_owned();
     assert!(further.starts_with("find h "), "{further}");
-    told(&mut wall, &further, Format::Text);
+    text(&mut wall, &further);
     for value in [beyond, 1.25] {
-        told(&mut wall, &format!("set H {value}"), Format::Text);
-        told(&mut wall, "expect outcome answer", Format::Text);
+        text(&mut wall, &format!("set H {value}"));
+        text(&mut wall, "expect outcome answer");
     }
-    told(&mut wall, "set H 1", Format::Text);
+    text(&mut wall, "set H 1");
     for command in ["limit h", "show limit h", "summary"] {
-        let text = told(&mut wall, command, Format::Text).split_whitespace().collect::<Vec<_>>().join(" ");
+        let shown = text(&mut wall, command).split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
-            (text.contains("an answer exists") || text.contains("with answers beyond")) && !text.contains("confirmed"),
-            "{command}: {text}"
+            (shown.contains("an answer exists") || shown.contains("with answers beyond"))
+                && !shown.contains("confirmed"),
+            "{command}: {shown}"
         );
     }
 }
@@ -55,7 +34,7 @@ fn the_end_of_a_path_with_answers_beyond_is_no_limit() {
 /// A point under the weight 10 on ground of friction 0.3, pushed by 2 + h: |2 + h| ≤ 3.
 #[test]
 fn a_negative_load_grows_downwards() {
-    let mut point = session(
+    let mut point = read(
         r#"{ "format": "stickslip/1", "title": "point", "nodes": { "A": [0, 0] },
              "springs": [ { "at": "A", "direction": [0, 1], "stiffness": 1e-9 } ],
              "contacts": [ { "id": "c", "node": "A", "against": "ground", "normal": [0, 1], "friction": 0.3 } ],
@@ -65,9 +44,9 @@ fn a_negative_load_grows_downwards() {
     );
     // Beyond the limit there is no answer to start from: from 0 then.
     for (present, limit) in [(-1.0, -5.0), (-8.0, -5.0), (0.0, 1.0), (0.5, 1.0), (2.0, 1.0)] {
-        told(&mut point, &format!("set H {present}"), Format::Text);
+        text(&mut point, &format!("set H {present}"));
         for name in ["h", "H"] {
-            let found = report(&mut point, &format!("limit {name}"));
+            let found = report(&mut point, &format!("limit {name}")).unwrap();
             let near = |value: &serde_json::Value, expected: f64| {
                 value.as_f64().is_some_and(|value| (value - expected).abs() <= 1e-9 * expected.abs())
             };
@@ -85,16 +64,16 @@ fn a_negative_load_grows_downwards() {
 /// A point between two faces that press with nothing carries no push at all; 0.999999 of that is no other load.
 #[test]
 fn a_limit_of_zero_has_nothing_beside_it() {
-    let mut point = session(
+    let mut point = read(
         r#"{ "format": "stickslip/1", "title": "point", "nodes": { "a": [0, 0] },
              "springs": [ { "at": "a", "direction": [0, 1], "stiffness": 5 } ],
              "contacts": [ { "id": "d", "node": "a", "against": "ground", "normal": [0, 1], "friction": 0.3 },
                            { "id": "u", "node": "a", "against": "ground", "normal": [0, -1], "friction": 0.3 } ],
              "loads": { "p": { "items": [ { "point": { "at": "a", "force": [1, 0] } } ] } } }"#,
     );
-    let found = report(&mut point, "limit p");
+    let found = report(&mut point, "limit p").unwrap();
     assert_eq!((found["limit"].as_f64(), found["safety"].as_f64()), (Some(0.0), Some(0.0)), "{found}");
     for command in ["limit p", "show limit p", "summary"] {
-        assert!(!told(&mut point, command, Format::Text).contains("confirmed"), "{command}");
+        assert!(!text(&mut point, command).contains("confirmed"), "{command}");
     }
 }

@@ -1,9 +1,9 @@
 //! Paths over a parameter that stands in the loads themselves, against the same loads by a factor and closed forms.
 
-use stickslip::model::load::load_text;
-use stickslip::session::{Format, Output, Session};
-use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
+use stickslip::session::Session;
+
+use super::common::lines::{read, report};
+use super::find::number;
 
 /// A block 2 × 1 on rough ground under its weight W (as a traction W/2 on its top), pushed at its top by H, with
 /// `items` of the push given. It slides at H = f W, if it does not turn before: H h = W b/2, h = 1, b = 2.
@@ -16,21 +16,7 @@ fn block(parameters: &str, friction: &str, push: &str) -> Session {
         "contacts": [ {{ "id": "base", "edge": "b.bottom", "against": "ground", "friction": {friction} }} ],
         "loads": {{ "weight": {{ "items": [ {{ "gravity": {{ "acceleration": [0, -10] }} }} ] }}, "push": {push} }} }}"#
     );
-    let scenario = load_text("block", &text, None).unwrap_or_else(|problems| panic!("{problems}"));
-    Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn report(session: &mut Session, command: &str) -> Result<serde_json::Value, String> {
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, Style::default(), &Quiet);
-    io.format = Format::JsonLines;
-    session.execute(command, &mut io).map_err(|error| error.to_string())?;
-    let line: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
-    Ok(line["report"].clone())
-}
-
-fn number(value: &serde_json::Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+    read(&text)
 }
 
 const POINT: &str = r#"{ "items": [ { "point": { "at": "b.top", "force": ["H", 0] } } ] }"#;

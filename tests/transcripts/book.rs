@@ -1,9 +1,12 @@
 //! The README and the pages of `docs/`: what they show to type is typed. Of each page, in a folder of its own beside the
-//! scenarios,
+//! scenarios and the examples,
 //!
 //! * blocks ```` ```LANGUAGE file=NAME ```` are written to files,
 //! * the lines of blocks ```` ```sh ```` are run by a shell, `stickslip` being the program under test,
 //! * blocks ```` ```bash ````, which need programs of others, must be understood by a shell,
+//! * blocks ```` ```python ```` are run by Python, the client of the repository driving the program under test,
+//! * blocks ```` ```text serve ```` are lines to `stickslip serve` and its answers by turns, `…` standing for any text,
+//! * blocks ```` ```json ```` must be JSON,
 //! * blocks ```` ```stickslip ```` are one session, beginning on the beam, that must not fail,
 //! * the lines of blocks ```` ```text output ```` must stand in what all that shows, one after another (a line may be
 //!   the beginning of one that is shown; blanks count as one).
@@ -49,15 +52,51 @@ fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// Runs a shell in a folder, with the program under test on its path.
-fn shell(folder: &Path, arguments: &[&str], script: &str) -> Output {
-    let program = PathBuf::from(env!("CARGO_BIN_EXE_stickslip"));
-    let mut path = program.parent().unwrap().as_os_str().to_owned();
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
+
+/// What runs in a folder with the program under test on its path.
+fn command(folder: &Path, name: &str, arguments: &[&str]) -> Command {
+    let mut path = Path::new(PROGRAM).parent().unwrap().as_os_str().to_owned();
     path.push(":");
     path.push(std::env::var_os("PATH").unwrap_or_default());
-    let mut command = Command::new("bash");
-    command.args(arguments).args(["-c", script]).current_dir(folder).env("PATH", path).env("HOME", folder);
-    command.env_remove("NO_COLOR").env_remove("COLUMNS").env("TERM", "xterm").output().unwrap()
+    let mut command = Command::new(name);
+    command.args(arguments).current_dir(folder).env("PATH", path).env("HOME", folder);
+    command.env_remove("NO_COLOR").env_remove("COLUMNS").env("TERM", "xterm");
+    command.env("STICKSLIP", PROGRAM).env("PYTHONPATH", Path::new(ROOT).join("python"));
+    command.env("PYTHONDONTWRITEBYTECODE", "1");
+    command
+}
+
+fn shell(folder: &Path, arguments: &[&str], script: &str) -> Output {
+    command(folder, "bash", &[arguments, &["-c", script]].concat()).output().unwrap()
+}
+
+/// Whether a line is `shown` with any text in place of each `…`.
+fn is_shown(shown: &str, line: &str) -> bool {
+    let mut rest = line;
+    shown.split('…').enumerate().all(|(index, part)| match rest.find(part) {
+        Some(at) if index > 0 || at == 0 => {
+            rest = &rest[at + part.len()..];
+            true
+        }
+        _ => false,
+    }) && (rest.is_empty() || shown.ends_with('…'))
+}
+
+/// Gives the requests of a block to `serve`, and compares its answers.
+fn try_serve(folder: &Path, name: &str, block: &str) {
+    let lines: Vec<&str> = block.lines().collect();
+    let requests: String = lines.iter().step_by(2).map(|line| format!("{line}\n")).collect();
+    fs::write(folder.join("requests"), requests).unwrap();
+    let run = shell(folder, &[], "stickslip serve < requests");
+    let answers = String::from_utf8(run.stdout).unwrap();
+    assert_eq!(answers.lines().count() * 2, lines.len(), "{name}: {answers}");
+    for (shown, answer) in lines.iter().skip(1).step_by(2).zip(answers.lines()) {
+        // the page has a blank after each colon and comma
+        let shown = shown.replace("\": ", "\":").replace(", \"", ",\"").replace(", {", ",{").replace(", [", ",[");
+        assert!(is_shown(&shown.replace(", …", "…"), answer), "{name}: {shown}\nis not\n{answer}");
+    }
 }
 
 /// A line with every run of blanks as one.
@@ -69,8 +108,9 @@ fn try_page(page: &Path) {
     let name = page.file_name().unwrap().to_string_lossy();
     let blocks = blocks(&fs::read_to_string(page).unwrap());
     let folder = tempfile::tempdir().unwrap();
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    std::os::unix::fs::symlink(scenarios, folder.path().join("scenarios")).unwrap();
+    for beside in ["scenarios", "examples"] {
+        std::os::unix::fs::symlink(Path::new(ROOT).join(beside), folder.path().join(beside)).unwrap();
+    }
     let mut shown = String::new();
     for block in &blocks {
         if let Some(file) = block.file() {
@@ -81,8 +121,21 @@ fn try_page(page: &Path) {
         let checked = shell(folder.path(), &["-n"], &block.text);
         assert!(checked.status.success(), "{name}: {}", String::from_utf8_lossy(&checked.stderr));
     }
-    for block in blocks.iter().filter(|block| block.language() == "sh") {
-        let run = shell(folder.path(), &["-e"], &block.text);
+    for block in &blocks {
+        let run = match (block.language(), block.words.as_slice()) {
+            ("sh", _) => shell(folder.path(), &["-e"], &block.text),
+            ("python", _) => command(folder.path(), "python3", &["-c", &block.text]).output().unwrap(),
+            ("json", [_]) => {
+                serde_json::from_str::<serde_json::Value>(&block.text)
+                    .unwrap_or_else(|error| panic!("{name}: {error}"));
+                continue;
+            }
+            (_, [text, serve]) if text == "text" && serve == "serve" => {
+                try_serve(folder.path(), &name, &block.text);
+                continue;
+            }
+            _ => continue,
+        };
         shown.push_str(&String::from_utf8_lossy(&run.stdout));
         assert!(run.status.success(), "{name}: {}\n{}", block.text, String::from_utf8_lossy(&run.stderr));
     }
@@ -106,11 +159,11 @@ fn try_page(page: &Path) {
 }
 
 fn pages() -> Vec<PathBuf> {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = Path::new(ROOT).join("docs");
     let mut pages: Vec<PathBuf> = fs::read_dir(docs).unwrap().map(|entry| entry.unwrap().path()).collect();
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
     pages.sort();
-    pages.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md"));
+    pages.push(Path::new(ROOT).join("README.md"));
     pages
 }
 

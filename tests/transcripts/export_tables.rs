@@ -12,16 +12,14 @@ use stickslip::session::{CommandError, Output, Session};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
+use super::lines;
+
 fn run(session: &mut Session, line: &str) -> Result<String, CommandError> {
     let mut out = Vec::new();
     for command in stickslip::session::language::tokens::commands(line) {
         session.execute(command, &mut Output::text(&mut out, Style::default(), &Quiet))?;
     }
     Ok(String::from_utf8(out).expect("text"))
-}
-
-fn session(name: &str) -> Session {
-    Session::new(embedded::load(name).expect("embedded"), &Quiet).expect("solved")
 }
 
 /// What leads there, WHAT and OF, and a column of the CSV; or why there is none.
@@ -111,7 +109,7 @@ fn the_table_of_every_command_is_exported_or_it_has_none() {
     for name in commands::all().map(|command| command.name) {
         let how = listed.get(name).unwrap_or_else(|| panic!("{name}: is its table exported?"));
         let Ok((before, what, column)) = how else { continue };
-        let mut session = session("beam");
+        let mut session = lines::embedded("beam");
         run(&mut session, before).unwrap_or_else(|error| panic!("{before}: {error}"));
         for ending in ["csv", "json"] {
             let line = format!("export {what} '{}'", at(ending).display());
@@ -145,7 +143,7 @@ fn tables_that_are_not_there_are_refused_in_words() {
         ("load beam", "check exactly", "only `exact` may follow"),
         ("load dam", "tableau", "tableau"),
     ] {
-        let mut session = session("beam");
+        let mut session = lines::embedded("beam");
         run(&mut session, before).expect("there");
         let line = format!("export {what} '{file}'");
         let error = run(&mut session, &line).expect_err(&line).to_string();
@@ -159,7 +157,7 @@ fn what_stands_in_the_tables() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("a.csv");
     let table = |before: &str, what: &str| -> Vec<Vec<String>> {
-        let mut session = session("beam");
+        let mut session = lines::embedded("beam");
         run(&mut session, &format!("{before}; export {what} '{}'", file.display())).expect("written");
         fs::read_to_string(&file).expect("a table").split_terminator("\r\n").map(fields).collect()
     };
@@ -199,7 +197,7 @@ fn k_and_f_come_back_as_a_superelement() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut same, mut refused) = (Vec::new(), Vec::new());
     for (name, _) in embedded::list() {
-        let mut session = session(name);
+        let mut session = lines::embedded(name);
         let file = folder.path().join(format!("{name}.mtx"));
         let wrote = match run(&mut session, &format!("export stiffness '{}'", file.display())) {
             Ok(wrote) => wrote,

@@ -1,15 +1,6 @@
 //! `help ray`: every command it names is one for the problem that is loaded.
 
-use stickslip::model::embedded;
-use stickslip::session::{Output, Session};
-use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
-
-fn run(session: &mut Session, line: &str) -> Result<String, String> {
-    let mut out = Vec::new();
-    let ended = session.execute(line, &mut Output::text(&mut out, Style::default(), &Quiet));
-    ended.map(|_| String::from_utf8(out).unwrap()).map_err(|error| error.to_string())
-}
+use super::lines::{embedded, told};
 
 #[test]
 fn the_steps_through_a_ray_are_commands_for_the_present_problem() {
@@ -25,9 +16,9 @@ fn the_steps_through_a_ray_are_commands_for_the_present_problem() {
         ("painleve", "", &["painleve ends in a ray, no-equilibrium (proved)", "`why z[1]`"]),
         ("cycling", "set tie-break first-row", &["its outcome is pivot-limit", "`ties`"]),
     ] {
-        let mut session = Session::new(embedded::load(name).unwrap(), &Quiet).unwrap();
-        run(&mut session, set).unwrap();
-        let help = run(&mut session, "help ray").unwrap();
+        let mut session = embedded(name);
+        told(&mut session, set).unwrap();
+        let help = told(&mut session, "help ray").unwrap();
         let plain = help.split_whitespace().collect::<Vec<_>>().join(" ");
         for part in named {
             assert!(plain.contains(part), "{name}: no {part} in\n{help}");
@@ -36,7 +27,7 @@ fn the_steps_through_a_ray_are_commands_for_the_present_problem() {
         let commands: Vec<&str> = guide.split('`').skip(1).step_by(2).collect();
         assert!(commands.len() >= 4, "{help}");
         for command in commands {
-            if let Err(error) = run(&mut session, command) {
+            if let Err(error) = told(&mut session, command) {
                 // the limit of a load without which nothing stands
                 let is_holding = command.starts_with("limit") && error.contains("there is no answer to start from");
                 assert!(is_holding, "{name}: {command}: {error}");

@@ -6,9 +6,12 @@ mod export;
 mod export_tables;
 mod generated;
 mod help;
+#[path = "../common/lines.rs"]
+mod lines;
 mod numbers;
 mod plausibility;
 mod program;
+mod pty;
 mod quantities;
 mod random_lines;
 mod references;
@@ -17,8 +20,10 @@ mod repl_pty;
 mod result_keys;
 mod serve;
 mod surroundings;
+mod system_limits;
 mod tables;
 mod tui_pty;
+mod watch_pty;
 mod work;
 
 use std::fs;

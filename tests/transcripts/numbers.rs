@@ -2,9 +2,9 @@
 //! refused.
 
 use stickslip::model::load::load_text;
-use stickslip::session::{Format, Output, Session};
-use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
+use stickslip::session::Session;
+
+use super::lines::{read, report, told};
 
 /// A bar along x from A to B; B is pressed to the ground and pulled along the bar by P = 2 F + 10.
 ///
@@ -30,23 +30,15 @@ const BAR: &str = r#"{ // comments may stand anywhere
   },
 }"#;
 
-const STYLE: Style = Style { width: 100, color: false, ascii: false };
-
 struct Rig(Session);
 
 impl Rig {
     fn new(text: &str) -> Rig {
-        let scenario = load_text("bar.json", text, None).unwrap_or_else(|problems| panic!("{problems}"));
-        Rig(Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}")))
+        Rig(read(text))
     }
 
     fn run(&mut self, command: &str) -> Result<String, String> {
-        let mut text = Vec::new();
-        let mut io = Output::text(&mut text, STYLE, &Quiet);
-        match self.0.execute(command, &mut io) {
-            Ok(_) => Ok(String::from_utf8(text).expect("text")),
-            Err(error) => Err(error.to_string()),
-        }
+        told(&mut self.0, command)
     }
 
     fn ok(&mut self, command: &str) -> String {
@@ -109,8 +101,8 @@ fn values_that_make_the_model_invalid_are_refused_with_their_place() {
     let mut rig = Rig::new(BAR);
     let before = rig.ok("status");
     for (command, part) in [
-        ("set L 0", "bar.json:13:13: bars[0]: the bar \"AB\" has no length"),
-        ("set A 0", "bar.json:11:32: sections.s.area: area must be greater than 0, found \"A\" = 0"),
+        ("set L 0", "case.json:13:13: bars[0]: the bar \"AB\" has no length"),
+        ("set A 0", "case.json:11:32: sections.s.area: area must be greater than 0, found \"A\" = 0"),
         ("set E -1", "materials.m.E: E must be greater than 0, found \"E\" = -1"),
         ("set f -0.1", "f/1 is the friction of c and must not be negative, found -0.1"),
         ("set P 3", "P is a formula, 2*F + 10: it is computed, not set; set F"),
@@ -177,29 +169,20 @@ fn friction_that_is_an_expression_is_followed_exactly() {
 fn sensitivities_are_derivatives_of_expressions_too() {
     // z_t = (2 F + 10 − f W) L / (E A): dz_t/dF = 2 L / (E A) = 0.04, dz_t/df = −W L / (E A) = −2.
     let mut rig = Rig::new(BAR);
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, STYLE, &Quiet);
-    io.format = Format::JsonLines;
-    rig.0.execute("sensitivity", &mut io).expect("an answer");
-    let line: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
-    let rates = line["report"]["parameters"].as_array().expect("rates");
+    let report = report(&mut rig.0, "sensitivity").expect("an answer");
+    let rates = report["parameters"].as_array().expect("rates");
     let of = |name: &str| {
         let rate = rates.iter().find(|rate| rate["parameter"] == name).unwrap_or_else(|| panic!("{name}"));
         rate["pairs"][0]["z_t"].as_f64().expect("a number")
     };
-    assert!((of("F") - 0.04).abs() < 1e-12 && (of("f") + 2.0).abs() < 1e-12, "{line}");
-    assert!(rates.iter().all(|rate| rate["parameter"] != "L" && rate["parameter"] != "P"), "{line}");
+    assert!((of("F") - 0.04).abs() < 1e-12 && (of("f") + 2.0).abs() < 1e-12, "{report}");
+    assert!(rates.iter().all(|rate| rate["parameter"] != "L" && rate["parameter"] != "P"), "{report}");
 }
 
 #[test]
 fn sweeps_go_over_geometry_and_loads() {
     let mut rig = Rig::new(BAR);
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, STYLE, &Quiet);
-    io.format = Format::JsonLines;
-    rig.0.execute("sweep L 0..4 3 W 50..100 2", &mut io).expect("a sweep");
-    let line: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
-    let report = &line["report"];
+    let report = report(&mut rig.0, "sweep L 0..4 3 W 50..100 2").expect("a sweep");
     let columns: Vec<&str> = report["columns"].as_array().unwrap().iter().filter_map(|name| name.as_str()).collect();
     let at = |name: &str| columns.iter().position(|column| *column == name).unwrap();
     let rows = report["rows"].as_array().unwrap();

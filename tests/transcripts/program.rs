@@ -69,6 +69,28 @@ fn exit_statuses_of_the_program() {
     }
 }
 
+/// What the shell has beside the prompt, and what a wrong argument of a word of both is told; all others are pointed to the
+/// prompt, whose commands the full screen takes as they are.
+#[test]
+fn every_command_is_known_where_it_is_given() {
+    const SHELL_ONLY: [&str; 7] = ["replay", "merge", "serve", "schema", "doctor", "completions", "man"];
+    let (out, ..) = piped(&["--help"], b"");
+    let help = String::from_utf8(out).unwrap();
+    let of_shell = |word: &str| help.lines().any(|line| line.strip_prefix("  ").is_some_and(|l| l.starts_with(word)));
+    assert!(SHELL_ONLY.iter().all(|word| of_shell(&format!("{word} "))), "{help}");
+    for word in stickslip::session::commands::all().map(|command| command.name) {
+        assert!(!SHELL_ONLY.contains(&word), "{word}");
+        let (out, error, status) = piped(&[word, "--help"], b"");
+        let asked = piped(&["help", word], b"");
+        assert_eq!((&out, status), (&asked.0, 0), "{word}: {error}");
+        let (_, error, status) = piped(&[word, "a", "--no-such-option"], b"");
+        let is_pointed = error.contains("is a command of the prompt");
+        assert_eq!((status, is_pointed), (2, !of_shell(&format!("{word} "))), "{word}: {error}");
+    }
+    let (_, error, _) = piped(&["sweep", "beam", "--vary", "f=0:1:0.5", "--shard", "17/16", "--out", "x.csv"], b"");
+    assert!(error.contains("17/16"), "{error}");
+}
+
 #[test]
 fn a_pipe_gets_results_only() {
     let (out, error, status) = piped(&["--width", "60"], b"status\npairs\n\xff\xfe\nset F2 150\r\nplot slip\n");

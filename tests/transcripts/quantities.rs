@@ -2,9 +2,14 @@
 
 use serde_json::Value;
 use stickslip::model::load::load_text;
-use stickslip::session::{Format, Output, Session};
-use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
+use stickslip::session::Session;
+
+use super::lines::{self, read, told};
+
+/// The report of a command that must succeed.
+fn report(session: &mut Session, command: &str) -> Value {
+    lines::report(session, command).unwrap_or_else(|error| panic!("{command}: {error}"))
+}
 
 /// A cantilever AB of length 4 with P = 3 downwards at B (E I = 200), and a block 2 × 1 under a load (H, −W) spread over
 /// its top, H = 2, W = 10.
@@ -28,41 +33,16 @@ const TWO: &str = r#"{
   "probes": { "tip sag": "uy B", "clamp": "M AB start", "lift": "count open base", "tilt": "resultant base e" }
 }"#;
 
-const STYLE: Style = Style { width: 100, color: false, ascii: false };
-
-fn session(text: &str) -> Session {
-    let scenario = load_text("two.json", text, None).unwrap_or_else(|problems| panic!("{problems}"));
-    Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn run(session: &mut Session, command: &str) -> Result<String, String> {
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, STYLE, &Quiet);
-    match session.execute(command, &mut io) {
-        Ok(_) => Ok(String::from_utf8(text).expect("text")),
-        Err(error) => Err(error.to_string()),
-    }
-}
-
-fn report(session: &mut Session, command: &str) -> Value {
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, STYLE, &Quiet);
-    io.format = Format::JsonLines;
-    session.execute(command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
-    let line: Value = serde_json::from_slice(&text).expect("JSON");
-    line["report"].clone()
-}
-
 fn expect(session: &mut Session, text: &str) {
-    run(session, &format!("expect {text}")).unwrap_or_else(|error| panic!("expect {text}: {error}"));
+    told(session, &format!("expect {text}")).unwrap_or_else(|error| panic!("expect {text}: {error}"));
 }
 
 /// Resting supports without friction give nothing along the run, so the riser has no shear and the nozzle no horizontal
 /// force: exactly 0 in quantities, as in the tables.
 #[test]
 fn what_is_rounding_reads_zero_everywhere() {
-    let mut session = session(include_str!("../../scenarios/pipeline.json"));
-    run(&mut session, "set f 0").expect("an answer");
+    let mut session = read(include_str!("../../scenarios/pipeline.json"));
+    told(&mut session, "set f 0").expect("an answer");
     for quantity in ["fx noz", "Q riser start", "max Q riser", "N run end", "M run end", "sum x_t c*", "nozzle_force"] {
         let shown = report(&mut session, &format!("show {quantity}"));
         assert_eq!(shown[0]["value"].as_f64(), Some(0.0), "{quantity}: {shown}");
@@ -76,7 +56,7 @@ fn what_is_rounding_reads_zero_everywhere() {
 
 #[test]
 fn quantities_have_the_values_of_closed_forms() {
-    let mut session = session(TWO);
+    let mut session = read(TWO);
     for text in [
         "outcome answer",
         "outcome != ray",
@@ -128,7 +108,7 @@ fn quantities_have_the_values_of_closed_forms() {
 
 #[test]
 fn expectations_that_fail_say_what_was_found() {
-    let mut session = session(TWO);
+    let mut session = read(TWO);
     for (text, part) in [
         ("M AB start = -11 ± 0.5", "expected M AB start = -11 ± 0.5, found -1"),
         ("outcome ray", "expected outcome ray, found outcome trivial"),
@@ -142,15 +122,15 @@ fn expectations_that_fail_say_what_was_found() {
         ("x_n base[*] = 0", "put sum, max or min before it"),
         ("outcome norml", "did you mean `normal`"),
     ] {
-        let error = run(&mut session, &format!("expect {text}")).expect_err(text);
+        let error = told(&mut session, &format!("expect {text}")).expect_err(text);
         assert!(error.contains(part), "{text}: {error}");
     }
 }
 
 #[test]
 fn show_lists_values_with_units_and_reasons() {
-    let mut session = session(TWO);
-    let text = run(&mut session, "show M AB start, uy B, state base[2], fx B, 'tip sag'").unwrap();
+    let mut session = read(TWO);
+    let text = told(&mut session, "show M AB start, uy B, state base[2], fx B, 'tip sag'").unwrap();
     for part in ["M AB start", "-12", "kN·m", "-0.32", "stick", "no support at node B", "tip sag"] {
         assert!(text.contains(part), "{part}: {text}");
     }
@@ -164,7 +144,7 @@ fn show_lists_values_with_units_and_reasons() {
 
 #[test]
 fn results_hold_probes_and_resultants() {
-    let session = session(TWO);
+    let session = read(TWO);
     let result = session.result(false).expect("an answer");
     assert!((result["probes"]["clamp"].as_f64().unwrap() + 12.0).abs() < 1e-9, "{}", result["probes"]);
     let base = &result["resultants"][0];
@@ -174,7 +154,7 @@ fn results_hold_probes_and_resultants() {
 
 #[test]
 fn combinations_multiply_the_factors_of_their_cases() {
-    let mut session = session(TWO);
+    let mut session = read(TWO);
     let all = report(&mut session, "combine");
     let all = all["combinations"].as_array().unwrap();
     // calm: W, P; storm: 2 f W = W, 1.5 H, 2 P.
@@ -187,15 +167,15 @@ fn combinations_multiply_the_factors_of_their_cases() {
     }
     assert_eq!(all[1]["factors"]["push"], 3.0);
     expect(&mut session, "\"tip sag\" = -0.32 ± 1e-9");
-    run(&mut session, "combine storm").unwrap();
+    told(&mut session, "combine storm").unwrap();
     expect(&mut session, "\"tip sag\" = -0.64 ± 1e-9");
     expect(&mut session, "M AB at 2 = -12 ± 1e-9");
-    run(&mut session, "solve").unwrap();
+    told(&mut session, "solve").unwrap();
     expect(&mut session, "\"tip sag\" = -0.32 ± 1e-9");
-    let error = run(&mut session, "combine strom").unwrap_err();
+    let error = told(&mut session, "combine strom").unwrap_err();
     assert!(error.contains("no combination `strom`") && error.contains("storm"), "{error}");
-    let error = run(
-        &mut self::session(
+    let error = told(
+        &mut read(
             &TWO.replace("\"combinations\"", "\"stages\"")
                 .replace("{ \"calm\": {", "[ {")
                 .replace("}, \"storm\": {", "}, {")
@@ -208,7 +188,7 @@ fn combinations_multiply_the_factors_of_their_cases() {
 
 #[test]
 fn the_envelope_names_what_governs() {
-    let mut session = session(TWO);
+    let mut session = read(TWO);
     let envelope = report(&mut session, "envelope tilt, 'tip sag', max x_n over combinations");
     let rows = envelope["envelope"].as_array().unwrap();
     let end = |row: usize, end: &str| {
@@ -220,14 +200,14 @@ fn the_envelope_names_what_governs() {
     assert!((end(1, "least").0 + 0.64).abs() < 1e-9 && end(1, "least").1 == "storm");
     assert_eq!(rows.len(), 3);
     assert_eq!(report(&mut session, "envelope")["envelope"].as_array().unwrap().len(), 4);
-    assert!(run(&mut session, "envelope outcome").unwrap_err().contains("is a word"));
-    let text = run(&mut session, "envelope").unwrap();
+    assert!(told(&mut session, "envelope outcome").unwrap_err().contains("is a word"));
+    let text = told(&mut session, "envelope").unwrap();
     assert!(text.contains("storm") && text.contains("calm"), "{text}");
 }
 
 #[test]
 fn sweeps_paths_and_plots_speak_the_same_language() {
-    let mut session = session(TWO);
+    let mut session = read(TWO);
     let sweep = report(&mut session, "sweep P 1..3 3 --columns 'M AB start, \"tip sag\", state base[2], mises b{1,1}'");
     let columns: Vec<&str> = sweep["columns"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
     let at = |name: &str| columns.iter().position(|column| *column == name).unwrap_or_else(|| panic!("{columns:?}"));
@@ -242,18 +222,18 @@ fn sweeps_paths_and_plots_speak_the_same_language() {
     let along = &trace["along"];
     let last = |k: usize| along["quantities"][k]["values"].as_array().unwrap().last().unwrap().as_f64().unwrap();
     assert!((last(0) + 4.0).abs() < 1e-9 && (last(1) - 0.4).abs() < 1e-9, "{along}");
-    let text = run(&mut session, "trace push to 4 of M AB start").unwrap();
+    let text = told(&mut session, "trace push to 4 of M AB start").unwrap();
     assert!(text.contains("M AB start") && text.contains("-12"), "{text}");
-    let plot = run(&mut session, "plot path tilt").unwrap();
+    let plot = told(&mut session, "plot path tilt").unwrap();
     assert!(plot.contains("tilt over push"), "{plot}");
-    assert!(run(&mut session, "trace push of stat base[0]").unwrap_err().contains("unknown quantity `stat`"));
-    assert!(run(&mut session, "sweep P 1..3 --columns 'M CD'").unwrap_err().contains("no bar `CD`"));
+    assert!(told(&mut session, "trace push of stat base[0]").unwrap_err().contains("unknown quantity `stat`"));
+    assert!(told(&mut session, "sweep P 1..3 --columns 'M CD'").unwrap_err().contains("no bar `CD`"));
 }
 
 #[test]
 fn the_summary_fits_on_a_screen() {
-    let mut session = session(TWO);
-    let text = run(&mut session, "summary").unwrap();
+    let mut session = read(TWO);
+    let text = told(&mut session, "summary").unwrap();
     for part in ["base", "push", "2.5", "tip sag"] {
         assert!(text.contains(part), "{part}: {text}");
     }

@@ -5,25 +5,16 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
 use stickslip::model::embedded;
 use stickslip::model::expression::Expression;
 use stickslip::model::jet::Jet;
-use stickslip::session::{Format, Output, Session, language::tokens};
+use stickslip::session::{Session, language::tokens};
 use stickslip::text::number::{short, with_unit};
-use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
+
+use super::lines::{self, report};
 
 const BEGIN: &str = "<!-- table of references: made from scenarios/scripts by tests/transcripts/references.rs -->\n";
 const END: &str = "<!-- end of the table of references -->\n";
-
-/// Runs a command that must succeed; its report.
-fn run(session: &mut Session, command: &str) -> Value {
-    let mut out = Vec::new();
-    let mut io = Output::new(&mut out, Style::default(), Format::JsonLines, &Quiet);
-    session.execute(command, &mut io).unwrap_or_else(|error| panic!("{command}: {error}"));
-    serde_json::from_slice(&out).unwrap_or_else(|error| panic!("{command}: {error}"))
-}
 
 /// The parameters that are not those of the file: `f = 0.4, W = 0`.
 fn changed(session: &Session) -> String {
@@ -42,7 +33,7 @@ fn error(reference: f64, computed: f64) -> String {
 
 /// The rows of one script. A script may go on in other scenarios; each row names its own.
 fn rows(script: &Path, table: &mut String) -> usize {
-    let mut session = Session::new(embedded::load(embedded::DEFAULT).unwrap(), &Quiet).unwrap();
+    let mut session = lines::embedded(embedded::DEFAULT);
     let mut count = 0;
     for line in fs::read_to_string(script).unwrap().lines() {
         let referred = line.split_once("# ref: ");
@@ -54,7 +45,7 @@ fn rows(script: &Path, table: &mut String) -> usize {
                 let names: Vec<&str> = session.values().keys().map(String::as_str).collect();
                 let formula = Expression::parse(formula.trim(), &names).unwrap();
                 let reference = formula.evaluate(&|name| Jet::constant(session.values()[name])).value;
-                let found = &run(&mut session, &format!("show {quantity}"))["report"][0];
+                let found = &report(&mut session, &format!("show {quantity}")).unwrap()[0];
                 let computed = found["value"].as_f64().unwrap_or_else(|| panic!("{found}"));
                 let unit = found["unit"].as_str();
                 let changed = changed(&session);
@@ -70,7 +61,7 @@ fn rows(script: &Path, table: &mut String) -> usize {
                 .unwrap();
                 count += 1;
             }
-            run(&mut session, command);
+            report(&mut session, command).unwrap_or_else(|error| panic!("{command}: {error}"));
         }
     }
     count

@@ -2,10 +2,9 @@
 //! as well.
 
 use serde_json::Value;
-use stickslip::model::load::load_text;
-use stickslip::session::{Output, Session};
-use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
+
+use super::lines::{read, told};
 
 /// A quad 2 × 1 of thickness 0.5 pulled by 6 per length of its right edge: σ_x = 6 / 0.5 = 12. A cantilever of length 4
 /// under q = −3 and, at 1 from the clamp, a force −10. A block of weight W that is pushed.
@@ -32,21 +31,6 @@ const THREE: &str = r#"{
   "probes": { "pulled": "sx q1", "clamp": "M AB start" }
 }"#;
 
-fn session(text: &str) -> Session {
-    let scenario = load_text("three.json", text, None).unwrap_or_else(|problems| panic!("{problems}"));
-    Session::new(scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn run(session: &mut Session, command: &str) -> Result<String, String> {
-    let mut text = Vec::new();
-    let style = Style { width: 100, color: false, ascii: false };
-    let mut io = Output::text(&mut text, style, &Quiet);
-    match session.execute(command, &mut io) {
-        Ok(_) => Ok(String::from_utf8(text).expect("text")),
-        Err(error) => Err(error.to_string()),
-    }
-}
-
 fn near(found: &Value, expected: f64) {
     let number = found.as_f64().unwrap_or_else(|| panic!("{found}"));
     assert!((number - expected).abs() < 1e-9 * (1.0 + expected.abs()), "{number} {expected}");
@@ -59,7 +43,7 @@ fn find<'v>(list: &'v Value, key: &str, name: &str) -> &'v Value {
 
 #[test]
 fn stresses_stand_at_nodes_and_elements() {
-    let result = session(THREE).result(false).expect("an answer");
+    let result = read(THREE).result(false).expect("an answer");
     let stresses = &result["stresses"];
     for place in [find(stresses, "node", "b"), find(stresses, "element", "q1")] {
         // Uniaxial: s1 = mises = σ_x, s2 = 0.
@@ -75,19 +59,19 @@ fn stresses_stand_at_nodes_and_elements() {
     near(&result["probes"]["pulled"], 12.0);
     // Plane strain: σ_z = ν σ_x = 3, von Mises √(12² − 12·3 + 3²) = √117.
     let strain = THREE.replacen("\"plane\": \"stress\"", "\"plane\": \"strain\"", 1);
-    near(&find(&session(&strain).result(false).unwrap()["stresses"], "element", "q1")["mises"], 117.0_f64.sqrt());
+    near(&find(&read(&strain).result(false).unwrap()["stresses"], "element", "q1")["mises"], 117.0_f64.sqrt());
 }
 
 #[test]
 fn an_unknown_element_is_told() {
-    let error = run(&mut self::session(THREE), "show mises q2").unwrap_err();
+    let error = told(&mut read(THREE), "show mises q2").unwrap_err();
     assert!(error.contains("no node or element `q2` (did you mean `q1`?)"), "{error}");
 }
 
 /// M(x) = −q (L − x)²/2 − P (1 − x)₊ with q = 3, P = 10, L = 4; Q(x) = q (L − x) + P for x < 1.
 #[test]
 fn members_have_their_diagrams_with_extremes() {
-    let result = session(THREE).result(false).expect("an answer");
+    let result = read(THREE).result(false).expect("an answer");
     let first = &result["members"][0];
     assert_eq!(first["diagram"].as_array().unwrap().len(), 2, "{first}");
     let moment = |x: f64| -1.5 * (4.0 - x) * (4.0 - x) - 10.0 * (1.0 - x).max(0.0);
@@ -116,7 +100,7 @@ fn members_have_their_diagrams_with_extremes() {
         )
         .replace("\"divisions\": 2 }", "\"divisions\": 1 }")
         .replace("\"distance\": 1, \"force\": [0, -10]", "\"distance\": 1, \"force\": [0, 0]");
-    let member = session(&simple).result(false).unwrap()["members"][0].clone();
+    let member = read(&simple).result(false).unwrap()["members"][0].clone();
     near(&member["extremes"]["M"]["largest"]["value"], 6.0);
     near(&member["extremes"]["M"]["largest"]["at"], 2.0);
 }
@@ -124,11 +108,11 @@ fn members_have_their_diagrams_with_extremes() {
 #[test]
 fn stages_hold_the_same_keys() {
     let stages = "\"stages\": [ { \"weight\": 1, \"sag\": 1 }, { \"weight\": 1, \"sag\": 2, \"pull\": 0.5, \"push\": 1 } ],\n  \"probes\"";
-    let mut session = session(&THREE.replace("\"probes\"", stages));
+    let mut session = read(&THREE.replace("\"probes\"", stages));
     session.follow_stages(&Quiet).expect("it is followed");
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("result.json");
-    run(&mut session, &format!("export result {}", file.display())).unwrap();
+    told(&mut session, &format!("export result {}", file.display())).unwrap();
     let result: Value = serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap();
     let stages = result["stages"].as_array().unwrap_or_else(|| panic!("{result}"));
     for (stage, pulled, clamp, tilt) in [(&stages[0], 0.0, -34.0, 0.0), (&stages[1], 6.0, -68.0, 0.2)] {
@@ -149,8 +133,8 @@ fn remarks_on_the_answer_are_notes() {
     let text = r#"{ "format": "stickslip/1", "title": "held", "contact_system": { "pairs": ["c"],
         "stiffness": [[1, 0], [0, 1]], "law": ["coulomb"], "friction": [0.5], "cohesion": [5],
         "loads": { "all": { "vector": [-1, 1] } } } }"#;
-    let result = session(text).result(false).expect("an answer");
+    let result = read(text).result(false).expect("an answer");
     assert_eq!(result["pairs"][0]["state"], "open", "{result}");
     assert!(result["notes"][0].as_str().unwrap().contains("held by its cohesion"), "{result}");
-    assert!(session(THREE).result(false).unwrap().get("notes").is_none());
+    assert!(read(THREE).result(false).unwrap().get("notes").is_none());
 }

@@ -136,7 +136,7 @@ fn nowhere_to_write() {
 #[test]
 #[cfg(unix)]
 fn a_session_that_leaves_no_trace_says_so() {
-    use crate::repl_pty::{Terminal, command};
+    use crate::pty::{Terminal, command};
     let folder = tempfile::tempdir().unwrap();
     let start = |changes: &[(&str, Option<&str>)]| {
         let mut command = command(folder.path(), "xterm", &[]);
@@ -146,7 +146,7 @@ fn a_session_that_leaves_no_trace_says_so() {
                 None => command.env_remove(name),
             }
         }
-        Terminal::spawn(command)
+        Terminal::spawn(command, 80, 24)
     };
     let mut bare = start(&[("HOME", None), ("XDG_STATE_HOME", None)]);
     let greeting = bare.prompt();

@@ -1,29 +1,21 @@
 //! Rows of tables: ranges, patterns, sorting, the first of them; scripts that say their commands.
 
-use serde_json::Value;
-use stickslip::model::embedded;
-use stickslip::session::{Format, Output, Session, script};
+use stickslip::session::{Output, Session, script};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
-fn session(name: &str) -> Session {
-    Session::new(embedded::load(name).expect("embedded"), &Quiet).expect("an answer")
-}
+use super::lines::{embedded, report};
 
 fn rows(session: &mut Session, command: &str, key: &str) -> Result<Vec<String>, String> {
-    let mut text = Vec::new();
-    let mut io = Output::text(&mut text, Style::default(), &Quiet);
-    io.format = Format::JsonLines;
-    session.execute(command, &mut io).map_err(|error| error.to_string())?;
-    let line: Value = serde_json::from_slice(&text).expect("JSON");
-    let rows = line["report"].as_array().unwrap_or_else(|| panic!("{line}"));
+    let report = report(session, command)?;
+    let rows = report.as_array().unwrap_or_else(|| panic!("{report}"));
     Ok(rows.iter().map(|row| row[key].as_str().expect("a name").to_owned()).collect())
 }
 
 /// Example 1: the slips grow towards c6 (c3 … c6 slip), c1 and c2 hold; the normal forces in the bars grow likewise.
 #[test]
 fn rows_are_chosen_sorted_and_cut() {
-    let mut beam = session("beam");
+    let mut beam = embedded("beam");
     for (command, key, expected) in [
         ("pairs c2..c4", "id", &["c2", "c3", "c4"][..]),
         ("pairs c4..c2", "id", &["c4", "c3", "c2"]),
@@ -42,7 +34,7 @@ fn rows_are_chosen_sorted_and_cut() {
         assert_eq!(found, expected, "{command}");
     }
     // Names with commas in brackets, and what stands before a bracket.
-    let mut plates = session("plates-free");
+    let mut plates = embedded("plates-free");
     assert_eq!(rows(&mut plates, "displacements upper[0,0]..upper[2,0]", "node").unwrap().len(), 3);
     assert_eq!(rows(&mut plates, "displacements upper[0,0],lower[1,1]", "node").unwrap(), ["upper[0,0]", "lower[1,1]"]);
     let upper = rows(&mut plates, "displacements upper", "node").unwrap();
@@ -51,7 +43,7 @@ fn rows_are_chosen_sorted_and_cut() {
 
 #[test]
 fn wrong_rows_are_refused() {
-    let mut beam = session("beam");
+    let mut beam = embedded("beam");
     for (command, part) in [
         ("pairs c9", "no pair `c9`"),
         ("pairs d*", "no pair `d*`"),
@@ -76,7 +68,7 @@ fn a_script_says_its_commands_where_that_is_asked_for() {
         let mut io = Output::text(&mut text, Style::default(), &Quiet);
         io.echo = echo;
         let script = "set F2 40; expect outcome answer\n\n# a comment\necho done\n";
-        script::run(&mut session("beam"), "s", script, false, &mut io, &mut |error| panic!("{error}")).expect("runs");
+        script::run(&mut embedded("beam"), "s", script, false, &mut io, &mut |error| panic!("{error}")).expect("runs");
         String::from_utf8(text).expect("text")
     };
     let said = replay(true);

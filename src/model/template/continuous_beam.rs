@@ -52,7 +52,7 @@ fn text(spans: usize) -> String {
         .replace("// bars", &lines(bars))
         .replace("// supports", &lines(supports))
         .replace("// contacts", &lines(contacts))
-        .replace("// items", &lines((1..=spans).map(line)))
+        .replace("// items", &(1..=spans).map(line).collect::<Vec<_>>().join(",\n        "))
         .replace("// probes", &lines(reactions.chain(supported).chain(field)))
 }
 

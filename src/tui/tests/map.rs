@@ -77,7 +77,9 @@ fn regions_are_stepped_through_searched_and_copied() {
     assert_ne!(region(&rig).letter, first);
     rig.press(&["space"]);
     assert_eq!(region(&rig).letter, first);
-    rig.press(&["/"]);
+    // whatever is typed into a line leaves the cursor where it is
+    rig.press(&["/", "tab", "up", "down"]);
+    assert!(rig.state.below.is_some());
     rig.act(Action::Paste("slip+".into()));
     rig.press(&["enter"]);
     assert_eq!(region(&rig).states, Some(vec![("c".to_owned(), PairMotion::SlipPlus)]));

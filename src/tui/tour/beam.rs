@@ -7,7 +7,7 @@ pub const STEPS: &[Step] = &[
     Step {
         text: "A beam lies on six supports, F = 100 kN on each, and is pulled at its right end. With F2 = 40 kN the \
                pull stays below f F = 50 kN, the bound of one support: every pair sticks, nothing moves, and the main \
-               system (all joints on) is the answer without a pivot.",
+               system (every joint on) is the answer without a pivot.",
         commands: "load beam; set F2 40",
         pane: Pane::Structure,
         plot: Plot::Force,
@@ -28,15 +28,15 @@ pub const STEPS: &[Step] = &[
     },
     Step {
         text: "Each pivot turns one joint on or off. At pivot 2 p has fallen to 22.2 kN: c6 and c5 slip. The left and \
-               right arrows move along the pivots and every pane follows; at p = 0 the covering is gone and the \
-               working scheme is the answer.",
+               right arrows move along the pivots and every pane follows; at p = 0 the extra tightening is gone and \
+               the working scheme, which joints are on, is that of the answer.",
         commands: "set f 0.5; set F 100; set F2 250; step to 2",
         pane: Pane::Pivots,
         plot: Plot::Slip,
     },
     Step {
         text: "F2 = 300 kN = 6 f F: the limit. Every support carries its bound of 50 kN; c1 has no reserve left but \
-               need not slip yet. This is still an answer; the least more is too much.",
+               need not slip yet. This is still an answer; any more is too much.",
         commands: "set f 0.5; set F 100; set F2 300",
         pane: Pane::Plot,
         plot: Plot::Force,

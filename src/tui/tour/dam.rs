@@ -13,17 +13,17 @@ pub const STEPS: &[Step] = &[
         plot: Plot::Pressure,
     },
     Step {
-        text: "z = 28 m: the water pushes with 3846 kN, and under the base it presses upwards, which drains reduce to 0.6 \
-               of it at the heel. The resultant moves to 0.67 m downstream of the middle, within the kern of B/6 = 4 m: \
-               the whole base is pressed. At the heel, where it is pressed least, a pair slips.",
+        text: "z = 28 m: the water pushes with 3846 kN and presses upwards under the base, where drains leave 0.6 of the \
+               pressure at the heel. The resultant moves to 0.67 m downstream of the middle, within the kern (B/6 = \
+               4 m): the whole base stays pressed. At the heel, where it is pressed least, a pair slips.",
         commands: "reset",
         pane: Pane::Plot,
         plot: Plot::Pressure,
     },
     Step {
         text: "z = 30 m and the drains are blocked, drain = 1. Uplift takes 3532 kN of the weight, 6548 kN are left, and \
-               the resultant stands 3.03 m downstream: by the book the base is still pressed everywhere, but the dam is \
-               elastic. Its heel, rock[0], is open.",
+               the resultant stands 3.03 m downstream of the middle: by the books, which take the dam as rigid, the base \
+               is still pressed everywhere. It is elastic, and its heel, rock[0], is open.",
         commands: "reset; set drain 1; set z 30",
         pane: Pane::Plot,
         plot: Plot::Gap,
@@ -36,7 +36,7 @@ pub const STEPS: &[Step] = &[
         plot: Plot::Force,
     },
     Step {
-        text: "f = 0.45: f N = 3646 kN are less than the push of 3846 kN. No answer: the run ends in a ray, certified, \
+        text: "f = 0.45: f N = 3646 kN is less than the push of 3846 kN. No answer: the run ends in a ray, certified, \
                and its direction is the dam sliding off as a whole. `:ray` tells what would stop it. Now vary z, drain \
                and f yourself: + and - in Parameters.",
         commands: "reset; set f 0.45",

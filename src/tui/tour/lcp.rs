@@ -6,7 +6,7 @@ use crate::tui::pane::{Pane, Plot};
 pub const STEPS: &[Step] = &[
     Step {
         text: "A bare LCP: w = M z + q with w, z >= 0 and w z = 0. This one is the contact of a rod that slides on a rough \
-               line (Painleve, 1895). M = -0.05: to press it lowers w further, and with q = -1 no z helps. The run ends \
+               line (Painleve, 1895). M = -0.05: pressing it lowers w further, and with q = -1 no z helps. The run ends \
                in a ray; that there is no answer is proved by trying both bases.",
         commands: "load painleve; set q -1",
         pane: Pane::Answer,

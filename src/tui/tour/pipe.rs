@@ -21,14 +21,14 @@ pub const STEPS: &[Step] = &[
     },
     Step {
         text: "f = 0.3, steel on steel. The four supports that carry hold the run back with f x_n each, all at their \
-               bounds, and the moment at the nozzle has turned round: 8.4 kNm. To leave friction out was not on the \
-               safe side.",
+               bounds, and the moment at the nozzle has changed its sign: 8.4 kNm. Leaving friction out was not on \
+               the safe side.",
         commands: "reset; set f 0.3",
         pane: Pane::Plot,
         plot: Plot::Force,
     },
     Step {
-        text: "f = 0.6: the first support sticks, and whatever friction there is beyond, the nozzle bears 20 kNm. Where \
+        text: "f = 0.6: the first support sticks, and however much more friction there is, the nozzle bears 20 kNm. Where \
                that begins is found exactly: type `:find f 0..1 where state c1 = stick`; it says 0.4815.",
         commands: "reset; set f 0.6",
         pane: Pane::Pairs,
@@ -37,7 +37,7 @@ pub const STEPS: &[Step] = &[
     Step {
         text: "f = 0.1287: the two effects cancel, the moment is zero. `:find f 0..1 where nozzle_moment = 0` finds the \
                place; nozzle_moment is a probe, a name that the scenario gives to a quantity. `:envelope nozzle_moment \
-               over f 0..1` shows the ends of its range.",
+               over f 0..1` shows its least and largest value.",
         commands: "reset; set f 0.1287187701",
         pane: Pane::Pairs,
         plot: Plot::Force,

@@ -10,8 +10,6 @@ use crate::tui::pane::Pane;
 use crate::tui::panes::map;
 use crate::view::style::Role;
 
-const NO_MAP: &str = "no map yet: `:map P Q` draws one";
-
 /// Whether an action leaves the answer at the cursor in sight.
 pub(super) fn keeps_glance(what: Do) -> bool {
     matches!(
@@ -32,6 +30,9 @@ pub(super) fn keeps_glance(what: Do) -> bool {
             | Do::Accept
             | Do::Cancel
             | Do::Edit(_)
+            | Do::Complete
+            | Do::HistoryBack
+            | Do::HistoryOn
             | Do::CopyValue
             | Do::CopyCommand
             | Do::Help
@@ -57,12 +58,15 @@ pub(super) fn leave(state: &mut State) {
     }
 }
 
+/// Says that there is no map to move in.
+fn without_map(state: &mut State) -> Vec<Effect> {
+    state.say(Role::Warning, "no map yet: `:map P Q` draws one");
+    Vec::new()
+}
+
 /// The answer at a place of the map.
 pub(super) fn glance_at(state: &mut State, at: [f64; 2]) -> Vec<Effect> {
-    let Some(drawn) = map::drawn(state) else {
-        state.say(Role::Warning, NO_MAP);
-        return Vec::new();
-    };
+    let Some(drawn) = map::drawn(state) else { return without_map(state) };
     let axis = |k: usize| (drawn.map.axes[k].name.clone(), at[k]);
     let settings = [axis(0), axis(1)];
     state.map_at = Some(at);
@@ -74,10 +78,7 @@ pub(super) fn move_by(state: &mut State, by: (isize, isize)) -> Vec<Effect> {
     let to = layout::area_of(state, Pane::Map).and_then(|area| map::moved(state, by, area));
     match to {
         Some(at) => glance_at(state, at),
-        None => {
-            state.say(Role::Warning, NO_MAP);
-            Vec::new()
-        }
+        None => without_map(state),
     }
 }
 
@@ -96,10 +97,7 @@ pub(super) fn region(state: &State) -> usize {
 /// The cursor into the next region.
 pub(super) fn next_region(state: &mut State) -> Vec<Effect> {
     match map::drawn(state).map_or(0, |drawn| drawn.map.regions.len()) {
-        0 => {
-            state.say(Role::Warning, NO_MAP);
-            Vec::new()
-        }
+        0 => without_map(state),
         count => go_to_region(state, (region(state) + 1) % count),
     }
 }
@@ -121,10 +119,7 @@ pub(super) fn set_here(state: &mut State) -> Vec<Effect> {
             state.say(Role::Warning, why);
             Vec::new()
         }
-        None => {
-            state.say(Role::Warning, NO_MAP);
-            Vec::new()
-        }
+        None => without_map(state),
     }
 }
 

@@ -11,20 +11,13 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use stickslip::model::load::load_file;
-use stickslip::solve::prepare;
-use stickslip::watch::Quiet;
 
-use crate::common::{Case, scenario_text};
+use crate::common::Case;
 use write::Drawn;
 
 /// A scenario beside its meshes.
 fn case(folder: &Path, value: Value) -> Case {
-    let file = folder.join("scenario.json");
-    fs::write(&file, scenario_text(value)).expect("a file");
-    let scenario = load_file(&file).unwrap_or_else(|problems| panic!("{problems}"));
-    let prepared = prepare(&scenario, &Quiet).unwrap_or_else(|error| panic!("{error}"));
-    Case { scenario, prepared }
+    Case::in_folder(value, folder)
 }
 
 /// The three files of a mesh, in a folder.

@@ -160,7 +160,9 @@ impl Session {
 
     /// Whatever there is to draw.
     fn add_figures(&self, answer: &Answer, watch: &dyn Watch, blocks: &mut Vec<Block>) -> Result<(), CommandError> {
-        let has_pairs = !answer.pairs.is_empty();
+        let pairs = self.quantity_pairs();
+        let slips = pairs.iter().any(|pair| pair.z_t != 0.0);
+        let rubs = pairs.iter().any(|pair| pair.x_t != 0.0 || pair.bound != 0.0);
         let bends = answer
             .members
             .iter()
@@ -171,9 +173,9 @@ impl Session {
         let wanted = [
             (Exported::Structure, "structure", structure),
             (Exported::Mode, "mode", self.followed.is_none() && self.mode_shape().is_ok()),
-            (Exported::Slip, "slip", has_pairs),
-            (Exported::Force, "force", has_pairs),
-            (Exported::Pressure, "pressure", has_pairs),
+            (Exported::Slip, "slip", slips),
+            (Exported::Force, "force", rubs),
+            (Exported::Pressure, "pressure", !pairs.is_empty()),
             (Exported::Traction, "traction", self.traction_states(&[]).is_ok()),
             (Exported::Moment, "moment", bends),
             (Exported::Axial, "axial", axial),
