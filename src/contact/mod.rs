@@ -16,6 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod cone;
 pub mod file_data;
 pub mod force_form;
 pub mod full_lcp;

@@ -6,34 +6,38 @@
 //!   none  ⇔  a motion ζ with  ζ_n ≥ f |ζ_τ|  in every pair and  work of the loads > Σ c |ζ_τ|
 //! ```
 //! The second line is the Farkas alternative: on ζ every admissible λ takes at most Σ c |ζ_τ|, and the loads do more.
+//! In space |ζ_τ| is the length of a vector and the program has cones: what it proves holds for Coulomb's law itself, no
+//! polygon in its place.
 //!
 //! The motion looked for is the one with the largest least margin: the signs of such a motion have room, so that f64
 //! sums with the bounds of their rounding prove them (method §4, "Rays"). Where a part is confined
 //! on both sides no motion has room everywhere: then the inequalities that must hold as equations are found, solved in
-//! rationals, and every sign that has no room is evaluated exactly. A linear program only *proposes*; no verified
+//! rationals, and every sign that has no room is evaluated exactly. A program only *proposes*; no verified
 //! motion, no certificate. Of a system that a file gives, the motions are exact, and so is a last linear program
 //! ([`super::exact_certificate`]).
 
 use std::time::Instant;
 
+use nalgebra::DVector;
 use num_rational::BigRational;
-use num_traits::Zero;
+use num_traits::{Signed, Zero};
 
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved};
 use super::motions::{Entry, FreeMotions};
 use super::proof::{BUDGET, Certificate, CertificateSearch};
+use crate::contact::cone::ConePair;
 use crate::contact::law::SENSES;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 
-/// A margin below this share of the motion is looked at more closely: the linear program cannot tell it from 0.
+/// A margin below this share of the motion is looked at more closely: the program cannot tell it from 0.
 const UNCLEAR: f64 = 1e-5;
 /// Magnifications of the closer looks.
 const ZOOMS: [f64; 2] = [1e6, 1e9];
-/// A share of the motion that the linear program can tell from 0.
+/// A share of the motion that the program can tell from 0.
 const CLEAR: f64 = 1e-7;
 /// An inequality that can be slack by no more than this share must hold as an equation.
 const TIGHT: f64 = 1e-6;
@@ -41,29 +45,69 @@ const TIGHT: f64 = 1e-6;
 /// Looks for a certificate.
 pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSearch {
     let system = &*problem.system;
-    let work = motions.work(&system.forces_of(&problem.load), &system.forces_of(&problem.load_terms));
+    let end = Instant::now() + BUDGET;
+    let pairs: Vec<ConePair> = (system.pairs.iter().zip(&problem.laws))
+        .map(|(pair, law)| ConePair { law: *law, tangents: pair.tangential.clone() })
+        .collect();
+    let load = Load { forces: &system.forces_of(&problem.load), terms: &system.forces_of(&problem.load_terms) };
+    let found = certify_pairs(&pairs, motions, load, end);
+    if found.certificate.is_some() || load.does_no_work(motions) {
+        return found;
+    }
+    let exactly = certify_exactly(problem, end);
+    CertificateSearch { out_of_time: found.out_of_time || exactly.out_of_time, ..exactly }
+}
+
+/// Forces over the joints with the magnitudes that each was summed from.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<'a> {
+    /// RF.
+    pub forces: &'a DVector<f64>,
+    /// The magnitudes.
+    pub terms: &'a DVector<f64>,
+}
+
+impl Load<'_> {
+    fn does_no_work(self, motions: &FreeMotions) -> bool {
+        motions.work(self.forces, self.terms).iter().all(|work| work.value == 0.0)
+    }
+}
+
+/// Looks until `end` for a motion that f64 sums prove, and where it has no room for one that rationals do: what is proved
+/// hangs on the motions, the load and the laws alone.
+pub fn certify_pairs(pairs: &[ConePair], motions: &FreeMotions, load: Load, end: Instant) -> CertificateSearch {
+    let work = motions.work(load.forces, load.terms);
     let scale = work.iter().fold(0.0, |a: f64, work| a.max(work.value.abs()));
     if scale == 0.0 {
         return CertificateSearch::default();
     }
-    let mut program = MotionProgram { problem, motions, work, scale, end: Instant::now() + BUDGET, out_of_time: false };
+    let mut program = MotionProgram { pairs, motions, work, scale, end, out_of_time: false };
     let certificate = program.with_room().or_else(|| program.confined());
-    if certificate.is_some() {
-        return CertificateSearch { certificate, out_of_time: false };
-    }
-    let exactly = certify_exactly(problem, program.end);
-    CertificateSearch { out_of_time: program.out_of_time || exactly.out_of_time, ..exactly }
+    let out_of_time = certificate.is_none() && program.out_of_time;
+    CertificateSearch { certificate, out_of_time }
 }
 
-/// ζ_n − side · f ζ_τ ≥ 0 of a pair.
+type Terms = Vec<(usize, f64)>;
+
+/// ζ_n − f |ζ_τ| ≥ 0 of a pair, in the plane one of its two senses: Σ `most` ≥ |Σ `parts`|.
 struct Slack {
     pair: usize,
-    side: f64,
-    terms: Vec<(usize, f64)>,
+    /// ± 1 in the plane; `None` in space and without friction.
+    sense: Option<f64>,
+    most: Terms,
+    parts: Vec<Terms>,
+}
+
+impl Slack {
+    /// Demands it with so much room.
+    fn demand(&self, program: &mut LinearProgram, room: Option<usize>) {
+        let most: Terms = self.most.iter().copied().chain(room.map(|room| (room, -1.0))).collect();
+        program.at_least_length(&most, &self.parts);
+    }
 }
 
 struct MotionProgram<'a> {
-    problem: &'a ContactProblem,
+    pairs: &'a [ConePair],
     motions: &'a FreeMotions,
     /// Work of the loads per unit of each motion.
     work: Vec<Sum>,
@@ -74,8 +118,8 @@ struct MotionProgram<'a> {
 }
 
 /// A sparse row plus `factor` times another one.
-fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Vec<(usize, f64)> {
-    let mut terms: Vec<(usize, f64)> = row.iter().map(|entry| (entry.motion, entry.part.value)).collect();
+fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Terms {
+    let mut terms: Terms = row.iter().map(|entry| (entry.motion, entry.part.value)).collect();
     for entry in other {
         let value = factor * entry.part.value;
         match terms.iter_mut().find(|(motion, _)| *motion == entry.motion) {
@@ -87,22 +131,36 @@ fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Vec<(usize, f64)> {
     terms
 }
 
-impl MotionProgram<'_> {
-    fn tangential(&self, pair: usize) -> &[Entry] {
-        self.problem.system.pairs[pair].plane_tangential().map_or(&[], |joint| self.motions.row(joint))
+fn exactly(row: &[Entry]) -> Vec<(usize, BigRational)> {
+    row.iter().map(|entry| (entry.motion, rational(entry.part.value))).collect()
+}
+
+impl<'a> MotionProgram<'a> {
+    /// Rows of the tangential joints of a pair.
+    fn tangential(&self, pair: usize) -> Vec<&'a [Entry]> {
+        self.pairs[pair].tangents.clone().map(|joint| self.motions.row(joint)).collect()
     }
 
     /// Every inequality that some motion touches.
     fn slacks(&self) -> Vec<Slack> {
         let mut slacks = Vec::new();
-        for (pair, law) in self.problem.laws.iter().enumerate().filter(|(_, law)| !law.is_bilateral()) {
+        for (pair, ConePair { law, .. }) in self.pairs.iter().enumerate().filter(|(_, pair)| !pair.law.is_bilateral()) {
             let normal = self.motions.row(pair);
             let f = law.friction();
-            let sides: &[f64] = if f > 0.0 { &SENSES } else { &[0.0] };
-            for &side in sides {
-                let terms = combined(normal, -side * f, self.tangential(pair));
-                if !terms.is_empty() {
-                    slacks.push(Slack { pair, side, terms });
+            let tangential = if f > 0.0 { self.tangential(pair) } else { Vec::new() };
+            let mut add = |sense: Option<f64>, most: Terms, parts: Vec<Terms>| {
+                if !most.is_empty() || parts.iter().any(|part| !part.is_empty()) {
+                    slacks.push(Slack { pair, sense, most, parts });
+                }
+            };
+            match tangential[..] {
+                [] => add(None, combined(normal, 0.0, &[]), Vec::new()),
+                [tangential] => {
+                    SENSES.iter().for_each(|side| add(Some(*side), combined(normal, -side * f, tangential), Vec::new()))
+                }
+                _ => {
+                    let part = |row: &&[Entry]| combined(&[], f, row);
+                    add(None, combined(normal, 0.0, &[]), tangential.iter().map(part).collect());
                 }
             }
         }
@@ -111,12 +169,12 @@ impl MotionProgram<'_> {
 
     /// The joints that no motion of a proof may move: bilateral normals.
     fn held(&self) -> impl Iterator<Item = usize> {
-        (0..self.problem.laws.len()).filter(|&i| self.problem.laws[i].is_bilateral())
+        (0..self.pairs.len()).filter(|&i| self.pairs[i].law.is_bilateral())
     }
 
     /// The amounts of the motions within ±1, bilateral pairs held, and the terms of
     /// (work of the loads − what cohesion and bounds take) / scale.
-    fn base(&self) -> (LinearProgram, Vec<(usize, f64)>) {
+    fn base(&self) -> (LinearProgram, Terms) {
         let mut program = LinearProgram::default();
         for k in 0..self.motions.count() {
             program.variable(0.0);
@@ -129,18 +187,13 @@ impl MotionProgram<'_> {
                 program.equal(terms, 0.0);
             }
         }
-        let mut surplus: Vec<(usize, f64)> =
-            self.work.iter().enumerate().map(|(k, work)| (k, work.value / self.scale)).collect();
-        for (pair, law) in self.problem.laws.iter().enumerate() {
+        let mut surplus: Terms = self.work.iter().enumerate().map(|(k, work)| (k, work.value / self.scale)).collect();
+        for (pair, ConePair { law, .. }) in self.pairs.iter().enumerate() {
             let c = law.fixed_bound();
-            let slip = combined(self.tangential(pair), 0.0, &[]);
-            if c > 0.0 && !slip.is_empty() {
+            let slip: Vec<Terms> = self.tangential(pair).iter().map(|row| combined(row, 0.0, &[])).collect();
+            if c > 0.0 && slip.iter().any(|part| !part.is_empty()) {
                 let most = program.variable(0.0);
-                for sign in [1.0, -1.0] {
-                    let mut terms: Vec<(usize, f64)> = slip.iter().map(|(k, a)| (*k, sign * a)).collect();
-                    terms.push((most, -1.0));
-                    program.at_most(terms, 0.0);
-                }
+                program.at_least_length(&[(most, 1.0)], &slip);
                 surplus.push((most, -c / self.scale));
             }
         }
@@ -166,13 +219,9 @@ impl MotionProgram<'_> {
     fn with_room(&mut self) -> Option<Certificate> {
         let (mut program, surplus) = self.base();
         let margin = program.variable(-1.0);
-        let below = |terms: &[(usize, f64)]| -> Vec<(usize, f64)> {
-            terms.iter().map(|(k, a)| (*k, -a)).chain([(margin, 1.0)]).collect()
-        };
-        program.at_most(below(&surplus), 0.0);
-        for slack in self.slacks() {
-            program.at_most(below(&slack.terms), 0.0);
-        }
+        let above: Terms = surplus.iter().copied().chain([(margin, -1.0)]).collect();
+        program.at_least_length(&above, &[]);
+        self.slacks().iter().for_each(|slack| slack.demand(&mut program, Some(margin)));
         let mut x = self.solve(&program)?;
         let found = self.proof(&x, &[]);
         if found.is_some() || x[margin] > UNCLEAR {
@@ -196,9 +245,7 @@ impl MotionProgram<'_> {
     fn confined(&mut self) -> Option<Certificate> {
         let (mut program, surplus) = self.base();
         let slacks = self.slacks();
-        for slack in &slacks {
-            program.at_most(slack.terms.iter().map(|(k, a)| (*k, -a)).collect(), 0.0);
-        }
+        slacks.iter().for_each(|slack| slack.demand(&mut program, None));
         program.set_costs(surplus.iter().map(|(k, a)| (*k, -a)));
         let x = self.solve(&program)?;
         let most: f64 = surplus.iter().map(|(k, a)| a * x[*k]).sum();
@@ -210,7 +257,7 @@ impl MotionProgram<'_> {
         let mut rooms = Vec::new();
         for slack in &slacks {
             let room = program.variable(-1.0);
-            program.at_most(slack.terms.iter().map(|(k, a)| (*k, -a)).chain([(room, 1.0)]).collect(), 0.0);
+            slack.demand(&mut program, Some(room));
             program.at_most(vec![(room, 1.0)], most);
             program.at_most(vec![(room, -1.0)], 0.0);
             rooms.push(room);
@@ -228,10 +275,10 @@ impl MotionProgram<'_> {
         let mut equations = Equations::new(amounts.len(), self.end);
         let held: Vec<usize> = self.held().collect();
         for joint in held {
-            equations.add(self.motions.row(joint).iter().map(|entry| (entry.motion, rational(entry.part.value))));
+            equations.add(exactly(self.motions.row(joint)));
         }
         for slack in tight {
-            equations.add(self.exact_terms(slack.pair, slack.side));
+            self.as_equations(slack).into_iter().for_each(|terms| equations.add(terms));
         }
         let exactly = match equations.nearest(&amounts) {
             Solved::Free => None,
@@ -247,30 +294,37 @@ impl MotionProgram<'_> {
         self.verified(&amounts, exactly.as_deref())
     }
 
-    /// Terms of ζ_n − side · f ζ_τ as the data have them.
-    fn exact_terms(&self, pair: usize, side: f64) -> Vec<(usize, BigRational)> {
-        let f = rational(side * self.problem.laws[pair].friction());
-        let normal = self.motions.row(pair).iter().map(|entry| (entry.motion, rational(entry.part.value)));
-        let tangential = self.tangential(pair).iter().map(|entry| (entry.motion, -rational(entry.part.value) * &f));
-        normal.chain(tangential).collect()
+    /// What an inequality without room demands as the data have it: in the plane an equation, in space that the pair is at
+    /// rest.
+    fn as_equations(&self, slack: &Slack) -> Vec<Vec<(usize, BigRational)>> {
+        let normal = exactly(self.motions.row(slack.pair));
+        let Some(sense) = slack.sense else {
+            let slips = if slack.parts.is_empty() { Vec::new() } else { self.tangential(slack.pair) };
+            return std::iter::once(normal).chain(slips.into_iter().map(exactly)).collect();
+        };
+        let f = rational(sense * self.pairs[slack.pair].law.friction());
+        let slip = self.tangential(slack.pair).into_iter().flat_map(exactly).map(|(k, a)| (k, -a * &f));
+        vec![normal.into_iter().chain(slip).collect()]
     }
 
     /// Every sign of the proof: by f64 sums with the bounds of their rounding, exactly where they have no room.
-    fn verified(&mut self, amounts: &[f64], exactly: Option<&[BigRational]>) -> Option<Certificate> {
-        let amount = |k: usize| exactly.map_or_else(|| rational(amounts[k]), |exactly| exactly[k].clone());
-        let value = |terms: Vec<(usize, BigRational)>| -> BigRational {
-            terms.into_iter().filter(|(k, _)| amounts[*k] != 0.0).map(|(k, a)| a * amount(k)).sum()
+    fn verified(&mut self, amounts: &[f64], exact_amounts: Option<&[BigRational]>) -> Option<Certificate> {
+        let amount = |k: usize| exact_amounts.map_or_else(|| rational(amounts[k]), |exact| exact[k].clone());
+        let value = |row: &[Entry]| -> BigRational {
+            exactly(row).into_iter().filter(|(k, _)| amounts[*k] != 0.0).map(|(k, a)| a * amount(k)).sum()
         };
         let mut taken = Sum::default();
         let mut needed_exact = false;
-        for (pair, law) in self.problem.laws.iter().enumerate() {
+        for (pair, ConePair { law, tangents }) in self.pairs.iter().enumerate() {
             let normal = self.motions.displacement(pair, amounts);
-            let slip = self.problem.system.pairs[pair]
-                .plane_tangential()
-                .map_or(Sum::default(), |joint| self.motions.displacement(joint, amounts));
+            let slip = tangents.clone().fold(Sum::default(), |slip, joint| {
+                let part = self.motions.displacement(joint, amounts);
+                Sum { value: slip.value.hypot(part.value), magnitude: slip.magnitude + part.magnitude }
+            });
             let (f, c) = (law.friction(), law.fixed_bound());
-            taken = taken.plus(c, Sum { value: slip.value.abs(), ..slip });
-            let sure = normal.value - f * slip.value.abs() > normal.error() + 2.0 * f * slip.error();
+            taken = taken.plus(c, slip);
+            let error = normal.error() + 2.0 * f * slip.error();
+            let sure = normal.value - f * slip.value > error;
             let still = normal.magnitude == 0.0 && (f == 0.0 || slip.magnitude == 0.0);
             if still || (sure && !law.is_bilateral()) {
                 continue;
@@ -280,17 +334,20 @@ impl MotionProgram<'_> {
                 return None;
             }
             needed_exact = true;
+            let normal = value(self.motions.row(pair));
+            if law.is_bilateral() {
+                if !normal.is_zero() {
+                    return None;
+                }
+                continue;
+            }
             // What is neither 0 nor clear of its rounding proves nothing.
-            let error = normal.error() + 2.0 * f * slip.error();
-            let holds = if law.is_bilateral() {
-                value(self.exact_terms(pair, 0.0)).is_zero()
-            } else {
-                SENSES.iter().all(|side| {
-                    let slack = value(self.exact_terms(pair, *side));
-                    slack.is_zero() || nearest(&slack) > error
-                })
-            };
-            if !holds {
+            let slips: Vec<BigRational> = self.tangential(pair).into_iter().map(value).collect();
+            let f_exact = rational(f);
+            let square = slips.iter().map(|slip| slip * slip).sum::<BigRational>() * &f_exact * &f_exact;
+            let length = slips.iter().map(nearest).fold(0.0, f64::hypot);
+            let touches = !normal.is_negative() && &normal * &normal == square;
+            if !touches && nearest(&normal) - f * length <= error {
                 return None;
             }
         }
@@ -307,8 +364,12 @@ impl MotionProgram<'_> {
             direction: direction / largest,
             power: power.value / largest,
             dissipation: taken.value / largest,
-            exact: needed_exact || exactly.is_some(),
+            exact: needed_exact || exact_amounts.is_some(),
             amounts: (0..amounts.len()).map(amount).collect(),
         })
     }
 }
+
+#[cfg(test)]
+#[path = "certificate_tests.rs"]
+mod tests;

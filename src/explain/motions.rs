@@ -3,7 +3,7 @@
 //! For a structure the motions are those of its loose parts, so a joint moves with the few parts that meet there; for
 //! a contact system read from a file they are the columns of its kernel.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::kernel::clean;
 use crate::contact::sum::Sum;
@@ -40,7 +40,7 @@ impl FreeMotions {
     pub fn new(system: &ContactSystem, structure: Option<(&Structure, &MainSystem)>) -> FreeMotions {
         match structure {
             Some((structure, main)) => FreeMotions::of_structure(structure, main),
-            None => FreeMotions::of_kernel(system),
+            None => FreeMotions::of_kernel(&system.kernel),
         }
     }
 
@@ -67,8 +67,9 @@ impl FreeMotions {
         FreeMotions { rows, count: motions.len() }
     }
 
-    fn of_kernel(system: &ContactSystem) -> FreeMotions {
-        let kernel = clean(&system.kernel);
+    /// The columns of an orthonormal basis over the joints.
+    pub fn of_kernel(kernel: &DMatrix<f64>) -> FreeMotions {
+        let kernel = clean(kernel);
         let rows = kernel
             .row_iter()
             .map(|row| {

@@ -1,4 +1,5 @@
-//! Linear programs, solved by the interior-point crate Clarabel and, where its accuracy does not suffice, refined.
+//! Linear programs, some of whose rows may bound the length of others (second-order cones), solved by the interior-point
+//! crate Clarabel and, where its accuracy does not suffice, refined.
 //!
 //! What comes back is a proposal in f64, never a proof: whoever claims something on it verifies it from the data.
 
@@ -21,14 +22,21 @@ impl Row {
     fn value(&self, x: &[f64]) -> f64 {
         self.terms.iter().map(|(k, a)| a * x[*k]).sum()
     }
+
+    /// bound − Σ coefficient · x.
+    fn rest(&self, x: &[f64]) -> f64 {
+        self.bound - self.value(x)
+    }
 }
 
-/// min cost·x over rows `a·x ≤ b` and `a·x = b`, x free.
+/// min cost·x over rows `a·x ≤ b` and `a·x = b`, and cones, x free.
 #[derive(Clone, Debug, Default)]
 pub struct LinearProgram {
     cost: Vec<f64>,
     at_most: Vec<Row>,
     equal: Vec<Row>,
+    /// b − a·x of the first row is at least the length of the vector that the others make.
+    cones: Vec<Vec<Row>>,
 }
 
 /// A point with the multipliers of the rows: cost + Σ multiplier · row = 0 at an optimum.
@@ -82,12 +90,29 @@ impl LinearProgram {
         self.equal.push(Row { terms, bound });
     }
 
+    /// Σ `most` ≥ the length of the vector of the Σ `parts`: two rows where that is one part, one where it is none.
+    pub fn at_least_length(&mut self, most: &[(usize, f64)], parts: &[Vec<(usize, f64)>]) {
+        let negative = |terms: &[(usize, f64)]| -> Vec<(usize, f64)> { terms.iter().map(|(k, a)| (*k, -a)).collect() };
+        match parts {
+            [] => self.at_most(negative(most), 0.0),
+            [part] => {
+                self.at_most([part.clone(), negative(most)].concat(), 0.0);
+                self.at_most([negative(part), negative(most)].concat(), 0.0);
+            }
+            _ => {
+                let row = |terms: &[(usize, f64)]| Row { terms: negative(terms), bound: 0.0 };
+                self.cones.push(std::iter::once(most).chain(parts.iter().map(Vec::as_slice)).map(row).collect());
+            }
+        }
+    }
+
     /// Solves it within so many seconds.
     pub fn solve(&self, seconds: f64) -> Outcome {
         let (n, equal) = (self.cost.len(), self.equal.len());
+        let linear = equal + self.at_most.len();
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        let mut bounds = Vec::with_capacity(equal + self.at_most.len());
-        for (i, row) in self.equal.iter().chain(&self.at_most).enumerate() {
+        let mut bounds = Vec::with_capacity(linear);
+        for (i, row) in self.equal.iter().chain(&self.at_most).chain(self.cones.iter().flatten()).enumerate() {
             for &(k, a) in &row.terms {
                 rows.push(i);
                 columns.push(k);
@@ -99,7 +124,8 @@ impl LinearProgram {
             return Outcome::Undecided;
         }
         let a = CscMatrix::new_from_triplets(bounds.len(), n, rows, columns, values);
-        let cones = [SupportedConeT::ZeroConeT(equal), SupportedConeT::NonnegativeConeT(self.at_most.len())];
+        let mut cones = vec![SupportedConeT::ZeroConeT(equal), SupportedConeT::NonnegativeConeT(self.at_most.len())];
+        cones.extend(self.cones.iter().map(|cone| SupportedConeT::SecondOrderConeT(cone.len())));
         let settings = DefaultSettings {
             verbose: false,
             time_limit: seconds,
@@ -115,8 +141,11 @@ impl LinearProgram {
         };
         solver.solve();
         let found = &solver.solution;
-        let point =
-            |x: &[f64]| Point { x: x.to_vec(), at_most: found.z[equal..].to_vec(), equal: found.z[..equal].to_vec() };
+        let point = |x: &[f64]| Point {
+            x: x.to_vec(),
+            at_most: found.z[equal..linear].to_vec(),
+            equal: found.z[..equal].to_vec(),
+        };
         match found.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => Outcome::Optimum(point(&found.x)),
             SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Outcome::Infeasible(point(&[])),
@@ -131,17 +160,36 @@ impl LinearProgram {
     /// `None` where that gives no point.
     pub fn refined(&self, x: &[f64], zoom: f64, seconds: f64) -> Option<Vec<f64>> {
         let mut near = LinearProgram { cost: self.cost.clone(), ..LinearProgram::default() };
-        let rest = |row: &Row| (row.bound - row.value(x)) * zoom;
+        let rest = |row: &Row| row.rest(x) * zoom;
+        let reach = |row: &Row| row.terms.iter().map(|(_, a)| a.abs() * RANGE).sum::<f64>();
         for row in &self.equal {
             near.equal(row.terms.clone(), rest(row));
         }
         for row in &self.at_most {
             let bound = rest(row);
             // Beyond what the difference can reach a row binds nothing.
-            let reach: f64 = row.terms.iter().map(|(_, a)| a.abs() * RANGE).sum();
-            if bound < reach {
+            if bound < reach(row) {
                 near.at_most(row.terms.clone(), bound);
             }
+        }
+        for cone in self.cones.iter() {
+            let rests: Vec<f64> = cone.iter().map(rest).collect();
+            let length = rests[1..].iter().map(|part| part * part).sum::<f64>().sqrt();
+            let far = cone[1..].iter().map(reach).sum::<f64>();
+            if rests[0] - length >= reach(&cone[0]) + far {
+                continue;
+            }
+            if length <= far {
+                let row = |(row, bound): (&Row, &f64)| Row { terms: row.terms.clone(), bound: *bound };
+                near.cones.push(cone.iter().zip(&rests).map(row).collect());
+                continue;
+            }
+            // So far out the cone is as flat as its tangent plane: first row ≥ length + Σ (part/length) · change.
+            let mut tangent = cone[0].terms.clone();
+            for (row, part) in cone[1..].iter().zip(&rests[1..]) {
+                tangent.extend(row.terms.iter().map(|(k, a)| (*k, -a * part / length)));
+            }
+            near.at_most(tangent, rests[0] - length);
         }
         for k in 0..self.cost.len() {
             near.at_most(vec![(k, 1.0)], RANGE);
@@ -201,6 +249,39 @@ mod tests {
         program.at_most(vec![(0, f64::NAN)], 1.0);
         assert_eq!(program.solve(10.0), Outcome::Undecided);
         assert_eq!(wyndor().solve(0.0), Outcome::OutOfTime);
+    }
+
+    #[test]
+    fn the_farthest_point_of_a_disk_is_on_its_rim() {
+        // max 3a + 4b, |(a, b)| ≤ r = 1: (0.6, 0.8), where the tolerance of the crate leaves the root of it.
+        let mut program = LinearProgram::default();
+        let [a, b, r] = [-3.0, -4.0, 0.0].map(|cost| program.variable(cost));
+        program.equal(vec![(r, 1.0)], 1.0);
+        program.at_least_length(&[(r, 1.0)], &[vec![(a, 1.0)], vec![(b, 1.0)]]);
+        let Outcome::Optimum(found) = program.solve(10.0) else { panic!() };
+        assert!((found.x[a] - 0.6).abs() < 1e-4 && (found.x[b] - 0.8).abs() < 1e-4, "{:?}", found.x);
+        assert!(found.at_most.is_empty() && (found.equal[0] - 5.0).abs() < 1e-4, "{found:?}");
+        // One part is its magnitude: max a, |a| ≤ r.
+        let mut program = LinearProgram::default();
+        let [a, r] = [-1.0, 0.0].map(|cost| program.variable(cost));
+        program.at_most(vec![(r, 1.0)], 2.0);
+        program.at_least_length(&[(r, 1.0)], &[vec![(a, 1.0)]]);
+        let Outcome::Optimum(found) = program.solve(10.0) else { panic!() };
+        assert!((found.x[a] - 2.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_refined_cone_is_as_narrow_as_it_was() {
+        // max s, a − s ≥ |(b, c)|, b = 0.6, c = 0.8, a ≤ 1 + 1e-10: s = 1e-10, far below the tolerance of the crate.
+        let mut program = LinearProgram::default();
+        let [s, a, b, c] = [-1.0, 0.0, 0.0, 0.0].map(|cost| program.variable(cost));
+        program.at_most(vec![(a, 1.0)], 1.0 + 1e-10);
+        program.equal(vec![(b, 1.0)], 0.6);
+        program.equal(vec![(c, 1.0)], 0.8);
+        program.at_least_length(&[(a, 1.0), (s, -1.0)], &[vec![(b, 1.0)], vec![(c, 1.0)]]);
+        let Outcome::Optimum(rough) = program.solve(10.0) else { panic!() };
+        let fine = program.refined(&rough.x, 1e6, 10.0).expect("a point");
+        assert!((fine[s] - 1e-10).abs() < 1e-13, "{:e} after {:e}", fine[s], rough.x[s]);
     }
 
     #[test]

@@ -1,0 +1,167 @@
+//! Newton's method on the natural map, with halved steps: its semi-smooth derivative on the joints that move.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::natural_map::{Branch, NaturalMap};
+use super::{ConeFailure, ConeProblem, across};
+use crate::lcp::dense::{Cholesky, Factor};
+use crate::watch::Watch;
+
+/// Steps at most.
+const STEPS: usize = 60;
+/// A step is halved this often at most.
+const HALVINGS: usize = 12;
+/// Share of what a step promises that the natural map has to fall by (Armijo).
+const FALL: f64 = 1e-4;
+
+/// Where a search ended: in an answer, or where no step leads down.
+pub(super) struct Search {
+    pub z: DVector<f64>,
+    pub states: Vec<Branch>,
+    pub steps: usize,
+}
+
+/// Searches from z.
+pub(super) fn search(
+    problem: &ConeProblem,
+    scale: &DVector<f64>,
+    mut z: DVector<f64>,
+    watch: &dyn Watch,
+) -> Result<Search, ConeFailure> {
+    let mut map = NaturalMap::at(problem, scale, &z, &problem.forces(&z));
+    let mut steps = 0;
+    while steps < STEPS && !map.is_zero {
+        if watch.stop() {
+            return Err(ConeFailure::Stopped);
+        }
+        let equations = Equations::at(problem, scale, &z, &map);
+        let next = [Equations::newton, Equations::damped]
+            .iter()
+            .find_map(|solve| shortened(problem, scale, &z, &map, &solve(&equations, map.norm)?));
+        let Some((point, next)) = next else { break };
+        (z, map) = (point, next);
+        steps += 1;
+    }
+    Ok(Search { z, states: map.branches, steps })
+}
+
+/// The first of the step, its half, its quarter … that the natural map falls on.
+fn shortened(
+    problem: &ConeProblem,
+    scale: &DVector<f64>,
+    z: &DVector<f64>,
+    map: &NaturalMap,
+    step: &DVector<f64>,
+) -> Option<(DVector<f64>, NaturalMap)> {
+    let mut share = 1.0;
+    for _ in 0..=HALVINGS {
+        // A whole step ends where it says to the last digit: z − z is 0.
+        let point = z + share * step;
+        let next = NaturalMap::at(problem, scale, &point, &problem.forces(&point));
+        if next.norm <= (1.0 - FALL * share) * map.norm || next.is_zero {
+            return Some((point, next));
+        }
+        share *= 0.5;
+    }
+    None
+}
+
+/// Φ + DΦ δ = 0, dimensionless (rows and unknowns over √r): what is held goes to z = 0, the others have the equations.
+struct Equations {
+    /// The joints that move.
+    moving: Vec<usize>,
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+    /// √r of every joint.
+    root: DVector<f64>,
+    /// Step of all joints, 0 in the moving ones.
+    held: DVector<f64>,
+}
+
+impl Equations {
+    fn at(problem: &ConeProblem, scale: &DVector<f64>, z: &DVector<f64>, map: &NaturalMap) -> Equations {
+        let mut moving = Vec::new();
+        let mut held = -z;
+        for (i, (pair, branch)) in problem.pairs.iter().zip(&map.branches).enumerate() {
+            if !branch.is_closed {
+                moving.push(i);
+            }
+            if branch.outside.is_some() {
+                moving.extend(pair.tangents.clone());
+            }
+        }
+        moving.iter().for_each(|&joint| held[joint] = 0.0);
+        // What the joints that go to 0 do to the forces.
+        let mut shift: DVector<f64> = DVector::zeros(z.len());
+        for (joint, step) in held.iter().enumerate().filter(|(_, step)| **step != 0.0) {
+            shift.axpy(*step, &problem.stiffness.column(joint), 1.0);
+        }
+        let n = moving.len();
+        let mut place = vec![usize::MAX; z.len()];
+        moving.iter().enumerate().for_each(|(at, &joint)| place[joint] = at);
+        let root = scale.map(f64::sqrt);
+        // Rows as columns: R is symmetric and stored by columns.
+        let mut rows: DMatrix<f64> = DMatrix::zeros(n, n);
+        let mut right: DVector<f64> = DVector::zeros(n);
+        let mut add = |at: usize, factor: f64, joint: usize| {
+            let stiffness = problem.stiffness.column(joint);
+            rows.column_mut(at).iter_mut().zip(&moving).for_each(|(entry, &k)| *entry += factor * stiffness[k]);
+            right[at] -= factor * shift[joint];
+        };
+        for (i, (pair, branch)) in problem.pairs.iter().zip(&map.branches).enumerate() {
+            if !branch.is_closed {
+                add(place[i], 1.0, i);
+            }
+            let Some(outside) = branch.outside else { continue };
+            for (t, joint) in pair.tangents.clone().enumerate() {
+                for (u, other) in pair.tangents.clone().enumerate() {
+                    add(place[joint], f64::from(t == u) - outside.ratio * across(outside.along, t, u), other);
+                }
+                if branch.is_closed && !pair.law.is_bilateral() {
+                    add(place[joint], -pair.friction() * outside.along[t], i);
+                }
+            }
+        }
+        for (i, (pair, branch)) in problem.pairs.iter().zip(&map.branches).enumerate() {
+            let Some(outside) = branch.outside else { continue };
+            for (t, joint) in pair.tangents.clone().enumerate() {
+                let at = place[joint];
+                for (u, other) in pair.tangents.clone().enumerate() {
+                    rows[(place[other], at)] += outside.ratio * scale[joint] * across(outside.along, t, u);
+                }
+                if branch.is_closed && !pair.law.is_bilateral() {
+                    right[at] += pair.friction() * outside.along[t] * scale[i] * z[i];
+                }
+            }
+        }
+        let matrix = DMatrix::from_fn(n, n, |i, j| rows[(j, i)] / (root[moving[i]] * root[moving[j]]));
+        let right = DVector::from_fn(n, |at, _| (right[at] - map.residual[moving[at]]) / root[moving[at]]);
+        Equations { moving, matrix, right, root, held }
+    }
+
+    fn step(&self, found: &DVector<f64>) -> DVector<f64> {
+        let mut step = self.held.clone();
+        self.moving.iter().zip(found.iter()).for_each(|(&joint, value)| step[joint] = value / self.root[joint]);
+        step
+    }
+
+    /// Newton's step; `None` where the equations are singular.
+    fn newton(&self, _: f64) -> Option<DVector<f64>> {
+        Some(self.step(&Factor::new(self.matrix.clone()).solve(&self.right)?))
+    }
+
+    /// The step of Levenberg and Marquardt, the shorter the smaller the natural map is: also where they are singular.
+    fn damped(&self, norm: f64) -> Option<DVector<f64>> {
+        let n = self.moving.len();
+        let mut normal = self.matrix.tr_mul(&self.matrix);
+        let size = normal.diagonal().amax();
+        let length = self.right.norm();
+        let damping = size * (norm / (norm + length)).clamp(1e-8, 1.0) * 1e-2;
+        for at in 0..n {
+            normal[(at, at)] += damping;
+        }
+        let mut found = self.matrix.tr_mul(&self.right);
+        Cholesky::new(&normal)?.solve(found.as_mut_slice());
+        found.iter().all(|value| value.is_finite()).then(|| self.step(&found))
+    }
+}
