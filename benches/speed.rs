@@ -1,4 +1,5 @@
-//! `cargo bench -p stickslip-benches`: Lemke by size, friction and ties; condensation; solving again; loading; a screen.
+//! `cargo bench -p stickslip-benches`: Lemke by size, friction and ties; condensation; solving again; Coulomb's cone;
+//! loading; a screen.
 //!
 //! `STICKSLIP_BENCH_LARGE=1` adds m = 1000. What the numbers mean and the tables: `benches/README.md`.
 
@@ -10,7 +11,9 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
+use plates::block::Block;
 use plates::{Plates, Pull, Ready};
+use stickslip::contact::cone::ConeState;
 use stickslip::contact::lcp::contact_lcp;
 use stickslip::contact::written::ContactLcp;
 use stickslip::model::embedded;
@@ -155,6 +158,36 @@ fn loading(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Newton's method on Coulomb's cone, check included: from a polygon's distance of the answer, and from rest.
+fn cone(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("cone");
+    group.sample_size(10).measurement_time(Duration::from_secs(5));
+    for side in [10, 17, 31] {
+        let block = Block::new(side);
+        let answer = block.answer(&block.at_rest()).expect("an answer");
+        let near = block.perturbed(&answer.z, 0.1);
+        let count = |wanted: ConeState| answer.states.iter().filter(|state| **state == wanted).count();
+        println!(
+            "{} pairs: {} open, {} slip, {} stick; {} steps from near by, {} from rest",
+            side * side,
+            count(ConeState::Open),
+            count(ConeState::Slip),
+            count(ConeState::Stick),
+            block.answer(&near).expect("an answer").steps,
+            answer.steps
+        );
+        group.bench_function(BenchmarkId::new("near", side * side), |bench| {
+            bench.iter(|| black_box(block.answer(&near)));
+        });
+        if side < 31 || is_large() {
+            group.bench_function(BenchmarkId::new("from rest", side * side), |bench| {
+                bench.iter(|| black_box(block.answer(&block.at_rest())));
+            });
+        }
+    }
+    group.finish();
+}
+
 /// One frame of the full screen, drawn from nothing.
 fn frame(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("frame");
@@ -181,6 +214,6 @@ fn frame(criterion: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1));
-    targets = lemke, condensation, resolve, renewed, loading, frame
+    targets = lemke, condensation, resolve, cone, renewed, loading, frame
 }
 criterion_main!(benches);

@@ -1,5 +1,7 @@
 //! Contact problems for measurements, generated: two plates on one another, the lower one fixed along its base.
 
+pub mod block;
+
 use stickslip::contact::problem::ContactProblem;
 use stickslip::model::load::load_text;
 use stickslip::model::parameter::ParameterValues;
