@@ -40,6 +40,7 @@ mod contrast;
 mod dense;
 mod displacements;
 mod dof;
+mod elastic_curves;
 mod element;
 mod elimination;
 mod energy;
@@ -67,6 +68,7 @@ mod watch;
 mod tests;
 
 pub use displacements::Displacements;
+pub use elastic_curves::ElasticCurves;
 pub use element::bar_load::Piece;
 pub use energy::Loaded;
 pub use equilibrium::BalancedState;

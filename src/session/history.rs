@@ -49,6 +49,14 @@ impl Session {
         }
     }
 
+    /// Likewise the factors of the load cases.
+    pub(super) fn quantity_factors(&self) -> &[f64] {
+        match &self.followed {
+            Some(history) => history.stages.last().map_or(&[], |stage| stage.factors()),
+            None => self.solved.as_ref().map_or(&[], |solved| solved.factors()),
+        }
+    }
+
     /// Likewise the displacements; `None` where there are none.
     pub(super) fn quantity_displacements(&self) -> Option<Vec<NodeDisplacement>> {
         match &self.followed {

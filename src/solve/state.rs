@@ -104,6 +104,14 @@ impl Solved {
         whole
     }
 
+    /// Factors of the load cases; none of a bare LCP.
+    pub fn factors(&self) -> &[f64] {
+        match &self.run {
+            RunData::Contact { problem, .. } => &problem.factors,
+            RunData::Plain { .. } => &[],
+        }
+    }
+
     /// Number of pivots.
     pub fn pivot_count(&self) -> usize {
         self.pivots().count()

@@ -74,6 +74,8 @@ pub struct Moment {
 pub struct Motion {
     /// u_x, u_y and the rotation of every node, of a ray its mode; `None` where nothing is known to move.
     pub u: Option<Vec<[f64; 3]>>,
+    /// Factors of the load cases that bend bars between their nodes, and those of the answer before; none of a mode.
+    pub factors: [Vec<f64>; 2],
     /// Likewise of the answer before, where it is worth showing.
     pub before: Option<Vec<[f64; 3]>>,
     /// The automatic scale. It is that of the answer while its pivots are shown, so that pictures can be compared.
@@ -101,10 +103,11 @@ impl Motion {
             None => end.clone(),
         };
         let before = shown.before().filter(|_| shown.has_before()).and_then(of_answer);
+        let factors = if shown.at_ray() { Default::default() } else { shown.factors() };
         let moves = |u: &Vec<[f64; 3]>| u.iter().any(|u| u[0] != 0.0 || u[1] != 0.0);
         let measured = end.as_ref().filter(|end| moves(end) && !shown.at_ray()).or(u.as_ref());
-        let automatic = measured.map_or(1.0, |u| factor(structure, u, Magnification::Auto));
-        Motion { before: before.filter(|before| u.as_ref() != Some(before)), u, automatic }
+        let automatic = measured.map_or(1.0, |u| factor(structure, &factors[0], u, Magnification::Auto));
+        Motion { before: before.filter(|before| u.as_ref() != Some(before)), u, factors, automatic }
     }
 }
 
@@ -273,6 +276,14 @@ impl Shown {
             Some(stage) => self.stage_end(stage.checked_sub(1)?),
             None => self.previous.as_deref().map(|solved| &solved.answer),
         }
+    }
+
+    /// Factors of the load cases in the answer, or at the end of the stage shown, and in the answer before.
+    fn factors(&self) -> [Vec<f64>; 2] {
+        let of = |solved: &Option<Arc<Solved>>| solved.as_ref().map_or(Vec::new(), |solved| solved.factors().to_vec());
+        let Some(stage) = self.stage else { return [of(&self.solved), of(&self.previous)] };
+        let at = |stage: usize| Some(self.history.as_ref()?.stages.get(stage)?.factors().to_vec());
+        [at(stage), stage.checked_sub(1).and_then(at)].map(Option::unwrap_or_default)
     }
 
     /// By which the factor of a load case is multiplied in the loading shown.

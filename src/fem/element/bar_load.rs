@@ -79,7 +79,7 @@ impl Bending {
     }
 
     /// Shear force and bending moment among the internal forces.
-    fn forces(self) -> [usize; 2] {
+    pub(super) fn forces(self) -> [usize; 2] {
         match self {
             Bending::Xy => [1, 2],
             Bending::Xz => [3, 4],

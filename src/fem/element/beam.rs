@@ -19,7 +19,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::bar_load::{BarLoad, Bending};
+use super::bar_load::{BarForces, BarLoad, Bending, Piece};
 use crate::doubled::Real;
 
 /// Rows u, v, θ of the start, then of the end.
@@ -139,6 +139,64 @@ impl Beam {
         }
         f
     }
+
+    /// The elastic curve: displacements along the bar and across it at these distances from its start (ascending), from
+    /// (u, v) at its start to v at its end.
+    ///
+    /// ```text
+    ///     u' = N/EA + ε₀     θ' = M/EI + κ₀     v' = θ − V/(G A_s)
+    /// ```
+    pub fn curve(
+        &self,
+        load: &BarLoad,
+        forces: &BarForces,
+        start: [f64; 2],
+        end: f64,
+        places: &[f64],
+    ) -> Vec<[f64; 2]> {
+        let [shear, moment] = self.plane.forces();
+        let curvature = load.curvature[self.plane as usize];
+        // u, θ and v at a distance inside a piece, from those at its start
+        let within = |piece: &Piece, powers: &[Vec<f64>; 6], [u, turn, v]: [f64; 3], s: f64| {
+            let x = s - piece.range[0];
+            let [[n, _], [q, _], [m, twice]] = [0, shear, moment].map(|which| integrals(&powers[which], x));
+            let sheared = self.shear.map_or(0.0, |stiffness| q / stiffness);
+            [
+                u + n / self.axial + load.strain * x,
+                turn + m / self.bending + curvature * x,
+                v + turn * x + twice / self.bending + 0.5 * curvature * x * x - sheared,
+            ]
+        };
+        // as if it began flat …
+        let mut at = [0.0; 3];
+        let pieces = forces.pieces.iter().map(|piece| {
+            let (powers, from) = (piece.polynomials(), at);
+            at = within(piece, &powers, from, piece.range[1]);
+            (piece, powers, from)
+        });
+        let pieces: Vec<_> = pieces.collect();
+        // … and tilted as it lies
+        let tilt = (end - start[1] - at[2]) / forces.length;
+        let place = |&s: &f64| {
+            let piece = pieces.partition_point(|(piece, ..)| piece.range[1] < s);
+            let (piece, powers, from) = &pieces[piece.min(pieces.len() - 1)];
+            let [u, _, v] = within(piece, powers, *from, s);
+            [start[0] + u, start[1] + tilt * s + v]
+        };
+        places.iter().map(place).collect()
+    }
+}
+
+/// ∫ and ∫∫ of a polynomial from 0 to x.
+fn integrals(powers: &[f64], x: f64) -> [f64; 2] {
+    let (mut sums, mut power) = ([0.0; 2], x);
+    for (coefficient, k) in powers.iter().zip(1..) {
+        let k = f64::from(k);
+        sums[0] += coefficient * power / k;
+        sums[1] += coefficient * power * x / (k * (k + 1.0));
+        power *= x;
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -256,6 +314,78 @@ mod tests {
                 BarLoad { spans: vec![Span { range: [0.2, 1.9], force }], points, strain: 0.0, curvature }
             };
             assert_eq!(xy.forces(&load(1, 5, 1.0), LENGTH), xz.forces(&load(2, 4, -1.0), LENGTH));
+        }
+    }
+
+    /// Under q, under P at a and under a free curvature κ₀, between ends that turn freely or not at all (Roark), with what
+    /// shear adds: q x (L − x)/2GA_s; for P the moment diagram of the simple beam over GA_s.
+    #[test]
+    fn elastic_curves_of_beams_between_fixed_ends() {
+        let (l, ei) = (LENGTH, 14.0);
+        let places: Vec<f64> = (0..=10).map(|k| 0.25 * f64::from(k)).collect();
+        let (q, p, a, kappa) = (-1.7, 3.0, 1.1, 0.03);
+        let b = l - a;
+        let point =
+            BarLoad { points: vec![PointForce { at: a, force: [0.0, p, 0.0, 0.0, 0.0, 0.0] }], ..BarLoad::default() };
+        let curved = BarLoad { curvature: [kappa, 0.0], ..BarLoad::default() };
+        for shear in [None, Some(5.0)] {
+            let by_shear = |moment: f64| shear.map_or(0.0, |stiffness| moment / stiffness);
+            let simple_point = |x: f64| if x <= a { p * b * x / l } else { p * a * (l - x) / l };
+            let cases: [(_, _, Box<dyn Fn(f64) -> f64>); 4] = [
+                (
+                    [true; 2],
+                    uniform([0.0, q]),
+                    Box::new(|x: f64| {
+                        q * x * (l * l * l - 2.0 * l * x * x + x * x * x) / (24.0 * ei)
+                            + by_shear(0.5 * q * x * (l - x))
+                    }),
+                ),
+                (
+                    [false; 2],
+                    uniform([0.0, q]),
+                    Box::new(|x: f64| q * (x * (l - x)).powi(2) / (24.0 * ei) + by_shear(0.5 * q * x * (l - x))),
+                ),
+                (
+                    [true; 2],
+                    point.clone(),
+                    Box::new(|x: f64| {
+                        let (near, far, x) = if x <= a { (x, b, x) } else { (l - x, a, l - x) };
+                        p * far * near * (l * l - far * far - near * near) / (6.0 * l * ei)
+                            + by_shear(simple_point(if far == b { x } else { l - x }))
+                    }),
+                ),
+                ([true; 2], curved.clone(), Box::new(|x: f64| 0.5 * kappa * x * (x - l))),
+            ];
+            for (hinges, load, expected) in cases {
+                let beam = beam(hinges, shear);
+                // at rest at both ends: what acts is held by the forces that stand for it
+                let f = -beam.forces(&load, l);
+                let ends = [[-f[0], f[1], -f[2], 0.0, 0.0, 0.0], [f[3], -f[4], f[5], 0.0, 0.0, 0.0]];
+                let curve = beam.curve(&load, &load.forces_along(ends, l), [0.0; 2], 0.0, &places);
+                for (x, [u, v]) in places.iter().zip(&curve) {
+                    assert!((v - expected(*x)).abs() < 1e-14, "{hinges:?} {load:?}: {v} at {x}, not {}", expected(*x));
+                    assert_eq!(*u, 0.0);
+                }
+            }
+        }
+    }
+
+    /// Without a load between the nodes: a sum of the shapes that the rows have.
+    #[test]
+    fn elastic_curves_of_unloaded_beams_are_their_shapes() {
+        let (l, none) = (LENGTH, BarLoad::default());
+        let local = Vector6::from([0.3, -0.2, 0.7, 0.9, 0.4, -1.1]);
+        for shear in [None, Some(5.0)] {
+            let beam = beam([false; 2], shear);
+            let f = beam.stiffness(l) * local;
+            let ends = [[-f[0], f[1], -f[2], 0.0, 0.0, 0.0], [f[3], -f[4], f[5], 0.0, 0.0, 0.0]];
+            let places = [0.0, 0.4, 1.3, l];
+            let curve = beam.curve(&none, &none.forces_along(ends, l), [local[0], local[1]], local[4], &places);
+            for (s, found) in places.into_iter().zip(curve) {
+                let shapes = (0..6).map(|row| (local[row], beam.shape(row, s, l)));
+                let [u, v] = shapes.fold([0.0; 2], |[u, v], (size, shape)| [u + size * shape[0], v + size * shape[1]]);
+                assert!((found[0] - u).abs() < 1e-14 && (found[1] - v).abs() < 1e-14, "{found:?} at {s}, not {u} {v}");
+            }
         }
     }
 }

@@ -49,6 +49,13 @@ impl Frame {
         (0..6).filter(move |row| row % 3 != 2 || !hinges[row / 3])
     }
 
+    /// All six displacements, those of the released rotations 0.
+    fn with_released(&self, u: &[f64]) -> [f64; 6] {
+        let mut all = [0.0; 6];
+        self.rows().zip(u).for_each(|(row, u)| all[row] = *u);
+        all
+    }
+
     fn stiffness_in<T: Real>(&self) -> Option<Stiffness<T>> {
         let k = self.global_stiffness(&BarAxes::<T>::in_plane(self.ends)?);
         let rows: Vec<usize> = self.rows().collect();
@@ -100,11 +107,18 @@ impl FiniteElement for Frame {
 
     fn bar_forces(&self, u: &[f64], acting: &Acting) -> Option<BarForces> {
         let load = BarLoad::of(acting, &self.axes, self.area);
-        let mut all = [0.0; 6];
-        for (row, u) in self.rows().zip(u) {
-            all[row] = *u;
-        }
-        Some(load.forces_along(self.end_forces(&all, &load), self.axes.length))
+        Some(load.forces_along(self.end_forces(&self.with_released(u), &load), self.axes.length))
+    }
+
+    fn elastic_curve(&self, u: &[f64], acting: &Acting, shares: &[f64]) -> Option<Vec<[f64; 3]>> {
+        let load = BarLoad::of(acting, &self.axes, self.area);
+        let all = self.with_released(u);
+        let forces = load.forces_along(self.end_forces(&all, &load), self.axes.length);
+        forces.pieces.first()?; // there is none where the length is no number
+        let local = rotation(&self.axes) * Vector6::from(all);
+        let places: Vec<f64> = shares.iter().map(|share| share * self.axes.length).collect();
+        let curve = self.beam.curve(&load, &forces, [local[0], local[1]], local[4], &places);
+        Some(curve.into_iter().map(|[u, v]| self.axes.to_global([u, v, 0.0])).collect())
     }
 }
 

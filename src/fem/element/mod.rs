@@ -60,6 +60,12 @@ pub trait FiniteElement {
         None
     }
 
+    /// Displacements in global axes of places of a bar that bends, these shares of its length from its start (ascending), for
+    /// its displacements `u`.
+    fn elastic_curve(&self, _u: &[f64], _acting: &Acting, _shares: &[f64]) -> Option<Vec<[f64; 3]>> {
+        None
+    }
+
     /// Stress of an area or a solid at its centre for its displacements `u`.
     fn stress(&self, _u: &[f64], _acting: &Acting) -> Option<Stress> {
         None

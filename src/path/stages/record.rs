@@ -44,6 +44,11 @@ pub struct StageResult {
 }
 
 impl StageResult {
+    /// Factors of the load cases at its end.
+    pub fn factors(&self) -> &[f64] {
+        self.moments.last().map_or(&[], |end| &end.factors)
+    }
+
     /// What the pairs do between its moments, in order; stretches of no length are left out.
     pub fn schemes(&self) -> impl Iterator<Item = &[(State, Option<State>)]> {
         self.moments.windows(2).filter(|ends| ends[1].t > ends[0].t).map(|ends| &ends[1].way[..])

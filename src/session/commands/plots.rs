@@ -283,6 +283,7 @@ impl Session {
             title,
             structure: self.structure().ok_or_else(not_a_structure)?,
             displacements: self.quantity_displacements(),
+            factors: self.quantity_factors(),
             pairs: Some(self.quantity_pairs()),
         })
     }
@@ -321,7 +322,7 @@ impl Session {
             .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
             .collect();
         let title = format!("{}: collapse mode", self.short_name());
-        Ok(Shape { title, structure, displacements: Some(displacements), pairs: None })
+        Ok(Shape { title, structure, displacements: Some(displacements), factors: &[], pairs: None })
     }
 
     /// The forces of the bars and the bars that are meant: the one named, or all.
@@ -353,7 +354,8 @@ impl Session {
         let &[bar] = &bars[..] else {
             let structure = self.structure().ok_or_else(not_a_structure)?;
             let title = self.shape()?.title;
-            let shown = Shape { title, structure, displacements: None, pairs: Some(self.quantity_pairs()) };
+            let shown =
+                Shape { title, structure, displacements: None, factors: &[], pairs: Some(self.quantity_pairs()) };
             let curves: Vec<Curve<'_>> = bars.iter().map(|bar| Curve::of(members, bar, force)).collect();
             io.show(&curves, |out, style| {
                 let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
@@ -435,6 +437,9 @@ pub(in crate::session) struct Shape<'a> {
     #[serde(skip)]
     pub(in crate::session) structure: &'a Structure,
     pub(in crate::session) displacements: Option<Vec<NodeDisplacement>>,
+    /// Of the load cases; none of a motion.
+    #[serde(skip)]
+    pub(in crate::session) factors: &'a [f64],
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(in crate::session) pairs: Option<Vec<PairState>>,
 }
@@ -446,6 +451,7 @@ impl Shape<'_> {
             title: &self.title,
             structure: self.structure,
             displacements: self.displacements.as_deref(),
+            factors: self.factors,
             pairs: self.pairs.as_deref(),
             magnification: Magnification::Auto,
             height,

@@ -127,6 +127,7 @@ fn along_bars(state: &State, force: Internal, area: Rect) -> Vec<Line<'static>> 
             title,
             structure,
             displacements: None,
+            factors: &[],
             pairs: Some(shown.pairs()),
             magnification: Magnification::Auto,
             height,

@@ -172,14 +172,16 @@ impl Painter<'_> {
     fn draw_lines(&mut self) {
         let look = self.state.look;
         let u: &[[f64; 3]] = self.motion.u.as_deref().unwrap_or_default();
-        let now = self.view.clip(&outline(self.structure, u, self.factor));
+        let [factors, factors_before] = &self.motion.factors;
+        let now = self.view.clip(&outline(self.structure, factors, u, self.factor));
         self.canvas.draw(Role::Plain, now.into_iter().map(Stroke::Line).collect());
         if let Some(before) = self.motion.before.as_ref().filter(|_| self.state.ghost) {
-            self.draw_faint(Role::Series(1), before, 2.5);
+            let before = outline(self.structure, factors_before, before, self.factor);
+            self.draw_faint(Role::Series(1), &before, 2.5);
             self.legend.note(look.sign('┈', ':'), Role::Series(1), "before");
         }
         if self.factor != 0.0 && u.iter().any(|u| *u != [0.0; 3]) {
-            self.draw_faint(Role::Muted, &[], 5.0);
+            self.draw_faint(Role::Muted, &outline(self.structure, &[], &[], 0.0), 5.0);
             self.legend.note(look.sign('·', '.'), Role::Muted, "undeformed");
         }
         if grid_pitch(self.structure, self.view.pitch) >= GRID_PITCH {
@@ -189,8 +191,8 @@ impl Painter<'_> {
         }
     }
 
-    fn draw_faint(&mut self, role: Role, u: &[[f64; 3]], pitch: f64) {
-        let lines = self.view.clip(&outline(self.structure, u, self.factor));
+    fn draw_faint(&mut self, role: Role, lines: &[Vec<(f64, f64)>], pitch: f64) {
+        let lines = self.view.clip(lines);
         let strokes = lines.iter().map(|line| Stroke::Dots(dotted(line, pitch))).collect();
         self.canvas.draw_under(role, strokes);
     }

@@ -10,11 +10,12 @@ use super::{Series, diagram};
 use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
 use crate::answer::rounding::largest;
+use crate::fem::ElasticCurves;
 use crate::model::edge::EdgeSide;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
 use crate::model::plate::Plate;
-use crate::model::structure::{Bar, Component, Element, Structure};
+use crate::model::structure::{Bar, Element, Structure};
 use crate::text::number::short;
 
 /// By how much displacements are enlarged.
@@ -36,6 +37,8 @@ pub struct Picture<'a> {
     pub structure: &'a Structure,
     /// Its displacements; the undeformed shape is drawn dotted beside the deformed one.
     pub displacements: Option<&'a [NodeDisplacement]>,
+    /// Factors of the load cases under which it is displaced, which bend bars between their nodes; none of a motion.
+    pub factors: &'a [f64],
     /// States of its contact pairs, in the order of the structure; without them the pairs are marked as such.
     pub pairs: Option<&'a [PairState]>,
     /// Magnification of the displacements.
@@ -62,9 +65,9 @@ pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[
     nodes.iter().map(|node| by_id.get(node.id.as_str()).map_or([0.0; 3], |u| finite(u))).collect()
 }
 
-/// The factor by which displacements are drawn: the one asked for, or 1, 2 or 5 × 10^k so that the largest becomes
-/// at most a tenth of the model's larger side; 1 where nothing moves.
-pub fn factor(structure: &Structure, u: &[[f64; 3]], magnification: Magnification) -> f64 {
+/// The factor by which displacements are drawn: the one asked for, or 1, 2 or 5 × 10^k so that the largest, between the
+/// nodes too, becomes at most a tenth of the model's larger side; 1 where nothing moves. `factors`: see [`Picture`].
+pub fn factor(structure: &Structure, factors: &[f64], u: &[[f64; 3]], magnification: Magnification) -> f64 {
     if let Magnification::Factor(factor) = magnification {
         return if factor.is_finite() { factor } else { 1.0 };
     }
@@ -73,14 +76,31 @@ pub fn factor(structure: &Structure, u: &[[f64; 3]], magnification: Magnificatio
         (high - low).max(0.0)
     };
     let size = side(0).max(side(1));
-    let largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
-    let rough = 0.1 * size / largest;
+    let rough = 0.1 * size / largest_displacement(structure, factors, u);
     if !(rough.is_finite() && rough > 0.0) {
         return 1.0;
     }
     let power = 10f64.powi(rough.log10().floor() as i32);
     let nice = [5.0, 2.0, 1.0].into_iter().map(|digit| digit * power).find(|nice| *nice <= rough).unwrap_or(power);
     if nice.is_finite() && nice > 0.0 { nice } else { 1.0 }
+}
+
+/// The largest displacement of nodes and of places between them.
+fn largest_displacement(structure: &Structure, factors: &[f64], u: &[[f64; 3]]) -> f64 {
+    let curves = ElasticCurves::of(structure, factors);
+    let shares = shares(structure);
+    let bars = structure.elements.iter().enumerate().filter(|(_, element)| element.bends());
+    let between = bars.filter_map(|(index, _)| curves.places(index, u, &shares)).flatten();
+    let nodes = u.iter().map(|u| u[0].hypot(u[1]));
+    nodes.chain(between.map(|u| u[0].hypot(u[1]))).fold(0.0, f64::max)
+}
+
+/// Where the elastic curve of a bar is drawn through, as shares of its length.
+fn shares(structure: &Structure) -> Vec<f64> {
+    let [many, few] = PIECES;
+    let bending = structure.elements.iter().filter(|element| element.bends()).count();
+    let pieces = (ALL_PIECES / bending.max(1)).clamp(many, few);
+    (0..=pieces).map(|i| i as f64 / pieces as f64).collect()
 }
 
 /// Lines of the structure in the plane, displaced by `factor` × u: bars (bent as the element bends), plate outlines,
@@ -105,25 +125,25 @@ fn displaced(structure: &Structure, u: &[[f64; 3]], factor: f64) -> impl Fn(usiz
 }
 
 /// See [`Lines`].
-fn lines(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Lines {
+fn lines(structure: &Structure, factors: &[f64], u: &[[f64; 3]], factor: f64) -> Lines {
     Lines {
-        outline: outline(structure, u, factor),
+        outline: outline(structure, factors, u, factor),
         grid: grid(structure, u, factor),
         faces: faces(structure, u, factor),
     }
 }
 
-/// [`Lines::outline`].
-pub fn outline(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+/// [`Lines::outline`]; `factors`: see [`Picture`].
+pub fn outline(structure: &Structure, factors: &[f64], u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+    let curves = ElasticCurves::of(structure, factors);
     let at = displaced(structure, u, factor);
-    let [many, few] = PIECES;
-    let bending = structure.elements.iter().filter(|element| element.bends()).count();
-    let pieces = (ALL_PIECES / bending.max(1)).clamp(many, few);
+    let shares = shares(structure);
     let mut outline = Vec::new();
     let mut single = |elements: Range<usize>| {
-        for element in &structure.elements[elements] {
-            if element.bends() {
-                outline.push(bent(structure, element, u, factor, pieces));
+        for (index, element) in elements.clone().zip(&structure.elements[elements]) {
+            let curve = if factor == 0.0 { None } else { curves.places(index, u, &shares) };
+            if let Some(curve) = curve {
+                outline.push(bent(structure, element, &shares, &curve, factor));
             } else if !element.shape().is_area() {
                 outline.push(element.nodes.iter().map(|&node| at(node)).collect());
             } else {
@@ -247,46 +267,14 @@ fn hull(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     ring
 }
 
-/// Shape of a frame element: linear along it, cubic across it; at a hinge its end turns freely.
-fn bent(structure: &Structure, element: &Element, u: &[[f64; 3]], factor: f64, pieces: usize) -> Vec<(f64, f64)> {
-    let &[a, b] = &element.nodes[..] else {
-        return Vec::new();
+/// An element bent as its elastic curve: places at shares of its length and how they are displaced.
+fn bent(structure: &Structure, element: &Element, shares: &[f64], curve: &[[f64; 3]], factor: f64) -> Vec<(f64, f64)> {
+    let [p, q] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+    let place = |(t, u): (&f64, &[f64; 3])| {
+        let [x, y] = [0, 1].map(|axis| p[axis] + t * (q[axis] - p[axis]) + factor * u[axis]);
+        (x, y)
     };
-    let (Some(start), Some(end)) = (structure.nodes.get(a), structure.nodes.get(b)) else {
-        return Vec::new();
-    };
-    let (p, q) = (start.position, end.position);
-    let (ua, ub) = (u.get(a).copied().unwrap_or_default(), u.get(b).copied().unwrap_or_default());
-    let length = (q[0] - p[0]).hypot(q[1] - p[1]);
-    if length <= 0.0 || !length.is_finite() {
-        return vec![(p[0], p[1])];
-    }
-    let (c, s) = ((q[0] - p[0]) / length, (q[1] - p[1]) / length);
-    let axial = |u: [f64; 3]| c * u[0] + s * u[1];
-    let across = |u: [f64; 3]| -s * u[0] + c * u[1];
-    let chord = (across(ub) - across(ua)) / length;
-    // End rotations; without a moment at an end: θ₁ = 3/2 chord − θ₂/2.
-    let (turn_a, turn_b) = match [0, 1].map(|end| !element.components(end).contains(&Component::R)) {
-        [false, false] => (ua[2], ub[2]),
-        [true, false] => (1.5 * chord - 0.5 * ub[2], ub[2]),
-        [false, true] => (ua[2], 1.5 * chord - 0.5 * ua[2]),
-        [true, true] => (chord, chord),
-    };
-    let straight = (across(ua), across(ub), turn_a, turn_b) == (0.0, 0.0, 0.0, 0.0);
-    let pieces = if straight { 1 } else { pieces };
-    (0..=pieces)
-        .map(|i| {
-            let t = i as f64 / pieces as f64;
-            let along = axial(ua) + t * (axial(ub) - axial(ua));
-            let v = (1.0 - 3.0 * t * t + 2.0 * t * t * t) * across(ua)
-                + (3.0 * t * t - 2.0 * t * t * t) * across(ub)
-                + length * (t - 2.0 * t * t + t * t * t) * turn_a
-                + length * (t * t * t - t * t) * turn_b;
-            let x = p[0] + t * (q[0] - p[0]) + factor * (c * along - s * v);
-            let y = p[1] + t * (q[1] - p[1]) + factor * (s * along + c * v);
-            (x, y)
-        })
-        .collect()
+    shares.iter().zip(curve).map(place).collect()
 }
 
 /// What a picture shows, in the coordinates of the model: the same for characters and for SVG.
@@ -334,12 +322,13 @@ impl Scene {
         let rest = vec![[0.0; 3]; structure.nodes.len()];
         let u = picture.displacements.map(|displacements| nodal(structure, displacements));
         let moved = u.as_ref().unwrap_or(&rest);
-        let factor = factor(structure, moved, picture.magnification);
+        let factors = if u.is_some() { picture.factors } else { &[] };
+        let factor = factor(structure, factors, moved, picture.magnification);
         let mut title = picture.title.to_owned();
         if u.is_some() {
             title.push_str(&format!(" · displacements × {}", short(factor)));
         }
-        let (before, now) = (lines(structure, &rest, 0.0), lines(structure, moved, factor));
+        let (before, now) = (lines(structure, factors, &rest, 0.0), lines(structure, factors, moved, factor));
         let all = || {
             let outlines = before.outline.iter().chain(&now.outline).flatten().copied();
             let nodes = structure.nodes.iter().map(|n| (n.position[0], n.position[1]));
@@ -362,7 +351,7 @@ impl Scene {
         Scene {
             title,
             factor,
-            is_deformed: moved.iter().any(|u| *u != [0.0; 3]) && factor != 0.0,
+            is_deformed: before.outline != now.outline,
             supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
             pairs: structure.pairs.iter().enumerate().map(mark).collect(),
             loads: loads.map_or_else(Loads::default, |parameters| {
@@ -437,6 +426,7 @@ pub fn supported(structure: &Structure) -> Vec<(usize, usize)> {
 mod tests {
     use super::{Magnification, Picture, Scene, hull};
     use crate::answer::diagram::Internal;
+    use crate::model::structure::{ElementLoad, Load};
     use crate::view::tests::sample::cantilever;
 
     /// Cantilever of 4 m along x under q = −10: M = −10 (4 − x)²/2, tension above, so its ordinates stand above the bar,
@@ -448,6 +438,7 @@ mod tests {
             title: "",
             structure: &structure,
             displacements: None,
+            factors: &[],
             pairs: None,
             magnification: Magnification::Auto,
             height: 10,
@@ -464,6 +455,50 @@ mod tests {
             }
             assert!((scene.bounds.unwrap()[1][1] - 0.5).abs() < 1e-12);
         }
+    }
+
+    /// Cantilever of 4 m under q = −10 drawn as one element: v = −q x² (6 L² − 4 L x + x²)/24 EI between the nodes too, and
+    /// the automatic factor is that of the tip, 0.1 · 4 / v(4) = 26 and so 20.
+    #[test]
+    fn a_bar_bends_between_its_nodes_as_its_load_says() {
+        let (mut structure, _, mut moved) = cantilever();
+        let (q, l, ei) = (10.0, 4.0, 2.1e4);
+        let v = |x: f64| -q * x * x * (6.0 * l * l - 4.0 * l * x + x * x) / (24.0 * ei);
+        // one element from the clamp to the tip
+        structure.elements.truncate(1);
+        structure.elements[0].nodes = vec![0, 2];
+        structure.bars[0].elements = 0..1;
+        structure.load_cases[0].loads.truncate(1);
+        let Load::Element { load: ElementLoad::Line { range, .. }, .. } = &mut structure.load_cases[0].loads[0] else {
+            panic!("a line load");
+        };
+        *range = [0.0, l];
+        moved[1].uy = 0.0;
+        let picture = Picture {
+            title: "",
+            structure: &structure,
+            displacements: Some(&moved),
+            factors: &[1.0],
+            pairs: None,
+            magnification: Magnification::Auto,
+            height: 10,
+        };
+        let scene = Scene::new(&picture, None);
+        assert_eq!(scene.factor, 20.0);
+        let [line] = &scene.now.outline[..] else { panic!("{:?}", scene.now.outline) };
+        assert!(line.len() > 20);
+        for (x, y) in line {
+            assert!((y - 20.0 * v(*x)).abs() < 1e-13, "{y} at {x}, not {}", 20.0 * v(*x));
+        }
+        // clamped at both ends it moves at no node: 1/384 q L⁴/EI in the middle, 0.1 · 4 / 3.2e-4 = 1260 and so 1000
+        let mut held = moved.clone();
+        for node in &mut held {
+            (node.uy, node.rz) = (0.0, 0.0);
+        }
+        let scene = Scene::new(&Picture { displacements: Some(&held), ..picture }, None);
+        assert!(scene.is_deformed && scene.factor == 1000.0, "{}", scene.factor);
+        let lowest = scene.now.outline[0].iter().map(|(_, y)| *y).fold(0.0, f64::min);
+        assert!((lowest + 1000.0 * q * l.powi(4) / (384.0 * ei)).abs() < 1e-12, "{lowest}");
     }
 
     /// A square with points on its sides and inside, and three points on a line.

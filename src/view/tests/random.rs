@@ -200,7 +200,7 @@ proptest! {
                 NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] }
             }).collect();
             let picture = Picture {
-                title: "any", structure: &structure, displacements: Some(&displacements),
+                title: "any", structure: &structure, displacements: Some(&displacements), factors: &[1.0],
                 pairs: Some(&states), height,
                 magnification: factor.map_or(Magnification::Auto, Magnification::Factor),
             };
@@ -232,6 +232,7 @@ fn an_empty_structure_draws_nothing() {
         title: "empty",
         structure: &empty,
         displacements: Some(&[]),
+        factors: &[],
         pairs: None,
         magnification: crate::view::plot::scene::Magnification::Auto,
         height: 10,
