@@ -54,7 +54,7 @@ pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSe
     if found.certificate.is_some() || load.does_no_work(motions) {
         return found;
     }
-    let exactly = certify_exactly(problem, end);
+    let exactly = certify_exactly(problem, &pairs, end);
     CertificateSearch { out_of_time: found.out_of_time || exactly.out_of_time, ..exactly }
 }
 

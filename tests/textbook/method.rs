@@ -1,4 +1,4 @@
-//! The worked example of `docs/method.md` §7, pivot by pivot.
+//! The worked example of `docs/method.md` §8, pivot by pivot.
 //!
 //! ```text
 //!   c1 ──k── c2 ──k── c3 ──▶ F        three nodes on the ground, f = 0.5, k = 1000 kN/m

@@ -9,6 +9,8 @@ use crate::watch::Watch;
 
 /// Steps at most.
 const STEPS: usize = 60;
+/// The natural map has to halve within so many steps: what creeps does not arrive.
+const PATIENCE: usize = 12;
 /// A step is halved this often at most.
 const HALVINGS: usize = 12;
 /// Share of what a step promises that the natural map has to fall by (Armijo).
@@ -30,7 +32,11 @@ pub(super) fn search(
 ) -> Result<Search, ConeFailure> {
     let mut map = NaturalMap::at(problem, scale, &z, &problem.forces(&z));
     let mut steps = 0;
+    let mut norms = vec![map.norm];
     while steps < STEPS && !map.is_zero {
+        if steps >= PATIENCE && map.norm > 0.5 * norms[steps - PATIENCE] {
+            break;
+        }
         if watch.stop() {
             return Err(ConeFailure::Stopped);
         }
@@ -41,6 +47,7 @@ pub(super) fn search(
         let Some((point, next)) = next else { break };
         (z, map) = (point, next);
         steps += 1;
+        norms.push(map.norm);
     }
     Ok(Search { z, states: map.branches, steps })
 }
