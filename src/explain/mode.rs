@@ -39,8 +39,8 @@ pub struct PartMotion {
 /// A motion of the structure that costs no energy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// [u_x, u_y, θ] per node.
-    pub displacements: Vec<[f64; 3]>,
+    /// Displacements per node, in the order of the components.
+    pub displacements: Vec<[f64; 6]>,
     /// The parts that move; empty where the motion is none of rigid bars and plates.
     pub parts: Vec<PartMotion>,
 }
@@ -126,7 +126,7 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
         return None;
     }
     let amounts = main.amounts(direction);
-    let mut displacements = vec![[0.0; 3]; structure.nodes.len()];
+    let mut displacements = vec![[0.0; 6]; structure.nodes.len()];
     for (motion, amount) in motions.iter().zip(amounts.iter()) {
         for (sum, u) in displacements.iter_mut().zip(&motion.u) {
             for (sum, u) in sum.iter_mut().zip(u) {
@@ -143,7 +143,7 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
 }
 
 /// The parts that move, each rigid; `None` where one of them is not.
-pub fn parts(structure: &Structure, displacements: &[[f64; 3]]) -> Option<Vec<PartMotion>> {
+pub fn parts(structure: &Structure, displacements: &[[f64; 6]]) -> Option<Vec<PartMotion>> {
     let extent = size(structure);
     let largest = displacements.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
     if largest == 0.0 {
@@ -190,7 +190,7 @@ fn part_name(names: &[String], all: usize) -> String {
 }
 
 /// Rigid motion (u_x and u_y at the centre of the nodes, then moved to the origin; angle) of these nodes.
-fn fit(structure: &Structure, nodes: &[usize], u: &[[f64; 3]], tolerance: f64) -> Option<[f64; 3]> {
+fn fit(structure: &Structure, nodes: &[usize], u: &[[f64; 6]], tolerance: f64) -> Option<[f64; 3]> {
     let count = nodes.len() as f64;
     let mean = |read: &dyn Fn(usize) -> f64| nodes.iter().map(|&n| read(n)).sum::<f64>() / count;
     let x = |n: usize| structure.nodes[n].position;

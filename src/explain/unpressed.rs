@@ -16,6 +16,7 @@ use crate::model::plausible::Warning;
 use crate::model::plausible::normals::{is_down, is_guided, parts};
 use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
+use crate::model::vector::dot;
 use crate::text::words::list;
 
 /// RF is zero below this many ε of the magnitude of its terms: it went through a factorization.
@@ -110,7 +111,7 @@ struct Joints<'s> {
     /// Nodes of plates, quads, triangles: bodies that touch along faces. (Each support of a bar is looked at by itself.)
     solid: HashSet<usize>,
     /// Bodies and normal of the pairs that are pressed, or may be.
-    carrying: Vec<([Option<usize>; 2], [f64; 2])>,
+    carrying: Vec<([Option<usize>; 2], [f64; 3])>,
 }
 
 impl<'s> Joints<'s> {
@@ -138,7 +139,7 @@ impl<'s> Joints<'s> {
             return true;
         }
         let bodies = self.bodies(pair);
-        let alike = |n: &[f64; 2]| n[0] * pair.normal[0] + n[1] * pair.normal[1] > 0.5;
+        let alike = |n: &[f64; 3]| dot(*n, pair.normal) > 0.5;
         self.solid.contains(&pair.node) && self.carrying.iter().any(|(other, n)| *other == bodies && alike(n))
     }
 
@@ -149,7 +150,7 @@ impl<'s> Joints<'s> {
         if pair.weights.len() > 1 || !is_down(structure, pair.normal) {
             return String::new();
         }
-        format!("; the normal ({}, {}) points down, the way of the loads", pair.normal[0], pair.normal[1])
+        format!("; the normal {} points down, the way of the loads", structure.dimension.in_words(pair.normal))
     }
 }
 

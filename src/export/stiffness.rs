@@ -43,25 +43,24 @@ impl Ids {
     }
 }
 
-fn word(component: Component) -> &'static str {
-    match component {
-        Component::X => "x",
-        Component::Y => "y",
-        Component::R => "r",
-    }
-}
-
 impl Stiffness<'_> {
     /// The scenario beside the matrices, and how many pairs it cannot tell: those of edges whose nodes do not match.
     /// `file` gives the name of the file of K (`None`) or of a load case.
     pub fn scenario(&self, title: &str, units: &Units, file: &dyn Fn(Option<&str>) -> String) -> (Value, usize) {
         let mut ids = Ids::default();
+        let dimension = self.structure.dimension;
+        let word = |component: Component| dimension.word(component);
         let nodes: Vec<String> = self.structure.nodes.iter().map(|node| ids.of(&node.id)).collect();
         let cases = self.structure.load_cases.iter().map(|case| {
             let factor = case.factor.value(self.values);
             (case.name.clone(), json!({"file": file(Some(&case.name)), "factor": factor}))
         });
-        let places = self.structure.nodes.iter().zip(&nodes).map(|(node, id)| (id.clone(), json!(node.position)));
+        let places = self
+            .structure
+            .nodes
+            .iter()
+            .zip(&nodes)
+            .map(|(node, id)| (id.clone(), json!(dimension.shown(node.position))));
         let dofs = self.matrices.dofs.iter().map(|(node, component)| json!([nodes[*node], word(*component)]));
         let named = |list: &[usize]| list.iter().map(|&node| nodes[node].clone()).collect::<Vec<_>>();
         let ties = self.structure.ties.iter().map(|tie| {
@@ -87,7 +86,7 @@ impl Stiffness<'_> {
             "supports": self.supports(&nodes),
             "ties": ties.collect::<Vec<Value>>(),
             "rigid": rigid,
-            "springs": self.structure.springs.iter().map(|one| spring(one, &nodes)).collect::<Vec<Value>>(),
+            "springs": self.structure.springs.iter().map(|one| self.spring(one, &nodes)).collect::<Vec<Value>>(),
             "contacts": contacts,
         });
         let labels = [("length", &units.length), ("force", &units.force)];
@@ -101,13 +100,13 @@ impl Stiffness<'_> {
 
     /// One entry for each node, and one more for each further case that moves it.
     fn supports(&self, nodes: &[String]) -> Vec<Value> {
-        let mut settlements: HashMap<usize, Vec<(&str, [f64; 3])>> = HashMap::new();
+        let mut settlements: HashMap<usize, Vec<(&str, [f64; 6])>> = HashMap::new();
         for case in &self.structure.load_cases {
             for load in &case.loads {
                 let Load::Settlement { node, component, value } = *load else { continue };
                 let of = settlements.entry(node).or_default();
                 if of.last().is_none_or(|(name, _)| *name != case.name) {
-                    of.push((&case.name, [0.0; 3]));
+                    of.push((&case.name, [0.0; 6]));
                 }
                 if let Some((_, amounts)) = of.last_mut() {
                     amounts[component as usize] += value;
@@ -121,13 +120,17 @@ impl Stiffness<'_> {
                 fixed.push((support.node, Vec::new()));
                 fixed.len() - 1
             });
-            fixed[place].1.push(word(support.component));
+            fixed[place].1.push(self.structure.dimension.word(support.component));
         }
+        let components = self.structure.dimension.components();
         let entry = |(node, fixed): (usize, Vec<&str>)| match settlements.get(&node) {
             None => vec![json!({"at": nodes[node], "fixed": fixed})],
             Some(of) => of
                 .iter()
-                .map(|(case, amounts)| json!({"at": nodes[node], "fixed": fixed, "settlement": amounts, "case": case}))
+                .map(|(case, amounts)| {
+                    let amounts: Vec<f64> = components.iter().map(|&component| amounts[component as usize]).collect();
+                    json!({"at": nodes[node], "fixed": fixed, "settlement": amounts, "case": case})
+                })
                 .collect(),
         };
         fixed.into_iter().flat_map(entry).collect()
@@ -136,30 +139,33 @@ impl Stiffness<'_> {
     fn contact(&self, pair: &Pair, nodes: &[String], id: String) -> Value {
         let against = pair.weights.get(1).map_or("ground", |(node, _)| nodes[*node].as_str());
         let mut contact = json!({
-            "id": id, "node": nodes[pair.node], "against": against, "normal": pair.normal, "law": pair.law.kind(),
+            "id": id, "node": nodes[pair.node], "against": against, "normal": self.structure.dimension.shown(pair.normal), "law": pair.law.kind(),
         });
         for (key, number) in pair.law.numbers() {
             contact[key] = json!(number.value(self.values));
         }
         contact
     }
-}
 
-fn spring(spring: &Spring, nodes: &[String]) -> Value {
-    let ends = spring.nodes();
-    let factor = |wanted: Component| {
-        let own = spring.terms.iter().find(|term| term.node == ends[0] && term.component == wanted);
-        own.map_or(0.0, |term| term.factor)
-    };
-    let mut value = match factor(Component::R) {
-        0.0 => json!({"direction": [factor(Component::X), factor(Component::Y)], "stiffness": spring.stiffness}),
-        _ => json!({"rotation": spring.stiffness}),
-    };
-    match ends[..] {
-        [a, b, ..] => value["between"] = json!([nodes[a], nodes[b]]),
-        _ => value["at"] = json!(nodes[ends[0]]),
+    fn spring(&self, spring: &Spring, nodes: &[String]) -> Value {
+        let ends = spring.nodes();
+        let factor = |wanted: Component| {
+            let own = spring.terms.iter().find(|term| term.node == ends[0] && term.component == wanted);
+            own.map_or(0.0, |term| term.factor)
+        };
+        let mut value = match factor(Component::Rz) {
+            0.0 => {
+                let direction = self.structure.dimension.shown(Component::TRANSLATIONS.map(factor));
+                json!({"direction": direction, "stiffness": spring.stiffness})
+            }
+            _ => json!({"rotation": spring.stiffness}),
+        };
+        match ends[..] {
+            [a, b, ..] => value["between"] = json!([nodes[a], nodes[b]]),
+            _ => value["at"] = json!(nodes[ends[0]]),
+        }
+        value
     }
-    value
 }
 
 /// Writes K as the lower triangle of a symmetric matrix in coordinate format.

@@ -121,8 +121,8 @@ impl Mesh<'_> {
 
     fn write_point_data(&self, out: &mut dyn Write) -> io::Result<()> {
         let u = |node: usize| self.0.displacements.get(node).copied().unwrap_or_default();
-        array(out, "displacement", &[], &self.over_points(|node| [u(node)[0], u(node)[1], 0.0]))?;
-        array(out, "rotation", &[], &self.over_points(|node| [u(node)[2]]))?;
+        array(out, "displacement", &[], &self.over_points(|node| [u(node)[0], u(node)[1], u(node)[2]]))?;
+        array(out, "rotation", &[], &self.over_points(|node| [u(node)[5]]))?;
         if !self.0.node_stresses.is_empty() {
             let mut stresses = vec![[0.0; 4]; self.0.structure.nodes.len()];
             for at in &self.0.node_stresses {
@@ -136,8 +136,8 @@ impl Mesh<'_> {
         let state = self.over_pairs(-1, |_, state| i64::from(state_number(state.state)));
         integers(out, "Int32", "contact_state", state.into_iter())?;
         let along = |index: usize, n: f64, t: f64| {
-            let (normal, tangent) = (pairs[index].normal, pairs[index].tangent());
-            [n * normal[0] + t * tangent[0], n * normal[1] + t * tangent[1], 0.0]
+            let (normal, tangent) = (pairs[index].normal, pairs[index].tangents[0]);
+            std::array::from_fn(|c| n * normal[c] + t * tangent[c])
         };
         // both act on the node of the pair, the opposite ones on what stands against it
         let force = self.over_pairs([0.0; 3], |index, state| along(index, state.x_n, state.x_t));

@@ -1,7 +1,7 @@
 //! The rows that hold the nodes of a rigid body to its first node, and what they do to nodal forces.
 //!
 //! ```text
-//!     u_i − u_0 − θ × (x_i − x_0) = 0     two rows per node after the first; the rotations are one class
+//!     u_i − u_0 − θ × (x_i − x_0) = 0     a row per coordinate of each node after the first; each rotation is one class
 //! ```
 //!
 //! They are reduced before the joints, like joints whose z is always zero. The forces inside a body are their
@@ -10,7 +10,8 @@
 use super::classes::Classes;
 use super::dof::Dofs;
 use super::error::{Holder, OverConstraint};
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::Structure;
+use crate::model::vector::way;
 
 /// Σ a·u = 0 on the base dofs.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,13 +29,10 @@ pub fn body_rows(structure: &Structure, dofs: &Dofs) -> Vec<BodyRow> {
         let first = rigid.nodes[0];
         let place = |node: usize| structure.nodes[node].position;
         for &node in &rigid.nodes[1..] {
-            let arm = [0, 1].map(|c| place(node)[c] - place(first)[c]);
-            for (component, lever) in [(Component::X, arm[1]), (Component::Y, -arm[0])] {
-                let terms = [
-                    (dofs.of(node, component), 1.0),
-                    (dofs.of(first, component), -1.0),
-                    (dofs.of(first, Component::R), lever),
-                ];
+            let arm = way(place(first), place(node));
+            for &component in structure.dimension.translations() {
+                let [one, other] = component.levers(arm).map(|(rotation, lever)| (dofs.of(first, rotation), -lever));
+                let terms = [(dofs.of(node, component), 1.0), (dofs.of(first, component), -1.0), one, other];
                 let terms = terms.into_iter().filter_map(|(dof, a)| Some((dof?, a))).filter(|(_, a)| *a != 0.0);
                 rows.push(BodyRow { body, terms: terms.collect() });
             }
@@ -58,13 +56,15 @@ pub fn over_constraint(
         })
     };
     let id = |node: usize| structure.nodes[node].id.clone();
+    let word = |component| structure.dimension.word(component);
     let supports = structure.supports.iter().filter(|support| touched(dofs.of(support.node, support.component)));
-    let mut holders: Vec<Holder> =
-        supports.map(|support| Holder::Support { node: id(support.node), component: support.component }).collect();
+    let mut holders: Vec<Holder> = supports
+        .map(|support| Holder::Support { node: id(support.node), component: word(support.component) })
+        .collect();
     for tie in &structure.ties {
         for &component in &tie.components {
             if touched(dofs.of(tie.nodes[0], component)) {
-                holders.push(Holder::Tie { nodes: [tie.nodes[0], tie.nodes[1]].map(id), component });
+                holders.push(Holder::Tie { nodes: [tie.nodes[0], tie.nodes[1]].map(id), component: word(component) });
             }
         }
     }

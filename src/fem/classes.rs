@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::dof::Dofs;
 use crate::model::groups::Groups;
 use crate::model::structure::{Component, Load, Structure};
+use crate::model::vector::distance;
 
 /// What supports and ties make of the base dofs: classes of equal components.
 pub struct Classes {
@@ -29,7 +30,9 @@ impl Classes {
             }
         }
         for body in &structure.rigid {
-            groups.join_all(body.nodes.iter().filter_map(|&node| dofs.of(node, Component::R)));
+            for component in Component::ROTATIONS {
+                groups.join_all(body.nodes.iter().filter_map(|&node| dofs.of(node, component)));
+            }
         }
         let class: Vec<u32> = (0..dofs.count()).map(|dof| groups.of(dof) as u32).collect();
         let mut held_class = vec![false; dofs.count()];
@@ -65,10 +68,12 @@ fn reaches(structure: &Structure, dofs: &Dofs, class: &[u32]) -> BTreeMap<u32, f
     let mut reaches = BTreeMap::new();
     for rigid in &structure.rigid {
         let first = rigid.nodes[0];
-        let place = |node: usize, c: usize| structure.nodes[node].position[c];
-        let arm = |node: &usize| (place(*node, 0) - place(first, 0)).hypot(place(*node, 1) - place(first, 1));
+        let place = |node: usize| structure.nodes[node].position;
+        let arm = |node: &usize| distance(place(first), place(*node));
         let reach = rigid.nodes.iter().map(arm).fold(0.0, f64::max);
-        if let Some(dof) = dofs.of(first, Component::R).filter(|_| reach > 0.0) {
+        for dof in
+            Component::ROTATIONS.into_iter().filter_map(|component| dofs.of(first, component)).filter(|_| reach > 0.0)
+        {
             let known = reaches.entry(class[dof]).or_insert(0.0_f64);
             *known = known.max(reach.log2().round().exp2());
         }

@@ -14,6 +14,7 @@ use super::main_system::MainSystem;
 use super::refinement::Verdict;
 use crate::doubled::Real;
 use crate::model::structure::Structure;
+use crate::model::vector::length;
 use crate::watch::Watch;
 
 /// R and RF are taken from the f64 factor where rounding costs them no more than this share; see
@@ -161,11 +162,11 @@ impl MainSystem {
     }
 
     /// Adds a motion `u` without energy and its dislocations `z` to the kernel, unless it is in there.
-    fn add_motion(&mut self, z: &DVector<f64>, mut u: Vec<[f64; 3]>) {
+    fn add_motion(&mut self, z: &DVector<f64>, mut u: Vec<[f64; 6]>) {
         let Some(extended) = kernel::extend(&self.z, z) else {
             return;
         };
-        let mut largest = u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+        let mut largest = u.iter().map(|&[x, y, z, ..]| length([x, y, z])).fold(0.0, f64::max);
         if largest == 0.0 {
             largest = 1.0;
         }

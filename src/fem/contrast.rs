@@ -2,7 +2,7 @@
 
 use super::element::stiffness;
 use super::error::MainSystemError;
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::Structure;
 
 /// The refusal of a structure whose stiffness is lost beside that of its stiffest part.
 pub fn refusal(structure: &Structure) -> MainSystemError {
@@ -16,7 +16,11 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
                 Some(bar) => format!("bar {}", structure.bars[bar].id),
                 None => structure.element_in_words(index),
             };
-            parts.push((k[(0, 0)].max(k[(1, 1)]), element.nodes[0], name));
+            parts.push((
+                (0..structure.dimension.coordinates()).map(|c| k[(c, c)]).fold(0.0, f64::max),
+                element.nodes[0],
+                name,
+            ));
         }
     }
     for spring in &structure.springs {
@@ -27,8 +31,12 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
         let diagonal = element.entries.iter().filter(|(i, j, _)| i == j);
         diagonal.map(|&(i, _, k)| (k, element.dofs[i]))
     });
-    for (k, (node, component)) in given.filter(|(_, (_, component))| *component != Component::R) {
-        parts.push((k, node, format!("row {} of {} of the superelement", component.word(), id(node))));
+    for (k, (node, component)) in given.filter(|(_, (_, component))| !component.is_rotation()) {
+        parts.push((
+            k,
+            node,
+            format!("row {} of {} of the superelement", structure.dimension.word(component), id(node)),
+        ));
     }
     parts.retain(|(k, ..)| *k > 0.0);
     parts.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -4,40 +4,44 @@ use crate::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 
-/// Numbers of the nodal components ("base dofs"): x, y at every node, r where a frame bar is rigidly attached
-/// and at the nodes of rigid bodies; of a superelement what its rows are.
+/// Numbers of the nodal components ("base dofs"): the translations at every node, rotations where a frame bar is rigidly
+/// attached and at the nodes of rigid bodies; of a superelement what its rows are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dofs {
     first: Vec<u32>,
-    /// Whether there are x, y, r: nodes of a superelement have those of its dofs.
-    has: Vec<[bool; 3]>,
+    /// Whether there is each component: nodes of a superelement have those of its dofs.
+    has: Vec<[bool; 6]>,
     count: usize,
-    frame_nodes_only_hinged: usize,
+    /// Rotations of nodes at which all frame bars are hinged.
+    released: usize,
 }
 
 impl Dofs {
     /// Numbers the components node by node.
     pub fn new(structure: &Structure) -> Dofs {
+        let of = |components: &[Component]| {
+            let mut has = [false; 6];
+            components.iter().for_each(|&component| has[component as usize] = true);
+            has
+        };
+        let dimension = structure.dimension;
         let mut frame = vec![false; structure.nodes.len()];
-        let mut has_rotation = vec![false; structure.nodes.len()];
-        for element in &structure.elements {
-            if element.bends() {
-                for (end, &node) in element.nodes.iter().enumerate() {
-                    frame[node] = true;
-                    has_rotation[node] |= element.components(end).contains(&Component::R);
-                }
-            }
-        }
-        let mut has: Vec<[bool; 3]> = match &structure.superelement {
-            None => has_rotation.iter().map(|&rotation| [true, true, rotation]).collect(),
+        let mut has = match &structure.superelement {
+            None => vec![of(dimension.translations()); structure.nodes.len()],
             Some(element) => {
-                let mut has = vec![[false; 3]; structure.nodes.len()];
+                let mut has = vec![[false; 6]; structure.nodes.len()];
                 element.dofs.iter().for_each(|&(node, component)| has[node][component as usize] = true);
                 has
             }
         };
+        for element in structure.elements.iter().filter(|element| element.bends()) {
+            for (end, &node) in element.nodes.iter().enumerate() {
+                frame[node] = true;
+                element.components(end).iter().for_each(|&component| has[node][component as usize] = true);
+            }
+        }
         for &node in structure.rigid.iter().flat_map(|body| &body.nodes) {
-            has[node] = [true; 3];
+            has[node] = of(dimension.components());
         }
         let mut count = 0;
         let first = has
@@ -48,9 +52,9 @@ impl Dofs {
                 first as u32
             })
             .collect();
-        let frame_nodes_only_hinged =
-            std::iter::zip(&frame, &has).filter(|(frame, [.., rotation])| **frame && !*rotation).count();
-        Dofs { first, has, count, frame_nodes_only_hinged }
+        let turns = |has: &[bool; 6]| dimension.rotations().iter().any(|&rotation| has[rotation as usize]);
+        let only_hinged = std::iter::zip(&frame, &has).filter(|(frame, has)| **frame && !turns(has)).count();
+        Dofs { first, has, count, released: only_hinged * dimension.rotations().len() }
     }
 
     /// Number of base dofs.
@@ -58,10 +62,10 @@ impl Dofs {
         self.count
     }
 
-    /// Nodal components before supports and ties as they are reported: a frame node counts 3 even where all its
-    /// bars are hinged.
+    /// Nodal components before supports and ties as they are reported: a frame node counts its rotations even where all
+    /// its bars are hinged.
     pub fn unknowns(&self) -> usize {
-        self.count + self.frame_nodes_only_hinged
+        self.count + self.released
     }
 
     /// The base dof of a component; `None` for one that does not exist.
@@ -70,14 +74,14 @@ impl Dofs {
         has[at].then(|| self.first[node] as usize + has[..at].iter().filter(|has| **has).count())
     }
 
-    /// Displacements [u_x, u_y, θ] per node from base dofs; 0 where there is none.
-    pub fn scatter<T: Real>(&self, u: &[T]) -> Vec<[T; 3]> {
+    /// Displacements per node, in the order of [`Component::ALL`], from base dofs; 0 where there is none.
+    pub fn scatter<T: Real>(&self, u: &[T]) -> Vec<[T; 6]> {
         let value = |node: usize, component| self.of(node, component).map_or(T::zero(), |dof| u[dof]);
         (0..self.has.len()).map(|node| Component::ALL.map(|component| value(node, component))).collect()
     }
 
     /// Base dofs from displacements per node.
-    pub fn gather<T: Real>(&self, u: &[[T; 3]]) -> Vec<T> {
+    pub fn gather<T: Real>(&self, u: &[[T; 6]]) -> Vec<T> {
         let mut base = vec![T::zero(); self.count];
         for (node, values) in u.iter().enumerate() {
             for (component, value) in Component::ALL.into_iter().zip(values) {
@@ -97,11 +101,8 @@ impl Dofs {
 
     /// Which base dofs are rotations.
     pub fn is_rotation(&self) -> Vec<bool> {
-        let mut rotations = vec![false; self.count];
-        for dof in (0..self.has.len()).filter_map(|node| self.of(node, Component::R)) {
-            rotations[dof] = true;
-        }
-        rotations
+        let components = self.has.iter().flat_map(|has| Component::ALL.into_iter().filter(|&c| has[c as usize]));
+        components.map(Component::is_rotation).collect()
     }
 }
 
@@ -112,9 +113,8 @@ pub fn joint_dofs<'a>(joint: &'a Joint, dofs: &'a Dofs) -> impl Iterator<Item = 
         .iter()
         .enumerate()
         .flat_map(move |(side, (node, a))| {
-            let x = dofs.of(*node, Component::X).map(|dof| (dof, a[0]));
-            let y = dofs.of(*node, Component::Y).map(|dof| (dof, a[1]));
-            [x, y].into_iter().flatten().map(move |term| (side, term))
+            let translations = std::iter::zip(Component::TRANSLATIONS, a);
+            translations.filter_map(move |(component, a)| Some((side, (dofs.of(*node, component)?, *a))))
         })
         .filter(|(_, (_, a))| *a != 0.0)
 }

@@ -20,7 +20,7 @@ impl<'a> ElasticCurves<'a> {
 
     /// Displacements of places of an element, these shares of its length from its start (ascending), under the displacements
     /// u of the nodes; `None` of one that does not bend.
-    pub fn places(&self, element: usize, u: &[[f64; 3]], shares: &[f64]) -> Option<Vec<[f64; 3]>> {
+    pub fn places(&self, element: usize, u: &[[f64; 6]], shares: &[f64]) -> Option<Vec<[f64; 3]>> {
         let slots = slots(self.structure.elements.get(element)?);
         let rows = slots.into_iter().map(|(node, component)| u.get(node).map_or(0.0, |u| u[component as usize]));
         let rows: Vec<f64> = rows.collect();

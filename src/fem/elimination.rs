@@ -92,7 +92,7 @@ impl Elimination {
                 holders,
             });
         }
-        held.sort_by_key(|joint| (joint.direction == JointDirection::Tangential, joint.pair));
+        held.sort_by_key(|joint| (joint.direction != JointDirection::Normal, joint.pair));
         if held.is_empty() { Ok(repeated) } else { Err(MainSystemError::DependentJoints(held)) }
     }
 

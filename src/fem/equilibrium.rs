@@ -18,6 +18,7 @@ use super::recovery::own_displacements;
 use crate::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
+use crate::model::vector::{distance, length};
 
 /// The share of the forces at a node that an answer may leave unbalanced.
 const TOLERANCE: f64 = 1e-9;
@@ -78,7 +79,7 @@ impl MainSystem {
     /// Calls `visit(dof, a)` with the terms of a row of B.
     pub(super) fn each_term(&self, joint: &Joint, mut visit: impl FnMut(usize, f64)) {
         for (node, a) in &joint.terms {
-            for (component, a) in std::iter::zip([Component::X, Component::Y], a) {
+            for (component, a) in std::iter::zip(Component::TRANSLATIONS, a) {
                 if let Some(dof) = self.dofs.of(*node, component) {
                     visit(dof, *a);
                 }
@@ -192,7 +193,7 @@ impl MainSystem {
         for &(i, j, k) in &element.entries {
             for (row, column) in if i == j { vec![(i, i)] } else { vec![(i, j), (j, i)] } {
                 let ((own, component), (other, moved)) = (element.dofs[row], element.dofs[column]);
-                let with = if moved == Component::R { 0.0 } else { u.0[own][moved as usize] };
+                let with = if moved.is_rotation() { 0.0 } else { u.0[own][moved as usize] };
                 if let Some(dof) = self.dofs.of(own, component) {
                     sums[dof] += (k * (u.0[other][moved as usize] - with)).abs();
                 }
@@ -204,18 +205,17 @@ impl MainSystem {
     fn add_element(&self, structure: &Structure, index: usize, forces: &[f64], sums: &mut [f64]) {
         let element = &structure.elements[index];
         let slots = slots(element);
-        let place = |node: usize| structure.nodes[node].position;
-        let [a, b] = [place(element.nodes[0]), place(element.nodes[1])];
-        let lever = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let place = |at: usize| structure.nodes[element.nodes[at]].position;
+        let lever = distance(place(0), place(1));
         for &node in &element.nodes {
             let of = |wanted: Component| {
                 let found = slots.iter().position(|slot| *slot == (node, wanted));
                 found.map_or(0.0, |at| forces[at])
             };
-            let force = of(Component::X).hypot(of(Component::Y));
-            let amounts =
-                [(Component::X, force), (Component::Y, force), (Component::R, of(Component::R).abs() + force * lever)];
-            for (component, amount) in amounts {
+            let force = length(Component::TRANSLATIONS.map(of));
+            let moment = length(Component::ROTATIONS.map(of));
+            for component in Component::ALL {
+                let amount = if component.is_rotation() { moment + force * lever } else { force };
                 if let Some(dof) = self.dofs.of(node, component) {
                     sums[dof] += amount;
                 }

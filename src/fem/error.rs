@@ -3,7 +3,8 @@
 use std::fmt;
 
 use crate::model::pair::JointDirection;
-use crate::model::structure::Component;
+use crate::model::structure::{Component, Dimension};
+use crate::model::vector::unit;
 
 /// Why there is no main system.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -152,15 +153,15 @@ pub enum Holder {
     Support {
         /// Id of the node.
         node: String,
-        /// Component held.
-        component: Component,
+        /// Word of the component held.
+        component: &'static str,
     },
     /// A tie.
     Tie {
         /// Ids of two of the tied nodes.
         nodes: [String; 2],
-        /// Component shared.
-        component: Component,
+        /// Word of the component shared.
+        component: &'static str,
     },
     /// A rigid body.
     Body {
@@ -178,38 +179,34 @@ pub enum Holder {
 
 /// How a node moves in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FreeDirection {
-    /// Along one axis, or turning.
-    Component(Component),
-    /// Along a unit vector.
-    Along([f64; 2]),
+pub struct FreeDirection {
+    dimension: Dimension,
+    /// Displacement, or rotation where the node does not move.
+    u: [f64; 6],
 }
 
 impl FreeDirection {
-    /// From the displacement [u_x, u_y, θ] of the node that moves most.
-    pub(super) fn of(u: [f64; 3]) -> FreeDirection {
-        let length = u[0].hypot(u[1]);
-        if length == 0.0 {
-            return FreeDirection::Component(Component::R);
-        }
-        let d = [u[0] / length, u[1] / length];
-        if d[1].abs() < 1e-6 {
-            FreeDirection::Component(Component::X)
-        } else if d[0].abs() < 1e-6 {
-            FreeDirection::Component(Component::Y)
-        } else {
-            FreeDirection::Along(d)
-        }
+    /// From the displacement of the node that moves most.
+    pub(super) fn of(dimension: Dimension, u: [f64; 6]) -> FreeDirection {
+        FreeDirection { dimension, u }
     }
 }
 
 impl fmt::Display for FreeDirection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            FreeDirection::Component(Component::X) => f.write_str("in x"),
-            FreeDirection::Component(Component::Y) => f.write_str("in y"),
-            FreeDirection::Component(Component::R) => f.write_str("by turning (r)"),
-            FreeDirection::Along([x, y]) => write!(f, "along ({x:.3}, {y:.3})"),
+        let [x, y, z, turn @ ..] = self.u;
+        let turns = unit([x, y, z]).is_none();
+        let components = if turns { self.dimension.rotations() } else { self.dimension.translations() };
+        let d = unit(if turns { turn } else { [x, y, z] }).unwrap_or_default();
+        let along = |c: &Component| d[c.axis()];
+        let mut moving = components.iter().filter(|c| along(c).abs() >= 1e-6);
+        match (moving.next(), moving.next()) {
+            (Some(&only), None) if turns => write!(f, "by turning ({})", self.dimension.word(only)),
+            (Some(&only), None) => write!(f, "in {}", self.dimension.word(only)),
+            _ => {
+                let d: Vec<String> = components.iter().map(|c| format!("{:.3}", along(c))).collect();
+                write!(f, "{} ({})", if turns { "by turning about" } else { "along" }, d.join(", "))
+            }
         }
     }
 }
@@ -217,7 +214,7 @@ impl fmt::Display for FreeDirection {
 fn direction_word(direction: JointDirection) -> &'static str {
     match direction {
         JointDirection::Normal => "normal",
-        JointDirection::Tangential => "tangential",
+        JointDirection::Tangential(_) => "tangential",
     }
 }
 
@@ -225,10 +222,10 @@ impl fmt::Display for Holder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Holder::Support { node, component } => {
-                write!(f, "the support at {node} in {}", component.word())
+                write!(f, "the support at {node} in {component}")
             }
             Holder::Tie { nodes, component } => {
-                write!(f, "the tie of {} and {} in {}", nodes[0], nodes[1], component.word())
+                write!(f, "the tie of {} and {} in {}", nodes[0], nodes[1], component)
             }
             Holder::Body { id } => write!(f, "the rigid body {id}"),
             Holder::Joint { pair, direction } => {
@@ -249,7 +246,7 @@ impl fmt::Display for DependentJoint {
         )?;
         f.write_str(match self.direction {
             JointDirection::Normal => ": use `skip` or split the node",
-            JointDirection::Tangential => ": use `skip`, a `frictionless` pair, or split the node",
+            JointDirection::Tangential(_) => ": use `skip`, a `frictionless` pair, or split the node",
         })
     }
 }

@@ -7,6 +7,7 @@ use super::displacements::{Displacements, Tail};
 use super::main_system::MainSystem;
 use super::refinement::Refinement;
 use crate::doubled::{Doubled, Real};
+use crate::model::vector::length;
 use crate::watch::Quiet;
 
 impl MainSystem {
@@ -110,7 +111,7 @@ impl MainSystem {
         if self.repeated.is_empty() {
             return 0.0;
         }
-        let length = |u: &[f64; 3]| u[0].hypot(u[1]);
+        let length = |&[x, y, z, ..]: &[f64; 6]| length([x, y, z]);
         let rounding = 64.0 * f64::EPSILON * u.0.iter().map(length).fold(0.0, f64::max);
         let share = |joint: usize| {
             let (mut rest, mut size) = (z[joint], z[joint].abs());

@@ -64,7 +64,7 @@ impl Factor {
             // Everything is held. One idle unknown spares all that follows the empty case.
             *k_m = SymmetricSparse { column_start: vec![0, 1], rows: vec![0], values: vec![1.0] };
         }
-        let idle = Places { node: &[0], coordinates: &[[0.0; 2]], last: &[false] };
+        let idle = Places { node: &[0], coordinates: &[[0.0; 3]], last: &[false] };
         let places = if places.node.is_empty() { idle } else { places };
         let n = k_m.order();
         let scale = k_m.scale_to_unit_diagonal();

@@ -168,7 +168,7 @@ pub fn holders(
                     if at.is_some_and(|at| class[at] == class[dof]) {
                         let holder = Holder::Support {
                             node: structure.nodes[support.node].id.clone(),
-                            component: support.component,
+                            component: structure.dimension.word(support.component),
                         };
                         if !holders.contains(&holder) {
                             holders.push(holder);
@@ -188,7 +188,10 @@ pub fn holders(
             {
                 for &component in &tie.components {
                     let used = joint_dofs(joint, dofs).any(|(_, (dof, _))| dofs.of(a, component) == Some(dof));
-                    let holder = Holder::Tie { nodes: [a, b].map(|n| structure.nodes[n].id.clone()), component };
+                    let holder = Holder::Tie {
+                        nodes: [a, b].map(|n| structure.nodes[n].id.clone()),
+                        component: structure.dimension.word(component),
+                    };
                     if used && !holders.contains(&holder) {
                         holders.push(holder);
                     }
@@ -208,7 +211,7 @@ pub fn holders(
             let other = tie.nodes.iter().copied().find(|&n| n != node);
             holders.push(Holder::Tie {
                 nodes: [node, other.unwrap_or(node)].map(|n| structure.nodes[n].id.clone()),
-                component: tie.components.first().copied().unwrap_or(Component::X),
+                component: structure.dimension.word(tie.components.first().copied().unwrap_or(Component::X)),
             });
         }
     }

@@ -10,6 +10,7 @@ use super::error::{FreeDirection, MainSystemError};
 use super::loose::Motion;
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
+use crate::model::vector::length;
 
 /// Eigenvalues of R below this share of the largest are suspected of being zero.
 pub const ZERO_EIGENVALUE: f64 = 1e-10;
@@ -31,10 +32,12 @@ pub struct RigidKernel {
 }
 
 /// z = B u.
-pub fn mutual_displacements(joints: &[Joint], u: &[[f64; 3]]) -> DVector<f64> {
+pub fn mutual_displacements(joints: &[Joint], u: &[[f64; 6]]) -> DVector<f64> {
     DVector::from_iterator(
         joints.len(),
-        joints.iter().map(|joint| joint.terms.iter().map(|(node, a)| a[0] * u[*node][0] + a[1] * u[*node][1]).sum()),
+        joints.iter().map(|joint| {
+            joint.terms.iter().map(|(node, a)| a[0] * u[*node][0] + a[1] * u[*node][1] + a[2] * u[*node][2]).sum()
+        }),
     )
 }
 
@@ -58,7 +61,7 @@ pub fn rigid_kernel(
     let svd = svd(&traces).ok_or(MainSystemError::NoConvergence)?;
     let largest = svd.sigma[0];
     if svd.sigma[r - 1] <= UNFELT * largest || largest == 0.0 {
-        let mut u = vec![[0.0; 3]; structure.nodes.len()];
+        let mut u = vec![[0.0; 6]; structure.nodes.len()];
         for (motion, c) in std::iter::zip(motions, svd.v.column(r - 1).iter()) {
             add_scaled(&mut u, *c, &motion.u);
         }
@@ -71,7 +74,7 @@ pub fn rigid_kernel(
     Ok(RigidKernel { z: svd.u.columns(0, r).into_owned(), coefficients })
 }
 
-fn add_scaled(sum: &mut [[f64; 3]], factor: f64, u: &[[f64; 3]]) {
+fn add_scaled(sum: &mut [[f64; 6]], factor: f64, u: &[[f64; 6]]) {
     for (sum, u) in std::iter::zip(sum, u) {
         for (sum, u) in std::iter::zip(sum, u) {
             *sum += factor * u;
@@ -80,25 +83,25 @@ fn add_scaled(sum: &mut [[f64; 3]], factor: f64, u: &[[f64; 3]]) {
 }
 
 /// The error that names the node that moves most.
-pub fn mechanism(structure: &Structure, u: &[[f64; 3]]) -> MainSystemError {
+pub fn mechanism(structure: &Structure, u: &[[f64; 6]]) -> MainSystemError {
     let node = most_moved(u);
     MainSystemError::Mechanism {
         node,
         node_id: structure.nodes[node].id.clone(),
-        direction: FreeDirection::of(u[node]),
+        direction: FreeDirection::of(structure.dimension, u[node]),
     }
 }
 
 /// The node with the largest translation, or rotation where nothing translates.
-pub fn most_moved(u: &[[f64; 3]]) -> usize {
-    let most = |size: &dyn Fn(&[f64; 3]) -> f64| {
+pub fn most_moved(u: &[[f64; 6]]) -> usize {
+    let most = |size: &dyn Fn(&[f64; 6]) -> f64| {
         let largest = u.iter().map(size).fold(0.0, f64::max);
         // The first of those that are equal to rounding.
         let node = u.iter().position(|u| size(u) >= largest * (1.0 - 1e-6));
         (largest, node.unwrap_or(0))
     };
-    let (translation, node) = most(&|u| u[0].hypot(u[1]));
-    if translation == 0.0 { most(&|u| u[2].abs()).1 } else { node }
+    let (translation, node) = most(&|&[x, y, z, ..]| length([x, y, z]));
+    if translation == 0.0 { most(&|&[.., x, y, z]| length([x, y, z])).1 } else { node }
 }
 
 /// R ← (1 − Z Zᵀ) R (1 − Z Zᵀ), exactly symmetric.

@@ -23,8 +23,9 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
         };
         for load in &case.loads {
             match *load {
-                Load::Nodal { node, force: [x, y], moment } => {
-                    if moment != 0.0 && dofs.of(node, Component::R).is_none() {
+                Load::Nodal { node, force, moment } => {
+                    let turning = std::iter::zip(Component::ROTATIONS, moment);
+                    if turning.clone().any(|(about, moment)| moment != 0.0 && dofs.of(node, about).is_none()) {
                         return Err(MainSystemError::MomentWithoutRotation {
                             load_case,
                             case: case.name.clone(),
@@ -32,7 +33,9 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
                             node_id: structure.nodes[node].id.clone(),
                         });
                     }
-                    std::iter::zip(Component::ALL, [x, y, moment]).for_each(|(c, value)| add(node, c, value));
+                    std::iter::zip(Component::TRANSLATIONS, force)
+                        .chain(turning)
+                        .for_each(|(c, value)| add(node, c, value));
                 }
                 Load::Element { element: index, ref load } => {
                     // One without shape is refused by its stiffness.

@@ -1,6 +1,6 @@
 //! Motions that cost no energy when every contact joint is off: the kernel of K from the rigid motions of parts.
 //!
-//! Parts linked by pins and ties make a *cluster*. In each cluster the motions q (a translation and a rotation per
+//! Parts linked by pins and ties make a *cluster*. In each cluster the motions q (translations and rotations of each
 //! part) that open no pin and no tie, move no support and stretch no spring are the null space of a small matrix;
 //! testing motions one by one would miss a rotation about a pin or a tie.
 //!
@@ -15,30 +15,34 @@ use super::parts::{Parts, superelement_parts};
 use crate::model::groups::Groups;
 use crate::model::structure::{Component, Structure};
 use crate::model::superelement::Part;
+use crate::model::vector::{distance, way};
 
 /// Singular values below this share of the largest belong to the null space, times the rounding of the coordinates
 /// beside the size of the cluster.
 const NULL: f64 = 1024.0 * f64::EPSILON;
 
-/// A motion of the whole structure, [u_x, u_y, θ] per node, largest translation (or rotation × size) about 1.
+/// A motion of the whole structure, its displacements per node in the order of [`Component::ALL`], largest translation (or rotation × size) about 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Displacements per node; θ = 0 where there is no rotation.
-    pub u: Vec<[f64; 3]>,
+    /// Displacements per node; 0 where there is no rotation.
+    pub u: Vec<[f64; 6]>,
     /// Whether parts of one connected group move against each other (a mechanism inside the structure), as far as
     /// that was seen from the stiffness rather than from rigid parts.
     pub internal: bool,
 }
 
-/// Basis of the motions that cost no energy with all joints off: translations along x, along y, then rotations,
+/// Basis of the motions that cost no energy with all joints off: translations along the axes, then rotations,
 /// as far as the cluster allows.
 pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> Vec<Motion> {
     let parts = Parts::new(structure);
     let clusters = parts.clusters(structure);
     let mut motions = Vec::new();
     for cluster in clusters {
-        let null_space =
-            if 3 * cluster.parts.len() <= DENSE { cluster.null_space(structure, dofs, &parts) } else { None };
+        let null_space = if structure.dimension.components().len() * cluster.parts.len() <= DENSE {
+            cluster.null_space(structure, dofs, &parts)
+        } else {
+            None
+        };
         match null_space {
             Some(space) => motions.extend(space),
             None => {
@@ -132,14 +136,13 @@ impl Cluster {
         let largest = self.nodes.iter().flat_map(|&n| structure.nodes[n].position).fold(0.0_f64, |m, x| m.max(x.abs()));
         let basis = null_basis(&rows, unknowns.count, NULL * (1.0 + largest / unknowns.size))?;
         let motions = basis.column_iter().map(|q| {
-            let mut u = vec![[0.0; 3]; structure.nodes.len()];
+            let mut u = vec![[0.0; 6]; structure.nodes.len()];
             for &node in &self.nodes {
-                let component = |c| {
-                    let terms = unknowns.of_node(node, c).unwrap_or_default();
-                    terms.into_iter().map(|(i, a)| a * q[i]).sum::<f64>()
-                };
-                let [x, y, turn] = Component::ALL.map(component);
-                u[node] = [x, y, turn / unknowns.size];
+                for &component in structure.dimension.components() {
+                    let terms = unknowns.of_node(node, component).unwrap_or_default();
+                    let moved = terms.into_iter().map(|(i, a)| a * q[i]).sum::<f64>();
+                    u[node][component as usize] = if component.is_rotation() { moved / unknowns.size } else { moved };
+                }
             }
             Motion { u, internal: false }
         });
@@ -151,16 +154,16 @@ fn negative(terms: Terms) -> impl Iterator<Item = (usize, f64)> {
     terms.into_iter().map(|(unknown, a)| (unknown, -a))
 }
 
-/// The unknowns of a cluster: translations and scaled rotation of each part, in the order x, y, r of the first part, …
+/// The unknowns of a cluster: translations and scaled rotations of each part, all of the first part, then of the next …
 struct Unknowns<'a> {
     structure: &'a Structure,
     dofs: &'a Dofs,
     parts: &'a Parts,
-    /// Numbers of the unknowns of each part of the cluster; `usize::MAX` for a rotation that it has not.
-    of_part: HashMap<u32, [usize; 3]>,
+    /// Numbers of the unknowns of each part of the cluster by component; `usize::MAX` for one that it has not.
+    of_part: HashMap<u32, [usize; 6]>,
     count: usize,
     /// The point about which parts turn.
-    centre: [f64; 2],
+    centre: [f64; 3],
     /// Distance from there to the farthest node: rotations are scaled by it.
     size: f64,
 }
@@ -169,42 +172,42 @@ impl<'a> Unknowns<'a> {
     fn of(cluster: &Cluster, structure: &'a Structure, dofs: &'a Dofs, parts: &'a Parts) -> Unknowns<'a> {
         let place = |node: usize| structure.nodes[node].position;
         let count = cluster.nodes.len() as f64;
-        let centre: [f64; 2] = std::array::from_fn(|c| cluster.nodes.iter().map(|&n| place(n)[c]).sum::<f64>() / count);
-        let distance = |node: &usize| (place(*node)[0] - centre[0]).hypot(place(*node)[1] - centre[1]);
+        let centre: [f64; 3] = std::array::from_fn(|c| cluster.nodes.iter().map(|&n| place(n)[c]).sum::<f64>() / count);
+        let distance = |node: &usize| distance(centre, place(*node));
         let size = cluster.nodes.iter().map(distance).fold(0.0, f64::max);
         let size = if size > 0.0 { size } else { 1.0 };
         let mut of_part = HashMap::with_capacity(cluster.parts.len());
         let mut count = 0;
         for &part in &cluster.parts {
             let turns = parts.turns[part as usize];
-            of_part.insert(part, [count, count + 1, if turns { count + 2 } else { usize::MAX }]);
-            count += if turns { 3 } else { 2 };
+            let mut unknowns = [usize::MAX; 6];
+            for &component in structure.dimension.components().iter().filter(|c| turns || !c.is_rotation()) {
+                unknowns[component as usize] = count;
+                count += 1;
+            }
+            of_part.insert(part, unknowns);
         }
         Unknowns { structure, dofs, parts, of_part, count, centre, size }
     }
 
-    /// Displacement of a node as it moves with a part: x, y, and θ · size.
+    /// Displacement of a node as it moves with a part; of rotations what they are times `size`.
     fn moved(&self, node: usize, part: u32, component: Component) -> Terms {
         let unknowns = self.of_part[&part];
-        let arm = [0, 1].map(|c| (self.structure.nodes[node].position[c] - self.centre[c]) / self.size);
-        let mut terms = Vec::with_capacity(2);
-        let (own, turned) = match component {
-            Component::X => (Some(0), -arm[1]),
-            Component::Y => (Some(1), arm[0]),
-            Component::R => (None, 1.0),
-        };
-        terms.extend(own.map(|own| (unknowns[own], 1.0)));
-        if unknowns[2] != usize::MAX {
-            terms.push((unknowns[2], turned));
+        let arm = way(self.centre, self.structure.nodes[node].position).map(|arm| arm / self.size);
+        let mut terms = vec![(unknowns[component as usize], 1.0)];
+        if !component.is_rotation() {
+            terms.extend(component.levers(arm).map(|(rotation, lever)| (unknowns[rotation as usize], lever)));
         }
+        terms.retain(|(unknown, _)| *unknown != usize::MAX);
         terms
     }
 
     /// Displacement of a node; `None` for a rotation that it has not.
     fn of_node(&self, node: usize, component: Component) -> Option<Terms> {
-        let part = match component {
-            Component::R => self.parts.turning[node].filter(|_| self.dofs.of(node, Component::R).is_some())?,
-            Component::X | Component::Y => self.parts.at_node[node][0],
+        let part = if component.is_rotation() {
+            self.parts.turning[node].filter(|_| self.dofs.of(node, component).is_some())?
+        } else {
+            self.parts.at_node[node][0]
         };
         Some(self.moved(node, part, component))
     }
@@ -216,7 +219,7 @@ impl<'a> Unknowns<'a> {
         let mut rows = Vec::new();
         for &node in &cluster.nodes {
             for &other in &self.parts.at_node[node][1..] {
-                for component in Component::TRANSLATIONS {
+                for &component in self.structure.dimension.translations() {
                     // Of a displacement that a superelement does not know nothing follows for it.
                     if given.as_ref().is_some_and(|given| !given.contains(&(node, component))) {
                         continue;
@@ -235,10 +238,24 @@ impl<'a> Unknowns<'a> {
         let mut rows = Vec::new();
         for (part, &number) in superelement_parts(self.structure).iter().zip(&self.parts.of_superelement) {
             let Some(unknowns) = self.of_part.get(&number) else { continue };
-            let arm = [0, 1].map(|c| part.centre[c] - self.centre[c]);
+            let arm = way(self.centre, part.centre);
+            let components = self.structure.dimension.components();
             for c in &part.resisted {
-                let turned = (c[1] * arm[0] - c[0] * arm[1] + c[2] * part.size) / self.size;
-                let terms = unknowns.iter().copied().zip([c[0], c[1], turned]);
+                let resisted = |wanted: Component| {
+                    let mut sum = 0.0;
+                    for (&component, c) in components.iter().zip(c) {
+                        if component.is_rotation() {
+                            sum += if component == wanted { c * part.size } else { 0.0 };
+                        } else {
+                            let levers = component.levers(arm).into_iter().filter(|(rotation, _)| *rotation == wanted);
+                            sum += levers.map(|(_, lever)| c * lever).sum::<f64>();
+                        }
+                    }
+                    sum / self.size
+                };
+                let terms = components.iter().zip(c).map(|(&component, c)| {
+                    (unknowns[component as usize], if component.is_rotation() { resisted(component) } else { *c })
+                });
                 rows.push(terms.filter(|(unknown, _)| *unknown != usize::MAX).collect());
             }
         }

@@ -138,7 +138,7 @@ impl MainSystem {
                 node[master] = at as u32;
             }
         }
-        let coordinates: Vec<[f64; 2]> = structure.nodes.iter().map(|node| node.position).collect();
+        let coordinates: Vec<[f64; 3]> = structure.nodes.iter().map(|node| node.position).collect();
         let places = Places { node: &node, coordinates: &coordinates, last: &last };
         let factor = Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch)?;
         drop(main.k_m);

@@ -1,7 +1,6 @@
 //! The order in which the unknowns of the main system are eliminated: nested dissection of its nodes.
 //!
-//! The nodes are cut in two where the fewest of them touch the other side, straight across the longer way or the
-//! other; the cut comes behind both halves, and so on in each half. What is small enough is ordered by approximate
+//! The nodes are cut in two where the fewest of them touch the other side, straight across one of the axes; the cut comes behind both halves, and so on in each half. What is small enough is ordered by approximate
 //! minimum degree. Of a plate this leaves less fill than minimum degree alone, and much less where many rows have to
 //! come last anyway: a half then reaches only those that it touches.
 
@@ -30,7 +29,7 @@ pub struct Places<'a> {
     /// Node of each unknown.
     pub node: &'a [u32],
     /// Coordinates of each node.
-    pub coordinates: &'a [[f64; 2]],
+    pub coordinates: &'a [[f64; 3]],
     /// Whether each unknown has to come behind all others.
     pub last: &'a [bool],
 }
@@ -53,7 +52,10 @@ pub fn elimination_order(k: &SymmetricSparse, places: Places, watch: &dyn Watch)
     };
     let mut all: Vec<u32> = (0..count as u32).collect();
     let mut of_groups = vec![0; count];
-    dissection.dissect(&mut all, &mut of_groups, 1, [0.0; 2])?;
+    // Across an axis along which nothing is spread there is no cut.
+    let flat = |axis: usize| groups.points.windows(2).all(|two| two[0][axis] == two[1][axis]);
+    let expected = [0, 1, 2].map(|axis| if axis == 2 && flat(axis) { f64::INFINITY } else { 0.0 });
+    dissection.dissect(&mut all, &mut of_groups, 1, expected)?;
     let mut order = Vec::with_capacity(n);
     for &group in &of_groups {
         let range = groups.start[group as usize]..groups.start[group as usize + 1];
@@ -68,7 +70,7 @@ struct Groups {
     /// Start of each group in `rows`.
     start: Vec<usize>,
     rows: Vec<u32>,
-    points: Vec<[f64; 2]>,
+    points: Vec<[f64; 3]>,
     /// Group of each row; `NONE` for those that come last.
     of_row: Vec<u32>,
 }
@@ -157,7 +159,7 @@ impl Neighbors {
 /// The halves are ordered side by side; what one marks, the other does not take for its own.
 struct Dissection<'a> {
     neighbors: Neighbors,
-    points: &'a [[f64; 2]],
+    points: &'a [[f64; 3]],
     /// Mark of the side of a cut that each group was put on last.
     side: Vec<AtomicU32>,
     /// Groups that have been ordered.
@@ -169,13 +171,13 @@ struct Dissection<'a> {
 
 impl Dissection<'_> {
     /// Writes the order of some groups to `out`. `number` of this stretch: 1 for all, 2 k and 2 k + 1 for the halves of
-    /// stretch k. `expected`: how many groups a cut across either axis will take.
+    /// stretch k. `expected`: how many groups a cut across each axis will take.
     fn dissect(
         &self,
         members: &mut [u32],
         out: &mut [u32],
         number: u32,
-        mut expected: [f64; 2],
+        mut expected: [f64; 3],
     ) -> Result<(), MainSystemError> {
         if members.len() <= LEAF {
             self.order_leaf(members, out)?;
@@ -187,24 +189,34 @@ impl Dissection<'_> {
         self.watch.progress(&format!("ordering, {done} of {all} nodes"), done as f64 / all as f64);
         let size = members.len();
         let half = size / 2;
-        let mut axis = usize::from(expected[1] < expected[0]);
-        let mut cut = self.split(members, number, axis);
-        expected[axis] = cut.len() as f64;
-        if expected[1 - axis] < expected[axis] {
-            // Worse than expected: the other way may be the better one.
-            let other = self.split(members, number, 1 - axis);
-            expected[1 - axis] = other.len() as f64;
-            if other.len() < cut.len() {
-                (axis, cut) = (1 - axis, other);
-            } else {
-                cut = self.split(members, number, axis);
+        // Along the axis where the fewest are expected; where they are more, another way may be the better one.
+        let mut best: Option<(usize, Vec<u32>)> = None;
+        let mut untried = vec![0, 1, 2];
+        let mut last = 3;
+        while let Some(at) = (0..untried.len()).min_by(|&a, &b| expected[untried[a]].total_cmp(&expected[untried[b]])) {
+            let axis = untried.remove(at);
+            let fewest = best.as_ref().map_or(f64::INFINITY, |(_, cut)| cut.len() as f64);
+            if expected[axis] >= fewest {
+                break;
+            }
+            let cut = self.split(members, number, axis);
+            last = axis;
+            expected[axis] = cut.len() as f64;
+            if expected[axis] < fewest {
+                best = Some((axis, cut));
             }
         }
+        let Some((axis, mut cut)) = best else { return Ok(()) };
+        if last != axis {
+            cut = self.split(members, number, axis);
+        }
         // The halves are as wide as the whole along the cut, and half as long across it.
-        expected[1 - axis] *= 0.5;
+        for other in (0..3).filter(|other| *other != axis) {
+            expected[other] *= 0.5;
+        }
         let (near, far) = members.split_at_mut(half);
         // The cut to the end of the near half.
-        let of_cut = mark(number, 2);
+        let of_cut = mark(number, 3);
         cut.iter().for_each(|&group| self.side[group as usize].store(of_cut, Ordering::Relaxed));
         let mut kept = 0;
         for i in 0..near.len() {
@@ -232,12 +244,12 @@ impl Dissection<'_> {
     fn split(&self, members: &mut [u32], number: u32, axis: usize) -> Vec<u32> {
         let key = |group: u32| {
             let point = self.points[group as usize];
-            (point[axis], point[1 - axis])
+            [point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3]]
         };
         let half = members.len() / 2;
         members.select_nth_unstable_by(half, |&a, &b| {
             let (a, b) = (key(a), key(b));
-            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
         });
         let (near, far) = members.split_at(half);
         let of_far = mark(number, axis as u32);
@@ -289,7 +301,7 @@ impl Dissection<'_> {
     }
 }
 
-/// What marks a side (0, 1: the far one along that axis; 2: the cut) of the stretch with a number.
+/// What marks a side (0, 1, 2: the far one along that axis; 3: the cut) of the stretch with a number.
 fn mark(number: u32, side: u32) -> u32 {
     4 * number + side
 }

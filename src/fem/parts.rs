@@ -5,7 +5,7 @@
 //! pinned there.
 
 use crate::model::groups::Groups;
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::Structure;
 use crate::model::superelement::Part;
 
 /// Parts at every node.
@@ -60,7 +60,7 @@ impl Parts {
             body_of.iter().map(|body| body.map(|body| (elements + body) as u32)).collect();
         for (index, element) in structure.elements.iter().enumerate() {
             for (end, &node) in element.nodes.iter().enumerate() {
-                if element.components(end).contains(&Component::R) {
+                if element.components(end).iter().any(|component| component.is_rotation()) {
                     match turning[node] {
                         Some(other) => join(index as u32, other),
                         None => turning[node] = Some(index as u32),
@@ -73,7 +73,7 @@ impl Parts {
             for (index, part) in given.iter().enumerate() {
                 part.nodes.iter().for_each(|&node| part_of[node] = Some((beyond + index) as u32));
             }
-            for &(node, _) in element.dofs.iter().filter(|(_, component)| *component == Component::R) {
+            for &(node, _) in element.dofs.iter().filter(|(_, component)| component.is_rotation()) {
                 match (turning[node], part_of[node]) {
                     (Some(body), Some(part)) => join(part, body),
                     (_, part) => turning[node] = part,

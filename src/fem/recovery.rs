@@ -59,10 +59,10 @@ pub struct NodeStress {
 pub struct Reaction {
     /// The node.
     pub node: usize,
-    /// (F_x, F_y).
-    pub force: [f64; 2],
-    /// Moment, counter-clockwise.
-    pub moment: f64,
+    /// (F_x, F_y, F_z).
+    pub force: [f64; 3],
+    /// (M_x, M_y, M_z); in the plane M_z alone, counter-clockwise.
+    pub moment: [f64; 3],
 }
 
 /// Takes out pieces of no length: where a load ends at a node but for the rounding of the distances (few ε of the
@@ -208,8 +208,8 @@ impl MainSystem {
             .into_iter()
             .map(|node| Reaction {
                 node,
-                force: [value(node, Component::X), value(node, Component::Y)],
-                moment: value(node, Component::R),
+                force: Component::TRANSLATIONS.map(|component| value(node, component)),
+                moment: Component::ROTATIONS.map(|component| value(node, component)),
             })
             .collect()
     }
@@ -221,19 +221,22 @@ pub(super) fn own_displacements(structure: &Structure, index: usize, u: &Displac
     let element = &structure.elements[index];
     let first = element.nodes[0];
     let slots = slots(element);
-    let [x0, y0, turn] = u.doubled_at(first);
-    let turns = slots.contains(&(first, Component::R));
-    let turn = if turns { turn } else { Doubled::default() };
-    let arm = |node: usize, c: usize| {
-        Doubled::difference(structure.nodes[node].position[c], structure.nodes[first].position[c])
-    };
+    let mut with = u.doubled_at(first);
+    for rotation in Component::ROTATIONS {
+        if !slots.contains(&(first, rotation)) {
+            with[rotation as usize] = Doubled::default();
+        }
+    }
     let own = slots.iter().map(|&(node, component)| {
         let value = u.doubled_at(node)[component as usize];
-        let moved = match component {
-            Component::X => x0 - turn * arm(node, 1),
-            Component::Y => y0 + turn * arm(node, 0),
-            Component::R => turn,
-        };
+        let mut moved = with[component as usize];
+        if !component.is_rotation() {
+            let place = |node: usize, c: usize| structure.nodes[node].position[c];
+            let arm: [Doubled; 3] = std::array::from_fn(|c| Doubled::difference(place(node, c), place(first, c)));
+            for (rotation, lever) in component.levers(arm) {
+                moved += with[rotation as usize] * lever;
+            }
+        }
         (value - moved).to_f64()
     });
     own.collect()

@@ -35,7 +35,7 @@ impl Repeated {
 pub(super) fn by_preference(structure: &Structure, joints: &[Joint]) -> Vec<usize> {
     let place = |joint: &Joint| match joint.direction {
         JointDirection::Normal if structure.pairs[joint.pair].law.is_bilateral() => 0,
-        JointDirection::Tangential => 1,
+        JointDirection::Tangential(_) => 1,
         JointDirection::Normal => 2,
     };
     let mut order: Vec<usize> = (0..joints.len()).collect();

@@ -40,7 +40,7 @@ pub fn refuse_indefinite(structure: &Structure, dofs: &Dofs, watch: &dyn Watch) 
     );
     let Ok(mut k) = k;
     let node: Vec<u32> = dofs.nodes().map(|node| node as u32).collect();
-    let coordinates: Vec<[f64; 2]> = structure.nodes.iter().map(|node| node.position).collect();
+    let coordinates: Vec<[f64; 3]> = structure.nodes.iter().map(|node| node.position).collect();
     let places = Places { node: &node, coordinates: &coordinates, last: &vec![false; dofs.count()] };
     if Factor::new(&mut k, &[], places, 0, watch)?.is_shifted() {
         return Err(MainSystemError::Indefinite { file: element.file.clone() });

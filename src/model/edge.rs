@@ -2,6 +2,7 @@
 
 use super::element::Element;
 use super::node::Node;
+use super::vector::flat;
 
 /// One element side of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +32,7 @@ pub struct Spot {
     /// Coordinates.
     pub position: [f64; 2],
     /// Unit normal out of the body.
-    pub outward: [f64; 2],
+    pub outward: [f64; 3],
     /// Share of the edge's length that lies before it, 0 … 1.
     pub along: f64,
     /// The element whose side it is on.
@@ -130,18 +131,23 @@ impl Edge {
     pub fn outward_normal(&self, nodes: &[Node]) -> [f64; 2] {
         let [first, last] = [self.nodes[0], self.nodes[self.nodes.len() - 1]];
         let side = &self.sides[0];
-        let [a, b] = if first == last { side.ends } else { [first, last] }.map(|node| nodes[node].position);
+        let [a, b] = if first == last { side.ends } else { [first, last] }.map(|node| nodes[node].in_plane());
         side.outward([b[0] - a[0], b[1] - a[1]])
     }
 
     /// Unit normals at its nodes, pointing out of the body: those of the chord where the edge is straight, else the mean
     /// of the sides that meet there.
-    pub fn outward_normals(&self, nodes: &[Node]) -> Vec<[f64; 2]> {
+    pub fn outward_normals(&self, nodes: &[Node]) -> Vec<[f64; 3]> {
+        self.outward_in_plane(nodes).into_iter().map(flat).collect()
+    }
+
+    /// The same as (x, y).
+    pub fn outward_in_plane(&self, nodes: &[Node]) -> Vec<[f64; 2]> {
         let chord = self.outward_normal(nodes);
-        let first = nodes[self.nodes[0]].position;
+        let first = nodes[self.nodes[0]].in_plane();
         let length = self.length(nodes);
         let off = |node: &usize| {
-            let [x, y] = nodes[*node].position;
+            let [x, y] = nodes[*node].in_plane();
             (chord[0] * (x - first[0]) + chord[1] * (y - first[1])).abs()
         };
         if self.nodes.iter().map(off).fold(0.0, f64::max) <= STRAIGHT * length {
@@ -175,8 +181,8 @@ impl Edge {
         &self,
         nodes: &[Node],
         level: Option<f64>,
-        q: &dyn Fn(&Spot) -> [f64; 2],
-    ) -> Vec<(usize, [f64; 2])> {
+        q: &dyn Fn(&Spot) -> [f64; 3],
+    ) -> Vec<(usize, [f64; 3])> {
         let total = self.length(nodes);
         let mut forces = vec![[0.0; 2]; self.nodes.len()];
         let (mut before, mut at) = (0.0, 0);
@@ -190,7 +196,7 @@ impl Edge {
                     let t = ends[0] + size * x;
                     let (position, tangent) = side.at(nodes, t);
                     let along = (before + side.length_to(nodes, t)) / total;
-                    let spot = Spot { position, outward: side.outward(tangent), along, element: side.element };
+                    let spot = Spot { position, outward: flat(side.outward(tangent)), along, element: side.element };
                     let q = q(&spot);
                     let weight = w * size * tangent[0].hypot(tangent[1]);
                     for (n, force) in side.shape(t).0.into_iter().zip(&mut forces[at..]) {
@@ -201,7 +207,7 @@ impl Edge {
             before += side.length_to(nodes, 1.0);
             at += if side.middle.is_some() { 2 } else { 1 };
         }
-        self.nodes.iter().copied().zip(forces).collect()
+        self.nodes.iter().copied().zip(forces.into_iter().map(flat)).collect()
     }
 }
 
@@ -400,7 +406,7 @@ mod tests {
     fn uniform_forces_keep_total_and_moment() {
         let (nodes, plate, _) = graded(0.0);
         let edge = PlateSide::Bottom.edge(&plate);
-        let forces = edge.consistent_forces(&nodes, None, &|_| [1.0, -2.0]);
+        let forces = edge.consistent_forces(&nodes, None, &|_| [1.0, -2.0, 0.0]);
         // Segments 0.1, 0.3, 0.6, 1.5: half of each to its ends.
         for ((_, found), expected) in forces.iter().zip([0.05, 0.2, 0.45, 1.05, 0.75]) {
             assert!((found[0] - expected).abs() < 1e-15 && (found[1] + 2.0 * expected).abs() < 1e-15);
@@ -428,12 +434,12 @@ mod tests {
     /// crossings are found on a bent one.
     #[test]
     fn quadratic_sides() {
-        let place = |x: f64, y: f64| Node { id: "n".into(), position: [x, y] };
+        let place = |x: f64, y: f64| Node { id: "n".into(), position: [x, y, 0.0] };
         let nodes = [place(0.0, 0.0), place(3.0, 0.0), place(6.0, 0.0)];
         let side = EdgeSide { element: 0, ends: [0, 2], middle: Some(1), reversed: false };
         let edge = Edge { nodes: vec![0, 1, 2], sides: vec![side] };
-        let uniform = edge.consistent_forces(&nodes, None, &|_| [0.0, 1.0]);
-        let linear = edge.consistent_forces(&nodes, None, &|spot| [0.0, spot.along]);
+        let uniform = edge.consistent_forces(&nodes, None, &|_| [0.0, 1.0, 0.0]);
+        let linear = edge.consistent_forces(&nodes, None, &|spot| [0.0, spot.along, 0.0]);
         for i in 0..3 {
             assert!((uniform[i].1[1] - [1.0, 4.0, 1.0][i]).abs() < 1e-14);
             assert!((linear[i].1[1] - [0.0, 2.0, 1.0][i]).abs() < 1e-14);

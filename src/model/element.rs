@@ -90,9 +90,9 @@ impl Element {
     /// The displacements of its node number `at` that strain it: a hinge leaves out the rotation.
     pub fn components(&self, at: usize) -> &'static [Component] {
         match &self.kind {
-            ElementKind::Frame { hinges, .. } if !hinges[at] => &Component::ALL,
+            ElementKind::Frame { hinges, .. } if !hinges[at] => &[Component::X, Component::Y, Component::Rz],
             ElementKind::Frame { .. } | ElementKind::Truss { .. } | ElementKind::Membrane { .. } => {
-                &Component::TRANSLATIONS
+                &[Component::X, Component::Y]
             }
         }
     }

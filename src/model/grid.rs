@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::structure::{Element, ElementKind, Node, Plane};
+use super::vector::flat;
 
 /// Grid lines of a plate along one of its sides, as distances from the origin.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +76,7 @@ impl PlateGrid {
             let first = nodes.len();
             nodes.extend(xs.iter().enumerate().map(|(i, x)| Node {
                 id: format!("{}[{i},{j}]", self.id),
-                position: [self.origin[0] + cosine * x - sine * y, self.origin[1] + sine * x + cosine * y],
+                position: flat([self.origin[0] + cosine * x - sine * y, self.origin[1] + sine * x + cosine * y]),
             }));
             grid.push((first..nodes.len()).collect());
         }
@@ -155,8 +156,8 @@ mod tests {
         assert_eq!(plate.elements, 0..128);
         let corner = &nodes[plate.nodes[8][16]];
         assert_eq!(corner.id, "p[16,8]");
-        assert_eq!(corner.position, [9.0, 6.0]);
-        assert_eq!(nodes[plate.nodes[0][1]].position, [1.5, 2.0]);
+        assert_eq!(corner.position, [9.0, 6.0, 0.0]);
+        assert_eq!(nodes[plate.nodes[0][1]].position, [1.5, 2.0, 0.0]);
         assert_eq!(elements[0].nodes, [0, 1, 18, 17]);
     }
 
@@ -177,8 +178,8 @@ mod tests {
     fn rotation_turns_about_the_origin() {
         let (nodes, plate, _) = grid(90.0, uniform(3.0, 3), uniform(2.0, 1));
         // The length now points up, the height to the left; exact.
-        assert_eq!(nodes[plate.nodes[0][3]].position, [1.0, 5.0]);
-        assert_eq!(nodes[plate.nodes[1][0]].position, [-1.0, 2.0]);
+        assert_eq!(nodes[plate.nodes[0][3]].position, [1.0, 5.0, 0.0]);
+        assert_eq!(nodes[plate.nodes[1][0]].position, [-1.0, 2.0, 0.0]);
         let (nodes, plate, _) = grid(30.0, uniform(2.0, 1), uniform(1.0, 1));
         let far = nodes[plate.nodes[0][1]].position;
         assert!((far[0] - (1.0 + 3f64.sqrt())).abs() < 1e-14);
@@ -189,7 +190,7 @@ mod tests {
     fn graded_lines_are_taken_as_given() {
         let (nodes, plate, elements) =
             grid(0.0, GridLines::Graded(vec![0.0, 0.1, 0.3, 1.0]), GridLines::Graded(vec![0.0, 2.0]));
-        assert_eq!(nodes[plate.nodes[1][2]].position, [1.3, 4.0]);
+        assert_eq!(nodes[plate.nodes[1][2]].position, [1.3, 4.0, 0.0]);
         assert_eq!(elements.len(), 3);
     }
 }

@@ -7,6 +7,7 @@
 use std::collections::{BinaryHeap, HashMap};
 
 use super::structure::Structure;
+use super::vector::{distance, dot, length, way};
 
 /// Cosine of the largest turn between neighbours, 60°: a ring of eight pairs is still one joint.
 const TURN: f64 = 0.5;
@@ -70,10 +71,9 @@ fn join_nearest(structure: &Structure, material: &Material, pieces: &mut Vec<Vec
 fn are_neighbours(structure: &Structure, material: &Material, a: usize, b: usize) -> Option<f64> {
     let [p, q] = [a, b].map(|pair| &structure.pairs[pair]);
     let [from, to] = [p, q].map(|pair| structure.nodes[pair.node].position);
-    let way = [to[0] - from[0], to[1] - from[1]];
-    let distance = way[0].hypot(way[1]);
-    let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
-    let along = |normal: [f64; 2]| dot(way, normal).abs() <= ASIDE * distance;
+    let way = way(from, to);
+    let distance = length(way);
+    let along = |normal: [f64; 3]| dot(way, normal).abs() <= ASIDE * distance;
     if dot(p.normal, q.normal) < TURN || !along(p.normal) || !along(q.normal) {
         return None;
     }
@@ -91,13 +91,13 @@ struct Material {
     ways: Vec<Vec<(usize, f64)>>,
     /// Body of every node that belongs to a rigid one or to a superelement: from any of its nodes to any other.
     bodies: HashMap<usize, usize>,
-    positions: Vec<[f64; 2]>,
+    positions: Vec<[f64; 3]>,
 }
 
 impl Material {
     fn of(structure: &Structure) -> Material {
-        let positions: Vec<[f64; 2]> = structure.nodes.iter().map(|node| node.position).collect();
-        let length = |a: usize, b: usize| (positions[b][0] - positions[a][0]).hypot(positions[b][1] - positions[a][1]);
+        let positions: Vec<[f64; 3]> = structure.nodes.iter().map(|node| node.position).collect();
+        let length = |a: usize, b: usize| distance(positions[a], positions[b]);
         let mut ways = vec![Vec::new(); positions.len()];
         for element in &structure.elements {
             let ring: Vec<usize> = element.ring().collect();
@@ -125,9 +125,7 @@ impl Material {
         if self.bodies.get(&from).is_some_and(|body| self.bodies.get(&to) == Some(body)) {
             return true;
         }
-        let straight = |node: usize| {
-            (self.positions[to][0] - self.positions[node][0]).hypot(self.positions[to][1] - self.positions[node][1])
-        };
+        let straight = |node: usize| distance(self.positions[node], self.positions[to]);
         // the shortest first, told by the way made and the straight rest of it; lengths as ordered integers
         let mut open = BinaryHeap::from([(std::cmp::Reverse(straight(from).to_bits()), from)]);
         let mut best = HashMap::from([(from, 0.0)]);
@@ -156,17 +154,19 @@ mod tests {
     use crate::model::parameter::Number;
     use crate::model::scenario::Source;
     use crate::model::structure::{Node, RigidBody};
+    use crate::model::vector::flat;
 
     /// Pairs of one rigid body with the ground: (x, y) and the normal.
     fn body(pairs: &[([f64; 2], [f64; 2])]) -> Vec<usize> {
         let mut structure = Structure::default();
         for (index, &(position, normal)) in pairs.iter().enumerate() {
-            structure.nodes.push(Node { id: format!("n{index}"), position });
+            structure.nodes.push(Node { id: format!("n{index}"), position: flat(position) });
             structure.pairs.push(Pair {
                 id: format!("c{index}"),
                 node: index,
                 weights: Pair::of_nodes(index, None),
-                normal,
+                normal: flat(normal),
+                tangents: structure.dimension.tangents(flat(normal)),
                 slides_on_ground: false,
                 law: Law::Frictionless { gap: Number::Value(0.0) },
             });

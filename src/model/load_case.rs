@@ -6,15 +6,15 @@ use super::parameter::Number;
 /// One resolved part of a load case, per unit factor.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load {
-    /// Force (and moment, counter-clockwise) at a node. Edge loads (`point` on an edge, `traction`) arrive here
+    /// Force and moment at a node. Edge loads (`point` on an edge, `traction`) arrive here
     /// already made consistent, one per edge node.
     Nodal {
         /// The node.
         node: usize,
-        /// (F_x, F_y).
-        force: [f64; 2],
-        /// Moment; not zero only at nodes with a rotation.
-        moment: f64,
+        /// (F_x, F_y, F_z).
+        force: [f64; 3],
+        /// (M_x, M_y, M_z), in the plane M_z alone; not zero only at nodes with a rotation.
+        moment: [f64; 3],
     },
     /// What acts on an element beside its nodes; the element makes nodal forces of it.
     Element {
@@ -41,20 +41,20 @@ pub enum ElementLoad {
     Line {
         /// Distances from the start of the element between which it acts.
         range: [f64; 2],
-        /// (q_x, q_y) at both of them.
-        value: [[f64; 2]; 2],
+        /// (q_x, q_y, q_z) at both of them.
+        value: [[f64; 3]; 2],
     },
     /// Force and moment between the nodes of a frame or truss element.
     Point {
         /// Distance from the start of the element.
         distance: f64,
-        /// (F_x, F_y), global axes.
-        force: [f64; 2],
-        /// Moment, counter-clockwise.
-        moment: f64,
+        /// (F_x, F_y, F_z), global axes.
+        force: [f64; 3],
+        /// (M_x, M_y, M_z); in the plane M_z alone, counter-clockwise.
+        moment: [f64; 3],
     },
-    /// Uniform force per volume of any element, global axes: (b_x, b_y).
-    Body([f64; 2]),
+    /// Uniform force per volume of any element, global axes: (b_x, b_y, b_z).
+    Body([f64; 3]),
     /// What an element would do if nothing held it: temperature, lack of fit, prestress.
     FreeStrain {
         /// Along a bar; in all directions of a membrane.
@@ -68,7 +68,7 @@ impl Load {
     /// Whether it is no load at all.
     pub fn is_nothing(&self) -> bool {
         match self {
-            Load::Nodal { force, moment, .. } => *force == [0.0; 2] && *moment == 0.0,
+            Load::Nodal { force, moment, .. } => *force == [0.0; 3] && *moment == [0.0; 3],
             Load::Element { load, .. } => load.is_nothing(),
             Load::Settlement { value, .. } => *value == 0.0,
         }
@@ -79,9 +79,9 @@ impl ElementLoad {
     /// Whether it is no load at all.
     pub fn is_nothing(&self) -> bool {
         match self {
-            ElementLoad::Line { value, .. } => *value == [[0.0; 2]; 2],
-            ElementLoad::Point { force, moment, .. } => *force == [0.0; 2] && *moment == 0.0,
-            ElementLoad::Body(force) => *force == [0.0; 2],
+            ElementLoad::Line { value, .. } => *value == [[0.0; 3]; 2],
+            ElementLoad::Point { force, moment, .. } => *force == [0.0; 3] && *moment == [0.0; 3],
+            ElementLoad::Body(force) => *force == [0.0; 3],
             ElementLoad::FreeStrain { strain, curvature } => *strain == 0.0 && *curvature == 0.0,
         }
     }

@@ -65,7 +65,7 @@ pub fn weights(edge: &Edge, other: &Edge, nodes: &[Node]) -> Result<Vec<Option<W
     if let Some(&shared) = edge.nodes.iter().find(|node| other.nodes.contains(node)) {
         return Err(MortarError::Shared(shared));
     }
-    let mortar = Mortar { edge, other, nodes, normals: edge.outward_normals(nodes) };
+    let mortar = Mortar { edge, other, nodes, normals: edge.outward_in_plane(nodes) };
     let sides = mortar.covered_sides();
     let supported = mortar.supported(&sides);
     let corners = mortar.corners(&sides);
@@ -260,10 +260,10 @@ impl Mortar<'_> {
         let mut before = false;
         for (k, pair) in self.edge.sides.windows(2).enumerate() {
             let node = pair[0].ends[1];
-            let [x, y] = self.nodes[node].position;
+            let [x, y] = self.nodes[node].in_plane();
             let reach = NEAR * pair[0].length_to(self.nodes, 1.0).min(pair[1].length_to(self.nodes, 1.0));
             let partner = self.other.nodes.iter().copied().find(|&other| {
-                let [a, b] = self.nodes[other].position;
+                let [a, b] = self.nodes[other].in_plane();
                 (a - x).hypot(b - y) <= reach
             });
             // A straight side between two such corners would be left without functions: it needs none if nothing of the
@@ -340,7 +340,7 @@ impl Mortar<'_> {
 /// the nearest if there are two.
 fn along(side: &EdgeSide, nodes: &[Node], position: [f64; 2], normal: [f64; 2]) -> Option<(f64, f64)> {
     let off = |node: usize| {
-        let [x, y] = nodes[node].position;
+        let [x, y] = nodes[node].in_plane();
         (x - position[0]) * normal[1] - (y - position[1]) * normal[0]
     };
     let [a, b] = side.ends.map(off);

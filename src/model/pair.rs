@@ -129,7 +129,9 @@ pub struct Pair {
     /// first, in sum where several nodes of an edge stand for a side; nothing on the first side for the ground (u = 0).
     pub weights: Weights,
     /// Unit normal n, from `against` to `node`.
-    pub normal: [f64; 2],
+    pub normal: [f64; 3],
+    /// Unit tangents: t in the plane, t1 and t2 in space (see [`Dimension::tangents`](super::dimension::Dimension::tangents)).
+    pub tangents: Vec<[f64; 3]>,
     /// Whether friction acts against the firm ground although the first side is a node: the ground of a foundation
     /// yields along n only, z_τ = t·u_node.
     pub slides_on_ground: bool,
@@ -148,12 +150,7 @@ impl Pair {
         !self.slides_on_ground && matches!(self.weights[..], [(_, 1.0)] | [(_, 1.0), (_, -1.0)])
     }
 
-    /// Unit tangent t: n turned by −90° (clockwise); n = (0, 1) gives t = (1, 0).
-    pub fn tangent(&self) -> [f64; 2] {
-        [self.normal[1], -self.normal[0]]
-    }
-
-    /// The weights of the motion along t.
+    /// The weights of the motion along its tangents.
     pub fn tangential_weights(&self) -> &[(usize, f64)] {
         if self.slides_on_ground { &self.weights[..1] } else { &self.weights }
     }
@@ -164,8 +161,8 @@ impl Pair {
 pub enum JointDirection {
     /// Along n.
     Normal,
-    /// Along t.
-    Tangential,
+    /// Along one of the tangents: 0 is t or t1, 1 is t2.
+    Tangential(usize),
 }
 
 /// One joint and its row of B: z = Σ a·u over its `terms`.
@@ -173,17 +170,17 @@ pub enum JointDirection {
 pub struct Joint {
     /// Index of the pair.
     pub pair: usize,
-    /// Along n or along t.
+    /// Along n or along a tangent.
     pub direction: JointDirection,
     /// (node, a), that of the pair's own node first: one term for a pair with the ground, two between nodes, more
     /// where edges meet that do not match.
-    pub terms: Vec<(usize, [f64; 2])>,
+    pub terms: Vec<(usize, [f64; 3])>,
 }
 
-/// The joints of the main system: all normals in the order of the pairs, then the tangentials of those pairs
-/// that have one (all but the frictionless ones). This is the order of the rows of R and RF.
+/// The joints of the main system: all normals in the order of the pairs, then, pair by pair, one along each tangent of
+/// those that have such joints (all but the frictionless ones). This is the order of the rows of R and RF.
 pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
-    let row = |weights: &[(usize, f64)], a: [f64; 2]| {
+    let row = |weights: &[(usize, f64)], a: [f64; 3]| {
         weights.iter().map(|&(node, weight)| (node, a.map(|a| weight * a))).collect()
     };
     let normals = pairs.iter().enumerate().map(|(index, pair)| Joint {
@@ -192,10 +189,12 @@ pub fn joints(pairs: &[Pair]) -> Vec<Joint> {
         terms: row(&pair.weights, pair.normal),
     });
     let rubbing = pairs.iter().enumerate().filter(|(_, pair)| pair.law.has_tangential_joint());
-    let tangentials = rubbing.map(|(index, pair)| Joint {
-        pair: index,
-        direction: JointDirection::Tangential,
-        terms: row(pair.tangential_weights(), pair.tangent()),
+    let tangentials = rubbing.flat_map(|(index, pair)| {
+        pair.tangents.iter().enumerate().map(move |(tangent, &a)| Joint {
+            pair: index,
+            direction: JointDirection::Tangential(tangent),
+            terms: row(pair.tangential_weights(), a),
+        })
     });
     normals.chain(tangentials).collect()
 }

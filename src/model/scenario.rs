@@ -172,8 +172,13 @@ impl Scenario {
                     let entries = element.entries.iter().flat_map(|&(i, j, value)| [i as f64, j as f64, value]);
                     numbers(&mut entries.into_iter());
                     let loads = structure.load_cases.iter().flat_map(|case| &case.loads);
+                    let components = structure.dimension.components().iter();
                     let forces = loads.filter_map(|load| match *load {
-                        Load::Nodal { node, force: [x, y], moment } => Some([node as f64, x, y, moment]),
+                        Load::Nodal { node, force, moment } => {
+                            let all = [force, moment];
+                            let along = components.clone().map(|c| all[usize::from(c.is_rotation())][c.axis()]);
+                            Some(std::iter::once(node as f64).chain(along).collect::<Vec<f64>>())
+                        }
                         _ => None,
                     });
                     numbers(&mut forces.flatten());

@@ -4,6 +4,7 @@
 //! the generated ones (plate nodes `lower[i,j]`, mesh nodes `dam/17`, bar divisions `AB/1`), so that results keep the
 //! author's order.
 
+pub use super::dimension::Dimension;
 use super::edge::EdgeSide;
 pub use super::element::{Element, ElementKind, Material, Plane};
 pub use super::load_case::{ElementLoad, Load, LoadCase};
@@ -58,6 +59,8 @@ pub struct EdgeContact {
 /// A structure with its contact pairs and load cases, ready for the finite elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Structure {
+    /// Where it lies.
+    pub dimension: Dimension,
     /// All nodes, the author's first.
     pub nodes: Vec<Node>,
     /// Materials by index.

@@ -2,8 +2,10 @@
 
 use nalgebra::DMatrix;
 
+use super::dimension::Dimension;
 use super::groups::Groups;
 use super::node::{Component, Node};
+use super::vector::way;
 
 /// A row of K u below this share of its terms is zero by the digits of K.
 const DIGITS: f64 = 64.0 * f64::EPSILON;
@@ -33,23 +35,25 @@ pub struct Superelement {
 
 /// Nodes that K joins, and how they can move as one rigid body.
 ///
-/// A rigid motion is q = (t_x, t_y, θ · size) about `centre`: u = t + θ × (x − centre).
+/// A rigid motion is q = (t, θ · size) about `centre`, in the order of the components of the plane or of space:
+/// u = t + θ × (x − centre).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Its nodes.
     pub nodes: Vec<usize>,
     /// The point about which it turns.
-    pub centre: [f64; 2],
+    pub centre: [f64; 3],
     /// Largest distance of a coordinate from there, or 1.
     pub size: f64,
-    /// Unit vectors c: motions with c·q = 0 cost nothing; three of them where K resists every motion.
-    pub resisted: Vec<[f64; 3]>,
+    /// Unit vectors c: motions with c·q = 0 cost nothing; as many as components where K resists every motion.
+    pub resisted: Vec<Vec<f64>>,
 }
 
 impl Superelement {
     /// Finds the parts and their free motions; K is put right where it resists a rigid motion by rounding alone. Also what
     /// is to be said of that.
     pub fn new(
+        dimension: Dimension,
         nodes: &[Node],
         file: &str,
         dofs: Vec<(usize, Component)>,
@@ -66,7 +70,7 @@ impl Superelement {
             }
         }
         for rows in &rows {
-            let part = element.part(nodes, rows, &mut notes);
+            let part = element.part(dimension, nodes, rows, &mut notes);
             element.parts.push(part);
         }
         (element, notes)
@@ -86,21 +90,25 @@ impl Superelement {
         part_of
     }
 
-    fn part(&mut self, nodes: &[Node], rows: &[usize], notes: &mut Vec<String>) -> Part {
+    fn part(&mut self, dimension: Dimension, nodes: &[Node], rows: &[usize], notes: &mut Vec<String>) -> Part {
         let mut own: Vec<usize> = rows.iter().map(|&row| self.dofs[row].0).collect();
         own.sort_unstable();
         own.dedup();
         let place = |node: usize, c: usize| nodes[node].position[c];
         let mean = |c: usize| own.iter().map(|&node| place(node, c)).sum::<f64>() / own.len() as f64;
-        let centre = [mean(0), mean(1)];
-        let reach = |node: &usize| [0, 1].map(|c| (place(*node, c) - centre[c]).abs());
+        let centre = [0, 1, 2].map(mean);
+        let reach = |node: &usize| [0, 1, 2].map(|c| (place(*node, c) - centre[c]).abs());
         let size = own.iter().flat_map(reach).fold(0.0, f64::max);
         let mut part = Part { nodes: own, centre, size: if size > 0.0 { size } else { 1.0 }, resisted: Vec::new() };
-        let rigid: Vec<[f64; 3]> = rows.iter().map(|&row| part.moved(nodes, self.dofs[row])).collect();
+        let moved = |&row: &usize| part.moved(dimension, nodes, self.dofs[row]);
+        let rigid: Vec<Vec<f64>> = rows.iter().map(moved).collect();
         let free = self.free_motions(rows, &rigid);
-        let words = |q: &[f64; 3]| {
-            let names = ["along x", "along y", "round"];
-            let moved = q.iter().zip(names).filter(|(q, _)| q.abs() > 1e-6).map(|(_, name)| name);
+        let names: &[&str] = match dimension {
+            Dimension::Plane => &["along x", "along y", "round"],
+            Dimension::Space => &["along x", "along y", "along z", "about x", "about y", "about z"],
+        };
+        let words = |q: &[f64]| {
+            let moved = q.iter().zip(names.iter().copied()).filter(|(q, _)| q.abs() > 1e-6).map(|(_, name)| name);
             moved.collect::<Vec<_>>().join(" and ")
         };
         let near = free.iter().filter(|(_, share)| *share > DIGITS);
@@ -117,25 +125,26 @@ impl Superelement {
                 format!("{what}, little but more than its digits leave: taken as it is; if nothing holds the body, give more digits")
             });
         }
-        let free: Vec<([f64; 3], f64)> = free.into_iter().filter(|(_, share)| *share <= CONDENSED).collect();
+        let free: Vec<(Vec<f64>, f64)> = free.into_iter().filter(|(_, share)| *share <= CONDENSED).collect();
         if free.iter().any(|(_, share)| *share > DIGITS) {
             if rows.len() <= MOST_ROWS {
                 let motions: Vec<Vec<f64>> =
                     free.iter().map(|(q, _)| rigid.iter().map(|v| dot(v, q)).collect()).collect();
                 self.take_out(rows, &motions);
             } else {
-                let exact: Vec<[f64; 3]> = free.iter().filter(|(_, s)| *s <= DIGITS).map(|(q, _)| *q).collect();
-                part.resisted = complement(&exact);
+                let exact: Vec<Vec<f64>> = free.into_iter().filter(|(_, s)| *s <= DIGITS).map(|(q, _)| q).collect();
+                part.resisted = complement(&exact, names.len());
                 return part;
             }
         }
-        part.resisted = complement(&free.iter().map(|(q, _)| *q).collect::<Vec<_>>());
+        part.resisted = complement(&free.into_iter().map(|(q, _)| q).collect::<Vec<_>>(), names.len());
         part
     }
 
     /// Rigid motions that K resists by less than 1e-9 of its terms, each with the share it does: the largest
     /// |(K u)_i| / Σ |K_ij||u_j|.
-    fn free_motions(&self, rows: &[usize], rigid: &[[f64; 3]]) -> Vec<([f64; 3], f64)> {
+    fn free_motions(&self, rows: &[usize], rigid: &[Vec<f64>]) -> Vec<(Vec<f64>, f64)> {
+        let count = rigid.first().map_or(0, Vec::len);
         let mut local = vec![usize::MAX; self.dofs.len()];
         for (at, &row) in rows.iter().enumerate() {
             local[row] = at;
@@ -152,13 +161,13 @@ impl Superelement {
             }
         }
         // (K V)_i and Σ |K_ij||V_j| by rows scaled to unit diagonal.
-        let mut forces = DMatrix::<f64>::zeros(rows.len() + 3, 3);
+        let mut forces = DMatrix::<f64>::zeros(rows.len() + count, count);
         let mut largest = 0.0_f64;
         let mut sums = vec![0.0_f64; rows.len()];
         for &(i, j, value) in &own {
             if diagonal[i] > 0.0 {
                 let root = diagonal[i].sqrt();
-                for c in 0..3 {
+                for c in 0..count {
                     forces[(i, c)] += value * rigid[j][c] / root;
                 }
                 sums[i] += (value / root).abs() * rigid[j].iter().map(|v| v.abs()).sum::<f64>();
@@ -169,13 +178,13 @@ impl Superelement {
             forces /= largest;
         }
         // Motions that move no displacement at all are none.
-        let moves = DMatrix::from_fn(rows.len(), 3, |i, c| rigid[i][c]);
+        let moves = DMatrix::from_fn(rows.len(), count, |i, c| rigid[i][c]);
         for (k, idle) in small_directions(moves, NEARLY).into_iter().enumerate() {
-            for c in 0..3 {
+            for c in 0..count {
                 forces[(rows.len() + k, c)] = idle[c];
             }
         }
-        let share = |q: &[f64; 3]| {
+        let share = |q: &[f64]| {
             let u: Vec<f64> = rigid.iter().map(|v| dot(v, q)).collect();
             let (mut force, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
             for &(i, j, value) in &own {
@@ -186,7 +195,11 @@ impl Superelement {
             shares.fold(0.0, f64::max)
         };
         let candidates = echelon(small_directions(forces, NEARLY));
-        candidates.into_iter().map(|q| (q, share(&q))).collect()
+        let with_share = |q: Vec<f64>| {
+            let share = share(&q);
+            (q, share)
+        };
+        candidates.into_iter().map(with_share).collect()
     }
 
     /// Makes K of these rows cost exactly nothing in the motions: (1 − Q Qᵀ) S (1 − Q Qᵀ) with S = K at unit diagonal.
@@ -224,34 +237,40 @@ impl Superelement {
 }
 
 impl Part {
-    /// What the three rigid motions do to a displacement.
-    fn moved(&self, nodes: &[Node], (node, component): (usize, Component)) -> [f64; 3] {
-        let arm = [0, 1].map(|c| (nodes[node].position[c] - self.centre[c]) / self.size);
-        match component {
-            Component::X => [1.0, 0.0, -arm[1]],
-            Component::Y => [0.0, 1.0, arm[0]],
-            Component::R => [0.0, 0.0, 1.0 / self.size],
-        }
+    /// What each rigid motion does to a displacement.
+    fn moved(&self, dimension: Dimension, nodes: &[Node], (node, component): (usize, Component)) -> Vec<f64> {
+        let arm = way(self.centre, nodes[node].position).map(|arm| arm / self.size);
+        let of = |motion: Component| match (motion.is_rotation(), component.is_rotation()) {
+            (false, _) => f64::from(motion == component),
+            (true, true) => f64::from(motion == component) / self.size,
+            (true, false) => component
+                .levers(arm)
+                .into_iter()
+                .find(|(rotation, _)| *rotation == motion)
+                .map_or(0.0, |(_, lever)| lever),
+        };
+        dimension.components().iter().map(|&motion| of(motion)).collect()
     }
 }
 
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Directions q with |A q| ≤ limit for a matrix of three columns.
-fn small_directions(a: DMatrix<f64>, limit: f64) -> Vec<[f64; 3]> {
-    let a = if a.nrows() < 3 { a.resize_vertically(3, 0.0) } else { a };
+/// Directions q with |A q| ≤ limit.
+fn small_directions(a: DMatrix<f64>, limit: f64) -> Vec<Vec<f64>> {
+    let columns = a.ncols();
+    let a = if a.nrows() < columns { a.resize_vertically(columns, 0.0) } else { a };
     let svd = a.svd(false, true);
     let Some(v) = svd.v_t else { return Vec::new() };
     let small = svd.singular_values.iter().zip(v.row_iter()).filter(|(sigma, _)| **sigma <= limit);
-    small.map(|(_, v)| [v[0], v[1], v[2]]).collect()
+    small.map(|(_, v)| v.iter().copied().collect()).collect()
 }
 
 /// The same span by simple vectors: each has a leading one where the others are 0.
-fn echelon(mut basis: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+fn echelon(mut basis: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut done = 0;
-    for c in 0..3 {
+    for c in 0..basis.first().map_or(0, Vec::len) {
         let Some(best) = (done..basis.len()).max_by(|&a, &b| basis[a][c].abs().total_cmp(&basis[b][c].abs())) else {
             break;
         };
@@ -259,35 +278,35 @@ fn echelon(mut basis: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
             continue;
         }
         basis.swap(done, best);
-        let lead = basis[done].map(|q| q / basis[done][c]);
-        basis[done] = lead;
-        for (i, q) in basis.iter_mut().enumerate().filter(|(i, _)| *i != done) {
+        let pivot = basis[done][c];
+        basis[done].iter_mut().for_each(|q| *q /= pivot);
+        let lead = basis[done].clone();
+        for (_, q) in basis.iter_mut().enumerate().filter(|(i, _)| *i != done) {
             let factor = q[c];
-            debug_assert!(i != done);
-            *q = [0, 1, 2].map(|k| q[k] - factor * lead[k]);
+            q.iter_mut().zip(&lead).for_each(|(q, lead)| *q -= factor * lead);
         }
         done += 1;
     }
     // Rounding of unit vectors.
-    basis.into_iter().map(|q| q.map(|q| if q.abs() < 1e-14 { 0.0 } else { q })).collect()
+    basis.iter_mut().flatten().filter(|q| q.abs() < 1e-14).for_each(|q| *q = 0.0);
+    basis
 }
 
-/// Orthonormal vectors that span what is orthogonal to `motions`.
-fn complement(motions: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let mut basis: Vec<[f64; 3]> = Vec::new();
-    let units = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for vector in motions.iter().chain(&units) {
-        let mut rest = *vector;
+/// Orthonormal vectors of `count` entries that span what is orthogonal to `motions`.
+fn complement(motions: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let units = (0..count).map(|unit| (0..count).map(|c| f64::from(c == unit)).collect());
+    for mut rest in motions.iter().cloned().chain(units) {
         let before = dot(&rest, &rest).sqrt();
         for _ in 0..2 {
             for one in &basis {
                 let share = dot(one, &rest);
-                rest = [0, 1, 2].map(|k| rest[k] - share * one[k]);
+                rest.iter_mut().zip(one).for_each(|(rest, one)| *rest -= share * one);
             }
         }
         let left = dot(&rest, &rest).sqrt();
         if left > 1e-9 * before {
-            basis.push(rest.map(|q| q / left));
+            basis.push(rest.into_iter().map(|q| q / left).collect());
         }
     }
     basis.split_off(motions.len().min(basis.len()))

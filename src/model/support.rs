@@ -51,9 +51,9 @@ pub struct SpringTerm {
 
 impl Spring {
     /// From a node to the ground, or to another node, along a unit vector.
-    pub fn along(node: usize, other: Option<usize>, direction: [f64; 2], stiffness: f64) -> Spring {
+    pub fn along(node: usize, other: Option<usize>, direction: [f64; 3], stiffness: f64) -> Spring {
         let ends = [Some((node, 1.0)), other.map(|other| (other, -1.0))];
-        let components = [Component::X, Component::Y].into_iter().zip(direction);
+        let components = Component::TRANSLATIONS.into_iter().zip(direction);
         let terms = ends.into_iter().flatten().flat_map(|(node, sign)| {
             let term = move |(component, a): (Component, f64)| SpringTerm { node, component, factor: sign * a };
             components.clone().map(term)
@@ -61,10 +61,10 @@ impl Spring {
         Spring { terms: terms.collect(), stiffness }
     }
 
-    /// Against the rotation of a node, or between those of two nodes.
-    pub fn rotational(node: usize, other: Option<usize>, stiffness: f64) -> Spring {
+    /// Against a rotation of a node, or between those of two nodes.
+    pub fn rotational(node: usize, other: Option<usize>, component: Component, stiffness: f64) -> Spring {
         let ends = [Some((node, 1.0)), other.map(|other| (other, -1.0))];
-        let term = |(node, factor)| SpringTerm { node, component: Component::R, factor };
+        let term = |(node, factor)| SpringTerm { node, component, factor };
         Spring { terms: ends.into_iter().flatten().map(term).collect(), stiffness }
     }
 

@@ -19,6 +19,7 @@ use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::pivot::Cycle;
 use crate::model::structure::Structure;
 use crate::model::uses::Redone;
+use crate::model::vector::dot;
 use crate::text::words::{list, short};
 
 /// Most pairs that a note names.
@@ -90,7 +91,7 @@ impl Prepared {
             node: structure.nodes[reaction.node].id.clone(),
             fx: reaction.force[0],
             fy: reaction.force[1],
-            m: reaction.moment,
+            m: reaction.moment[2],
         });
         Some(reactions.collect())
     }
@@ -106,11 +107,11 @@ impl Prepared {
                 let u = main.displacements(&problem.factors, &problem.dislocation(z));
                 for (pair, shown) in structure.pairs.iter().zip(pairs) {
                     if !pair.law.has_tangential_joint() {
-                        let t = pair.tangent();
+                        let t = pair.tangents[0];
                         // Both components of a displacement are as well known as the larger one.
                         let along = |&(node, weight): &(usize, f64)| {
-                            let [x, y] = [u.0[node][0], u.0[node][1]];
-                            [weight * (t[0] * x + t[1] * y), weight.abs() * (x.abs() + y.abs())]
+                            let [x, y, z, ..] = u.0[node];
+                            [weight * dot(t, [x, y, z]), weight.abs() * (x.abs() + y.abs() + z.abs())]
                         };
                         let [slip, terms] = pair
                             .tangential_weights()
@@ -197,7 +198,7 @@ pub(super) fn named(structure: &Structure, u: &Displacements) -> Vec<NodeDisplac
         .nodes
         .iter()
         .zip(&u.0)
-        .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
+        .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[5] })
         .collect()
 }
 

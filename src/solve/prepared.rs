@@ -253,7 +253,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         .map(|(i, pair)| ContactPair {
             id: pair.id.clone(),
             law: pair.law.clone(),
-            position: Some(structure.nodes[pair.node].position),
+            position: Some(structure.nodes[pair.node].in_plane()),
             frame: None,
             joint: numbers[i],
             tangential: tangential(i),

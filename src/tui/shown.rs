@@ -73,11 +73,11 @@ pub struct Moment {
 #[derive(Clone, Default)]
 pub struct Motion {
     /// u_x, u_y and the rotation of every node, of a ray its mode; `None` where nothing is known to move.
-    pub u: Option<Vec<[f64; 3]>>,
+    pub u: Option<Vec<[f64; 6]>>,
     /// Factors of the load cases that bend bars between their nodes, and those of the answer before; none of a mode.
     pub factors: [Vec<f64>; 2],
     /// Likewise of the answer before, where it is worth showing.
-    pub before: Option<Vec<[f64; 3]>>,
+    pub before: Option<Vec<[f64; 6]>>,
     /// The automatic scale. It is that of the answer while its pivots are shown, so that pictures can be compared.
     pub automatic: f64,
 }
@@ -104,7 +104,7 @@ impl Motion {
         };
         let before = shown.before().filter(|_| shown.has_before()).and_then(of_answer);
         let factors = if shown.at_ray() { Default::default() } else { shown.factors() };
-        let moves = |u: &Vec<[f64; 3]>| u.iter().any(|u| u[0] != 0.0 || u[1] != 0.0);
+        let moves = |u: &Vec<[f64; 6]>| u.iter().any(|u| u[0] != 0.0 || u[1] != 0.0);
         let measured = end.as_ref().filter(|end| moves(end) && !shown.at_ray()).or(u.as_ref());
         let automatic = measured.map_or(1.0, |u| factor(structure, &factors[0], u, Magnification::Auto));
         Motion { before: before.filter(|before| u.as_ref() != Some(before)), u, factors, automatic }

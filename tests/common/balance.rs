@@ -68,7 +68,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
     };
     let label = parts(structure);
     let n = structure.nodes.len();
-    let at = |node: usize| structure.nodes[node].position;
+    let at = |node: usize| structure.nodes[node].in_plane();
     // [F_x, F_y, M about the origin of the axes shifted to the part's first node], and sums of magnitudes.
     let mut sum = vec![[0.0; 3]; n];
     let mut size = vec![[0.0f64; 2]; n];
@@ -87,7 +87,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
         for load in &case.loads {
             match load {
                 Load::Nodal { node, force, moment } => {
-                    add(*node, at(*node), force.map(|f| factor * f), factor * moment)
+                    add(*node, at(*node), [force[0], force[1]].map(|f| factor * f), factor * moment[2])
                 }
                 Load::Element { element, load: ElementLoad::Line { range: [from, to], value: [first, last] } } => {
                     let [a, b] = [0, 1].map(|end| structure.elements[*element].nodes[end]);
@@ -107,13 +107,13 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
                     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
                     let place = [0, 1].map(|i| a[i] + distance / length * (b[i] - a[i]));
                     let node = structure.elements[*element].nodes[0];
-                    add(node, place, force.map(|f| factor * f), factor * moment);
+                    add(node, place, [force[0], force[1]].map(|f| factor * f), factor * moment[2]);
                 }
                 Load::Element { element, load: ElementLoad::Body(value) } => {
                     let element = &structure.elements[*element];
                     let (measure, middle) = measure_and_middle(element.nodes.iter().map(|&node| at(node)).collect());
                     let volume = measure * element.area();
-                    add(element.nodes[0], middle, value.map(|b| factor * b * volume), 0.0);
+                    add(element.nodes[0], middle, [value[0], value[1]].map(|b| factor * b * volume), 0.0);
                 }
                 // They pull one part of a structure against another, and against what holds it.
                 Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
@@ -121,7 +121,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
         }
     }
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
-        let (n, t) = (pair.normal, pair.tangent());
+        let (n, t) = (pair.normal, pair.tangents[0]);
         let force = [0, 1].map(|i| state.x_n * n[i] + state.x_t * t[i]);
         for &(node, weight) in &pair.weights {
             add(node, at(node), force.map(|f| weight * f), 0.0);
@@ -202,12 +202,12 @@ pub fn nodal_imbalance(scenario: &Scenario, values: &ParameterValues, answer: &A
         let factor = case.factor.value(values);
         for load in &case.loads {
             if let Load::Nodal { node, force, moment } = load {
-                add(*node, [factor * force[0], factor * force[1], factor * moment]);
+                add(*node, [factor * force[0], factor * force[1], factor * moment[2]]);
             }
         }
     }
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
-        let (n, t) = (pair.normal, pair.tangent());
+        let (n, t) = (pair.normal, pair.tangents[0]);
         let force = [0, 1].map(|i| state.x_n * n[i] + state.x_t * t[i]);
         for &(node, weight) in &pair.weights {
             add(node, [weight * force[0], weight * force[1], 0.0]);
@@ -242,17 +242,18 @@ pub fn incompatibility(scenario: &Scenario, values: &ParameterValues, answer: &A
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
         let gap = pair.law.numbers().into_iter().find(|(key, _)| *key == "gap");
         let gap = gap.map_or(0.0, |(_, gap)| gap.value(values));
-        let along = |a: [f64; 2]| -> f64 {
+        let along = |a: [f64; 3]| -> f64 {
             pair.weights.iter().map(|&(node, weight)| weight * (a[0] * u(node)[0] + a[1] * u(node)[1])).sum()
         };
         largest = largest.max(gap).max(state.z_n);
         off = off.max((along(pair.normal) + gap - state.z_n).abs());
-        off = off.max((along(pair.tangent()) - state.z_t).abs());
+        off = off.max((along(pair.tangents[0]) - state.z_t).abs());
     }
     let part = |component: Component| match component {
         Component::X => 0,
         Component::Y => 1,
-        Component::R => 2,
+        Component::Rz => 2,
+        other => panic!("{other:?} in the plane"),
     };
     for support in &structure.supports {
         let settles = |case: &LoadCase| -> f64 {

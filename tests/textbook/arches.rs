@@ -158,7 +158,7 @@ fn certificates_of_arches_hold_from_geometry_and_loads_alone() {
         }
         for pair in &structure.pairs {
             let d = [0, 1].map(|i| pair.weights.iter().map(|&(node, weight)| weight * u[node][i]).sum::<f64>());
-            let [n_x, n_y] = pair.normal;
+            let [n_x, n_y, _] = pair.normal;
             let (opens, slips) = (n_x * d[0] + n_y * d[1], n_y * d[0] - n_x * d[1]);
             assert!(opens > friction * slips.abs(), "{}: {opens:e} {slips:e}", pair.id);
         }

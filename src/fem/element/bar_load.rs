@@ -111,13 +111,13 @@ impl BarLoad {
         for &(factor, load) in acting {
             match *load {
                 ElementLoad::Line { range, value } => {
-                    all.add_line(axes, range, value.map(|[x, y]| [x, y, 0.0]), factor);
+                    all.add_line(axes, range, value, factor);
                 }
-                ElementLoad::Point { distance, force: [x, y], moment } => {
-                    all.add_point(axes, distance, [x, y, 0.0], [0.0, 0.0, moment], factor);
+                ElementLoad::Point { distance, force, moment } => {
+                    all.add_point(axes, distance, force, moment, factor);
                 }
-                ElementLoad::Body([x, y]) => {
-                    all.add_line(axes, [0.0, axes.length], [[x, y, 0.0].map(|b| area * b); 2], factor);
+                ElementLoad::Body(value) => {
+                    all.add_line(axes, [0.0, axes.length], [value.map(|b| area * b); 2], factor);
                 }
                 ElementLoad::FreeStrain { strain, curvature } => {
                     all.strain += factor * strain;

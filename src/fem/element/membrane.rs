@@ -222,7 +222,7 @@ impl FiniteElement for Membrane<'_> {
         let mut all = vec![0.0; 2 * self.nodes.len()];
         for &(factor, load) in acting {
             let forces = match load {
-                ElementLoad::Body(b) => self.body_force(b.map(|b| factor * b)),
+                ElementLoad::Body([x, y, _]) => self.body_force([x, y].map(|b| factor * b)),
                 ElementLoad::FreeStrain { strain, .. } => self.expansion_force(factor * strain),
                 ElementLoad::Line { .. } | ElementLoad::Point { .. } => continue,
             };

@@ -84,8 +84,8 @@ pub trait FiniteElement {
 pub fn finite_element(structure: &Structure, index: usize) -> Result<Box<dyn FiniteElement + '_>, &'static str> {
     let element = &structure.elements[index];
     let material = &structure.materials[element.material];
-    let nodes = || element.nodes.iter().map(|&node| structure.nodes[node].position);
-    let ends = || [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+    let nodes = || element.nodes.iter().map(|&node| structure.nodes[node].in_plane());
+    let ends = || [0, 1].map(|end| structure.nodes[element.nodes[end]].in_plane());
     Ok(match element.kind {
         ElementKind::Frame { area, inertia, shear_area, hinges } => {
             Box::new(Frame::new(ends(), material, [area, inertia], shear_area, hinges).ok_or(NO_LENGTH)?)
@@ -171,7 +171,7 @@ pub fn stiffness<T: Number>(structure: &Structure, index: usize) -> Result<Stiff
     Ok(stiffness)
 }
 
-/// Stiffness of a spring on u_x, u_y of its node.
+/// Whether the stiffness of a spring can be computed with.
 ///
 /// # Errors
 /// A stiffness too large or small for numbers.
@@ -196,6 +196,7 @@ fn beyond(what: &str, value: f64, range: &std::ops::Range<f64>, advice: &str) ->
 fn extent(structure: &Structure, element: &Element) -> f64 {
     let place = |node: usize, c: usize| structure.nodes[node].position[c];
     let first = element.nodes[0];
-    let differences = element.nodes.iter().flat_map(|&node| [0, 1].map(|c| (place(node, c) - place(first, c)).abs()));
+    let differences =
+        element.nodes.iter().flat_map(|&node| [0, 1, 2].map(|c| (place(node, c) - place(first, c)).abs()));
     differences.fold(0.0, f64::max)
 }

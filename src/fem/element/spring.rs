@@ -8,8 +8,8 @@ pub fn stiffness<T: Real>(spring: &Spring, i: usize, j: usize) -> T {
     T::from(spring.terms[i].factor) * T::from(spring.terms[j].factor) * T::from(spring.stiffness)
 }
 
-/// Force, or moment, with which it resists: s Σ a u for displacements [u_x, u_y, θ] per node.
-pub fn force(spring: &Spring, u: &[[f64; 3]]) -> f64 {
+/// Force, or moment, with which it resists: s Σ a u for displacements per node.
+pub fn force(spring: &Spring, u: &[[f64; 6]]) -> f64 {
     let stretch: f64 = spring.terms.iter().map(|term| term.factor * u[term.node][term.component as usize]).sum();
     spring.stiffness * stretch
 }
@@ -17,16 +17,17 @@ pub fn force(spring: &Spring, u: &[[f64; 3]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::structure::Component;
 
     /// Force on the terms by k u against s (Σ a u) a.
     #[test]
     fn force_is_stiffness_times_displacement() {
-        let u = [[0.3, -0.1, 0.02], [0.05, 0.4, -0.01]];
+        let u = [[0.3, -0.1, 0.0, 0.0, 0.0, 0.02], [0.05, 0.4, 0.0, 0.0, 0.0, -0.01]];
         let springs = [
-            Spring::along(0, None, [0.6, 0.8], 50.0),
-            Spring::along(0, Some(1), [-0.8, 0.6], 50.0),
-            Spring::rotational(1, None, 7.0),
-            Spring::rotational(0, Some(1), 7.0),
+            Spring::along(0, None, [0.6, 0.8, 0.0], 50.0),
+            Spring::along(0, Some(1), [-0.8, 0.6, 0.0], 50.0),
+            Spring::rotational(1, None, Component::Rz, 7.0),
+            Spring::rotational(0, Some(1), Component::Rz, 7.0),
         ];
         for spring in springs {
             let force = force(&spring, &u);

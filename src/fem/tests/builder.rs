@@ -7,6 +7,7 @@ use crate::model::structure::{
     Bar, Component, Element, ElementKind, Load, LoadCase, Material, Node, Plane, Plate, RigidBody, Spring, Structure,
     Support, Tie,
 };
+use crate::model::vector::flat;
 
 /// A structure being built; materials are made as they are used.
 #[derive(Default)]
@@ -27,7 +28,7 @@ pub fn components(letters: &str) -> Vec<Component> {
         .map(|letter| match letter {
             'x' => Component::X,
             'y' => Component::Y,
-            'r' => Component::R,
+            'r' => Component::Rz,
             _ => panic!("{letter}"),
         })
         .collect()
@@ -35,7 +36,7 @@ pub fn components(letters: &str) -> Vec<Component> {
 
 impl Model {
     pub fn node(&mut self, id: &str, x: f64, y: f64) -> usize {
-        self.0.nodes.push(Node { id: id.into(), position: [x, y] });
+        self.0.nodes.push(Node { id: id.into(), position: [x, y, 0.0] });
         self.0.nodes.len() - 1
     }
 
@@ -122,14 +123,15 @@ impl Model {
     }
 
     pub fn spring(&mut self, node: usize, direction: [f64; 2], stiffness: f64) {
-        self.0.springs.push(Spring::along(node, None, direction, stiffness));
+        self.0.springs.push(Spring::along(node, None, flat(direction), stiffness));
     }
 
     pub fn pair(&mut self, node: usize, against: Option<usize>, normal: [f64; 2], law: Law) {
         let id = format!("c{}", self.0.pairs.len() + 1);
         let length = normal[0].hypot(normal[1]);
-        let (weights, normal) = (Pair::of_nodes(node, against), normal.map(|n| n / length));
-        self.0.pairs.push(Pair { id, node, weights, normal, slides_on_ground: false, law });
+        let (weights, normal) = (Pair::of_nodes(node, against), flat(normal.map(|n| n / length)));
+        let tangents = self.0.dimension.tangents(normal);
+        self.0.pairs.push(Pair { id, node, weights, normal, tangents, slides_on_ground: false, law });
     }
 
     pub fn case(&mut self, loads: Vec<Load>) {
@@ -154,7 +156,11 @@ impl Model {
 }
 
 pub fn point(node: usize, force: [f64; 2]) -> Load {
-    Load::Nodal { node, force, moment: 0.0 }
+    turning(node, force, 0.0)
+}
+
+pub fn turning(node: usize, force: [f64; 2], moment: f64) -> Load {
+    Load::Nodal { node, force: flat(force), moment: [0.0, 0.0, moment] }
 }
 
 /// Two plates `length` × `height` × 0.1, one upon the other with `divisions` elements each, the lower one fixed

@@ -41,8 +41,8 @@ fn free_plate_has_three_motions() {
     // A convenient basis: along x, along y, about the centre.
     let motions = system.kernel_motions();
     let last = model.0.nodes.len() - 1;
-    assert_eq!(motions[0].u[last], [1.0, 0.0, 0.0]);
-    assert_eq!(motions[1].u[last], [0.0, 1.0, 0.0]);
+    assert_eq!(motions[0].u[last], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    assert_eq!(motions[1].u[last], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
     assert!(motions.iter().all(|motion| !motion.internal));
     // The traction slides it: Zᵀ RF ≠ 0 exactly by the force, for the unit translation.
     let m = 17;

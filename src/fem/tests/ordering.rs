@@ -10,7 +10,7 @@ use crate::watch::Quiet;
 /// numbered in a scrambled order.
 struct Plate {
     node: Vec<u32>,
-    coordinates: Vec<[f64; 2]>,
+    coordinates: Vec<[f64; 3]>,
     matrix: SymmetricSparse,
 }
 
@@ -20,11 +20,11 @@ impl Plate {
         // 7 919 is prime and larger than any row of nodes used here.
         let scrambled = |i: usize, j: usize| (7919 * (i * (ny + 1) + j)) % count;
         assert_ne!(count % 7919, 0);
-        let mut coordinates = vec![[0.0; 2]; count];
+        let mut coordinates = vec![[0.0; 3]; count];
         let mut terms = BTreeSet::new();
         for i in 0..=nx {
             for j in 0..=ny {
-                coordinates[scrambled(i, j)] = [i as f64, j as f64];
+                coordinates[scrambled(i, j)] = [i as f64, j as f64, 0.0];
             }
         }
         for i in 0..nx {

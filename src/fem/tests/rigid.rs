@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::builder::{Model, coulomb, frictionless, point};
+use super::builder::{Model, coulomb, frictionless, point, turning};
 use crate::fem::MainSystemError;
 use crate::fem::dof::Dofs;
 use crate::model::structure::{Component, Load};
@@ -61,14 +61,14 @@ fn random_model(seed: u64) -> Model {
     model.pair(top[1], Some(box_nodes[2]), [0.1, 1.0], frictionless());
     model.case(vec![
         point(top[2], [number(-1.0, 1.0), -2.0]),
-        Load::Nodal { node: box_nodes[2], force: [0.5, 0.0], moment: number(-1.0, 1.0) },
-        Load::Nodal { node: plate[2][3], force: [0.0, number(-1.0, 1.0)], moment: 0.7 },
+        turning(box_nodes[2], [0.5, 0.0], number(-1.0, 1.0)),
+        turning(plate[2][3], [0.0, number(-1.0, 1.0)], 0.7),
         point(plate[1][2], [number(-1.0, 1.0), 0.3]),
     ]);
     model.case(vec![
         Load::Settlement { node: box_nodes[1], component: Component::X, value: number(0.1, 0.3) },
         Load::Settlement { node: a, component: Component::Y, value: number(-0.3, -0.1) },
-        Load::Nodal { node: above, force: [0.0; 2], moment: 1.0 },
+        turning(above, [0.0; 2], 1.0),
     ]);
     model
 }
@@ -101,13 +101,13 @@ fn constraints(model: &Model, dofs: &Dofs) -> Vec<(Terms, [f64; 2])> {
     }
     for body in &structure.rigid {
         let first = body.nodes[0];
-        let [x0, y0] = structure.nodes[first].position;
-        let turn = at(first, Component::R);
+        let [x0, y0] = structure.nodes[first].in_plane();
+        let turn = at(first, Component::Rz);
         for &node in &body.nodes[1..] {
-            let [x, y] = structure.nodes[node].position;
+            let [x, y] = structure.nodes[node].in_plane();
             rows.push((vec![(at(node, Component::X), 1.0), (at(first, Component::X), -1.0), (turn, y - y0)], [0.0; 2]));
             rows.push((vec![(at(node, Component::Y), 1.0), (at(first, Component::Y), -1.0), (turn, x0 - x)], [0.0; 2]));
-            rows.push((vec![(at(node, Component::R), 1.0), (turn, -1.0)], [0.0; 2]));
+            rows.push((vec![(at(node, Component::Rz), 1.0), (turn, -1.0)], [0.0; 2]));
         }
     }
     rows
@@ -266,7 +266,7 @@ fn elements_inside_a_body_do_not_matter() {
         for (node, direction) in [(plate[0][0], [0.0, 1.0]), (plate[0][4], [0.0, 1.0]), (plate[0][4], [1.0, 0.0])] {
             model.spring(node, direction, 1e-3);
         }
-        model.case(vec![Load::Nodal { node: plate[1][2], force: [0.0; 2], moment: 3e-3 }]);
+        model.case(vec![turning(plate[1][2], [0.0; 2], 3e-3)]);
         let system = model.solve();
         let u = system.displacements(&[1.0], &DVector::zeros(0));
         let residual = system.equilibrium_residual(&model.0, &u, &DVector::zeros(0), &[1.0]);

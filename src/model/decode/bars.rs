@@ -186,7 +186,7 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
             let t = inner as f64 / bar.divisions as f64;
             let node = Node {
                 id: format!("{}/{}", bar.id, chain.len()),
-                position: [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])],
+                position: std::array::from_fn(|c| from[c] + t * (to[c] - from[c])),
             };
             chain.push(builder.add_node(node, place.clone()));
         }

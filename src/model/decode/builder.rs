@@ -11,6 +11,7 @@ use crate::model::edge::Edge;
 use crate::model::scenario::Places;
 use crate::model::structure::{Component, Node, Structure};
 use crate::model::superelement::Superelement;
+use crate::model::vector::{distance, way};
 
 /// Cross-section of bars.
 pub struct Section {
@@ -45,8 +46,8 @@ pub struct Stretch {
     pub from: f64,
     /// Its length.
     pub length: f64,
-    /// (cos, sin) of its direction.
-    pub direction: [f64; 2],
+    /// Its direction, a unit vector.
+    pub direction: [f64; 3],
 }
 
 /// The structure as read so far, and the names by which later parts refer to it.
@@ -122,7 +123,7 @@ impl<'d> Builder<'d> {
         for entry in entries.unwrap_or_default() {
             self.register(entry.key_place(), entry.name(), "node");
             // A node without a usable place stays known, with a place that no geometric check complains about.
-            let position = entry.value().vector().unwrap_or([f64::NAN; 2]);
+            let position = entry.value().vector().unwrap_or([f64::NAN; 3]);
             names.push(entry.key_place());
             self.add_node(Node { id: entry.name().to_string(), position }, format!("{within}.{}", entry.name()).into());
         }
@@ -136,9 +137,8 @@ impl<'d> Builder<'d> {
         let stretch = |element: usize| {
             let nodes = &structure.elements[element].nodes;
             let [a, b] = [0, 1].map(|end| structure.nodes[nodes[end]].position);
-            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-            let length = dx.hypot(dy);
-            let stretch = Stretch { element, from, length, direction: [dx / length, dy / length] };
+            let length = distance(a, b);
+            let stretch = Stretch { element, from, length, direction: way(a, b).map(|d| d / length) };
             from += length;
             stretch
         };
@@ -172,13 +172,13 @@ impl<'d> Builder<'d> {
         self.structure.superelement.as_ref().is_some_and(|element| !knows(element)) && !self.body_of.contains_key(&node)
     }
 
-    /// Reports a displacement along x or y asked of a node of a superelement that has none.
-    pub fn demand_displacement(&self, cursor: Cursor<'d>, node: usize, direction: [f64; 2], what: &str) -> bool {
-        let asked = [(Component::X, "x"), (Component::Y, "y")].into_iter().zip(direction);
-        let Some(((_, word), _)) = asked.into_iter().find(|((c, _), amount)| *amount != 0.0 && self.lacks(node, *c))
-        else {
+    /// Reports a displacement along one of the axes asked of a node of a superelement that has none.
+    pub fn demand_displacement(&self, cursor: Cursor<'d>, node: usize, direction: [f64; 3], what: &str) -> bool {
+        let mut asked = Component::TRANSLATIONS.into_iter().zip(direction);
+        let Some((component, _)) = asked.find(|(c, amount)| *amount != 0.0 && self.lacks(node, *c)) else {
             return true;
         };
+        let word = self.structure.dimension.word(component);
         cursor.problem(
             format!("the node \"{}\" of the superelement has no dof \"{word}\": {what}", self.node_id(node)),
             "keep this displacement when K is made and name it in `dofs`, or choose another direction",

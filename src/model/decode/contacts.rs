@@ -92,6 +92,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             node: sides.nodes[index],
             weights: weights.clone()?,
             normal: sides.normals[index],
+            tangents: builder.structure.dimension.tangents(sides.normals[index]),
             slides_on_ground: false,
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
         })
@@ -105,11 +106,12 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
 
 /// Reports a node of a superelement without a displacement that a joint needs.
 fn has_its_displacements<'d>(builder: &Builder<'d>, cursor: Cursor<'d>, sides: &Sides, law: Option<LawKind>) -> bool {
-    std::iter::zip(&sides.weights, &sides.normals).all(|(weights, [x, y])| {
+    std::iter::zip(&sides.weights, &sides.normals).all(|(weights, &normal)| {
         weights.iter().flatten().all(|&(node, _)| {
-            builder.demand_displacement(cursor, node, [*x, *y], "the normal joint needs it")
+            let along = |tangent| builder.demand_displacement(cursor, node, tangent, "the tangential joint needs it");
+            builder.demand_displacement(cursor, node, normal, "the normal joint needs it")
                 && (law == Some(LawKind::Frictionless)
-                    || builder.demand_displacement(cursor, node, [*y, *x], "the tangential joint needs it"))
+                    || builder.structure.dimension.tangents(normal).into_iter().all(along))
         })
     })
 }

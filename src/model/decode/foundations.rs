@@ -8,6 +8,7 @@ use crate::model::pair::{Law, Pair};
 use crate::model::parameter::Number;
 use crate::model::structure::{Node, Spring};
 use crate::model::uses::Region;
+use crate::model::vector::{distance, length};
 
 /// What a foundation has in common along its line.
 struct Foundation<'d> {
@@ -23,7 +24,7 @@ struct Foundation<'d> {
 /// A node of the line: its normal (from the ground to the body) and the length that belongs to it.
 struct Place {
     node: usize,
-    normal: [f64; 2],
+    normal: [f64; 3],
     length: f64,
 }
 
@@ -121,7 +122,7 @@ fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
         .collect();
     for k in 1..places.len() {
         let (a, b) = (place(places[k - 1].node), place(places[k].node));
-        let half = 0.5 * (b[0] - a[0]).hypot(b[1] - a[1]);
+        let half = 0.5 * distance(a, b);
         places[k - 1].length += half;
         places[k].length += half;
     }
@@ -139,31 +140,31 @@ fn along_bar(builder: &Builder<'_>, bar: usize) -> Vec<Place> {
     let structure = &builder.structure;
     let mut places: Vec<Place> = Vec::new();
     for stretch in builder.stretches(bar) {
-        let normal = [0.0 - stretch.direction[1], stretch.direction[0]];
+        let normal = [0.0 - stretch.direction[1], stretch.direction[0], 0.0];
         let half = 0.5 * stretch.length;
         let nodes = &structure.elements[stretch.element].nodes;
         if places.is_empty() {
-            places.push(Place { node: nodes[0], normal: [0.0; 2], length: 0.0 });
+            places.push(Place { node: nodes[0], normal: [0.0; 3], length: 0.0 });
         }
         let last = places.len() - 1;
         let before = &mut places[last];
-        before.normal = [before.normal[0] + normal[0], before.normal[1] + normal[1]];
+        before.normal = std::array::from_fn(|c| before.normal[c] + normal[c]);
         before.length += half;
         places.push(Place { node: nodes[1], normal, length: half });
     }
     for place in &mut places {
-        let length = place.normal[0].hypot(place.normal[1]);
+        let length = length(place.normal);
         place.normal = place.normal.map(|n| n / length);
     }
     places
 }
 
 fn bonded(builder: &mut Builder<'_>, foundation: &Foundation<'_>, at: &Place) {
-    let [x, y] = at.normal;
+    let [x, y, _] = at.normal;
     let springs = &mut builder.structure.springs;
     springs.push(Spring::along(at.node, None, at.normal, foundation.stiffness * at.length));
     if let Some(tangential) = foundation.tangential.filter(|stiffness| *stiffness > 0.0) {
-        springs.push(Spring::along(at.node, None, [y, 0.0 - x], tangential * at.length));
+        springs.push(Spring::along(at.node, None, [y, 0.0 - x, 0.0], tangential * at.length));
     }
 }
 
@@ -175,10 +176,10 @@ fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: us
     let ground = builder.add_node(Node { id: format!("{}/{index}", foundation.id), position }, place.into());
     builder.has_rotation.push(false);
     builder.structure.yielding_ground.push(ground);
-    let [x, y] = at.normal;
+    let [x, y, _] = at.normal;
     let along = foundation.tangential.filter(|stiffness| *stiffness > 0.0);
     for (direction, stiffness) in
-        [(at.normal, foundation.stiffness), ([y, 0.0 - x], along.unwrap_or(foundation.stiffness))]
+        [(at.normal, foundation.stiffness), ([y, 0.0 - x, 0.0], along.unwrap_or(foundation.stiffness))]
     {
         builder.structure.springs.push(Spring::along(ground, None, direction, stiffness * at.length));
     }
@@ -193,6 +194,7 @@ fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: us
         node: at.node,
         weights: Pair::of_nodes(at.node, Some(ground)),
         normal: at.normal,
+        tangents: builder.structure.dimension.tangents(at.normal),
         slides_on_ground: along.is_none(),
         law,
     });

@@ -12,6 +12,7 @@ use crate::model::groups::Groups;
 use crate::model::mesh::Shape;
 use crate::model::mesh::chain::{chains, oriented};
 use crate::model::structure::{Bar, Body, Element, ElementKind, MeshElements, Node};
+use crate::model::vector::flat;
 
 /// Appends the nodes `ID/TAG` that are used.
 pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
@@ -21,7 +22,7 @@ pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, pl
             let [x, y, _] = node.position;
             *index = Some(builder.structure.nodes.len());
             let id = format!("{}/{}", outline.id, node.tag);
-            builder.structure.nodes.push(Node { id, position: [outline.scale * x, outline.scale * y] });
+            builder.structure.nodes.push(Node { id, position: flat([outline.scale * x, outline.scale * y]) });
         }
     }
     builder.places.nodes.resize(builder.structure.nodes.len(), place.clone());

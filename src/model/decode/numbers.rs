@@ -5,10 +5,13 @@ use jsonc_parser::common::Ranged;
 
 use super::reader::Cursor;
 use super::words::{is_id, quoted, shortened};
+use crate::model::dimension::Dimension;
 use crate::model::expression::Expression;
 use crate::model::jet::{Dependence, Jet};
+use crate::model::node::Component;
 use crate::model::parameter::{Along, Number};
 use crate::model::uses::Region;
+use crate::model::vector::unit;
 
 /// Numbers beyond this are refused: their squares must stay finite.
 const LARGEST: f64 = 1e150;
@@ -228,40 +231,55 @@ impl<'d> Cursor<'d> {
         self.value_of(&number).map(|_| number)
     }
 
-    /// Two numbers: a point or a vector.
-    pub fn vector(self) -> Option<[f64; 2]> {
+    /// A point or a vector: two numbers in the plane, where its z is 0, three in space.
+    pub fn vector(self) -> Option<[f64; 3]> {
+        let (count, expected, help) = match self.dimension() {
+            Dimension::Plane => (2, "two numbers [x, y]", "points and vectors lie in the plane: give x and y"),
+            Dimension::Space => (3, "three numbers [x, y, z]", "points and vectors lie in space: give x, y and z"),
+        };
         match self.list() {
             None => None,
-            Some(entries) if entries.len() == 2 => {
+            Some(entries) if entries.len() == count => {
                 let numbers: Vec<Option<f64>> = entries.map(Cursor::number).collect();
-                Some([numbers[0]?, numbers[1]?])
+                Some([numbers[0]?, numbers[1]?, if count == 3 { numbers[2]? } else { 0.0 }])
             }
             Some(_) => {
-                self.problem(
-                    format!("expected two numbers [x, y], found {}", self.found()),
-                    "points and vectors lie in the plane: give x and y",
-                );
+                self.problem(format!("expected {expected}, found {}", self.found()), help);
                 None
             }
         }
     }
 
     /// A vector that is not zero, made a unit vector.
-    pub fn direction(self, what: &str) -> Option<[f64; 2]> {
-        let [x, y] = self.vector()?;
-        let length = x.hypot(y);
-        if length > 0.0 {
-            // Scaled first: of a subnormal length the quotient would lose its digits.
-            let scale = x.abs().max(y.abs());
-            let (x, y) = (x / scale, y / scale);
-            let length = x.hypot(y);
-            return Some([x / length, y / length]);
+    pub fn direction(self, what: &str) -> Option<[f64; 3]> {
+        let vector = self.vector()?;
+        // Scaled first: of a subnormal length the quotient would lose its digits.
+        let scale = vector.into_iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+        if scale > 0.0 {
+            return unit(vector.map(|entry| entry / scale));
         }
+        let (zero, up) = match self.dimension() {
+            Dimension::Plane => ("[0, 0]", "[0, 1]"),
+            Dimension::Space => ("[0, 0, 0]", "[0, 0, 1]"),
+        };
         self.problem(
-            format!("{what} is [0, 0] and has no direction"),
-            format!("give any non-zero vector, e.g. [0, 1] for a {what} upwards"),
+            format!("{what} is {zero} and has no direction"),
+            format!("give any non-zero vector, e.g. {up} for a {what} upwards"),
         );
         None
+    }
+
+    /// A moment about each axis: one number in the plane, counter-clockwise, a vector in space.
+    pub fn moment(self) -> Option<[f64; 3]> {
+        match self.dimension() {
+            Dimension::Plane => Some([0.0, 0.0, self.number()?]),
+            Dimension::Space => self.vector(),
+        }
+    }
+
+    /// The word of a displacement component.
+    pub fn component(self) -> Option<Component> {
+        self.choice(&self.dimension().words())
     }
 
     /// `count` numbers.

@@ -37,7 +37,7 @@ pub fn plate<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<PlateG
 }
 
 fn plate_grid<'d>(builder: &Builder<'d>, fields: &Fields<'d>, id: Option<&'d str>) -> Option<PlateGrid> {
-    let origin = fields.required("origin").and_then(Cursor::vector);
+    let origin = fields.required("origin").and_then(Cursor::vector).map(|[x, y, _]| [x, y]);
     let rotation = match fields.optional("rotation") {
         Some(cursor) => cursor.number(),
         None => Some(0.0),

@@ -3,7 +3,7 @@
 //! A [`Cursor`] stands on one value. Its accessors return `None` after having reported what is wrong at that
 //! place; the caller leaves the part out and reads on.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -15,6 +15,7 @@ use super::declared::Parameters;
 pub use super::findings::{Findings, Place};
 use super::words::shortened;
 use super::words::{counted, did_you_mean, listed, quoted};
+use crate::model::dimension::Dimension;
 use crate::model::locate::{self, Document};
 use crate::model::mesh::MeshFiles;
 use crate::model::uses::Region;
@@ -27,6 +28,8 @@ pub struct Reading {
     pub parameters: OnceCell<Parameters>,
     /// A byte offset for every name of a parameter in every region.
     pub uses: RefCell<BTreeMap<(String, Region), usize>>,
+    /// Whether points and vectors have two numbers or three.
+    pub dimension: Cell<Dimension>,
     /// The file of the scenario: others are named relative to it.
     pub path: Option<PathBuf>,
     /// Meshes read so far.
@@ -118,6 +121,11 @@ impl<'d> Cursor<'d> {
     /// The parameters of the scenario.
     pub fn parameters(self) -> &'d Parameters {
         self.reading.parameters.get_or_init(Parameters::default)
+    }
+
+    /// The plane or space.
+    pub fn dimension(self) -> Dimension {
+        self.reading.dimension.get()
     }
 
     /// A string.

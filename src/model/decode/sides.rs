@@ -7,6 +7,7 @@ use super::words::near;
 use crate::model::edge::Edge;
 use crate::model::mortar::{self, MortarError};
 use crate::model::pair::{Pair, Weights};
+use crate::model::vector::{dot, way};
 
 /// The word for the ground in `against`.
 const GROUND: &str = "ground";
@@ -19,7 +20,7 @@ pub struct Sides {
     pub nodes: Vec<usize>,
     /// Which nodes move against each other at each of them, see [`Pair::weights`]; `None` where nothing is opposite.
     pub weights: Vec<Option<Weights>>,
-    pub normals: Vec<[f64; 2]>,
+    pub normals: Vec<[f64; 3]>,
     /// Distances of the two sides along the normals as they are drawn; `None` against the ground.
     pub gaps: Option<Vec<f64>>,
 }
@@ -42,24 +43,21 @@ impl Sides {
         builder: &Builder<'d>,
         nodes: Vec<usize>,
         weights: Vec<Option<Weights>>,
-        normals: Vec<[f64; 2]>,
+        normals: Vec<[f64; 3]>,
     ) -> Sides {
         let place = |node: usize| builder.structure.nodes[node].position;
-        let distance = |(weights, n): (&Option<Weights>, &[f64; 2])| {
+        let distance = |(weights, n): (&Option<Weights>, &[f64; 3])| {
             let weights = weights.iter().flatten();
             // Differences from the own node: coordinates may be large beside a gap.
-            let own = weights.clone().next().map_or([0.0; 2], |&(node, _)| place(node));
-            let terms = weights.map(|&(node, weight)| {
-                let at = place(node);
-                weight * (n[0] * (at[0] - own[0]) + n[1] * (at[1] - own[1]))
-            });
+            let own = weights.clone().next().map_or([0.0; 3], |&(node, _)| place(node));
+            let terms = weights.map(|&(node, weight)| weight * dot(*n, way(own, place(node))));
             terms.sum::<f64>()
         };
         let gaps = weights.iter().zip(&normals).map(distance).collect();
         Sides { nodes, weights, normals, gaps: Some(gaps) }
     }
 
-    fn on_ground(nodes: Vec<usize>, normals: Vec<[f64; 2]>) -> Sides {
+    fn on_ground(nodes: Vec<usize>, normals: Vec<[f64; 3]>) -> Sides {
         let weights = nodes.iter().map(|&node| Some(Pair::of_nodes(node, None))).collect();
         Sides { nodes, weights, normals, gaps: None }
     }
@@ -172,7 +170,7 @@ fn gap_of(fields: &Fields<'_>) -> Gap {
 }
 
 /// Subtracting from 0 turns −0 into 0.
-fn turned(normal: [f64; 2]) -> [f64; 2] {
+fn turned(normal: [f64; 3]) -> [f64; 3] {
     normal.map(|n| 0.0 - n)
 }
 
@@ -194,7 +192,7 @@ struct TwoEdges<'a, 'd> {
 
 impl TwoEdges<'_, '_> {
     fn place(&self, node: usize) -> [f64; 2] {
-        self.builder.structure.nodes[node].position
+        self.builder.structure.nodes[node].in_plane()
     }
 
     /// For each node the position of its partner on the other edge, which may run the other way and, where both are
@@ -260,7 +258,7 @@ impl TwoEdges<'_, '_> {
     }
 
     /// `partners`: positions on the other edge.
-    fn of_nodes(&self, partners: &[usize], normal: Option<[f64; 2]>) -> Sides {
+    fn of_nodes(&self, partners: &[usize], normal: Option<[f64; 3]>) -> Sides {
         let (nodes, others) = (self.edge.distinct_nodes(), self.other.distinct_nodes());
         let own = self.other.outward_normals(&self.builder.structure.nodes);
         let normals = partners.iter().map(|&at| normal.unwrap_or(own[at])).collect();
@@ -269,7 +267,7 @@ impl TwoEdges<'_, '_> {
     }
 
     /// `must_touch`: no gap is given, so that the edges have to lie on each other.
-    fn mortar(&self, normal: Option<[f64; 2]>, must_touch: bool) -> Option<Sides> {
+    fn mortar(&self, normal: Option<[f64; 3]>, must_touch: bool) -> Option<Sides> {
         let nodes = &self.builder.structure.nodes;
         let (at, against) = (self.at.quoted(), self.against.quoted());
         let id = |node: usize| self.builder.node_id(node);

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, entries};
 use super::reader::{Cursor, Fields};
-use crate::model::structure::Spring;
+use crate::model::structure::{Component, Spring};
 
 /// Reads `springs`.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
@@ -28,7 +28,7 @@ fn springs<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Spring>>
         let (ends, stiffness) = (ends?, stiffness?);
         let turn = |node: usize| builder.demand_rotation(entry.value(), node, "no `rotation` spring can act there");
         let is_right = ends.iter().all(|&(node, other)| turn(node) && other.is_none_or(turn));
-        let spring = |(node, other): (usize, Option<usize>)| Spring::rotational(node, other, stiffness);
+        let spring = |(node, other): (usize, Option<usize>)| Spring::rotational(node, other, Component::Rz, stiffness);
         return is_right.then(|| ends.into_iter().map(spring).collect());
     }
     let direction = fields.required("direction").and_then(|cursor| cursor.direction("direction"));

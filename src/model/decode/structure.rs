@@ -6,7 +6,7 @@ use super::builder::Builder;
 use super::reader::{Fields, Place};
 use super::{contacts, edges, elements, foundations, loads, rigid, springs, superelement, supports, ties};
 use crate::model::scenario::Places;
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::Structure;
 
 /// Elements, and what they are made of: in their place a superelement may stand.
 pub const ELEMENTS: [&str; 8] = ["materials", "sections", "nodes", "bars", "plates", "meshes", "triangles", "quads"];
@@ -40,6 +40,7 @@ pub struct Found {
 pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     let before = fields.cursor().problems_so_far();
     let mut builder = Builder::default();
+    builder.structure.dimension = fields.cursor().dimension();
     let names = match fields.optional("superelement") {
         Some(at) => superelement::read(&mut builder, fields, at, path)?,
         None => {
@@ -64,7 +65,7 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
 fn find_rotations(builder: &mut Builder<'_>) {
     builder.has_rotation = vec![false; builder.structure.nodes.len()];
     for &(node, component) in builder.structure.superelement.iter().flat_map(|element| &element.dofs) {
-        builder.has_rotation[node] |= component == Component::R;
+        builder.has_rotation[node] |= component.is_rotation();
     }
     for element in &builder.structure.elements {
         if element.bends() {

@@ -50,7 +50,7 @@ pub fn read<'d>(
     let entries = matrix_file::entries(stiffness, Size::OfDofs(dofs.len()), path)?;
     let lower = lower_triangle(stiffness, entries)?;
     let name = stiffness.string().unwrap_or_default();
-    let (element, notes) = Superelement::new(&builder.structure.nodes, name, dofs, lower);
+    let (element, notes) = Superelement::new(builder.structure.dimension, &builder.structure.nodes, name, dofs, lower);
     builder.notes.extend(notes.into_iter().map(|note| format!("{name}: {note}")));
     builder.structure.superelement = Some(element);
     Some(names)
@@ -67,7 +67,7 @@ fn dofs<'d>(builder: &Builder<'d>, at: Cursor<'d>) -> Option<Vec<(usize, Compone
             continue;
         };
         let words: Vec<Cursor<'d>> = words.collect();
-        let (Some(node), Some(component)) = (builder.node(words[0]), words[1].choice(&Component::WORDS)) else {
+        let (Some(node), Some(component)) = (builder.node(words[0]), words[1].component()) else {
             is_right = false;
             continue;
         };
@@ -105,8 +105,8 @@ fn load_case<'d>(entry: Entry<'d>, dofs: &[(usize, Component)], path: Option<&Pa
         let along = |wanted: Component| if component == wanted { value } else { 0.0 };
         loads.push(Load::Nodal {
             node,
-            force: [along(Component::X), along(Component::Y)],
-            moment: along(Component::R),
+            force: Component::TRANSLATIONS.map(along),
+            moment: Component::ROTATIONS.map(along),
         });
     }
     Some(LoadCase { name: entry.name().to_owned(), factor: factor?, loads })

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::builder::{Builder, Settlement, entries};
 use super::reader::{Cursor, Fields};
-use crate::model::structure::{Component, Support};
+use crate::model::structure::{Component, Dimension, Support};
 use crate::model::uses::Region;
 
 /// Reads `supports`.
@@ -35,15 +35,15 @@ pub fn components<'d>(
     let mut components = Vec::new();
     let mut is_right = true;
     for entry in cursor.list()? {
-        let Some(component) = entry.choice(&Component::WORDS) else {
+        let Some(component) = entry.component() else {
             is_right = false;
             continue;
         };
-        if component == Component::R {
-            let what = format!("\"r\" cannot be {verb} there");
+        if component.is_rotation() {
+            let what = format!("{} cannot be {verb} there", entry.quoted());
             is_right &= nodes.iter().all(|&node| builder.demand_rotation(entry, node, &what));
         }
-        let direction = [component == Component::X, component == Component::Y].map(f64::from);
+        let direction = Component::TRANSLATIONS.map(|along| f64::from(along == component));
         let what = format!("it cannot be {verb} there");
         is_right &= nodes.iter().all(|&node| builder.demand_displacement(entry, node, direction, &what));
         if !components.contains(&component) {
@@ -51,10 +51,15 @@ pub fn components<'d>(
         }
     }
     if components.is_empty() && is_right {
-        cursor.problem("`fixed` is empty", "name any of \"x\", \"y\", \"r\", or remove the entry");
+        cursor.problem("`fixed` is empty", format!("name any of {}, or remove the entry", words(builder).join(", ")));
         return None;
     }
     is_right.then_some(components)
+}
+
+/// The words of all components, in quotation marks.
+fn words(builder: &Builder<'_>) -> Vec<String> {
+    builder.structure.dimension.words().into_iter().map(|(word, _)| format!("\"{word}\"")).collect()
 }
 
 /// A support of one component, with the case and the amount of its settlement.
@@ -65,7 +70,7 @@ fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Held<'d>
     let nodes = fields.required("at").and_then(|at| builder.nodes_at(at));
     let components =
         fields.required("fixed").and_then(|fixed| components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "fixed"));
-    let settlement = settlement(&fields, components.as_deref());
+    let settlement = settlement(builder, &fields, components.as_deref());
     let (components, settlement) = (components?, settlement?);
     let supports = nodes?.into_iter().flat_map(|node| {
         let hold = |&component: &Component| {
@@ -77,25 +82,36 @@ fn support<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Held<'d>
     Some(supports.collect())
 }
 
-/// The load case and the amounts [u_x, u_y, r] of a settlement. The outer `None`: something was reported.
+/// The load case and the amounts of a settlement by component. The outer `None`: something was reported.
 #[allow(clippy::option_option)]
-fn settlement<'d>(fields: &Fields<'d>, components: Option<&[Component]>) -> Option<Option<(Cursor<'d>, [f64; 3])>> {
+fn settlement<'d>(
+    builder: &Builder<'d>,
+    fields: &Fields<'d>,
+    components: Option<&[Component]>,
+) -> Option<Option<(Cursor<'d>, [f64; 6])>> {
     if fields.entry("settlement").is_none() && fields.entry("case").is_none() {
         return Some(None);
     }
     let case = fields.required("case").filter(|case| case.string().is_some());
     let at = fields.required("settlement")?.of(Region::Amount);
     let entries: Vec<Cursor<'d>> = at.list()?.collect();
-    if !(2..=3).contains(&entries.len()) {
-        at.problem(
-            format!("expected [ux, uy] or [ux, uy, r], found {}", at.found()),
-            "give the displacements along x and y, and the rotation where it is held",
-        );
+    let dimension = builder.structure.dimension;
+    if ![dimension.translations().len(), dimension.components().len()].contains(&entries.len()) {
+        let (expected, help) = match dimension {
+            Dimension::Plane => {
+                ("[ux, uy] or [ux, uy, r]", "give the displacements along x and y, and the rotation where it is held")
+            }
+            Dimension::Space => (
+                "[ux, uy, uz] or [ux, uy, uz, rx, ry, rz]",
+                "give the displacements along x, y and z, and the rotations where they are held",
+            ),
+        };
+        at.problem(format!("expected {expected}, found {}", at.found()), help);
         return None;
     }
-    let mut amounts = [0.0; 3];
+    let mut amounts = [0.0; 6];
     let mut is_right = true;
-    for (k, (entry, (word, component))) in entries.into_iter().zip(Component::WORDS).enumerate() {
+    for (entry, (word, component)) in entries.into_iter().zip(dimension.words()) {
         match entry.number() {
             Some(amount) if amount != 0.0 && components.is_some_and(|held| !held.contains(&component)) => {
                 entry.problem(
@@ -104,7 +120,7 @@ fn settlement<'d>(fields: &Fields<'d>, components: Option<&[Component]>) -> Opti
                 );
                 is_right = false;
             }
-            Some(amount) => amounts[k] = amount,
+            Some(amount) => amounts[component as usize] = amount,
             None => is_right = false,
         }
     }

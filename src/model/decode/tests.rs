@@ -60,7 +60,7 @@ fn a_divided_bar_makes_a_chain_with_hinges_at_its_ends_only() {
     let structure = structure(&scenario);
     let ids: Vec<&str> = structure.nodes.iter().map(|node| node.id.as_str()).collect();
     assert_eq!(ids, ["A", "B", "AB/1", "AB/2", "AB/3"]);
-    assert_eq!(structure.nodes[3].position, [2.5, 3.0]);
+    assert_eq!(structure.nodes[3].position, [2.5, 3.0, 0.0]);
     assert_eq!(structure.bars[0].elements, 0..4);
     let hinges: Vec<[bool; 2]> = structure
         .elements
@@ -76,7 +76,7 @@ fn a_divided_bar_makes_a_chain_with_hinges_at_its_ends_only() {
     let case = &structure.load_cases[0];
     assert_eq!(case.factor, Number::Parameter("F".into()));
     assert_eq!(case.loads.len(), 5);
-    assert!(matches!(case.loads[4], Load::Nodal { node: 3, moment: 3.0, .. }));
+    assert!(matches!(case.loads[4], Load::Nodal { node: 3, moment: [0.0, 0.0, 3.0], .. }));
     assert_eq!(&*scenario.places.nodes[4], "bars[0]");
     assert_eq!(&*scenario.places.nodes[1], "nodes.B");
 }
@@ -117,15 +117,15 @@ fn edge_contacts_pair_nodes_at_the_same_place() {
     assert_eq!(joint.node, index(structure, "upper[2,0]"));
     assert_eq!(joint.weights, Pair::of_nodes(joint.node, Some(index(structure, "lower[2,1]"))));
     // Out of the lower plate, towards the upper one.
-    assert_eq!(joint.normal, [0.0, 1.0]);
+    assert_eq!(joint.normal, [0.0, 1.0, 0.0]);
     assert_eq!(
         joint.law,
         Law::Coulomb { friction: Number::Value(0.2), cohesion: Number::Value(0.0), gap: Number::Value(0.01) }
     );
     // From the ground into the plate.
-    assert_eq!(structure.pairs[3].normal, [-1.0, 0.0]);
-    assert_eq!(structure.pairs[5].normal, [0.6, 0.8]);
-    assert_eq!(structure.pairs[5].tangent(), [0.8, -0.6]);
+    assert_eq!(structure.pairs[3].normal, [-1.0, 0.0, 0.0]);
+    assert_eq!(structure.pairs[5].normal, [0.6, 0.8, 0.0]);
+    assert_eq!(structure.pairs[5].tangents, [[0.8, -0.6, 0.0]]);
     assert_eq!(&*scenario.places.pairs[2], "contacts[0]");
     assert_eq!(&*scenario.places.pairs[4], "contacts[1]");
     // The corner is held by both supports, but listed once.
@@ -148,9 +148,9 @@ fn a_plate_turned_upside_down_meets_its_partner_in_reverse() {
     for pair in &structure.pairs {
         let against = pair.weights[1].0;
         assert_eq!(structure.nodes[pair.node].position, structure.nodes[against].position);
-        assert_eq!(pair.normal, [0.0, 1.0]);
+        assert_eq!(pair.normal, [0.0, 1.0, 0.0]);
     }
-    assert_eq!(structure.nodes[structure.pairs[0].node].position, [3.0, 1.0]);
+    assert_eq!(structure.nodes[structure.pairs[0].node].position, [3.0, 1.0, 0.0]);
 }
 
 #[test]

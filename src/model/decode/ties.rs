@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::builder::{Builder, entries};
 use super::reader::{Cursor, Fields};
 use super::supports::components;
-use crate::model::structure::{Component, Tie};
+use crate::model::structure::Tie;
 
 /// Reads `ties`.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
@@ -33,7 +33,7 @@ fn tie<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Tie> {
     let nodes = nodes.filter(|nodes| !ties_a_body(builder, cursor, nodes));
     let components = match (fields.optional("fixed"), &nodes) {
         (Some(fixed), nodes) => components(builder, fixed, nodes.as_deref().unwrap_or(&[]), "tied"),
-        (None, _) => Some(vec![Component::X, Component::Y]),
+        (None, _) => Some(builder.structure.dimension.translations().to_vec()),
     };
     Some(Tie { nodes: nodes?, components: components? })
 }

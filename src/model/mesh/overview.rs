@@ -6,6 +6,7 @@ use super::boundary::{Boundary, EdgeFault};
 use super::{Group, Members, Mesh, Shape};
 use crate::model::edge::Edge;
 use crate::model::structure::Node;
+use crate::model::vector::flat;
 
 /// What a mesh holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,8 +72,9 @@ impl Overview {
     /// Of a mesh.
     pub fn of(mesh: &Mesh) -> Overview {
         let boundary = Boundary::of(mesh);
-        let nodes: Vec<Node> =
-            (0..mesh.nodes.len()).map(|k| Node { id: String::new(), position: mesh.position(k as u32) }).collect();
+        let nodes: Vec<Node> = (0..mesh.nodes.len())
+            .map(|k| Node { id: String::new(), position: flat(mesh.position(k as u32)) })
+            .collect();
         let positions = |index: u32| -> Vec<[f64; 2]> {
             mesh.elements[index as usize].nodes.iter().map(|node| mesh.position(*node)).collect()
         };

@@ -6,6 +6,7 @@ use super::Warning;
 use crate::model::groups::Groups;
 use crate::model::scenario::Scenario;
 use crate::model::structure::{ElementLoad, Load, Structure};
+use crate::model::vector::{dot, unit};
 
 /// Directions agree within 60°.
 const ALIKE: f64 = 0.5;
@@ -15,7 +16,7 @@ const ALIKE: f64 = 0.5;
 pub fn upside_down(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
     let Some(weight) = weight(structure) else { return Vec::new() };
     let part = parts(structure);
-    let mut extents: HashMap<(usize, [u64; 2]), [f64; 2]> = HashMap::new();
+    let mut extents: HashMap<(usize, [u64; 3]), [f64; 2]> = HashMap::new();
     let mut warnings: Vec<Warning> = Vec::new();
     for (pair, place) in structure.pairs.iter().zip(&scenario.places.pairs) {
         let ([(node, _)], n) = (&pair.weights[..], pair.normal) else { continue };
@@ -35,9 +36,9 @@ pub fn upside_down(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
             warnings.push(Warning::new(
                 place.to_string(),
                 format!(
-                    "the normal ({}, {}) of `{id}` points down, the way of the loads, and the structure lies above it: \
+                    "the normal {} of `{id}` points down, the way of the loads, and the structure lies above it: \
                      as if the ground lay on top",
-                    n[0], n[1]
+                    structure.dimension.in_words(n)
                 ),
                 "a normal points from the ground to the node, into the structure: turn it round",
             ));
@@ -47,18 +48,18 @@ pub fn upside_down(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
 }
 
 /// Whether a node is held from the other side too: a guide.
-pub fn is_guided(structure: &Structure, node: usize, normal: [f64; 2]) -> bool {
+pub fn is_guided(structure: &Structure, node: usize, normal: [f64; 3]) -> bool {
     structure.pairs.iter().any(|other| other.node == node && dot(other.normal, normal) < -ALIKE)
 }
 
 /// Whether a direction is that of the weight.
-pub fn is_down(structure: &Structure, direction: [f64; 2]) -> bool {
+pub fn is_down(structure: &Structure, direction: [f64; 3]) -> bool {
     weight(structure).is_some_and(|weight| dot(direction, weight) >= ALIKE)
 }
 
 /// Direction of the sum of all gravity, or else of all forces; `None` without any.
-fn weight(structure: &Structure) -> Option<[f64; 2]> {
-    let mut sums = [[0.0; 2]; 2];
+fn weight(structure: &Structure) -> Option<[f64; 3]> {
+    let mut sums = [[0.0; 3]; 2];
     for load in structure.load_cases.iter().flat_map(|case| &case.loads) {
         let (kind, force) = match load {
             Load::Nodal { force, .. } => (1, *force),
@@ -66,18 +67,14 @@ fn weight(structure: &Structure) -> Option<[f64; 2]> {
                 ElementLoad::Body(value) => (0, *value),
                 ElementLoad::Point { force, .. } => (1, *force),
                 ElementLoad::Line { range, value } => {
-                    (1, [0, 1].map(|axis| 0.5 * (range[1] - range[0]) * (value[0][axis] + value[1][axis])))
+                    (1, [0, 1, 2].map(|axis| 0.5 * (range[1] - range[0]) * (value[0][axis] + value[1][axis])))
                 }
                 ElementLoad::FreeStrain { .. } => continue,
             },
             Load::Settlement { .. } => continue,
         };
-        sums[kind] = [sums[kind][0] + force[0], sums[kind][1] + force[1]];
+        sums[kind] = std::array::from_fn(|c| sums[kind][c] + force[c]);
     }
-    let unit = |force: [f64; 2]| {
-        let length = force[0].hypot(force[1]);
-        (length > 0.0).then(|| force.map(|x| x / length))
-    };
     unit(sums[0]).or_else(|| unit(sums[1]))
 }
 
@@ -91,8 +88,4 @@ pub fn parts(structure: &Structure) -> Vec<usize> {
         parts.join_all(nodes.iter().copied());
     }
     (0..structure.nodes.len()).map(|node| parts.of(node)).collect()
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }

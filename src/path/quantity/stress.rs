@@ -26,8 +26,8 @@ impl OfStress {
 pub struct Field<'a> {
     /// The structure.
     pub structure: &'a Structure,
-    /// (u_x, u_y, rotation) of every node.
-    pub displacements: &'a [[f64; 3]],
+    /// Displacements of every node.
+    pub displacements: &'a [[f64; 6]],
     /// At the nodes of membranes.
     pub node_stresses: Vec<NodeStress>,
     /// At the centres of membranes.

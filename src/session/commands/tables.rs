@@ -215,7 +215,7 @@ impl Session {
     fn moment_about_origin(&self, reactions: &[Reaction]) -> f64 {
         let Source::Structure(structure) = &self.now.scenario.source else { return 0.0 };
         let positions: HashMap<&str, [f64; 2]> =
-            structure.nodes.iter().map(|node| (node.id.as_str(), node.position)).collect();
+            structure.nodes.iter().map(|node| (node.id.as_str(), node.in_plane())).collect();
         let moment = |reaction: &Reaction| {
             let [x, y] = positions.get(reaction.node.as_str()).copied().unwrap_or_default();
             [reaction.m, x * reaction.fy, -y * reaction.fx]

@@ -31,7 +31,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     for (pair, at) in pairs.iter().zip(&zone.abscissas) {
         let share = if last > first { (at - first) / (last - first) } else { 0.5 };
         let x = 4.0 + share * (width - 8.0);
-        let sign = pair_sign(pair.state, [1.0, 0.0], look.ascii);
+        let sign = pair_sign(pair.state, [1.0, 0.0, 0.0], look.ascii);
         canvas.put(x, y, sign, Role::State(pair.state));
         canvas.label(x, y, &look.text(&pair.id), Role::Muted);
         legend.note(sign, Role::State(pair.state), pair.state.word());

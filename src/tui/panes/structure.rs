@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::legend::Legend;
 use super::{loading, strip};
-use crate::model::structure::{LoadCase, Structure};
+use crate::model::structure::{LoadCase, Node, Structure};
 use crate::session::results::{PairDirection, State as PairMotion};
 use crate::text::number::short;
 use crate::tui::app::{PERIOD, State};
@@ -42,7 +42,7 @@ pub fn note(state: &State) -> String {
         (true, false) => "ray without a motion".to_owned(),
         _ if state.shown.is_behind() => "displacements follow".to_owned(),
         _ => match &state.shown.motion.u {
-            Some(u) if u.iter().any(|u| *u != [0.0; 3]) => format!("displacements × {}", short(scale(state))),
+            Some(u) if u.iter().any(|u| *u != [0.0; 6]) => format!("displacements × {}", short(scale(state))),
             _ => "undeformed".to_owned(),
         },
     };
@@ -155,7 +155,7 @@ struct Painter<'s> {
 impl Painter<'_> {
     /// Dot of a node, displaced.
     fn dot(&self, node: usize) -> (f64, f64) {
-        let position = self.structure.nodes.get(node).map_or([0.0; 2], |n| n.position);
+        let position = self.structure.nodes.get(node).map_or([0.0; 2], Node::in_plane);
         let u = self.motion.u.as_ref().and_then(|u| u.get(node)).copied().unwrap_or_default();
         self.view.place((position[0] + self.factor * u[0], position[1] + self.factor * u[1]))
     }
@@ -171,7 +171,7 @@ impl Painter<'_> {
     /// The structure as it is, as it was before, as it was built, and its grid.
     fn draw_lines(&mut self) {
         let look = self.state.look;
-        let u: &[[f64; 3]] = self.motion.u.as_deref().unwrap_or_default();
+        let u: &[[f64; 6]] = self.motion.u.as_deref().unwrap_or_default();
         let [factors, factors_before] = &self.motion.factors;
         let now = self.view.clip(&outline(self.structure, factors, u, self.factor));
         self.canvas.draw(Role::Plain, now.into_iter().map(Stroke::Line).collect());
@@ -180,7 +180,7 @@ impl Painter<'_> {
             self.draw_faint(Role::Series(1), &before, 2.5);
             self.legend.note(look.sign('┈', ':'), Role::Series(1), "before");
         }
-        if self.factor != 0.0 && u.iter().any(|u| *u != [0.0; 3]) {
+        if self.factor != 0.0 && u.iter().any(|u| *u != [0.0; 6]) {
             self.draw_faint(Role::Muted, &outline(self.structure, &[], &[], 0.0), 5.0);
             self.legend.note(look.sign('·', '.'), Role::Muted, "undeformed");
         }
@@ -249,7 +249,7 @@ impl Painter<'_> {
                 continue;
             }
             let motion = directions.and_then(|directions| directions.get(index)).map_or(now.state, in_motion);
-            self.put((x, y), pair_sign(motion, pair.tangent(), look.ascii), Role::State(motion), motion.word());
+            self.put((x, y), pair_sign(motion, pair.tangents[0], look.ascii), Role::State(motion), motion.word());
             self.canvas.label(x, y, &look.text(&pair.id), Role::Muted);
             // the canvas is as large as the area
             places.push(self.canvas.cell(x, y).map(|(column, row)| (column as u16, row as u16)));

@@ -16,7 +16,7 @@ fn a_slider_moves_the_geometry() {
     let mut rig = Rig::of(load_text("bar", text, None).unwrap(), 140, 45);
     rig.press(&["2", "+"]);
     assert_eq!((rig.state.value("L"), rig.state.value("W")), (2.5, 25.0));
-    assert_eq!(rig.state.shown.structure().unwrap().nodes[1].position, [2.5, 0.0]);
+    assert_eq!(rig.state.shown.structure().unwrap().nodes[1].position, [2.5, 0.0, 0.0]);
     // N = 5 W − 0.1 W = 122.5, u = N L / (E A) = 3.0625.
     let slip = rig.state.shown.pairs()[0].z_t;
     assert!((slip - 3.0625).abs() < 1e-12, "{slip}");

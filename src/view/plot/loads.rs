@@ -97,10 +97,15 @@ impl Loads {
             for load in case.loads.iter().filter(|_| factor != 0.0) {
                 match *load {
                     Load::Nodal { node, force, .. } => {
-                        points.push((LoadKind::Force, at(node), force.map(|f| factor * f), cases));
+                        points.push((LoadKind::Force, at(node), [force[0], force[1]].map(|f| factor * f), cases));
                     }
                     Load::Element { element, load: ElementLoad::Point { distance, force, .. } } => {
-                        points.push((LoadKind::Force, on_bar(element, distance), force.map(|f| factor * f), cases));
+                        points.push((
+                            LoadKind::Force,
+                            on_bar(element, distance),
+                            [force[0], force[1]].map(|f| factor * f),
+                            cases,
+                        ));
                     }
                     Load::Element { element, load: ElementLoad::Line { range, value } } => {
                         let index = *lines.entry((element, range.map(f64::to_bits))).or_insert_with(|| {
@@ -120,7 +125,11 @@ impl Loads {
                         let count = nodes.len().max(1) as f64;
                         let owner = owner.get_or_init(|| owners(structure));
                         let weight = weights.entry(owner[element]).or_default();
-                        weight.add((sum.0 / count, sum.1 / count), value.map(|b| factor * b * volume), cases);
+                        weight.add(
+                            (sum.0 / count, sum.1 / count),
+                            [value[0], value[1]].map(|b| factor * b * volume),
+                            cases,
+                        );
                     }
                     // They have no direction, or are no forces.
                     Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
@@ -253,7 +262,7 @@ fn volume(structure: &Structure, index: usize) -> f64 {
     let element = &structure.elements[index];
     let extent = match element.kind {
         ElementKind::Membrane { .. } => {
-            let nodes: Vec<[f64; 2]> = element.nodes.iter().map(|&node| structure.nodes[node].position).collect();
+            let nodes: Vec<[f64; 2]> = element.nodes.iter().map(|&node| structure.nodes[node].in_plane()).collect();
             element.shape().area(&nodes)
         }
         _ => length(structure, index),

@@ -15,7 +15,7 @@ use crate::model::edge::EdgeSide;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
 use crate::model::plate::Plate;
-use crate::model::structure::{Bar, Element, Structure};
+use crate::model::structure::{Bar, Element, Node, Structure};
 use crate::text::number::short;
 
 /// By how much displacements are enlarged.
@@ -54,20 +54,20 @@ const PIECES: [usize; 2] = [8, 32];
 /// So many pieces of all bent elements are enough: the more elements, the fewer pieces of each.
 const ALL_PIECES: usize = 512;
 
-/// u of every node of the structure: (u_x, u_y, rotation), 0 where the list has no such node.
-pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[f64; 3]> {
-    let finite = |u: &NodeDisplacement| [u.ux, u.uy, u.rz].map(|u| if u.is_finite() { u } else { 0.0 });
+/// u of every node of the structure, 0 where the list has no such node.
+pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[f64; 6]> {
+    let finite = |u: &NodeDisplacement| [u.ux, u.uy, 0.0, 0.0, 0.0, u.rz].map(|u| if u.is_finite() { u } else { 0.0 });
     let nodes = &structure.nodes;
     if nodes.len() == displacements.len() && nodes.iter().zip(displacements).all(|(node, u)| node.id == u.node) {
         return displacements.iter().map(finite).collect();
     }
     let by_id: HashMap<&str, &NodeDisplacement> = displacements.iter().map(|node| (node.node.as_str(), node)).collect();
-    nodes.iter().map(|node| by_id.get(node.id.as_str()).map_or([0.0; 3], |u| finite(u))).collect()
+    nodes.iter().map(|node| by_id.get(node.id.as_str()).map_or([0.0; 6], |u| finite(u))).collect()
 }
 
 /// The factor by which displacements are drawn: the one asked for, or 1, 2 or 5 × 10^k so that the largest, between the
 /// nodes too, becomes at most a tenth of the model's larger side; 1 where nothing moves. `factors`: see [`Picture`].
-pub fn factor(structure: &Structure, factors: &[f64], u: &[[f64; 3]], magnification: Magnification) -> f64 {
+pub fn factor(structure: &Structure, factors: &[f64], u: &[[f64; 6]], magnification: Magnification) -> f64 {
     if let Magnification::Factor(factor) = magnification {
         return if factor.is_finite() { factor } else { 1.0 };
     }
@@ -86,7 +86,7 @@ pub fn factor(structure: &Structure, factors: &[f64], u: &[[f64; 3]], magnificat
 }
 
 /// The largest displacement of nodes and of places between them.
-fn largest_displacement(structure: &Structure, factors: &[f64], u: &[[f64; 3]]) -> f64 {
+fn largest_displacement(structure: &Structure, factors: &[f64], u: &[[f64; 6]]) -> f64 {
     let curves = ElasticCurves::of(structure, factors);
     let shares = shares(structure);
     let bars = structure.elements.iter().enumerate().filter(|(_, element)| element.bends());
@@ -116,16 +116,16 @@ pub struct Lines {
 }
 
 /// Place of a node displaced by `factor` × u.
-fn displaced(structure: &Structure, u: &[[f64; 3]], factor: f64) -> impl Fn(usize) -> (f64, f64) {
+fn displaced(structure: &Structure, u: &[[f64; 6]], factor: f64) -> impl Fn(usize) -> (f64, f64) {
     move |node| {
-        let position = structure.nodes.get(node).map_or([0.0; 2], |n| n.position);
+        let position = structure.nodes.get(node).map_or([0.0; 2], Node::in_plane);
         let u = u.get(node).copied().unwrap_or_default();
         (position[0] + factor * u[0], position[1] + factor * u[1])
     }
 }
 
 /// See [`Lines`].
-fn lines(structure: &Structure, factors: &[f64], u: &[[f64; 3]], factor: f64) -> Lines {
+fn lines(structure: &Structure, factors: &[f64], u: &[[f64; 6]], factor: f64) -> Lines {
     Lines {
         outline: outline(structure, factors, u, factor),
         grid: grid(structure, u, factor),
@@ -134,7 +134,7 @@ fn lines(structure: &Structure, factors: &[f64], u: &[[f64; 3]], factor: f64) ->
 }
 
 /// [`Lines::outline`]; `factors`: see [`Picture`].
-pub fn outline(structure: &Structure, factors: &[f64], u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+pub fn outline(structure: &Structure, factors: &[f64], u: &[[f64; 6]], factor: f64) -> Vec<Vec<(f64, f64)>> {
     let curves = ElasticCurves::of(structure, factors);
     let at = displaced(structure, u, factor);
     let shares = shares(structure);
@@ -181,7 +181,7 @@ pub fn outline(structure: &Structure, factors: &[f64], u: &[[f64; 3]], factor: f
 }
 
 /// [`Lines::grid`].
-pub fn grid(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+pub fn grid(structure: &Structure, u: &[[f64; 6]], factor: f64) -> Vec<Vec<(f64, f64)>> {
     let at = displaced(structure, u, factor);
     let sides = structure.meshes.iter().flat_map(|mesh| &mesh.sides);
     let mut grid: Vec<_> = sides.filter(|(_, is_inside)| *is_inside).map(|(side, _)| side_line(side, &at)).collect();
@@ -194,7 +194,7 @@ pub fn grid(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64,
 }
 
 /// [`Lines::faces`].
-fn faces(structure: &Structure, u: &[[f64; 3]], factor: f64) -> Vec<Vec<(f64, f64)>> {
+fn faces(structure: &Structure, u: &[[f64; 6]], factor: f64) -> Vec<Vec<(f64, f64)>> {
     let at = displaced(structure, u, factor);
     let areas = structure.elements.iter().filter(|element| element.shape().is_area());
     let mut faces: Vec<Vec<(f64, f64)>> = areas.map(|element| element.ring().map(&at).collect()).collect();
@@ -221,7 +221,7 @@ fn plate_lines(plate: &Plate) -> (usize, usize) {
 
 /// The order of nodes along the line on which they all lie; `None` if they do not.
 fn along_a_line(structure: &Structure, nodes: &[usize]) -> Option<Vec<usize>> {
-    let places: Vec<[f64; 2]> = nodes.iter().map(|&node| structure.nodes[node].position).collect();
+    let places: Vec<[f64; 2]> = nodes.iter().map(|&node| structure.nodes[node].in_plane()).collect();
     straight_order(&places)
 }
 
@@ -312,14 +312,14 @@ pub struct PairMark {
     /// Its state; `None` where none is shown.
     pub state: Option<State>,
     /// Unit tangent t.
-    pub tangent: [f64; 2],
+    pub tangent: [f64; 3],
 }
 
 impl Scene {
     /// The scene of a picture, with the loads under these values of the parameters.
     pub fn new(picture: &Picture<'_>, loads: Option<&ParameterValues>) -> Scene {
         let structure = picture.structure;
-        let rest = vec![[0.0; 3]; structure.nodes.len()];
+        let rest = vec![[0.0; 6]; structure.nodes.len()];
         let u = picture.displacements.map(|displacements| nodal(structure, displacements));
         let moved = u.as_ref().unwrap_or(&rest);
         let factors = if u.is_some() { picture.factors } else { &[] };
@@ -338,7 +338,7 @@ impl Scene {
         let (bottom, top) = range(all().map(|(_, y)| y));
         let bounds = all().next().map(|_| [[left, right], [bottom, top]]);
         let at = |node: usize| {
-            let position = structure.nodes.get(node).map_or([0.0; 2], |n| n.position);
+            let position = structure.nodes.get(node).map_or([0.0; 2], Node::in_plane);
             let u = moved.get(node).copied().unwrap_or_default();
             (position[0] + factor * u[0], position[1] + factor * u[1])
         };
@@ -346,7 +346,7 @@ impl Scene {
             place: at(pair.node),
             id: pair.id.clone(),
             state: picture.pairs.and_then(|states| states.get(index)).map(|state| state.state),
-            tangent: pair.tangent(),
+            tangent: pair.tangents[0],
         };
         Scene {
             title,
@@ -391,7 +391,7 @@ fn ordinates(structure: &Structure, bar: &Bar, points: &[(f64, f64)], scale: f64
     let mut stretches = Vec::new();
     let mut from = 0.0;
     for element in &structure.elements[bar.elements.clone()] {
-        let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+        let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].in_plane());
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         stretches.push((from, length, a, [(b[0] - a[0]) / length, (b[1] - a[1]) / length]));
         from += length;

@@ -11,7 +11,7 @@ use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, State};
 use crate::answer::rounding::largest;
 use crate::model::parameter::ParameterValues;
-use crate::model::structure::Structure;
+use crate::model::structure::{Node, Structure};
 use crate::model::units::Units;
 use crate::text::number::heading;
 use crate::view::members::extremes;
@@ -22,8 +22,8 @@ const EXTREMES: usize = 6;
 /// Plates are drawn with their grid as long as its lines are this many dots apart.
 pub const GRID_PITCH: f64 = 6.0;
 /// Sign of a pair in a picture. A slip points the way the second side moves over the first.
-pub fn pair_sign(state: State, tangent: [f64; 2], ascii: bool) -> char {
-    let towards = |direction: [f64; 2]| {
+pub fn pair_sign(state: State, tangent: [f64; 3], ascii: bool) -> char {
+    let towards = |direction: [f64; 3]| {
         let signs = if ascii { ['>', '<', '^', 'v'] } else { ['▶', '◀', '▲', '▼'] };
         if direction[0].abs() >= direction[1].abs() {
             signs[usize::from(direction[0] < 0.0)]
@@ -39,7 +39,7 @@ pub fn pair_sign(state: State, tangent: [f64; 2], ascii: bool) -> char {
         (State::Closed, false) => '■',
         (State::Closed, true) => '#',
         (State::SlipPlus, _) => towards(tangent),
-        (State::SlipMinus, _) => towards([-tangent[0], -tangent[1]]),
+        (State::SlipMinus, _) => towards(tangent.map(|t| -t)),
         (State::Slip, false) => '◆',
         (State::Slip, true) => '%',
     }
@@ -252,7 +252,7 @@ fn draw_marks(scene: &Scene, fit: &mut Fit, style: &Style) -> Vec<(char, Role, S
 
 /// Smallest distance of two grid lines of a plate in dots.
 pub fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
-    let place = |node: &usize| structure.nodes.get(*node).map(|node| node.position);
+    let place = |node: &usize| structure.nodes.get(*node).map(Node::in_plane);
     // a plate is a rectangle: its first row and column have all distances
     let lines = structure.plates.iter().flat_map(|plate| {
         let row: Vec<_> = plate.nodes.iter().take(1).flatten().filter_map(place).collect();

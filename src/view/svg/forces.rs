@@ -24,7 +24,7 @@ impl Axis {
         let mut from = 0.0;
         let mut elements = Vec::new();
         for element in structure.elements[bar.elements.clone()].iter() {
-            let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+            let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].in_plane());
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             elements.push((from, a, [(b[0] - a[0]) / length, (b[1] - a[1]) / length], length));
             from += length;

@@ -192,7 +192,8 @@ proptest! {
         let mut moved = beam_structure();
         for (node, place) in moved.nodes.iter_mut().zip(&places) {
             // A checked structure has finite coordinates.
-            node.position = place.map(|x| if x.is_finite() { x } else { 0.0 });
+            let [x, y] = place.map(|x| if x.is_finite() { x } else { 0.0 });
+            node.position = [x, y, 0.0];
         }
         let s = &style;
         for structure in [beam_structure(), plates(), moved] {

@@ -182,7 +182,7 @@ pub fn beam_ray() -> Answer {
 pub fn beam_structure() -> Structure {
     let names = ["A", "B", "C", "D", "E", "F"];
     Structure {
-        nodes: (0..SUPPORTS).map(|i| Node { id: names[i].into(), position: [i as f64, 0.0] }).collect(),
+        nodes: (0..SUPPORTS).map(|i| Node { id: names[i].into(), position: [i as f64, 0.0, 0.0] }).collect(),
         materials: vec![steel()],
         elements: (0..SUPPORTS - 1)
             .map(|i| Element {
@@ -220,7 +220,7 @@ pub fn plates() -> Structure {
         let index = |i: usize, j: usize| first + j * (nx + 1) + i;
         for j in 0..=ny {
             for i in 0..=nx {
-                structure.nodes.push(Node { id: format!("{name}[{i},{j}]"), position: [i as f64, y0 + j as f64] });
+                structure.nodes.push(Node { id: format!("{name}[{i},{j}]"), position: [i as f64, y0 + j as f64, 0.0] });
             }
         }
         for j in 0..ny {
@@ -249,8 +249,8 @@ pub fn plates() -> Structure {
     structure
 }
 
-fn point(node: usize, force: [f64; 2]) -> Load {
-    Load::Nodal { node, force, moment: 0.0 }
+fn point(node: usize, [x, y]: [f64; 2]) -> Load {
+    Load::Nodal { node, force: [x, y, 0.0], moment: [0.0; 3] }
 }
 
 /// A cantilever, clamped at A, 4 m in two elements, under q = 10 kN/m downwards: Q = q (L − x), M = −q (L − x)²/2.
@@ -264,7 +264,7 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
     structure.bars[0].elements = 0..2;
     structure.pairs.clear();
     structure.supports =
-        [Component::X, Component::Y, Component::R].map(|component| Support { node: 0, component }).to_vec();
+        [Component::X, Component::Y, Component::Rz].map(|component| Support { node: 0, component }).to_vec();
     let (q, l, ei) = (10.0, 4.0, 2.1e4);
     structure.load_cases = vec![LoadCase {
         name: "line".into(),
@@ -272,7 +272,7 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
         loads: (0..2)
             .map(|element| Load::Element {
                 element,
-                load: ElementLoad::Line { range: [0.0, 2.0], value: [[0.0, -q]; 2] },
+                load: ElementLoad::Line { range: [0.0, 2.0], value: [[0.0, -q, 0.0]; 2] },
             })
             .collect(),
     }];
@@ -311,7 +311,8 @@ fn ground_pair(id: &str, node: usize) -> Pair {
         id: id.into(),
         node,
         weights: Pair::of_nodes(node, None),
-        normal: [0.0, 1.0],
+        normal: [0.0, 1.0, 0.0],
+        tangents: vec![[1.0, 0.0, 0.0]],
         slides_on_ground: false,
         law: Law::Coulomb {
             friction: Number::Parameter("f".into()),

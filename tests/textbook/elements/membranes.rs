@@ -45,13 +45,13 @@ fn check(what: &str, case: &Case, answer: &Answer, field: Field, plane: &str) {
     is_answer(answer);
     let Geometry::Structure { main, structure, .. } = &*case.prepared.geometry else { panic!("a structure") };
     let all = answer.displacements.as_ref().expect("displacements");
-    let exact: Vec<[f64; 2]> = structure.nodes.iter().map(|node| field.at(node.position)).collect();
+    let exact: Vec<[f64; 2]> = structure.nodes.iter().map(|node| field.at(node.in_plane())).collect();
     let size = exact.iter().flatten().fold(0f64, |m, u| m.max(u.abs()));
     for (found, exact) in all.iter().zip(&exact) {
         near(&format!("{what}: {}", found.node), found.ux, exact[0], 1e-12, size);
         near(&format!("{what}: {}", found.node), found.uy, exact[1], 1e-12, size);
     }
-    let u = Displacements::from(all.iter().map(|d| [d.ux, d.uy, d.rz]).collect::<Vec<_>>());
+    let u = Displacements::from(all.iter().map(|d| [d.ux, d.uy, 0.0, 0.0, 0.0, d.rz]).collect::<Vec<_>>());
     let factors = vec![1.0; structure.load_cases.len()];
     let right = field.stress(plane);
     // What the rounding of u itself strains: E size / side, with sides near a tenth of the mesh.

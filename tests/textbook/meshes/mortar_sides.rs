@@ -410,7 +410,7 @@ fn the_weights_are_those_of_the_common_refinement() {
             let row = expected[place(x, &above, quadratic[0])].as_ref().expect("a pair faces the other edge");
             let mut found = [vec![0.0; counts[0]], vec![0.0; counts[1]]];
             for &(node, weight) in &pair.weights {
-                let [x, _] = structure.nodes[node].position;
+                let [x, ..] = structure.nodes[node].position;
                 // Tags of the upper body come first: five for each half column.
                 let tag: usize = structure.nodes[node].id[2..].parse().expect("a tag");
                 let is_own = tag <= 5 * (2 * above.len() - 1);

@@ -228,7 +228,7 @@ impl FiniteElement for Solid<'_> {
         let mut all = vec![0.0; 3 * self.nodes.len()];
         for &(factor, load) in acting {
             let forces = match load {
-                ElementLoad::Body([x, y]) => self.body_force([*x, *y, 0.0].map(|b| factor * b)),
+                ElementLoad::Body(b) => self.body_force(b.map(|b| factor * b)),
                 ElementLoad::FreeStrain { strain, .. } => self.expansion_force(factor * strain),
                 ElementLoad::Line { .. } | ElementLoad::Point { .. } => continue,
             };

@@ -21,11 +21,11 @@ const AXES: [(&str, Axes); 3] = [("global", Axes::Global), ("local", Axes::Local
 
 impl Axes {
     /// Global force per length of a bar in the direction (cos, sin).
-    fn to_global(self, [x, y]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 2] {
+    fn to_global(self, [x, y, _]: [f64; 3], [cos, sin, _]: [f64; 3]) -> [f64; 3] {
         match self {
-            Axes::Global => [x, y],
-            Axes::Local => [cos * x - sin * y, sin * x + cos * y],
-            Axes::Projected => [x * sin.abs(), y * cos.abs()],
+            Axes::Global => [x, y, 0.0],
+            Axes::Local => [cos * x - sin * y, sin * x + cos * y, 0.0],
+            Axes::Projected => [x * sin.abs(), y * cos.abs(), 0.0],
         }
     }
 }

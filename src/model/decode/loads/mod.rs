@@ -115,8 +115,8 @@ fn item<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
 }
 
 /// Nodal forces as loads.
-fn nodal(forces: impl IntoIterator<Item = (usize, [f64; 2])>) -> Vec<Load> {
-    forces.into_iter().map(|(node, force)| Load::Nodal { node, force, moment: 0.0 }).collect()
+fn nodal(forces: impl IntoIterator<Item = (usize, [f64; 3])>) -> Vec<Load> {
+    forces.into_iter().map(|(node, force)| Load::Nodal { node, force, moment: [0.0; 3] }).collect()
 }
 
 /// The bar that a string names.
@@ -153,12 +153,12 @@ fn one_or_two(at: Cursor<'_>) -> Option<[f64; 2]> {
 }
 
 /// One vector, or two: at the first and at the last place.
-fn one_or_two_vectors(at: Cursor<'_>) -> Option<[[f64; 2]; 2]> {
+fn one_or_two_vectors(at: Cursor<'_>) -> Option<[[f64; 3]; 2]> {
     let is_pair = at.is_list() && at.list()?.any(Cursor::is_list);
     if !is_pair {
         return at.vector().map(|value| [value; 2]);
     }
-    let values: Vec<Option<[f64; 2]>> =
+    let values: Vec<Option<[f64; 3]>> =
         at.list_of(2, "vectors at the first and at the last place")?.map(Cursor::vector).collect();
     Some([values[0]?, values[1]?])
 }

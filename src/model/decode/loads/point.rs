@@ -15,7 +15,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
     let spot = fields.required("at").and_then(|at| builder.spot(at));
     let force = fields.required("force").and_then(Cursor::vector);
     let moment = match fields.optional("moment") {
-        Some(cursor) => Some((cursor, cursor.number()?)),
+        Some(cursor) => Some((cursor, cursor.moment()?)),
         None => None,
     };
     match spot? {
@@ -24,7 +24,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
                 Some((cursor, moment)) => {
                     builder.demand_rotation(cursor, node, "no `moment` can act there").then_some(moment)?
                 }
-                None => 0.0,
+                None => [0.0; 3],
             };
             let force = force?;
             builder.demand_displacement(cursor, node, force, "no force can act there").then_some(())?;
@@ -59,7 +59,7 @@ fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
         None => None,
     };
     let moment = match fields.optional("moment") {
-        Some(cursor) => Some((cursor, cursor.number()?)),
+        Some(cursor) => Some((cursor, cursor.moment()?)),
         None => None,
     };
     if force.is_none() && moment.is_none() {
@@ -74,6 +74,6 @@ fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
         cursor.problem("a truss bar carries no `moment`", "remove it, or make the bar a frame");
         return None;
     }
-    let (force, moment) = (force.unwrap_or_default(), moment.map_or(0.0, |(_, moment)| moment));
+    let (force, moment) = (force.unwrap_or_default(), moment.map_or([0.0; 3], |(_, moment)| moment));
     Some(vec![Load::Element { element, load: ElementLoad::Point { distance, force, moment } }])
 }
