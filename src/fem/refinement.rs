@@ -21,7 +21,7 @@ use super::factor::Factor;
 use super::sparse::SymmetricSparse;
 use super::watch::check_stop;
 use crate::doubled::{Doubled, Real};
-use crate::model::structure::Structure;
+use crate::model::structure::{Component, Structure};
 use crate::watch::Watch;
 
 /// Conjugate gradients go on until the square of the error's energy norm has fallen to this share of the first, or no
@@ -227,16 +227,17 @@ impl Refinement<'_> {
     /// does; too little to compute with, if their energy drowns in the terms that it sums.
     pub fn cost(&self, structure: &Structure, u: &[Doubled]) -> Verdict {
         let nodal = self.dofs.scatter(u);
-        let largest = |components: &[usize]| {
-            let values = nodal.iter().flat_map(|u| components.iter().map(|&c| u[c].to_f64().abs()));
+        let largest = |components: [Component; 3]| {
+            let values = nodal.iter().flat_map(|u| components.iter().map(|&c| u[c as usize].to_f64().abs()));
             values.fold(0.0, f64::max)
         };
-        let size = [largest(&[0, 1]), largest(&[0, 1]), largest(&[2])];
+        let size = [largest(Component::TRANSLATIONS), largest(Component::ROTATIONS)];
         let allowed = ROUNDING_STRAIN * ROUNDING_STRAIN;
         let mut strained = false;
         each_stiffness(structure, |slots, k| {
             let own: Vec<Doubled> = slots.iter().map(|&(node, component)| nodal[node][component as usize]).collect();
-            let scale: Vec<f64> = slots.iter().map(|&(_, component)| size[component as usize]).collect();
+            let scale: Vec<f64> =
+                slots.iter().map(|&(_, component)| size[usize::from(component.is_rotation())]).collect();
             let (mut energy, mut terms) = (Doubled::zero(), 0.0);
             for i in 0..own.len() {
                 for j in 0..own.len() {

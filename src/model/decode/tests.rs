@@ -171,7 +171,7 @@ fn bars_may_stand_on_plates_and_quads_on_nodes() {
     assert_eq!(structure.ties[0].components, [Component::X, Component::Y]);
     assert_eq!(structure.springs.len(), 4);
     let factors: Vec<f64> = structure.springs[0].terms.iter().map(|term| term.factor).collect();
-    assert_eq!(factors, [0.0, -1.0]);
+    assert_eq!(factors, [0.0, -1.0, 0.0]);
     assert_eq!(structure.springs[3].stiffness, 7.0);
 }
 

@@ -319,7 +319,7 @@ impl Session {
             .nodes
             .iter()
             .zip(&mode.displacements)
-            .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] })
+            .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[5] })
             .collect();
         let title = format!("{}: collapse mode", self.short_name());
         Ok(Shape { title, structure, displacements: Some(displacements), factors: &[], pairs: None })
