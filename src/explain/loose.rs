@@ -33,8 +33,11 @@ pub fn loose_parts(structure: &Structure, main: &MainSystem) -> Vec<LoosePart> {
     let mut found: Vec<LoosePart> = Vec::new();
     for motion in main.kernel_motions() {
         let opens = joints.iter().take(m).any(|joint| {
-            let z: f64 =
-                joint.terms.iter().map(|(node, a)| a[0] * motion.u[*node][0] + a[1] * motion.u[*node][1]).sum();
+            let z: f64 = joint
+                .terms
+                .iter()
+                .map(|(node, a)| std::iter::zip(a, &motion.u[*node]).map(|(a, u)| a * u).sum::<f64>())
+                .sum();
             z.abs() > 1e-9
         });
         let rigid = parts(structure, &motion.u).unwrap_or_default();

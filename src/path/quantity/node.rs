@@ -5,6 +5,8 @@ use super::value::NoValue;
 use crate::answer::record::{NodeDisplacement, Reaction};
 use crate::answer::rounding::{denoised, of_reactions};
 use crate::model::quantity::OfNode;
+use crate::model::structure::Component;
+use crate::model::vector::length;
 
 impl OfNode {
     /// Of a displaced node; `None` for components of a reaction.
@@ -30,9 +32,9 @@ impl OfNode {
 impl Facts<'_> {
     pub(super) fn of_node(&self, which: OfNode, node: &str) -> Result<f64, NoValue> {
         let component = match which {
-            OfNode::Ux => 0,
-            OfNode::Uy => 1,
-            OfNode::Rz => 2,
+            OfNode::Ux => Component::X,
+            OfNode::Uy => Component::Y,
+            OfNode::Rz => Component::Rz,
             OfNode::Fx | OfNode::Fy | OfNode::M => {
                 let reactions = self.reactions()?;
                 let found = reactions.iter().find(|reaction| reaction.node == node);
@@ -41,11 +43,11 @@ impl Facts<'_> {
             }
         };
         let u = self.displacements()?;
-        Ok(u.0[self.node(node)?][component])
+        Ok(u.0[self.node(node)?][component as usize])
     }
 
-    /// The largest √(u_x² + u_y²).
+    /// The largest displacement.
     pub(super) fn largest_displacement(&self) -> Result<f64, NoValue> {
-        Ok(self.displacements()?.0.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max))
+        Ok(self.displacements()?.0.iter().map(|&[x, y, z, ..]| length([x, y, z])).fold(0.0, f64::max))
     }
 }
