@@ -8,7 +8,7 @@ use crate::model::mesh::overview::Overview;
 /// What `check` says of a mesh file.
 pub fn overview(name: &str, mesh: &Mesh, overview: &Overview) -> Value {
     let elements = overview.shapes.iter().map(|(shape, count)| {
-        let kind = ["line", "triangle", "quadrilateral"][shape.corners() - 2];
+        let kind = shape.word();
         json!({ "shape": kind, "nodes": shape.nodes(), "count": count })
     });
     let groups = overview.groups.iter().map(|group| {
@@ -17,23 +17,27 @@ pub fn overview(name: &str, mesh: &Mesh, overview: &Overview) -> Value {
             "place": group.place,
         });
         if let Some(measure) = group.measure {
-            object[if group.dimension == 2 { "area" } else { "length" }] = json!(measure);
+            object[measure_word(group.dimension)] = json!(measure);
         }
         if let Some(fault) = &group.fault {
-            object["no_edge"] = json!(fault);
+            object[if overview.volume.is_some() { "no_face" } else { "no_edge" }] = json!(fault);
         }
         object
     });
-    let boundary =
-        overview.boundary.iter().map(|edge| json!({ "name": edge.name, "nodes": edge.nodes, "length": edge.length }));
-    json!({
+    let dimension = if overview.volume.is_some() { 3 } else { 2 };
+    let boundary = overview
+        .boundary
+        .iter()
+        .map(|piece| json!({ "name": piece.name, "nodes": piece.nodes, measure_word(dimension - 1): piece.measure }));
+    let extent = overview.extent.map(|corner| corner[..usize::from(dimension)].to_vec());
+    let mut object = json!({
         "mesh": name,
         "format": mesh.format,
         "nodes": mesh.nodes.len(),
         "unused_nodes": overview.unused_nodes,
         "elements": elements.collect::<Vec<_>>(),
         "area": overview.area,
-        "extent": overview.extent,
+        "extent": extent,
         "groups": groups.collect::<Vec<_>>(),
         "boundary": boundary.collect::<Vec<_>>(),
         "worst": overview.worst.as_ref().map(|worst| {
@@ -41,5 +45,18 @@ pub fn overview(name: &str, mesh: &Mesh, overview: &Overview) -> Value {
         }),
         "notes": mesh.notes,
         "skipped": mesh.skipped,
-    })
+    });
+    if let Some(volume) = overview.volume {
+        object["volume"] = json!(volume);
+    }
+    object
+}
+
+/// What is measured of something with so many dimensions.
+fn measure_word(dimension: u8) -> &'static str {
+    match dimension {
+        2 => "area",
+        3 => "volume",
+        _ => "length",
+    }
 }

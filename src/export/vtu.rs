@@ -33,6 +33,10 @@ fn cell_type(element: &Element) -> u8 {
         Shape::Triangle6 => 22,
         Shape::Quad4 => 9,
         Shape::Quad8 => 23,
+        Shape::Tetrahedron4 => 10,
+        Shape::Tetrahedron10 => 24,
+        Shape::Hexahedron8 => 12,
+        Shape::Hexahedron20 => 25,
     }
 }
 

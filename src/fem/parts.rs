@@ -34,15 +34,15 @@ impl Parts {
         let given = superelement_parts(structure);
         let mut groups = Groups::new(beyond + given.len());
         let mut join = |a: u32, b: u32| groups.join(a as usize, b as usize);
-        // Elements that share an edge.
-        let mut edges = Vec::new();
+        // Elements that share a side, solids that share a face.
+        let mut borders = Vec::new();
         for (index, element) in structure.elements.iter().enumerate() {
-            edges.extend(element.sides().map(|[a, b]| (a.min(b) as u32, a.max(b) as u32, index as u32)));
+            borders.extend(element.borders().map(|nodes| (nodes, index as u32)));
         }
-        edges.sort_unstable();
-        for pair in edges.windows(2) {
-            if (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1) {
-                join(pair[0].2, pair[1].2);
+        borders.sort_unstable();
+        for pair in borders.windows(2) {
+            if pair[0].0 == pair[1].0 {
+                join(pair[0].1, pair[1].1);
             }
         }
         // Elements with two nodes in one body.

@@ -40,7 +40,7 @@ pub struct Spot {
 }
 
 /// Nodes this near the chord, relative to the length of the edge, lie on a straight edge.
-const STRAIGHT: f64 = 1e-9;
+pub const STRAIGHT: f64 = 1e-9;
 
 /// Three Gauss points on (0, 1): exact to degree 5.
 const GAUSS: [(f64, f64); 3] =
@@ -99,17 +99,25 @@ impl EdgeSide {
     fn crossings(&self, nodes: &[Node], y: f64) -> Vec<f64> {
         let height = |node: usize| nodes[node].position[1] - y;
         let [a, b] = self.ends.map(height);
-        // a + c1 t + c2 t² = 0
-        let (c1, c2) = match self.middle.map(height) {
-            None => (b - a, 0.0),
-            Some(m) => (4.0 * m - 3.0 * a - b, 2.0 * a - 4.0 * m + 2.0 * b),
-        };
-        let root = (c1 * c1 - 4.0 * c2 * a).sqrt();
-        let r = -0.5 * (c1 + c1.signum() * root);
-        let mut places: Vec<f64> = [r / c2, a / r].into_iter().filter(|t| *t > 0.0 && *t < 1.0).collect();
-        places.sort_by(f64::total_cmp);
-        places
+        match self.middle.map(height) {
+            None => crossings(a, b - a, 0.0),
+            Some(m) => crossings_through([a, m, b]),
+        }
     }
+}
+
+/// The places 0 < t < 1 at which a + c1 t + c2 t² is zero, in increasing order; without cancellation.
+pub fn crossings(a: f64, c1: f64, c2: f64) -> Vec<f64> {
+    let root = (c1 * c1 - 4.0 * c2 * a).sqrt();
+    let r = -0.5 * (c1 + c1.signum() * root);
+    let mut places: Vec<f64> = [r / c2, a / r].into_iter().filter(|t| *t > 0.0 && *t < 1.0).collect();
+    places.sort_by(f64::total_cmp);
+    places
+}
+
+/// Those of the parabola with these values at t = 0, 1/2 and 1.
+pub fn crossings_through([a, m, b]: [f64; 3]) -> Vec<f64> {
+    crossings(a, 4.0 * m - 3.0 * a - b, 2.0 * a - 4.0 * m + 2.0 * b)
 }
 
 impl Edge {

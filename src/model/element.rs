@@ -2,8 +2,10 @@
 //!
 //! How they carry force is told by [`crate::fem`], in one file for each kind.
 
+use super::faces::corners;
 use super::node::Component;
 use super::shape::Shape;
+use super::space_section::{EndJoint, SpaceSection};
 
 /// Linear elastic material.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,12 +64,42 @@ pub enum ElementKind {
         /// Whether a membrane of four nodes has modes of its own beside those of its nodes, so that it bends freely.
         incompatible: bool,
     },
+    /// Two-node frame element in space, `nodes` = [start, end].
+    SpaceFrame {
+        /// Cross-section.
+        section: SpaceSection,
+        /// A vector in the local x–y plane; `None` for the common one (see
+        /// [`BarAxes::in_space`](super::bar_axes::BarAxes::in_space)).
+        orientation: Option<[f64; 3]>,
+        /// How start and end are joined to their nodes.
+        joints: [EndJoint; 2],
+    },
+    /// Two-node bar in space that carries axial force only, `nodes` = [start, end].
+    SpaceTruss {
+        /// Cross-section area.
+        area: f64,
+        /// As of a frame; for the loads across it.
+        orientation: Option<[f64; 3]>,
+    },
+    /// Tetrahedron of 4 or 10 nodes, hexahedron of 8 or 20, in the order of
+    /// [`shape_functions`](super::shape_functions).
+    Solid {
+        /// Whether a hexahedron of eight nodes has modes of its own beside those of its nodes, so that it bends freely.
+        incompatible: bool,
+    },
+}
+
+impl ElementKind {
+    /// Whether it has incompatible modes.
+    pub fn is_incompatible(&self) -> bool {
+        matches!(self, ElementKind::Membrane { incompatible: true, .. } | ElementKind::Solid { incompatible: true })
+    }
 }
 
 /// One finite element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {
-    /// As many as its shape has: 2 (frame, truss), or 3, 4, 6, 8 (membrane).
+    /// As many as its shape has: 2 (frame, truss), 3, 4, 6, 8 (membrane), or 4, 8, 10, 20 (solid).
     pub nodes: Vec<usize>,
     /// Index into [`Structure::materials`](super::structure::Structure::materials).
     pub material: usize,
@@ -76,14 +108,18 @@ pub struct Element {
 }
 
 impl Element {
-    /// Line, triangle or quadrilateral, with how many nodes.
+    /// Line, triangle, quadrilateral, tetrahedron or hexahedron, with how many nodes.
     pub fn shape(&self) -> Shape {
         match (&self.kind, self.nodes.len()) {
-            (ElementKind::Frame { .. } | ElementKind::Truss { .. }, _) => Shape::Line2,
+            (ElementKind::Solid { .. }, 4) => Shape::Tetrahedron4,
+            (ElementKind::Solid { .. }, 10) => Shape::Tetrahedron10,
+            (ElementKind::Solid { .. }, 20) => Shape::Hexahedron20,
+            (ElementKind::Solid { .. }, _) => Shape::Hexahedron8,
             (ElementKind::Membrane { .. }, 3) => Shape::Triangle3,
             (ElementKind::Membrane { .. }, 6) => Shape::Triangle6,
             (ElementKind::Membrane { .. }, 8) => Shape::Quad8,
             (ElementKind::Membrane { .. }, _) => Shape::Quad4,
+            _ => Shape::Line2,
         }
     }
 
@@ -94,40 +130,86 @@ impl Element {
             ElementKind::Frame { .. } | ElementKind::Truss { .. } | ElementKind::Membrane { .. } => {
                 &[Component::X, Component::Y]
             }
+            ElementKind::SpaceFrame { joints, .. } if joints[at] != EndJoint::Ball => &Component::ALL,
+            ElementKind::SpaceFrame { .. } | ElementKind::SpaceTruss { .. } | ElementKind::Solid { .. } => {
+                &Component::TRANSLATIONS
+            }
         }
     }
 
     /// Whether it bends, so that its nodes have rotations.
     pub fn bends(&self) -> bool {
-        matches!(self.kind, ElementKind::Frame { .. })
+        matches!(self.kind, ElementKind::Frame { .. } | ElementKind::SpaceFrame { .. })
     }
 
-    /// What its length (bars) or area (membranes) is multiplied with to give its volume.
+    /// What its length (bars), area (membranes) or volume (solids) is multiplied with to give its volume.
     pub fn area(&self) -> f64 {
         match &self.kind {
-            ElementKind::Frame { area, .. } | ElementKind::Truss { area } => *area,
+            ElementKind::Frame { area, .. } | ElementKind::Truss { area } | ElementKind::SpaceTruss { area, .. } => {
+                *area
+            }
+            ElementKind::SpaceFrame { section, .. } => section.area,
             ElementKind::Membrane { thickness, .. } => *thickness,
+            ElementKind::Solid { .. } => 1.0,
         }
     }
 
-    /// Area and second moment of area of the cross-section of one that bends.
-    pub fn section(&self) -> Option<[f64; 2]> {
+    /// Area and second moments of area of the cross-section of one that bends: one in the plane, two in space.
+    pub fn section(&self) -> Option<(f64, Vec<f64>)> {
         match self.kind {
-            ElementKind::Frame { area, inertia, .. } => Some([area, inertia]),
-            ElementKind::Truss { .. } | ElementKind::Membrane { .. } => None,
+            ElementKind::Frame { area, inertia, .. } => Some((area, vec![inertia])),
+            ElementKind::SpaceFrame { section: SpaceSection { area, inertia_y, inertia_z, .. }, .. } => {
+                Some((area, vec![inertia_y, inertia_z]))
+            }
+            _ => None,
         }
     }
 
     /// Its sides from corner to corner; the one line of a bar.
     pub fn sides(&self) -> impl Iterator<Item = [usize; 2]> {
-        let corners = self.shape().corners();
-        let count = if corners == 2 { 1 } else { corners };
-        (0..count).map(move |side| [self.nodes[side], self.nodes[(side + 1) % corners]])
+        let shape = self.shape();
+        let corners = shape.corners();
+        let of_solid = shape.sides_of_solid().iter().copied();
+        let round = match shape.dimension() {
+            1 => 0..1,
+            2 => 0..corners,
+            _ => 0..0,
+        };
+        let round = round.map(move |side| [side, (side + 1) % corners]);
+        round.chain(of_solid).map(|ends| ends.map(|end| self.nodes[end]))
     }
 
-    /// Its nodes as they lie round it, middle nodes between their corners; the two of a bar.
+    /// Neighbours along its sides: corner to corner, or to the node in the middle and on.
+    pub fn neighbours(&self) -> Vec<[usize; 2]> {
+        let middles = self.nodes[self.shape().corners()..].iter();
+        if !self.shape().is_quadratic() {
+            return self.sides().collect();
+        }
+        self.sides().zip(middles).flat_map(|([a, b], &middle)| [[a, middle], [middle, b]]).collect()
+    }
+
+    /// Over what its neighbours move with it: sides of bars and areas, faces of solids, as corner nodes in increasing
+    /// order, `usize::MAX` behind the last.
+    pub fn borders(&self) -> impl Iterator<Item = [usize; 4]> {
+        let border = |nodes: &[usize]| {
+            let mut border = [usize::MAX; 4];
+            border[..nodes.len()].copy_from_slice(nodes);
+            border.sort_unstable();
+            border
+        };
+        let is_solid = self.shape().is_solid();
+        let sides = self.sides().filter(move |_| !is_solid).map(move |ends| border(&ends));
+        let faces = self.shape().faces().into_iter().map(move |places| {
+            let nodes: Vec<usize> = places[..corners(places.len())].iter().map(|&place| self.nodes[place]).collect();
+            border(&nodes)
+        });
+        sides.chain(faces)
+    }
+
+    /// The nodes of an area as they lie round it, middle nodes between their corners; the two of a bar, none of a solid.
     pub fn ring(&self) -> impl Iterator<Item = usize> {
-        let corners = self.shape().corners();
+        let shape = self.shape();
+        let corners = if shape.is_solid() { 0 } else { shape.corners() };
         (0..corners).flat_map(move |k| [Some(self.nodes[k]), self.nodes.get(corners + k).copied()]).flatten()
     }
 }

@@ -100,13 +100,9 @@ impl Material {
         let length = |a: usize, b: usize| distance(positions[a], positions[b]);
         let mut ways = vec![Vec::new(); positions.len()];
         for element in &structure.elements {
-            let ring: Vec<usize> = element.ring().collect();
-            for (k, &a) in ring.iter().enumerate() {
-                let b = ring[(k + 1) % ring.len()];
-                if a != b {
-                    ways[a].push((b, length(a, b)));
-                    ways[b].push((a, length(a, b)));
-                }
+            for [a, b] in element.neighbours() {
+                ways[a].push((b, length(a, b)));
+                ways[b].push((a, length(a, b)));
             }
         }
         let rigid = structure.rigid.iter().map(|body| body.nodes.as_slice());

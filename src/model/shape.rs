@@ -7,7 +7,8 @@
 //!     x = Σ N_k c_k + 4 s(1 − s)(1 − t) d_1 + …              quadrilaterals (serendipity)
 //! ```
 
-/// Shape of an element; its nodes go round, corners first, then the middles of the sides 1-2, 2-3 ….
+/// Shape of an element. The nodes of a line or an area go round, corners first, then the middles of the sides 1-2, 2-3 …;
+/// those of a solid are in the order of [`shape_functions`](super::shape_functions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// Straight line.
@@ -22,23 +23,32 @@ pub enum Shape {
     Quad4,
     /// Quadrilateral with nodes in the middle of its sides.
     Quad8,
+    /// Linear tetrahedron.
+    Tetrahedron4,
+    /// Quadratic tetrahedron.
+    Tetrahedron10,
+    /// Trilinear hexahedron.
+    Hexahedron8,
+    /// Hexahedron with nodes in the middle of its sides.
+    Hexahedron20,
 }
 
 /// Sines of inner angles up to this count as flat.
 const FLAT: f64 = 1e-9;
 
-/// Why the nodes of an area enclose none.
+/// Why the nodes of an area or a solid enclose none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeFault {
     /// Two of its nodes (by their position in the element) are at one place.
     Coincident(usize, usize),
     /// Two of its sides cross.
     BowTie,
-    /// All corners on one line.
+    /// All corners on one line; those of a solid in one plane.
     NoArea,
     /// A corner of 180° or more.
     NotConvex,
-    /// A middle node so far from its middle that the Jacobian is not positive everywhere.
+    /// A middle node so far from its middle, or corners of a solid so far from their places, that the Jacobian is not
+    /// positive everywhere.
     Folded,
 }
 
@@ -62,9 +72,11 @@ impl Shape {
         match self {
             Shape::Line2 => 2,
             Shape::Line3 | Shape::Triangle3 => 3,
-            Shape::Quad4 => 4,
+            Shape::Quad4 | Shape::Tetrahedron4 => 4,
             Shape::Triangle6 => 6,
-            Shape::Quad8 => 8,
+            Shape::Quad8 | Shape::Hexahedron8 => 8,
+            Shape::Tetrahedron10 => 10,
+            Shape::Hexahedron20 => 20,
         }
     }
 
@@ -73,27 +85,57 @@ impl Shape {
         match self {
             Shape::Line2 | Shape::Line3 => 2,
             Shape::Triangle3 | Shape::Triangle6 => 3,
-            Shape::Quad4 | Shape::Quad8 => 4,
+            Shape::Quad4 | Shape::Quad8 | Shape::Tetrahedron4 | Shape::Tetrahedron10 => 4,
+            Shape::Hexahedron8 | Shape::Hexahedron20 => 8,
         }
     }
 
-    /// 1 or 2.
+    /// 1, 2 or 3.
     pub fn dimension(self) -> u8 {
-        if self.is_area() { 2 } else { 1 }
+        match self {
+            Shape::Line2 | Shape::Line3 => 1,
+            Shape::Triangle3 | Shape::Triangle6 | Shape::Quad4 | Shape::Quad8 => 2,
+            Shape::Tetrahedron4 | Shape::Tetrahedron10 | Shape::Hexahedron8 | Shape::Hexahedron20 => 3,
+        }
     }
 
     /// Whether it is a triangle or a quadrilateral.
     pub fn is_area(self) -> bool {
-        self.corners() > 2
+        self.dimension() == 2
+    }
+
+    /// Whether it is a tetrahedron or a hexahedron.
+    pub fn is_solid(self) -> bool {
+        self.dimension() == 3
+    }
+
+    /// Whether it has nodes in the middle of its sides.
+    pub fn is_quadratic(self) -> bool {
+        self.nodes() > self.corners()
+    }
+
+    /// Whether it may have incompatible modes.
+    pub fn can_be_incompatible(self) -> bool {
+        matches!(self, Shape::Quad4 | Shape::Hexahedron8)
+    }
+
+    /// `triangle`.
+    pub fn word(self) -> &'static str {
+        match (self.dimension(), self.corners()) {
+            (1, _) => "line",
+            (2, 3) => "triangle",
+            (2, _) => "quadrilateral",
+            (_, 4) => "tetrahedron",
+            _ => "hexahedron",
+        }
     }
 
     /// `a triangle of 6 nodes`.
     pub fn words(self) -> String {
-        let what = ["line", "triangle", "quadrilateral"][self.corners() - 2];
-        format!("a {what} of {} nodes", self.nodes())
+        format!("a {} of {} nodes", self.word(), self.nodes())
     }
 
-    /// Whether the area runs clockwise.
+    /// Whether an area runs clockwise.
     ///
     /// # Errors
     /// Nodes that enclose no area, or one with folds.
@@ -244,7 +286,7 @@ impl Shape {
 }
 
 /// Two nodes at one place, if there are.
-fn coincident(nodes: &[Point]) -> Result<(), ShapeFault> {
+pub(super) fn coincident<P: PartialEq>(nodes: &[P]) -> Result<(), ShapeFault> {
     for (i, a) in nodes.iter().enumerate() {
         if let Some(j) = nodes[..i].iter().position(|b| b == a) {
             return Err(ShapeFault::Coincident(j, i));

@@ -47,13 +47,15 @@ pub struct Body {
     pub elements: Vec<usize>,
 }
 
-/// The edge behind the pairs `joint[0]`, `joint[1]` …
+/// The edge or face behind the pairs `joint[0]`, `joint[1]` …
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeContact {
     /// `joint`.
     pub id: String,
-    /// Nodes of the edge in order, those of skipped pairs included: pair k is at node k.
+    /// Nodes of the edge or face in order, those of skipped pairs included: pair k is at node k.
     pub nodes: Vec<usize>,
+    /// The part of the area of a face that stands for each node; none of an edge, whose nodes lie one after the other.
+    pub shares: Vec<f64>,
 }
 
 /// A structure with its contact pairs and load cases, ready for the finite elements.
@@ -90,7 +92,7 @@ pub struct Structure {
     pub yielding_ground: Vec<usize>,
     /// Contact pairs in the order of the file.
     pub pairs: Vec<Pair>,
-    /// The contacts of edges among them.
+    /// The contacts of edges and faces among them.
     pub edge_contacts: Vec<EdgeContact>,
     /// Load cases in the order of the file.
     pub load_cases: Vec<LoadCase>,

@@ -1,11 +1,11 @@
-//! The length of edge that stands for each contact pair: what its nodal forces are spread over.
+//! The length of edge or the area of face that stands for each contact pair: what its nodal forces are spread over.
 
 use std::collections::HashSet;
 
 use super::structure::Structure;
 
-/// For each pair of the structure the integral of its node's shape function along the edge or bar it lies on: half of the
-/// sides beside it, on quadratic sides 1/6, 4/6, 1/6 of their length. `None` for a pair of single nodes, and on an edge
+/// For each pair of the structure the integral of its node's shape function along the edge or bar, or over the face, it
+/// lies on: half of the sides beside it, on quadratic sides 1/6, 4/6, 1/6 of their length. `None` for a pair of single nodes, and on an edge
 /// whose last node may be joined to its first.
 pub fn tributary_lengths(structure: &Structure) -> Vec<Option<f64>> {
     let middles: HashSet<usize> = structure
@@ -20,6 +20,10 @@ pub fn tributary_lengths(structure: &Structure) -> Vec<Option<f64>> {
             Some(edge) => edge.nodes.clone(),
             None => pairs.iter().map(|&(pair, _)| structure.pairs[pair].node).collect(),
         };
+        if let Some(face) = edge.filter(|edge| !edge.shares.is_empty()) {
+            pairs.iter().for_each(|&(pair, index)| lengths[pair] = Some(face.shares[index]));
+            continue;
+        }
         if nodes.len() < 2 || may_be_closed(structure, &nodes) {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Isoparametric membranes: triangles of 3 and 6 nodes, quadrilaterals of 4 and 8 (`shape`).
+//! Isoparametric membranes: triangles of 3 and 6 nodes, quadrilaterals of 4 and 8 (`shape_functions`).
 //!
 //! ```text
 //!     k = t Σ_g Bᵀ D B w det J        ε = B u = (ε_xx, ε_yy, γ_xy),  σ = D (ε − ε₀)
@@ -11,9 +11,9 @@ use nalgebra::{SMatrix, SVector};
 
 use super::incompatible;
 use super::jacobian::{determinant, in_plane};
-use super::shape::{MOST, Shape};
 use super::{Acting, FiniteElement, Stiffness, Stress, free_strain};
 use crate::doubled::{Doubled, Real};
+use crate::model::shape_functions::{AreaShape, MOST};
 use crate::model::structure::{ElementLoad, Material, Plane};
 
 type Matrix3 = SMatrix<f64, 3, 3>;
@@ -47,8 +47,8 @@ fn elasticity(material: &Material, plane: Plane) -> Matrix3 {
 }
 
 impl Membrane<'_> {
-    fn shape(&self) -> Shape {
-        Shape::of(self.nodes.len())
+    fn shape(&self) -> AreaShape {
+        AreaShape::of(self.nodes.len())
     }
 
     /// Stiffness; `None` if det J ≤ 0 at a node or an integration point (not convex, clockwise, or a middle node too

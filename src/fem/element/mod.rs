@@ -10,8 +10,6 @@ mod frame;
 mod incompatible;
 mod jacobian;
 mod membrane;
-mod shape;
-#[allow(dead_code, unused_imports)]
 mod space;
 pub mod spring;
 mod truss;
@@ -21,9 +19,11 @@ use nalgebra::DMatrix;
 use self::bar_load::BarForces;
 use self::frame::Frame;
 use self::membrane::Membrane;
+use self::space::{Solid, SpaceFrame};
 use self::truss::Truss;
 use super::error::MainSystemError;
 use crate::doubled::{Doubled, Real};
+use crate::model::bar_axes::AxesFault;
 use crate::model::structure::{Component, Element, ElementKind, ElementLoad, Spring, Structure};
 
 /// A row of an element's stiffness: node and component.
@@ -85,7 +85,9 @@ pub fn finite_element(structure: &Structure, index: usize) -> Result<Box<dyn Fin
     let element = &structure.elements[index];
     let material = &structure.materials[element.material];
     let nodes = || element.nodes.iter().map(|&node| structure.nodes[node].in_plane());
+    let places = || element.nodes.iter().map(|&node| structure.nodes[node].position);
     let ends = || [0, 1].map(|end| structure.nodes[element.nodes[end]].in_plane());
+    let ends_in_space = || [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
     Ok(match element.kind {
         ElementKind::Frame { area, inertia, shear_area, hinges } => {
             Box::new(Frame::new(ends(), material, [area, inertia], shear_area, hinges).ok_or(NO_LENGTH)?)
@@ -94,6 +96,15 @@ pub fn finite_element(structure: &Structure, index: usize) -> Result<Box<dyn Fin
         ElementKind::Membrane { thickness, plane, incompatible } => {
             Box::new(Membrane { nodes: nodes().collect(), material, plane, thickness, incompatible })
         }
+        ElementKind::SpaceFrame { ref section, orientation, joints } => {
+            let frame = SpaceFrame::new(ends_in_space(), orientation, material, section, joints);
+            Box::new(frame.map_err(AxesFault::words)?)
+        }
+        ElementKind::SpaceTruss { area, orientation } => {
+            let truss = Truss::in_space(ends_in_space(), orientation, material, area);
+            Box::new(truss.map_err(AxesFault::words)?)
+        }
+        ElementKind::Solid { incompatible } => Box::new(Solid { nodes: places().collect(), material, incompatible }),
     })
 }
 

@@ -4,13 +4,14 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::builder::{Builder, entries};
+use super::face_sides;
 use super::law::{self, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::sides::{self, Sides};
 use crate::model::memory;
 use crate::model::pair::{LawKind, Pair};
 use crate::model::parameter::Number;
-use crate::model::structure::EdgeContact;
+use crate::model::structure::{Dimension, EdgeContact};
 
 /// Reads `contacts`. `None` if their matrix would be too large to go on.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
@@ -29,9 +30,13 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
 }
 
 fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair>> {
-    let fields = cursor.fields(&[
-        "id", "node", "edge", "against", "normal", "law", "friction", "cohesion", "gap", "bound", "skip", "method",
-    ])?;
+    let border = border(builder);
+    let mut keys = vec!["id", "node", border];
+    keys.extend(["against", "normal", "law", "friction", "cohesion", "gap", "bound", "skip"]);
+    if border == "edge" {
+        keys.push("method");
+    }
+    let fields = cursor.fields(&keys)?;
     let id = fields.required("id").and_then(|cursor| {
         let id = cursor.string()?;
         builder.register(cursor.place(), id, "contact");
@@ -47,39 +52,44 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             fields.required("bound");
         }
     }
-    let is_edge = fields.entry("edge").is_some();
-    let sides = match (fields.optional("node"), fields.entry("edge")) {
-        (Some(_), Some(edge)) => {
-            edge.key_problem(
-                "`edge` cannot stand beside `node`",
-                "split the entry: one contact for the node, one for the edge",
+    let a_border = if border == "edge" { "an `edge`" } else { "a `face`" };
+    let is_border = fields.entry(border).is_some();
+    let sides = match (fields.optional("node"), fields.entry(border)) {
+        (Some(_), Some(entry)) => {
+            entry.key_problem(
+                format!("`{border}` cannot stand beside `node`"),
+                format!("split the entry: one contact for the node, one for the {border}"),
             );
             None
         }
+        (None, Some(face)) if border == "face" => face_sides::of_face(builder, &fields, face.value()),
         (None, Some(edge)) => sides::of_edge(builder, &fields, edge.value()),
         (Some(node), None) => sides::of_node(builder, &fields, node),
         (None, None) => {
             cursor.problem(
-                "missing key `node` or `edge`",
-                "add \"node\": … for one pair, or \"edge\": … for the pairs of an edge",
+                format!("missing key `node` or `{border}`"),
+                format!(
+                    "add \"node\": … for one pair, or \"{border}\": … for the pairs of {}",
+                    a_border.replace('`', "")
+                ),
             );
             None
         }
     };
     let sides = sides.filter(|sides| !is_within_a_body(builder, cursor, sides));
     let sides = sides.filter(|sides| has_its_displacements(builder, cursor, sides, law));
-    if !is_edge {
+    if !is_border {
         fields.refuse(&["method"], |key| format!("`{key}` belongs to contacts of an `edge`"), "remove it");
     }
     let count = sides.as_ref().map(|sides| sides.nodes.len());
-    let numbers = law_numbers(&fields, law, sides.as_ref(), is_edge);
+    let numbers = law_numbers(&fields, law, sides.as_ref(), is_border);
     let skipped = fields
         .entry("skip")
         .map(|entry| {
-            if is_edge {
-                skipped(entry.value(), count)
+            if is_border {
+                skipped(entry.value(), count, border)
             } else {
-                entry.key_problem("`skip` belongs to contacts of an `edge`", "remove it");
+                entry.key_problem(format!("`skip` belongs to contacts of {a_border}"), "remove it");
                 None
             }
         })
@@ -88,7 +98,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
     let kept = sides.weights.iter().enumerate().filter(|(index, _)| !skipped.contains(index));
     let pairs = kept.filter_map(|(index, weights)| {
         Some(Pair {
-            id: if is_edge { format!("{id}[{index}]") } else { id.to_string() },
+            id: if is_border { format!("{id}[{index}]") } else { id.to_string() },
             node: sides.nodes[index],
             weights: weights.clone()?,
             normal: sides.normals[index],
@@ -98,10 +108,16 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         })
     });
     let pairs = pairs.collect();
-    if is_edge {
-        builder.structure.edge_contacts.push(EdgeContact { id: id.to_owned(), nodes: sides.nodes });
+    if is_border {
+        let shares = sides.shares;
+        builder.structure.edge_contacts.push(EdgeContact { id: id.to_owned(), nodes: sides.nodes, shares });
     }
     Some(pairs)
+}
+
+/// The key of a contact of many pairs: `edge` in the plane, `face` in space.
+fn border(builder: &Builder<'_>) -> &'static str {
+    if builder.structure.dimension == Dimension::Space { "face" } else { "edge" }
 }
 
 /// Reports a node of a superelement without a displacement that a joint needs.
@@ -158,7 +174,7 @@ fn law_numbers(
     fields: &Fields<'_>,
     law: Option<LawKind>,
     sides: Option<&Sides>,
-    is_edge: bool,
+    is_border: bool,
 ) -> Option<HashMap<&'static str, Vec<Number>>> {
     let count = sides.map(|sides| sides.nodes.len());
     let mut numbers = HashMap::new();
@@ -179,7 +195,7 @@ fn law_numbers(
         let values = if key == "gap" && sides::is_geometry(cursor) {
             // Without sides there is nothing to measure, and that was said.
             sides.and_then(|sides| geometry(cursor, sides))
-        } else if is_edge {
+        } else if is_border {
             per_pair(cursor, key, count, true)
         } else {
             law::number(cursor, key).map(|number| vec![number])
@@ -202,7 +218,7 @@ fn geometry(cursor: Cursor<'_>, sides: &Sides) -> Option<Vec<Number>> {
     Some(sides.gaps.as_ref()?.iter().map(|gap| Number::Value(*gap)).collect())
 }
 
-fn skipped(cursor: Cursor<'_>, count: Option<usize>) -> Option<HashSet<usize>> {
+fn skipped(cursor: Cursor<'_>, count: Option<usize>, border: &str) -> Option<HashSet<usize>> {
     let mut skipped = HashSet::new();
     let mut is_right = true;
     for entry in cursor.list()? {
@@ -213,7 +229,7 @@ fn skipped(cursor: Cursor<'_>, count: Option<usize>) -> Option<HashSet<usize>> {
         let Some(count) = count else { continue };
         if index >= count {
             entry.problem(
-                format!("the edge has no pair {index}: it has {count} nodes"),
+                format!("the {border} has no pair {index}: it has {count} nodes"),
                 format!("pairs count from 0 to {}", count - 1),
             );
             is_right = false;
@@ -221,7 +237,7 @@ fn skipped(cursor: Cursor<'_>, count: Option<usize>) -> Option<HashSet<usize>> {
         skipped.insert(index);
     }
     if is_right && count == Some(skipped.len()) {
-        cursor.problem("every pair of the edge is skipped", "remove the contact");
+        cursor.problem(format!("every pair of the {border} is skipped"), "remove the contact");
         return None;
     }
     is_right.then_some(skipped)

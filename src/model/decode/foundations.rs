@@ -102,9 +102,9 @@ fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
     }
     let edge = match builder.spot(on)? {
         Spot::Edge(edge) => edge,
-        Spot::Node(_) => {
+        other => {
             on.problem(
-                format!("expected a bar or an edge, found the node {}", on.quoted()),
+                format!("expected a bar or an edge, found the {} {}", other.word(), on.quoted()),
                 "a foundation lies along a line; at one node use `springs`",
             );
             return None;

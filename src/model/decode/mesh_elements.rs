@@ -1,4 +1,4 @@
-//! Nodes, bars and areas of a mesh that was read, put into the structure.
+//! Nodes, bars, areas and solids of a mesh that was read, put into the structure.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -9,20 +9,20 @@ use super::mesh_names::MeshPart;
 use super::meshes::{Lines, MeshOutline};
 use crate::model::edge::Sides;
 use crate::model::groups::Groups;
-use crate::model::mesh::Shape;
 use crate::model::mesh::chain::{chains, oriented};
-use crate::model::structure::{Bar, Body, Element, ElementKind, MeshElements, Node};
-use crate::model::vector::flat;
+use crate::model::structure::{Bar, Body, Dimension, Element, ElementKind, MeshElements, Node};
 
 /// Appends the nodes `ID/TAG` that are used.
 pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
     let mut node_of = vec![None; outline.mesh.nodes.len()];
     for ((node, used), index) in outline.mesh.nodes.iter().zip(outline.used_nodes()).zip(&mut node_of) {
         if used {
-            let [x, y, _] = node.position;
+            let [x, y, z] = node.position;
+            // The plane of a mesh may have any z.
+            let z = if builder.structure.dimension == Dimension::Space { z } else { 0.0 };
             *index = Some(builder.structure.nodes.len());
             let id = format!("{}/{}", outline.id, node.tag);
-            builder.structure.nodes.push(Node { id, position: flat([outline.scale * x, outline.scale * y]) });
+            builder.structure.nodes.push(Node { id, position: [x, y, z].map(|x| outline.scale * x) });
         }
     }
     builder.places.nodes.resize(builder.structure.nodes.len(), place.clone());
@@ -30,7 +30,7 @@ pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, pl
     builder.meshes.entry(outline.id).or_insert(part);
 }
 
-/// Appends bars and areas.
+/// Appends bars, areas and solids.
 pub fn append_elements<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
     for bars in &outline.bars {
         append_bars(builder, outline, bars);
@@ -39,15 +39,17 @@ pub fn append_elements<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>,
     let elements = &mut builder.structure.elements;
     let first = elements.len();
     let mut tags = Vec::new();
-    for (index, area) in outline.areas.iter().enumerate() {
-        let Some(area) = area else { continue };
+    for (index, of) in outline.parts.iter().enumerate() {
+        let Some(of) = of else { continue };
         let element = &outline.mesh.elements[index];
-        let incompatible = area.incompatible && element.shape == Shape::Quad4;
-        let kind = ElementKind::Membrane { thickness: area.thickness, plane: area.plane, incompatible };
+        let mut kind = of.kind.clone();
+        if let ElementKind::Membrane { incompatible, .. } | ElementKind::Solid { incompatible } = &mut kind {
+            *incompatible &= element.shape.can_be_incompatible();
+        }
         part.element_of[index] = Some(elements.len());
         // Nodes of used elements are there.
         let nodes = element.nodes.iter().filter_map(|node| part.node_of[*node as usize]).collect();
-        elements.push(Element { nodes, material: area.material, kind });
+        elements.push(Element { nodes, material: of.material, kind });
         tags.push(element.tag);
     }
     let range = first..elements.len();

@@ -8,24 +8,26 @@ use super::spot::Spot;
 use super::words::{did_you_mean, listed, quoted};
 use crate::model::edge::Edge;
 use crate::model::mesh::boundary::{Boundary, DIRECTIONS};
+use crate::model::mesh::surface::Surface;
 use crate::model::mesh::{Group, Members, Mesh};
 
 /// A mesh in the structure.
 pub struct MeshPart {
     id: String,
-    mesh: Arc<Mesh>,
+    pub(super) mesh: Arc<Mesh>,
     /// Index into the structure of each node of the file that is used.
     pub node_of: Vec<Option<usize>>,
     /// Index into the structure of each element of the file that is used.
     pub element_of: Vec<Option<usize>>,
     boundary: Boundary<Arc<Mesh>>,
+    pub(super) surface: Surface<Arc<Mesh>>,
 }
 
 impl MeshPart {
     /// A mesh whose elements are still to come.
     pub fn new(id: &str, mesh: Arc<Mesh>, node_of: Vec<Option<usize>>) -> MeshPart {
-        let boundary = Boundary::of(Arc::clone(&mesh));
-        MeshPart { id: id.to_owned(), node_of, element_of: vec![None; mesh.elements.len()], boundary, mesh }
+        let (boundary, surface) = (Boundary::of(Arc::clone(&mesh)), Surface::of(Arc::clone(&mesh)));
+        MeshPart { id: id.to_owned(), node_of, element_of: vec![None; mesh.elements.len()], boundary, surface, mesh }
     }
 
     /// The name of the mesh.
@@ -53,11 +55,14 @@ impl MeshPart {
         }
         let Some(name) = rest.strip_prefix('.') else {
             cursor.problem(
-                format!("{} is an element, expected a node or an edge", cursor.quoted()),
-                format!("nodes of the mesh are \"{0}/17\", edges \"{0}.GROUP\"", self.id),
+                format!("{} is an element, expected a node or {}", cursor.quoted(), self.a_border()),
+                format!("nodes of the mesh are \"{0}/17\", {1}s \"{0}.GROUP\"", self.id, self.border()),
             );
             return None;
         };
+        if self.mesh.is_solid() {
+            return self.face_spot(cursor, name);
+        }
         let groups: Vec<&Group> = self.mesh.groups_named(name).collect();
         let edges = |group: &&&Group| matches!(group.members, Members::Lines(_) | Members::Sides(_));
         let nodes = |group: &&&Group| matches!(group.members, Members::NodeSet(_) | Members::Points(_));
@@ -72,6 +77,15 @@ impl MeshPart {
             }
             None => self.by_direction(cursor, name).map(Spot::Edge),
         }
+    }
+
+    /// What its groups bound: `edge` or `face`.
+    pub(super) fn border(&self) -> &'static str {
+        if self.mesh.is_solid() { "face" } else { "edge" }
+    }
+
+    fn a_border(&self) -> &'static str {
+        if self.mesh.is_solid() { "a face" } else { "an edge" }
     }
 
     fn edge(&self, cursor: Cursor<'_>, group: &Group) -> Option<Edge> {
@@ -109,21 +123,24 @@ impl MeshPart {
     }
 
     /// Whether a group has this name in other letters, or one without members: then the direction is hardly meant.
-    fn is_nearly_a_group(&self, name: &str) -> bool {
+    pub(super) fn is_nearly_a_group(&self, name: &str) -> bool {
         self.mesh.groups.iter().any(|group| group.name.eq_ignore_ascii_case(name))
             || self.mesh.empty_group(name).is_some()
     }
 
-    fn names(&self, names: &[&str]) -> String {
+    pub(super) fn names(&self, names: &[&str]) -> String {
         let names: Vec<String> = names.iter().map(|name| format!("\"{}.{name}\"", self.id)).collect();
         listed(&names.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
-    fn unknown_group(&self, cursor: Cursor<'_>, name: &str) {
+    pub(super) fn unknown_group(&self, cursor: Cursor<'_>, name: &str) {
         if let Some(place) = self.mesh.empty_group(name) {
             cursor.problem(
                 format!("the group {} ({}) is empty: nothing of the mesh is in it", quoted(name), self.mesh.at(place)),
-                "put lines of the boundary into it, or name another group",
+                match self.mesh.is_solid() {
+                    true => "put areas of the surface into it, or name another group",
+                    false => "put lines of the boundary into it, or name another group",
+                },
             );
             return;
         }
@@ -131,10 +148,16 @@ impl MeshPart {
             .mesh
             .groups
             .iter()
-            .filter(|group| !matches!(group.members, Members::Areas(_)))
+            .filter(|group| match group.members {
+                Members::Areas(_) => self.mesh.is_solid(),
+                Members::Solids(_) => false,
+                _ => true,
+            })
             .map(|group| group.name.as_str())
             .collect();
-        if known.is_empty() {
+        if known.is_empty() && self.mesh.is_solid() {
+            known = self.facing_names();
+        } else if known.is_empty() {
             known.extend(self.boundary.facing().iter().map(|facing| facing.name.as_str()));
         }
         let file = &self.mesh.files[0];
@@ -163,7 +186,7 @@ impl MeshPart {
         }
     }
 
-    fn used(&self, cursor: Cursor<'_>, node: u32) -> Option<usize> {
+    pub(super) fn used(&self, cursor: Cursor<'_>, node: u32) -> Option<usize> {
         let found = self.node_of[node as usize];
         if found.is_none() {
             let node = &self.mesh.nodes[node as usize];
@@ -179,6 +202,11 @@ impl MeshPart {
     /// nothing is named so, or none of its nodes is used.
     pub fn node_set(&self, rest: &str) -> Option<Vec<usize>> {
         let name = rest.strip_prefix('.')?;
+        if self.mesh.is_solid() {
+            let mut seen = HashSet::new();
+            let nodes: Vec<usize> = self.face_nodes(name).into_iter().filter(|node| seen.insert(*node)).collect();
+            return (!nodes.is_empty()).then_some(nodes);
+        }
         let groups: Vec<&Group> = self.mesh.groups_named(name).collect();
         let lines = groups.iter().find(|group| matches!(group.members, Members::Lines(_) | Members::Sides(_)));
         let set = groups.iter().find(|group| matches!(group.members, Members::NodeSet(_) | Members::Points(_)));
@@ -203,7 +231,7 @@ impl MeshPart {
         (!nodes.is_empty()).then_some(nodes)
     }
 
-    fn used_of(&self, nodes: &[u32]) -> Vec<usize> {
+    pub(super) fn used_of(&self, nodes: &[u32]) -> Vec<usize> {
         nodes.iter().filter_map(|node| self.node_of[*node as usize]).collect()
     }
 
@@ -225,7 +253,7 @@ impl MeshPart {
         }
         let name = rest.strip_prefix('.').unwrap_or(rest);
         let of = |group: &Group| match &group.members {
-            Members::Areas(indices) | Members::Lines(indices) => {
+            Members::Areas(indices) | Members::Lines(indices) | Members::Solids(indices) => {
                 let used = indices.iter().filter_map(|index| self.element_of[*index as usize]);
                 Some(used.collect::<Vec<usize>>()).filter(|used| !used.is_empty())
             }
@@ -253,11 +281,11 @@ impl MeshPart {
         Some(found)
     }
 
-    /// The group of areas that consists of just these elements of the structure.
+    /// The group of areas or solids that consists of just these elements of the structure.
     pub fn group_of_elements(&self, elements: &[usize]) -> Option<&str> {
         let wanted: HashSet<&usize> = elements.iter().collect();
         let fits = |group: &&Group| match &group.members {
-            Members::Areas(indices) if indices.len() == elements.len() => {
+            Members::Areas(indices) | Members::Solids(indices) if indices.len() == elements.len() => {
                 indices.iter().all(|index| self.element_of[*index as usize].is_some_and(|e| wanted.contains(&e)))
             }
             _ => false,

@@ -9,18 +9,17 @@ use super::plates::{membrane, modes};
 use super::reader::{Cursor, Entry, Fields};
 use super::words::{counted, did_you_mean, listed, quoted};
 use crate::model::mesh::{self, Group, LineType, Members, Mesh, Shape};
-use crate::model::structure::{ElementKind, Plane};
+use crate::model::structure::{Dimension, ElementKind};
 
 /// The key for elements in no group.
 const REST: &str = "*";
 
-/// What a group of areas is made of.
-#[derive(Clone, Copy, PartialEq)]
-pub struct Area {
-    pub thickness: f64,
+/// What a group of areas or solids is made of.
+#[derive(Clone, PartialEq)]
+pub struct Part {
     pub material: usize,
-    pub plane: Plane,
-    pub incompatible: bool,
+    /// Incompatible modes are taken by the elements that can have them.
+    pub kind: ElementKind,
 }
 
 /// A group of lines that are bars.
@@ -38,16 +37,16 @@ pub struct MeshOutline<'d> {
     pub id: &'d str,
     pub mesh: Arc<Mesh>,
     pub scale: f64,
-    /// For each element of the file what it is made of; `None` for lines and what is not used.
-    pub areas: Vec<Option<Area>>,
+    /// For each element of the file what it is made of; `None` for what is no part of a body.
+    pub parts: Vec<Option<Part>>,
     /// Groups of lines that are bars.
     pub bars: Vec<Lines<'d>>,
 }
 
 impl MeshOutline<'_> {
     fn used_elements(&self) -> impl Iterator<Item = u32> {
-        let areas = (0..).zip(&self.areas).filter(|(_, area)| area.is_some()).map(|(index, _)| index);
-        areas.chain(self.bars.iter().flat_map(|bars| bars.lines.iter().map(|(index, _)| *index)))
+        let parts = (0..).zip(&self.parts).filter(|(_, part)| part.is_some()).map(|(index, _)| index);
+        parts.chain(self.bars.iter().flat_map(|bars| bars.lines.iter().map(|(index, _)| *index)))
     }
 
     /// Nodes it will have.
@@ -98,16 +97,44 @@ fn read_outline<'d>(
         }
         return None;
     };
+    let dimension = builder.structure.dimension;
+    if let Some(at) = file.filter(|_| mesh.is_solid() != (dimension == Dimension::Space)) {
+        wrong_dimension(at, &mesh);
+        return None;
+    }
     let mut outline = MeshOutline {
         cursor,
         id: id.unwrap_or_default(),
         scale: scale.unwrap_or(1.0),
-        areas: vec![None; mesh.elements.len()],
+        parts: vec![None; mesh.elements.len()],
         bars: Vec::new(),
         mesh,
     };
     let is_right = groups(builder, &mut outline, materials)?;
     (is_right && id.is_some() && scale.is_some()).then_some(outline)
+}
+
+/// A mesh of solids in the plane, or one without in space.
+fn wrong_dimension(at: Cursor<'_>, mesh: &Mesh) {
+    let file = &mesh.files[0];
+    match mesh.of_bodies().next().filter(|_| mesh.is_solid()) {
+        Some(first) => {
+            let element = &mesh.elements[first as usize];
+            at.problem(
+                format!(
+                    "{}: element {} is {}, and the structure lies in the plane",
+                    mesh.at(element.place),
+                    element.tag,
+                    element.shape.words()
+                ),
+                "put it into space with \"dimension\": 3, or mesh a surface and save no volumes",
+            );
+        }
+        None => at.problem(
+            format!("{file} has no solids, and the structure lies in space"),
+            "mesh the volume with tetrahedra or hexahedra and save them",
+        ),
+    }
 }
 
 /// The mesh that a name means, from what was read before or from its file beside the scenario.
@@ -148,11 +175,11 @@ fn groups<'d>(builder: &Builder<'d>, outline: &mut MeshOutline<'d>, materials: C
     for entry in materials.entries()? {
         let is_line = entry.value().has_key("section") || entry.value().has_key("kind");
         if entry.name() == REST {
-            match area(builder, entry) {
-                Some(area) => {
-                    let all: Vec<u32> = outline.mesh.areas().collect();
-                    is_right &= takes_modes(&outline.mesh, entry, &area, &all);
-                    rest = Some(area);
+            match part(builder, entry) {
+                Some(part) => {
+                    let all: Vec<u32> = outline.mesh.of_bodies().collect();
+                    is_right &= takes_modes(&outline.mesh, entry, &part, &all);
+                    rest = Some(part);
                 }
                 None => is_right = false,
             }
@@ -168,10 +195,10 @@ fn groups<'d>(builder: &Builder<'d>, outline: &mut MeshOutline<'d>, materials: C
                 Some(of) => outline.bars.push(of),
                 None => is_right = false,
             },
-            Members::Areas(areas) => match area(builder, entry) {
+            Members::Areas(of_body) | Members::Solids(of_body) => match part(builder, entry) {
                 Some(of) => {
-                    is_right &= takes_modes(&mesh, entry, &of, areas);
-                    is_right &= give(outline, entry, of, areas, &mut given);
+                    is_right &= takes_modes(&mesh, entry, &of, of_body);
+                    is_right &= give(outline, entry, of, of_body, &mut given);
                 }
                 None => is_right = false,
             },
@@ -189,8 +216,7 @@ fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m 
     let name = entry.name();
     let fits = |group: &Group| match group.members {
         Members::Lines(_) => is_line,
-        Members::Areas(_) => !is_line,
-        _ => false,
+        _ => !is_line && is_body(mesh, group),
     };
     let all: Vec<&Group> = mesh.groups.iter().filter(|group| mesh.same_name(&group.name, name)).collect();
     if let Some(group) = all.iter().find(|group| fits(group)) {
@@ -203,17 +229,29 @@ fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m 
                 "the group {} of {file} consists of {}, not of {}",
                 quoted(name),
                 group.members.what(),
-                if is_line { "lines" } else { "elements" }
+                match (is_line, mesh.is_solid()) {
+                    (true, _) => "lines",
+                    (_, true) => "solids",
+                    _ => "elements",
+                }
             ),
-            "a group of elements gets `material`, `thickness` and `plane`, a group of lines `material` and `section`",
+            match mesh.is_solid() {
+                true => "a group of solids gets `material`; areas on their surface are faces and need none",
+                false => {
+                    "a group of elements gets `material`, `thickness` and `plane`, a group of lines `material` and \
+                     `section`"
+                }
+            },
         ),
         None if mesh.empty_group(name).is_some() => entry.key_problem(
             format!("the group {} of {file} is empty: nothing of the mesh is in it", quoted(name)),
             "remove it here, or put elements into it",
         ),
         None => {
-            let known =
-                mesh.groups.iter().filter(|group| matches!(group.members, Members::Lines(_) | Members::Areas(_)));
+            let known = mesh
+                .groups
+                .iter()
+                .filter(|group| is_body(mesh, group) || matches!(group.members, Members::Lines(_)) && !mesh.is_solid());
             let known: Vec<&str> = known.map(|group| group.name.as_str()).collect();
             entry.key_problem(
                 format!("{file} has no group {}{}", quoted(name), did_you_mean(name, known.iter().copied())),
@@ -227,26 +265,43 @@ fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m 
     None
 }
 
-fn area<'d>(builder: &Builder<'d>, entry: Entry<'d>) -> Option<Area> {
+/// Whether the bodies of a mesh consist of what a group has.
+fn is_body(mesh: &Mesh, group: &Group) -> bool {
+    match group.members {
+        Members::Areas(_) => !mesh.is_solid(),
+        Members::Solids(_) => true,
+        _ => false,
+    }
+}
+
+fn part<'d>(builder: &Builder<'d>, entry: Entry<'d>) -> Option<Part> {
+    if builder.structure.dimension == Dimension::Space {
+        let fields = entry.value().fields(&["material", "element"])?;
+        let material = material_of(builder, &fields);
+        let incompatible = modes(&fields)?;
+        return Some(Part { material: material?, kind: ElementKind::Solid { incompatible } });
+    }
     let fields = entry.value().fields(&["material", "thickness", "plane", "element"])?;
     let common = membrane(builder, &fields);
     let incompatible = modes(&fields)?;
     let (thickness, material, plane) = common?;
-    Some(Area { thickness, material, plane, incompatible })
+    Some(Part { material, kind: ElementKind::Membrane { thickness, plane, incompatible } })
 }
 
-/// Incompatible modes are those of four nodes.
-fn takes_modes(mesh: &Mesh, entry: Entry<'_>, of: &Area, areas: &[u32]) -> bool {
-    let takes = !of.incompatible || areas.iter().any(|index| mesh.elements[*index as usize].shape == Shape::Quad4);
+/// Incompatible modes are those of quadrilaterals of four nodes and hexahedra of eight.
+fn takes_modes(mesh: &Mesh, entry: Entry<'_>, of: &Part, members: &[u32]) -> bool {
+    let can = |index: &u32| mesh.elements[*index as usize].shape.can_be_incompatible();
+    let takes = !of.kind.is_incompatible() || members.iter().any(can);
     if !takes {
         entry.key_problem(
             format!(
-                "{} has no elements of four nodes, which alone can be \"incompatible\"",
+                "{} has no {}, which alone can be \"incompatible\"",
                 if entry.name() == REST {
                     "the mesh".to_owned()
                 } else {
                     format!("the group {}", quoted(entry.name()))
-                }
+                },
+                if mesh.is_solid() { "hexahedra of eight nodes" } else { "elements of four nodes" }
             ),
             "remove `element`",
         );
@@ -258,14 +313,14 @@ fn takes_modes(mesh: &Mesh, entry: Entry<'_>, of: &Area, areas: &[u32]) -> bool 
 fn give<'d>(
     outline: &mut MeshOutline<'d>,
     entry: Entry<'d>,
-    of: Area,
-    areas: &[u32],
+    of: Part,
+    members: &[u32],
     given: &mut [Option<&'d str>],
 ) -> bool {
-    for index in areas {
+    for index in members {
         let index = *index as usize;
-        match (outline.areas[index], given[index]) {
-            (Some(other), Some(first)) if other != of => {
+        match (&outline.parts[index], given[index]) {
+            (Some(other), Some(first)) if *other != of => {
                 let element = &outline.mesh.elements[index];
                 entry.key_problem(
                     format!(
@@ -275,26 +330,33 @@ fn give<'d>(
                         quoted(first),
                         quoted(entry.name())
                     ),
-                    "give both the same material, thickness, plane and element, or name one of them only",
+                    match outline.mesh.is_solid() {
+                        true => "give both the same material and element, or name one of them only",
+                        false => "give both the same material, thickness, plane and element, or name one of them only",
+                    },
                 );
                 return false;
             }
-            _ => (outline.areas[index], given[index]) = (Some(of), Some(entry.name())),
+            _ => (outline.parts[index], given[index]) = (Some(of.clone()), Some(entry.name())),
         }
     }
     true
 }
 
 /// Whether every element has a material; those in no group get that of `rest`.
-fn is_complete(outline: &mut MeshOutline<'_>, materials: Cursor<'_>, rest: Option<Area>) -> bool {
+fn is_complete(outline: &mut MeshOutline<'_>, materials: Cursor<'_>, rest: Option<Part>) -> bool {
     let mesh = Arc::clone(&outline.mesh);
     let mut is_right = true;
     let mut named = vec![false; mesh.elements.len()];
-    for group in mesh.groups.iter().filter(|group| group.is_named) {
-        let Members::Areas(areas) = &group.members else { continue };
-        let without = |index: &&u32| outline.areas[**index as usize].is_none() && !named[**index as usize];
-        let first = areas.iter().find(without).copied();
-        let count = areas.iter().filter(without).count();
+    let example = match mesh.is_solid() {
+        true => "{ \"material\": … }",
+        false => "{ \"material\": …, \"thickness\": …, \"plane\": … }",
+    };
+    for group in mesh.groups.iter().filter(|group| group.is_named && is_body(&mesh, group)) {
+        let (Members::Areas(members) | Members::Solids(members)) = &group.members else { continue };
+        let without = |index: &&u32| outline.parts[**index as usize].is_none() && !named[**index as usize];
+        let first = members.iter().find(without).copied();
+        let count = members.iter().filter(without).count();
         if let Some(first) = first {
             let element = &mesh.elements[first as usize];
             materials.problem(
@@ -306,18 +368,18 @@ fn is_complete(outline: &mut MeshOutline<'_>, materials: Cursor<'_>, rest: Optio
                     element.tag,
                     mesh.at(element.place)
                 ),
-                format!("add {}: {{ \"material\": …, \"thickness\": …, \"plane\": … }}", quoted(&group.name)),
+                format!("add {}: {example}", quoted(&group.name)),
             );
             is_right = false;
         }
-        areas.iter().for_each(|index| named[*index as usize] = true);
+        members.iter().for_each(|index| named[*index as usize] = true);
     }
-    let mut bare = mesh.areas().filter(|index| outline.areas[*index as usize].is_none() && !named[*index as usize]);
+    let mut bare = mesh.of_bodies().filter(|index| outline.parts[*index as usize].is_none() && !named[*index as usize]);
     match (rest, bare.next()) {
         (_, None) => {}
         (Some(rest), Some(first)) => {
             for index in std::iter::once(first).chain(bare).collect::<Vec<u32>>() {
-                outline.areas[index as usize] = Some(rest);
+                outline.parts[index as usize] = Some(rest.clone());
             }
         }
         (None, Some(first)) => {
@@ -330,7 +392,7 @@ fn is_complete(outline: &mut MeshOutline<'_>, materials: Cursor<'_>, rest: Optio
                     element.tag,
                     if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }
                 ),
-                "add \"*\": { \"material\": …, \"thickness\": …, \"plane\": … } for the elements in no group",
+                format!("add \"*\": {example} for the elements in no group"),
             );
             is_right = false;
         }
@@ -347,6 +409,16 @@ fn lines_of<'d>(
     lines: &[u32],
 ) -> Option<Lines<'d>> {
     let fields = entry.value().fields(&["material", "section", "kind"])?;
+    if mesh.is_solid() {
+        entry.key_problem(
+            format!(
+                "the group {} consists of lines, and bars beside solids are not read from a mesh",
+                quoted(entry.name())
+            ),
+            "put the bars under `bars`, between nodes of the mesh",
+        );
+        return None;
+    }
     let material = material_of(builder, &fields);
     let section = section_of(builder, &fields);
     let is_frame = match fields.optional("kind") {

@@ -6,6 +6,7 @@ use super::reader::Cursor;
 use super::spot::Spot;
 use super::words::{did_you_mean, listed, quoted};
 use crate::model::edge::Edge;
+use crate::model::face::Face;
 use crate::model::plate::PlateSide;
 
 impl<'d> Builder<'d> {
@@ -72,10 +73,11 @@ impl<'d> Builder<'d> {
         set.or_else(|| match self.spot(cursor)? {
             Spot::Node(node) => Some(vec![node]),
             Spot::Edge(edge) => Some(edge.distinct_nodes().to_vec()),
+            Spot::Face(face) => Some(face.nodes),
         })
     }
 
-    /// All nodes of an edge or a set; a single node is reported.
+    /// All nodes of an edge, a face or a set; a single node is reported.
     pub fn edge_nodes_at(&self, cursor: Cursor<'d>) -> Option<Vec<usize>> {
         match self.nodes_at(cursor)? {
             nodes if nodes.len() > 1 => Some(nodes),
@@ -150,9 +152,9 @@ impl<'d> Builder<'d> {
     pub fn node(&self, cursor: Cursor<'d>) -> Option<usize> {
         match self.spot(cursor)? {
             Spot::Node(node) => Some(node),
-            Spot::Edge(_) => {
+            other => {
                 cursor.problem(
-                    format!("expected a node, found the edge {}", cursor.quoted()),
+                    format!("expected a node, found the {} {}", other.word(), cursor.quoted()),
                     "name one node, e.g. a plate node \"lower[0,8]\"",
                 );
                 None
@@ -164,14 +166,27 @@ impl<'d> Builder<'d> {
     pub fn edge(&self, cursor: Cursor<'d>) -> Option<Edge> {
         match self.spot(cursor)? {
             Spot::Edge(edge) => Some(edge),
-            Spot::Node(_) => {
+            other => {
                 cursor.problem(
-                    format!("expected an edge, found the node {}", cursor.quoted()),
+                    format!("expected an edge, found the {} {}", other.word(), cursor.quoted()),
                     "edges belong to plates, \"lower.top\", or are named under `edges`",
                 );
                 None
             }
         }
+    }
+
+    /// The face that a string names; a node is reported.
+    pub fn face(&self, cursor: Cursor<'d>) -> Option<Face> {
+        let other = match self.spot(cursor)? {
+            Spot::Face(face) => return Some(face),
+            other => other.word(),
+        };
+        cursor.problem(
+            format!("expected a face, found the {other} {}", cursor.quoted()),
+            "faces belong to bricks, \"block.top\", or to meshes of solids, \"mesh.GROUP\"",
+        );
+        None
     }
 
     /// The elements of a bar, plate, mesh, group of a mesh, triangle or quad that a string names.

@@ -10,10 +10,11 @@ use crate::model::pair::{Pair, Weights};
 use crate::model::vector::{dot, way};
 
 /// The word for the ground in `against`.
-const GROUND: &str = "ground";
+pub const GROUND: &str = "ground";
 
-/// Two edges lie on each other if every node is this near its partner, relative to the length of the edge.
-const NEAR: f64 = 1e-6;
+/// Two edges or faces lie on each other if every node is this near its partner, relative to the length of the edge, or
+/// the extent of the face.
+pub const NEAR: f64 = 1e-6;
 
 /// The nodes of a contact in their order, those without a pair included.
 pub struct Sides {
@@ -23,6 +24,8 @@ pub struct Sides {
     pub normals: Vec<[f64; 3]>,
     /// Distances of the two sides along the normals as they are drawn; `None` against the ground.
     pub gaps: Option<Vec<f64>>,
+    /// The part of the area of a face that stands for each node; empty otherwise.
+    pub shares: Vec<f64>,
 }
 
 /// How the pairs of two edges are made.
@@ -39,7 +42,7 @@ impl Method {
 }
 
 impl Sides {
-    fn new<'d>(
+    pub fn new<'d>(
         builder: &Builder<'d>,
         nodes: Vec<usize>,
         weights: Vec<Option<Weights>>,
@@ -54,12 +57,12 @@ impl Sides {
             terms.sum::<f64>()
         };
         let gaps = weights.iter().zip(&normals).map(distance).collect();
-        Sides { nodes, weights, normals, gaps: Some(gaps) }
+        Sides { nodes, weights, normals, gaps: Some(gaps), shares: Vec::new() }
     }
 
-    fn on_ground(nodes: Vec<usize>, normals: Vec<[f64; 3]>) -> Sides {
+    pub fn on_ground(nodes: Vec<usize>, normals: Vec<[f64; 3]>) -> Sides {
         let weights = nodes.iter().map(|&node| Some(Pair::of_nodes(node, None))).collect();
-        Sides { nodes, weights, normals, gaps: None }
+        Sides { nodes, weights, normals, gaps: None, shares: Vec::new() }
     }
 }
 
@@ -68,7 +71,7 @@ pub fn is_geometry(cursor: Cursor<'_>) -> bool {
     cursor.is_string() && cursor.string() == Some("geometry")
 }
 
-fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
+pub fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
     !builder.nodes.contains_key(word) && !near(word, [GROUND]).is_empty()
 }
 
@@ -127,9 +130,9 @@ pub fn of_edge<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     }
     let other = match builder.spot(against)? {
         Spot::Edge(edge) => edge,
-        Spot::Node(_) => {
+        other => {
             against.problem(
-                format!("expected an edge or \"ground\", found the node {}", against.quoted()),
+                format!("expected an edge or \"ground\", found the {} {}", other.word(), against.quoted()),
                 "an edge meets another edge, or the ground",
             );
             return None;
@@ -154,14 +157,15 @@ pub fn of_edge<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     }
 }
 
+/// What `gap` says.
 #[derive(PartialEq)]
-enum Gap {
+pub enum Gap {
     None,
     Number,
     Geometry,
 }
 
-fn gap_of(fields: &Fields<'_>) -> Gap {
+pub fn gap_of(fields: &Fields<'_>) -> Gap {
     match fields.optional("gap") {
         None => Gap::None,
         Some(cursor) if is_geometry(cursor) => Gap::Geometry,
@@ -169,8 +173,8 @@ fn gap_of(fields: &Fields<'_>) -> Gap {
     }
 }
 
-/// Subtracting from 0 turns −0 into 0.
-fn turned(normal: [f64; 3]) -> [f64; 3] {
+/// The other way; subtracting from 0 turns −0 into 0.
+pub fn turned(normal: [f64; 3]) -> [f64; 3] {
     normal.map(|n| 0.0 - n)
 }
 

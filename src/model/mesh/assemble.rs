@@ -46,15 +46,24 @@ pub fn mesh(raw: RawMesh) -> Result<Mesh, Vec<MeshProblem>> {
         return Err(vec![raw.problem(Place::default(), message, "mesh the geometry and save it with its elements")]);
     }
     let (mut elements, final_index) = resolved(&raw)?;
-    in_one_plane(&raw, &elements)?;
-    let turned = judged(&raw, &mut elements)?;
+    let dimension = elements.iter().map(|element| element.shape.dimension()).max().unwrap_or(0);
+    if dimension == 2 {
+        in_one_plane(&raw, &elements)?;
+    }
+    let turned = judged(&raw, &mut elements, dimension)?;
     let mut notes = raw.notes.clone();
     let turned_count = turned.iter().filter(|turned| **turned).count();
     if let Some(first) = turned.iter().position(|turned| *turned) {
         let first = &elements[first];
         notes.push(format!(
-            "{} clockwise and {} turned round, the first at {}: element {}",
-            if turned_count == 1 { "1 element runs".into() } else { format!("{turned_count} elements run") },
+            "{} {} and {} turned round, the first at {}: element {}",
+            match (turned_count, dimension) {
+                (1, 2) => "1 element runs".into(),
+                (1, _) => "1 element is".into(),
+                (count, 2) => format!("{count} elements run"),
+                (count, _) => format!("{count} elements are"),
+            },
+            if dimension == 2 { "clockwise" } else { "inside out" },
             if turned_count == 1 { "is" } else { "are" },
             raw.line_of(first.place),
             first.tag
@@ -87,19 +96,12 @@ fn resolved(raw: &RawMesh) -> Result<(Vec<MeshElement>, Vec<u32>), Vec<MeshProbl
     let mut elements: Vec<MeshElement> = Vec::with_capacity(raw.elements.len());
     let mut final_index = Vec::with_capacity(raw.elements.len());
     let mut by_tag: HashMap<u64, u32> = HashMap::with_capacity(raw.elements.len());
-    let mut by_nodes: HashMap<[u32; 8], u32> = HashMap::with_capacity(raw.elements.len());
+    let mut by_nodes: HashMap<Box<[u32]>, u32> = HashMap::with_capacity(raw.elements.len());
+    let dimension = (0..raw.element_count()).map(|index| raw.element(index).1.dimension()).max().unwrap_or(0);
     for index in 0..raw.element_count() {
         let (tag, shape, tags) = raw.element(index);
         let place = raw.elements[index as usize].place;
-        let mut key = [u32::MAX; 8];
-        let mut missing = None;
-        for (node, tag) in key.iter_mut().zip(tags) {
-            match raw.node(*tag) {
-                Some(found) => *node = found,
-                None => missing = missing.or(Some(*tag)),
-            }
-        }
-        if let Some(node) = missing {
+        if let Some(node) = tags.iter().find(|tag| raw.node(**tag).is_none()) {
             faults.add("node", || {
                 raw.problem(
                     place,
@@ -110,7 +112,7 @@ fn resolved(raw: &RawMesh) -> Result<(Vec<MeshElement>, Vec<u32>), Vec<MeshProbl
             final_index.push(0);
             continue;
         }
-        let nodes = key[..shape.nodes()].to_vec();
+        let nodes: Vec<u32> = tags.iter().filter_map(|tag| raw.node(*tag)).collect();
         if let Some(node) = nodes.iter().enumerate().find_map(|(k, node)| nodes[..k].contains(node).then_some(*node)) {
             faults.add("twice", || {
                 raw.problem(
@@ -120,6 +122,7 @@ fn resolved(raw: &RawMesh) -> Result<(Vec<MeshElement>, Vec<u32>), Vec<MeshProbl
                 )
             });
         }
+        let mut key: Box<[u32]> = nodes.as_slice().into();
         key.sort_unstable();
         let same_tag = by_tag.get(&tag).copied();
         let same_nodes = by_nodes.get(&key).copied().filter(|&other| elements[other as usize].shape == shape);
@@ -136,7 +139,7 @@ fn resolved(raw: &RawMesh) -> Result<(Vec<MeshElement>, Vec<u32>), Vec<MeshProbl
                     "every element has a number of its own: renumber one of the two",
                 )
             }),
-            (None, Some(other)) if shape.is_area() => faults.add("nodes", || {
+            (None, Some(other)) if shape.dimension() == dimension.max(2) => faults.add("nodes", || {
                 let other = &elements[other as usize];
                 raw.problem(
                     place,
@@ -200,21 +203,27 @@ fn in_one_plane(raw: &RawMesh, elements: &[MeshElement]) -> Result<(), Vec<MeshP
     faults.end()
 }
 
-/// Turns clockwise areas round and says which; refuses those that enclose no area.
-fn judged(raw: &RawMesh, elements: &mut [MeshElement]) -> Result<Vec<bool>, Vec<MeshProblem>> {
+/// Turns clockwise areas and solids that are inside out round and says which; refuses those that enclose nothing. Areas
+/// of a mesh that has solids are no elements, and have no sense.
+fn judged(raw: &RawMesh, elements: &mut [MeshElement], dimension: u8) -> Result<Vec<bool>, Vec<MeshProblem>> {
     let mut faults = Faults::default();
     let mut turned = vec![false; elements.len()];
     for (element, turned) in elements.iter_mut().zip(&mut turned) {
-        if !element.shape.is_area() {
+        if element.shape.dimension() < dimension.max(2) {
             continue;
         }
-        let place = |node: &u32| {
-            let [x, y, _] = raw.nodes[*node as usize].position;
-            [x, y]
+        let positions: Vec<[f64; 3]> = element.nodes.iter().map(|node| raw.nodes[*node as usize].position).collect();
+        let is_turned = if element.shape.is_solid() {
+            element.shape.is_inside_out(&positions)
+        } else {
+            element.shape.is_clockwise(&positions.iter().map(|[x, y, _]| [*x, *y]).collect::<Vec<_>>())
         };
-        let positions: Vec<[f64; 2]> = element.nodes.iter().map(place).collect();
-        match element.shape.is_clockwise(&positions) {
+        match is_turned {
             Ok(false) => {}
+            Ok(true) if element.shape.is_solid() => {
+                element.nodes = element.shape.mirrored(&element.nodes);
+                *turned = true;
+            }
             Ok(true) => {
                 element.nodes = element.shape.turned(&element.nodes);
                 *turned = true;
@@ -242,6 +251,14 @@ fn said(raw: &RawMesh, element: &MeshElement, fault: ShapeFault) -> (&'static st
             "is a bow tie: two of its sides cross".into(),
             "list its corners in the order in which they go round",
         ),
+        ShapeFault::NoArea if element.shape.is_solid() => {
+            ("volume", "has no volume: its corners lie in one plane".into(), "remove the element, or mesh again")
+        }
+        ShapeFault::Folded if element.shape.is_solid() => (
+            "folded",
+            "is folded: its nodes are so far from their places that its Jacobian is not positive everywhere".into(),
+            "list its nodes in the order of the format, or mesh again",
+        ),
         ShapeFault::NoArea => {
             ("area", "has zero area: its corners lie on one line".into(), "remove the element, or mesh again")
         }
@@ -262,7 +279,7 @@ fn said(raw: &RawMesh, element: &MeshElement, fault: ShapeFault) -> (&'static st
 /// Name and place of a group in which nothing is.
 type Empty = (String, Place);
 
-/// Groups that have members, lines and areas apart; and those that have none.
+/// Groups that have members, lines, areas and solids apart; and those that have none.
 fn groups(
     raw: &RawMesh,
     elements: &[MeshElement],
@@ -289,15 +306,21 @@ fn groups(
             RawMembers::NodeSet(tags) => vec![Members::NodeSet(nodes(tags)?)],
             RawMembers::Elements(indices) => {
                 let indices = once(indices.iter().map(|&index| final_index[index as usize]).collect());
-                let (areas, lines) =
-                    indices.into_iter().partition(|&index: &u32| elements[index as usize].shape.is_area());
-                vec![Members::Lines(lines), Members::Areas(areas)]
+                let of = |dimension: u8| -> Vec<u32> {
+                    let fits = |index: &&u32| elements[**index as usize].shape.dimension() == dimension;
+                    indices.iter().filter(fits).copied().collect()
+                };
+                vec![Members::Lines(of(1)), Members::Areas(of(2)), Members::Solids(of(3))]
             }
             RawMembers::Sides(sides) => {
                 let side = |&(index, corner): &(u32, Option<u8>)| {
                     let index = final_index[index as usize];
-                    let corners = elements[index as usize].shape.corners() as u8;
-                    let corner = corner.map(|k| if turned[index as usize] { corners - 1 - k } else { k });
+                    let shape = elements[index as usize].shape;
+                    let turned_side = |k: u8| match shape.is_solid() {
+                        true => shape.mirrored_face(k as usize) as u8,
+                        false => shape.corners() as u8 - 1 - k,
+                    };
+                    let corner = corner.map(|k| if turned[index as usize] { turned_side(k) } else { k });
                     (index, corner)
                 };
                 vec![Members::Sides(once(sides.iter().map(side).collect()))]

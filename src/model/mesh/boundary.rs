@@ -63,7 +63,8 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
     /// Of a mesh.
     pub fn of(mesh: M) -> Self {
         let mut sides = Sides::default();
-        for index in mesh.areas() {
+        let areas = mesh.of_bodies().filter(|index| mesh.elements[*index as usize].shape.is_area());
+        for index in areas {
             let element = &mesh.elements[index as usize];
             sides.add(index as usize, element.shape.corners(), &usizes(&element.nodes));
         }
@@ -87,7 +88,7 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
             Members::Lines(lines) => self.of_lines(lines)?,
             Members::Sides(sides) => self.of_sides(sides)?,
             Members::NodeSet(nodes) => self.of_nodes(nodes)?,
-            Members::Points(_) | Members::Areas(_) => return Err(EdgeFault::NoEdge),
+            Members::Points(_) | Members::Areas(_) | Members::Solids(_) => return Err(EdgeFault::NoEdge),
         };
         self.one_edge(corners)
     }

@@ -1,6 +1,6 @@
 //! Meshes that other programs wrote: files of Gmsh (`gmsh`) and of Abaqus and CalculiX (`abaqus`) → one [`Mesh`]
 //! whatever the format (`raw`), every number of it checked (`assemble`). `chain` and `boundary` find edges in it,
-//! `overview` lists what there is.
+//! `surface` faces, `overview` lists what there is.
 //!
 //! Nothing a file claims is trusted: counts only say when to stop.
 
@@ -13,6 +13,7 @@ mod gmsh;
 pub mod overview;
 mod raw;
 mod source;
+pub mod surface;
 #[cfg(test)]
 mod tests;
 
@@ -75,7 +76,7 @@ pub struct Place {
 pub struct MeshNode {
     /// Its number in the file.
     pub tag: u64,
-    /// Coordinates; the third is the same for all nodes of the areas.
+    /// Coordinates; in a mesh without solids the third is the same for all nodes of the areas.
     pub position: [f64; 3],
     /// Where it stands.
     pub place: Place,
@@ -90,14 +91,14 @@ pub enum LineType {
     Beam,
 }
 
-/// A line or an area of the file.
+/// A line, an area or a solid of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshElement {
     /// Its number in the file.
     pub tag: u64,
     /// What it is.
     pub shape: Shape,
-    /// Indices of its nodes: corners (of areas counter-clockwise), then the middles of the sides 1-2, 2-3 …
+    /// Indices of its nodes in the order of its shape; areas that are elements run counter-clockwise.
     pub nodes: Vec<u32>,
     /// What a line is as a bar.
     pub line_type: LineType,
@@ -114,10 +115,13 @@ pub enum Members {
     NodeSet(Vec<u32>),
     /// Lines: an edge, or bars.
     Lines(Vec<u32>),
-    /// Sides of areas: the element, and the corner at which the side begins; `None`: all sides on the boundary.
+    /// Sides of areas: the element, and the corner at which the side begins; of solids, and the number of the face; `None`:
+    /// all sides on the boundary.
     Sides(Vec<(u32, Option<u8>)>),
-    /// Areas.
+    /// Areas: elements, or parts of the surface of solids.
     Areas(Vec<u32>),
+    /// Solids.
+    Solids(Vec<u32>),
 }
 
 impl Members {
@@ -128,14 +132,18 @@ impl Members {
             Members::NodeSet(_) => "nodes",
             Members::Lines(_) => "lines",
             Members::Sides(_) => "element sides",
-            Members::Areas(_) => "elements",
+            Members::Areas(_) | Members::Solids(_) => "elements",
         }
     }
 
     /// How many.
     pub fn count(&self) -> usize {
         match self {
-            Members::Points(all) | Members::NodeSet(all) | Members::Lines(all) | Members::Areas(all) => all.len(),
+            Members::Points(all)
+            | Members::NodeSet(all)
+            | Members::Lines(all)
+            | Members::Areas(all)
+            | Members::Solids(all) => all.len(),
             Members::Sides(all) => all.len(),
         }
     }
@@ -154,7 +162,8 @@ pub struct Group {
     pub place: Place,
 }
 
-/// A mesh as its file describes it, checked: areas are convex and counter-clockwise, in one plane, and all numbers finite.
+/// A mesh as its file describes it, checked: elements have no folds and are right side out, all numbers are finite. Its
+/// bodies consist of areas in one plane, or of solids; areas beside solids are parts of their surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Names of the file and of those it includes.
@@ -163,7 +172,7 @@ pub struct Mesh {
     pub format: String,
     /// All nodes of the file.
     pub nodes: Vec<MeshNode>,
-    /// Lines and areas, each once.
+    /// Lines, areas and solids, each once.
     pub elements: Vec<MeshElement>,
     /// Groups that have members, in the order of the file.
     pub groups: Vec<Group>,
@@ -228,7 +237,11 @@ impl Mesh {
         for group in &self.groups {
             group.name.bytes().for_each(|byte| put(u64::from(byte)));
             match &group.members {
-                Members::Points(all) | Members::NodeSet(all) | Members::Lines(all) | Members::Areas(all) => {
+                Members::Points(all)
+                | Members::NodeSet(all)
+                | Members::Lines(all)
+                | Members::Areas(all)
+                | Members::Solids(all) => {
                     all.iter().for_each(|index| put(u64::from(*index)));
                 }
                 Members::Sides(all) => all.iter().for_each(|(element, side)| {
@@ -240,9 +253,24 @@ impl Mesh {
         hash
     }
 
-    /// Indices of the areas.
-    pub fn areas(&self) -> impl Iterator<Item = u32> {
-        self.elements.iter().zip(0..).filter(|(element, _)| element.shape.is_area()).map(|(_, index)| index)
+    /// Whether its bodies are solids.
+    pub fn is_solid(&self) -> bool {
+        self.dimension() == 3
+    }
+
+    /// The largest dimension of its elements.
+    pub fn dimension(&self) -> u8 {
+        self.elements.iter().map(|element| element.shape.dimension()).max().unwrap_or(0)
+    }
+
+    /// Indices of the elements that its bodies consist of: its solids, or its areas.
+    pub fn of_bodies(&self) -> impl Iterator<Item = u32> {
+        let of = self.dimension().max(2);
+        self.elements
+            .iter()
+            .zip(0..)
+            .filter(move |(element, _)| element.shape.dimension() == of)
+            .map(|(_, index)| index)
     }
 
     /// Coordinates of a node in the plane.

@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 
 use super::boundary::{Boundary, EdgeFault};
-use super::{Group, Members, Mesh, Shape};
-use crate::model::edge::Edge;
+use super::surface::{FaceFault, Surface};
+use super::{Group, Members, Mesh, MeshElement, MeshNode, Shape};
+use crate::model::edge::{Edge, EdgeSide};
 use crate::model::structure::Node;
-use crate::model::vector::flat;
 
 /// What a mesh holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,15 +15,17 @@ pub struct Overview {
     pub shapes: Vec<(Shape, usize)>,
     /// Nodes that no area and no line has.
     pub unused_nodes: usize,
-    /// Least and largest x and y of the used nodes.
-    pub extent: [[f64; 2]; 2],
-    /// Area of all elements.
+    /// Least and largest x, y and z of the used nodes.
+    pub extent: [[f64; 3]; 2],
+    /// Area of all elements; of solids that of their surface.
     pub area: f64,
+    /// Volume of solids.
+    pub volume: Option<f64>,
     /// The groups in the order of the file.
     pub groups: Vec<GroupView>,
     /// The boundary by direction.
-    pub boundary: Vec<EdgeView>,
-    /// The worst area.
+    pub boundary: Vec<PieceView>,
+    /// The worst area or solid.
     pub worst: Option<Worst>,
 }
 
@@ -32,15 +34,15 @@ pub struct Overview {
 pub struct GroupView {
     /// Name or number.
     pub name: String,
-    /// 0 nodes, 1 lines and sides, 2 areas.
+    /// 0 nodes, 1 lines and sides, 2 areas and faces, 3 solids.
     pub dimension: u8,
     /// What its members are.
     pub what: &'static str,
     /// How many.
     pub count: usize,
-    /// Length of lines and edges, area of areas.
+    /// Length of lines and edges, area of areas and faces, volume of solids.
     pub measure: Option<f64>,
-    /// Why it is not one edge.
+    /// Why it is not one edge, or no face of solids.
     pub fault: Option<String>,
     /// Where it stands: `dam.msh:7`.
     pub place: String,
@@ -48,13 +50,13 @@ pub struct GroupView {
 
 /// A piece of the boundary.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EdgeView {
+pub struct PieceView {
     /// `top`.
     pub name: String,
     /// Number of its nodes.
     pub nodes: usize,
-    /// Its length.
-    pub length: f64,
+    /// Its length; of solids its area.
+    pub measure: f64,
 }
 
 /// The element of least quality.
@@ -62,7 +64,7 @@ pub struct EdgeView {
 pub struct Worst {
     /// Its number.
     pub tag: u64,
-    /// See [`Shape::quality`].
+    /// See [`Shape::quality`] and [`Shape::quality_of_solid`].
     pub quality: f64,
     /// Where it stands: `dam.msh:17`.
     pub place: String,
@@ -71,64 +73,102 @@ pub struct Worst {
 impl Overview {
     /// Of a mesh.
     pub fn of(mesh: &Mesh) -> Overview {
-        let boundary = Boundary::of(mesh);
-        let nodes: Vec<Node> = (0..mesh.nodes.len())
-            .map(|k| Node { id: String::new(), position: flat(mesh.position(k as u32)) })
-            .collect();
-        let positions = |index: u32| -> Vec<[f64; 2]> {
-            mesh.elements[index as usize].nodes.iter().map(|node| mesh.position(*node)).collect()
-        };
-        let area = |index: u32| mesh.elements[index as usize].shape.area(&positions(index));
+        let place = |node: &MeshNode| Node { id: String::new(), position: node.position };
+        let nodes: Vec<Node> = mesh.nodes.iter().map(place).collect();
         let used: HashSet<u32> = mesh.elements.iter().flat_map(|element| element.nodes.iter().copied()).collect();
-        let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        let mut extent = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for node in &used {
-            for (axis, x) in mesh.position(*node).into_iter().enumerate() {
+            for (axis, x) in nodes[*node as usize].position.into_iter().enumerate() {
                 extent[0][axis] = extent[0][axis].min(x);
                 extent[1][axis] = extent[1][axis].max(x);
             }
         }
-        let all = [Shape::Line2, Shape::Line3, Shape::Triangle3, Shape::Triangle6, Shape::Quad4, Shape::Quad8];
+        const SHAPES: [Shape; 10] = [
+            Shape::Line2,
+            Shape::Line3,
+            Shape::Triangle3,
+            Shape::Triangle6,
+            Shape::Quad4,
+            Shape::Quad8,
+            Shape::Tetrahedron4,
+            Shape::Tetrahedron10,
+            Shape::Hexahedron8,
+            Shape::Hexahedron20,
+        ];
         let number = |shape: Shape| mesh.elements.iter().filter(|element| element.shape == shape).count();
-        let worst = mesh
-            .areas()
-            .map(|index| (mesh.elements[index as usize].shape.quality(&positions(index)), index))
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(quality, index)| {
+        let worst = mesh.of_bodies().map(|index| (quality(mesh, index), index)).min_by(|a, b| a.0.total_cmp(&b.0)).map(
+            |(quality, index)| {
                 let element = &mesh.elements[index as usize];
                 Worst { tag: element.tag, quality, place: mesh.at(element.place) }
+            },
+        );
+        let size = mesh.of_bodies().map(|index| size(mesh, index)).sum();
+        let (groups, boundary, area, volume) = if mesh.is_solid() {
+            let surface = Surface::of(mesh);
+            let groups = mesh.groups.iter().map(|group| group_of_solids(group, mesh, &surface, &nodes)).collect();
+            let pieces = surface.facing().iter().map(|facing| {
+                let face = &facing.face;
+                PieceView { name: facing.name.clone(), nodes: face.nodes.len(), measure: face.area(&nodes) }
             });
-        let groups = mesh.groups.iter().map(|group| view(group, mesh, &boundary, &nodes, &area)).collect();
-        let edges = boundary.facing().iter().map(|facing| EdgeView {
-            name: facing.name.clone(),
-            nodes: facing.edge.nodes.len(),
-            length: facing.edge.length(&nodes),
-        });
+            let pieces: Vec<PieceView> = pieces.collect();
+            let area = pieces.iter().map(|piece| piece.measure).sum();
+            (groups, pieces, area, Some(size))
+        } else {
+            let boundary = Boundary::of(mesh);
+            let groups = mesh.groups.iter().map(|group| group_of_areas(group, mesh, &boundary, &nodes)).collect();
+            let pieces = boundary.facing().iter().map(|facing| {
+                let edge = &facing.edge;
+                PieceView { name: facing.name.clone(), nodes: edge.nodes.len(), measure: edge.length(&nodes) }
+            });
+            (groups, pieces.collect(), size, None)
+        };
         Overview {
-            shapes: all.into_iter().map(|shape| (shape, number(shape))).filter(|(_, count)| *count > 0).collect(),
+            shapes: SHAPES.into_iter().map(|shape| (shape, number(shape))).filter(|(_, count)| *count > 0).collect(),
             unused_nodes: mesh.nodes.len() - used.len(),
             extent,
-            area: mesh.areas().map(area).sum(),
+            area,
+            volume,
             groups,
-            boundary: edges.collect(),
+            boundary,
             worst,
         }
     }
 }
 
-fn view(
-    group: &Group,
-    mesh: &Mesh,
-    boundary: &Boundary<&Mesh>,
-    nodes: &[Node],
-    area: &dyn Fn(u32) -> f64,
-) -> GroupView {
+fn quality(mesh: &Mesh, index: u32) -> f64 {
+    let element = &mesh.elements[index as usize];
+    match element.shape.is_solid() {
+        true => element.shape.quality_of_solid(&places(mesh, element)),
+        false => element.shape.quality(&places_in_plane(mesh, element)),
+    }
+}
+
+/// Area or volume of an element.
+fn size(mesh: &Mesh, index: u32) -> f64 {
+    let element = &mesh.elements[index as usize];
+    match element.shape.is_solid() {
+        true => element.shape.volume(&places(mesh, element)),
+        false => element.shape.area(&places_in_plane(mesh, element)),
+    }
+}
+
+fn places(mesh: &Mesh, element: &MeshElement) -> Vec<[f64; 3]> {
+    element.nodes.iter().map(|node| mesh.nodes[*node as usize].position).collect()
+}
+
+fn places_in_plane(mesh: &Mesh, element: &MeshElement) -> Vec<[f64; 2]> {
+    element.nodes.iter().map(|node| mesh.position(*node)).collect()
+}
+
+fn group_of_areas(group: &Group, mesh: &Mesh, boundary: &Boundary<&Mesh>, nodes: &[Node]) -> GroupView {
     let edge = boundary.edge(group);
+    let of_edge = || edge.as_ref().ok().map(|edge| edge.length(nodes));
     let (dimension, measure) = match &group.members {
         Members::Points(_) => (0, None),
-        Members::NodeSet(_) => (0, edge.as_ref().ok().map(|edge| edge.length(nodes))),
+        Members::NodeSet(_) => (0, of_edge()),
         Members::Lines(lines) => (1, Some(lines.iter().map(|line| length(mesh, *line, nodes)).sum())),
-        Members::Sides(_) => (1, edge.as_ref().ok().map(|edge| edge.length(nodes))),
-        Members::Areas(areas) => (2, Some(areas.iter().map(|index| area(*index)).sum())),
+        Members::Sides(_) => (1, of_edge()),
+        Members::Areas(all) | Members::Solids(all) => (2, Some(all.iter().map(|index| size(mesh, *index)).sum())),
     };
     let fault = match (&edge, &group.members) {
         // Sets of nodes need not be edges, nor lines of bars.
@@ -143,6 +183,32 @@ fn view(
         }),
         _ => None,
     };
+    group_view(group, mesh, dimension, measure, fault)
+}
+
+fn group_of_solids(group: &Group, mesh: &Mesh, surface: &Surface<&Mesh>, nodes: &[Node]) -> GroupView {
+    let face = surface.face(group);
+    let of_face = face.as_ref().ok().map(|face| face.area(nodes));
+    let (dimension, measure) = match &group.members {
+        Members::Points(_) => (0, None),
+        Members::NodeSet(_) => (0, of_face),
+        Members::Lines(_) => (1, None),
+        Members::Areas(_) | Members::Sides(_) => (2, of_face),
+        Members::Solids(all) => (3, Some(all.iter().map(|index| size(mesh, *index)).sum())),
+    };
+    let fault = match (&face, &group.members) {
+        // Sets of nodes need not be faces.
+        (Err(fault), Members::Areas(_) | Members::Sides(_)) => Some(match fault {
+            FaceFault::NoSide(_) | FaceFault::Empty => "no sides of solids".into(),
+            FaceFault::Inside(_) => "inside a body".into(),
+            FaceFault::NoFace => "no face".into(),
+        }),
+        _ => None,
+    };
+    group_view(group, mesh, dimension, measure, fault)
+}
+
+fn group_view(group: &Group, mesh: &Mesh, dimension: u8, measure: Option<f64>, fault: Option<String>) -> GroupView {
     GroupView {
         name: group.name.clone(),
         dimension,
@@ -159,6 +225,6 @@ fn length(mesh: &Mesh, line: u32, nodes: &[Node]) -> f64 {
     let line = &mesh.elements[line as usize].nodes;
     let ends = [line[0] as usize, line[1] as usize];
     let middle = line.get(2).map(|node| *node as usize);
-    let side = crate::model::edge::EdgeSide { element: 0, ends, middle, reversed: false };
+    let side = EdgeSide { element: 0, ends, middle, reversed: false };
     Edge { nodes: Vec::new(), sides: vec![side] }.length(nodes)
 }

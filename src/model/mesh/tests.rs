@@ -71,7 +71,7 @@ fn gmsh_2() {
     assert_eq!(overview.shapes, [(Shape::Line2, 2), (Shape::Quad4, 2)]);
     assert_eq!((overview.area, overview.unused_nodes), (2.0, 1));
     assert_eq!(overview.groups[1].measure, Some(2.0));
-    assert_eq!(overview.extent, [[0.0, 0.0], [2.0, 1.0]]);
+    assert_eq!(overview.extent, [[0.0; 3], [2.0, 1.0, 0.0]]);
 }
 
 /// The same bytes as text and as numbers in both orders say the same.

@@ -145,24 +145,28 @@ pub fn sections(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec
     let mut seen: Vec<String> = Vec::new();
     let mut warnings = Vec::new();
     for (element, place) in structure.elements.iter().zip(&scenario.places.elements) {
-        let Some([area, inertia]) = element.section() else { continue };
+        let Some((area, inertias)) = element.section() else { continue };
         let Some(name) = section_at(file, place) else { continue };
         let path = format!("sections.{name}");
         if seen.contains(&path) {
             continue;
         }
-        let (shape, gyration) = (inertia / (area * area), (inertia / area).sqrt());
-        let message = if !(1e-7..=1e6).contains(&shape) {
-            format!(
-                "the area {area} and the inertia {inertia} of `{name}` are not of one section: inertia/area² is {shape:.1e}, \
-                 of real sections 1e-4 to 1e2"
-            )
-        } else if gyration > extent {
-            format!(
-                "`{name}` is deeper than the structure is large: its radius of gyration is {gyration:.3} {length}, the \
-                 whole structure {extent:.3} {length}"
-            )
-        } else {
+        let Some(message) = inertias.into_iter().find_map(|inertia| {
+            let (shape, gyration) = (inertia / (area * area), (inertia / area).sqrt());
+            if !(1e-7..=1e6).contains(&shape) {
+                Some(format!(
+                    "the area {area} and the inertia {inertia} of `{name}` are not of one section: inertia/area² is \
+                     {shape:.1e}, of real sections 1e-4 to 1e2"
+                ))
+            } else if gyration > extent {
+                Some(format!(
+                    "`{name}` is deeper than the structure is large: its radius of gyration is {gyration:.3} {length}, \
+                     the whole structure {extent:.3} {length}"
+                ))
+            } else {
+                None
+            }
+        }) else {
             continue;
         };
         let help = format!("give the area in {length}² and the inertia in {length}⁴");

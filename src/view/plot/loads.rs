@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use super::canvas::{Canvas, Stroke};
 use crate::model::groups::Groups;
-use crate::model::structure::{ElementKind, ElementLoad, Load, LoadCase, Structure};
+use crate::model::structure::{ElementLoad, Load, LoadCase, Structure};
 use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
 use crate::view::style::Role;
@@ -241,7 +241,7 @@ impl Weight {
 /// What an element belongs to, for its weight: (0, a node of the membranes that hang together), or (1, a bar).
 fn owners(structure: &Structure) -> Vec<(usize, usize)> {
     let mut bodies = Groups::new(structure.nodes.len());
-    for element in structure.elements.iter().filter(|element| matches!(element.kind, ElementKind::Membrane { .. })) {
+    for element in structure.elements.iter().filter(|element| element.shape().dimension() > 1) {
         bodies.join_all(element.nodes.iter().copied());
     }
     let mut owner: Vec<(usize, usize)> =
@@ -260,8 +260,12 @@ fn length(structure: &Structure, element: usize) -> f64 {
 /// Volume of an element.
 fn volume(structure: &Structure, index: usize) -> f64 {
     let element = &structure.elements[index];
-    let extent = match element.kind {
-        ElementKind::Membrane { .. } => {
+    let extent = match element.shape().dimension() {
+        3 => {
+            let nodes: Vec<[f64; 3]> = element.nodes.iter().map(|&node| structure.nodes[node].position).collect();
+            element.shape().volume(&nodes)
+        }
+        2 => {
             let nodes: Vec<[f64; 2]> = element.nodes.iter().map(|&node| structure.nodes[node].in_plane()).collect();
             element.shape().area(&nodes)
         }

@@ -1,7 +1,6 @@
 //! Elements in space.
 
 mod frame;
-mod shape;
 mod solid;
 
 pub use frame::SpaceFrame;

@@ -1,4 +1,4 @@
-//! Isoparametric solids: tetrahedra of 4 and 10 nodes, hexahedra of 8 and 20 (`shape`), those of 8 with or without
+//! Isoparametric solids: tetrahedra of 4 and 10 nodes, hexahedra of 8 and 20 (`shape_functions`), those of 8 with or without
 //! incompatible modes.
 //!
 //! ```text
@@ -11,8 +11,8 @@
 use super::super::incompatible;
 use super::super::jacobian::{SpaceJacobian, Triple};
 use super::super::{Acting, FiniteElement, Stiffness, Stress, free_strain};
-use super::shape::{MOST, Point, SolidShape, TETRAHEDRON_SIDES};
 use crate::doubled::{Doubled, Real};
+use crate::model::shape_functions::{MOST_OF_SOLID, SolidShape, TETRAHEDRON_SIDES, VolumePoint};
 use crate::model::structure::{ElementLoad, Material};
 
 /// Incompatible modes of a brick, each along x, y and z.
@@ -30,7 +30,7 @@ pub struct Solid<'a> {
 
 /// Gradients of all functions of an element, those of the nodes first, and det J.
 struct Gradients<T> {
-    of: [Triple<T>; MOST + MODES],
+    of: [Triple<T>; MOST_OF_SOLID + MODES],
     determinant: T,
 }
 
@@ -40,7 +40,7 @@ impl Solid<'_> {
     }
 
     /// Points of its integrals.
-    fn points(&self) -> Vec<Point> {
+    fn points(&self) -> Vec<VolumePoint> {
         self.shape().points(self.bulges())
     }
 
@@ -188,7 +188,7 @@ impl Solid<'_> {
     fn gradients<T: Real>(&self, at: [f64; 3]) -> Gradients<T> {
         let jacobian = self.jacobian::<T>(at);
         let determinant = jacobian.determinant;
-        let mut of = [[T::zero(); 3]; MOST + MODES];
+        let mut of = [[T::zero(); 3]; MOST_OF_SOLID + MODES];
         for (of, natural) in of.iter_mut().zip(&self.shape().gradients(at)[..self.nodes.len()]) {
             *of = jacobian.turn(*natural);
         }

@@ -1,4 +1,4 @@
-//! `point`: a force and a moment at a node, along an edge (the total), or at a place of a bar.
+//! `point`: a force and a moment at a node, on an edge or a face (the total), or at a place of a bar.
 
 use super::{bar, nodal};
 use crate::model::decode::builder::Builder;
@@ -42,6 +42,19 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
             let total = edge.length(nodes);
             let per_length = force?.map(|force| force / total);
             Some(nodal(edge.consistent_forces(nodes, None, &|_| per_length)))
+        }
+        Spot::Face(face) => {
+            if let Some((cursor, _)) = moment {
+                cursor.problem(
+                    "a `moment` cannot act on a face: its nodes have no rotation",
+                    "remove it, or give a couple of forces",
+                );
+                return None;
+            }
+            let nodes = &builder.structure.nodes;
+            let area = face.area(nodes);
+            let per_area = force?.map(|force| force / area);
+            Some(nodal(face.consistent_forces(nodes, None, &|_| per_area)))
         }
     }
 }

@@ -143,18 +143,20 @@ impl Found<'_> {
         Ok(sides)
     }
 
-    /// The corner at which a face of an element begins; `None` for all faces on the boundary.
+    /// The corner at which a side of an area begins, or the number of a face of a solid, from 0; `None` for all sides on
+    /// the boundary.
     fn side(&self, surface: &Surface, index: u32, face: Option<&str>, place: Place) -> Result<Option<u8>, MeshProblem> {
         let (tag, shape, _) = self.mesh.element(index);
-        if !shape.is_area() {
+        if shape.dimension() == 1 {
             return Err(self.cards.problem(
                 place,
                 format!("the surface \"{}\" names element {tag}, which is {}", surface.name, shape.words()),
-                "a surface is made of sides of triangles and quadrilaterals",
+                "a surface is made of sides of areas or solids",
             ));
         }
         let Some(face) = face else { return Ok(None) };
-        let side = face.strip_prefix('S').and_then(whole).filter(|k| (1..=shape.corners() as u64).contains(k));
+        let count = if shape.is_solid() { shape.faces().len() } else { shape.corners() };
+        let side = face.strip_prefix('S').and_then(whole).filter(|k| (1..=count as u64).contains(k));
         let side = side.ok_or_else(|| {
             self.cards.problem(
                 place,
@@ -164,7 +166,10 @@ impl Found<'_> {
                     quoted(face),
                     shape.words()
                 ),
-                format!("its faces are S1 to S{}: from each corner to the next", shape.corners()),
+                match shape.is_solid() {
+                    true => format!("its faces are S1 to S{count}"),
+                    false => format!("its faces are S1 to S{count}: from each corner to the next"),
+                },
             )
         })?;
         Ok(Some(side as u8 - 1))

@@ -26,6 +26,17 @@ impl ElementType {
                 return Ok(ElementType { shape, is_truss: false });
             }
         }
+        for (count, shape) in [
+            ("10", Shape::Tetrahedron10),
+            ("20", Shape::Hexahedron20),
+            ("4", Shape::Tetrahedron4),
+            ("8", Shape::Hexahedron8),
+        ] {
+            let rest = word.strip_prefix("C3D").and_then(|rest| rest.strip_prefix(count));
+            if rest.is_some_and(|ending| ending_of("RHIMS", ending)) {
+                return Ok(ElementType { shape, is_truss: false });
+            }
+        }
         let lines = [
             ("T2D2", Shape::Line2, true),
             ("T3D2", Shape::Line2, true),
@@ -46,15 +57,15 @@ impl ElementType {
         let refused = |what: &str, help| {
             Err((format!("elements of type {} are {what} and not read", quoted(name).trim_matches('"')), help))
         };
-        let flat = "elements lie in the plane: write CPS or CPE with 3, 4, 6 or 8 nodes";
+        let known = "expected CPS or CPE with 3, 4, 6 or 8 nodes, C3D with 4, 8, 10 or 20, B21 or T2D2";
         if word.starts_with("CAX") || word.starts_with("SAX") || word.starts_with("MAX") {
             refused("axisymmetric", "a structure here is plane: plane strain or plane stress")
         } else if word.starts_with("C3D") || word.starts_with("SC") {
-            refused("solids in space", flat)
+            refused("solids of another shape", "write tetrahedra (C3D4, C3D10) or hexahedra (C3D8, C3D20)")
         } else if word.starts_with("M3D") || word.starts_with('S') && !word.starts_with("SPRING") {
-            refused("shells or membranes in space", flat)
+            refused("shells or membranes in space", known)
         } else {
-            refused("unknown here", "expected CPS or CPE with 3, 4, 6 or 8 nodes, B21 or T2D2")
+            refused("unknown here", known)
         }
     }
 }
@@ -64,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn endings_do_not_matter_and_what_is_not_plane_is_refused() {
+    fn endings_do_not_matter_and_what_is_not_known_is_refused() {
         for (name, shape) in [
             ("CPS3", Shape::Triangle3),
             ("cpe3h", Shape::Triangle3),
@@ -75,12 +86,17 @@ mod tests {
             ("B21H", Shape::Line2),
             ("T2D2", Shape::Line2),
             ("B22", Shape::Line3),
+            ("C3D4", Shape::Tetrahedron4),
+            ("C3D10M", Shape::Tetrahedron10),
+            ("c3d8i", Shape::Hexahedron8),
+            ("C3D20R", Shape::Hexahedron20),
         ] {
             assert_eq!(ElementType::named(name).map(|kind| kind.shape), Ok(shape), "{name}");
         }
         for (name, word) in [
             ("CAX4R", "axisymmetric"),
-            ("C3D8", "solids"),
+            ("C3D6", "solids of another shape"),
+            ("C3D27", "solids of another shape"),
             ("S4R", "shells"),
             ("CPS", "unknown"),
             ("CPS5", "unknown"),

@@ -233,7 +233,7 @@ fn kind_of(source: &Source<'_>, number: i64) -> Result<Kind, MeshProblem> {
     let refused = |what: &str, help: &str| {
         Err(source.problem(format!("{} is {what} (type {number}), which is not read", source.item), help))
     };
-    let flat = "elements lie in the plane: mesh a surface, and save no volumes";
+    let solids = "solids are meshed with tetrahedra or hexahedra: split it, or mesh again";
     match number {
         15 => Ok(Kind::Point),
         1 => Ok(Kind::Element(Shape::Line2)),
@@ -242,18 +242,38 @@ fn kind_of(source: &Source<'_>, number: i64) -> Result<Kind, MeshProblem> {
         8 => Ok(Kind::Element(Shape::Line3)),
         9 => Ok(Kind::Element(Shape::Triangle6)),
         16 => Ok(Kind::Element(Shape::Quad8)),
+        4 => Ok(Kind::Element(Shape::Tetrahedron4)),
+        5 => Ok(Kind::Element(Shape::Hexahedron8)),
+        11 => Ok(Kind::Element(Shape::Tetrahedron10)),
+        17 => Ok(Kind::Element(Shape::Hexahedron20)),
         10 => refused(
             "a quadrilateral of nine nodes",
             "quadrilaterals have 4 or 8 nodes: set `Mesh.SecondOrderIncomplete = 1` in Gmsh",
         ),
-        4 | 11 => refused("a tetrahedron", flat),
-        5 | 12 | 17 => refused("a hexahedron", flat),
-        6 | 13 | 18 => refused("a prism", flat),
-        7 | 14 | 19 => refused("a pyramid", flat),
+        12 => refused(
+            "a hexahedron of 27 nodes",
+            "hexahedra have 8 or 20 nodes: set `Mesh.SecondOrderIncomplete = 1` in Gmsh",
+        ),
+        6 | 13 | 18 => refused("a prism", solids),
+        7 | 14 | 19 => refused("a pyramid", solids),
         20..=28 | 36 | 37 => {
             refused("of higher order", "elements are linear or quadratic: set `Mesh.ElementOrder = 1` or `2` in Gmsh")
         }
-        _ => refused("of an unknown type", "expected lines, triangles and quadrilaterals, linear or quadratic"),
+        _ => refused("of an unknown type", "expected lines, areas and solids, linear or quadratic"),
+    }
+}
+
+/// The nodes of an element as Gmsh lists them, in the order of [`Shape`]: it counts the middles of solids otherwise
+/// (reference manual, "Node ordering").
+fn in_order(shape: Shape, nodes: &mut [u64]) {
+    match shape {
+        Shape::Tetrahedron10 => nodes.swap(8, 9),
+        Shape::Hexahedron20 => {
+            const MIDDLES: [usize; 12] = [8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15];
+            let middles = MIDDLES.map(|at| nodes[at]);
+            nodes[8..].copy_from_slice(&middles);
+        }
+        _ => {}
     }
 }
 

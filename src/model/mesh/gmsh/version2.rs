@@ -3,7 +3,7 @@
 use super::super::raw::RawMesh;
 use super::super::source::{Form, Item, Source};
 use super::super::{MeshProblem, Place};
-use super::{Kind, kind_of};
+use super::{Kind, in_order, kind_of};
 
 /// A number of a node or element.
 fn tag(source: &mut Source<'_>, what: &str) -> Result<u64, MeshProblem> {
@@ -102,11 +102,13 @@ fn element(source: &mut Source<'_>, mesh: &mut RawMesh, tag_: u64, kind: &Kind, 
             Ok(())
         }
         Kind::Element(shape) => {
-            let mut nodes = [0; 8];
-            for node in &mut nodes[..shape.nodes()] {
+            let mut nodes = [0; 20];
+            let nodes = &mut nodes[..shape.nodes()];
+            for node in nodes.iter_mut() {
                 *node = tag(source, "the number of a node")?;
             }
-            mesh.add_element(tag_, *shape, &nodes[..shape.nodes()], place);
+            in_order(*shape, nodes);
+            mesh.add_element(tag_, *shape, nodes, place);
             mesh.put_in_groups(*shape, groups, place);
             Ok(())
         }

@@ -3,7 +3,7 @@
 use super::super::MeshProblem;
 use super::super::raw::RawMesh;
 use super::super::source::{Form, Item, Source};
-use super::{Groups, Kind, dimension, kind_of};
+use super::{Groups, Kind, dimension, in_order, kind_of};
 
 /// Counts of a binary section begin behind the line of its name.
 fn begin(source: &mut Source<'_>, item: Item) {
@@ -137,11 +137,13 @@ pub fn elements(source: &mut Source<'_>, mesh: &mut RawMesh, groups: &Groups) ->
                     });
                 }
                 Kind::Element(shape) => {
-                    let mut nodes = [0; 8];
-                    for node in &mut nodes[..shape.nodes()] {
+                    let mut nodes = [0; 20];
+                    let nodes = &mut nodes[..shape.nodes()];
+                    for node in nodes.iter_mut() {
                         *node = source.size("a node")?;
                     }
-                    mesh.add_element(tag, shape, &nodes[..shape.nodes()], place);
+                    in_order(shape, nodes);
+                    mesh.add_element(tag, shape, nodes, place);
                     mesh.put_in_groups(shape, of_groups, place);
                 }
             }

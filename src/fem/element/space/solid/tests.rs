@@ -5,6 +5,10 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::model::face::Face;
+use crate::model::faces::Faces;
+use crate::model::node::Node;
+use crate::model::shape::Shape;
 
 const EPS: f64 = f64::EPSILON;
 
@@ -21,10 +25,6 @@ struct Mesh {
     elements: Vec<Vec<usize>>,
     incompatible: bool,
 }
-
-/// Ends of the sides of a hexahedron in the order of their middle nodes.
-const HEXAHEDRON_SIDES: [[usize; 2]; 12] =
-    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
 impl Mesh {
     /// Of the sizes given; every node moved at random by up to `shift` of a division, middle nodes again by a third of
@@ -65,7 +65,7 @@ impl Mesh {
         }
         let sides: &[[usize; 2]] = match count {
             10 => &TETRAHEDRON_SIDES,
-            20 => &HEXAHEDRON_SIDES,
+            20 => Shape::Hexahedron20.sides_of_solid(),
             _ => &[],
         };
         let mut middles = HashMap::new();
@@ -110,38 +110,27 @@ impl Mesh {
         all
     }
 
-    /// Whether a node belongs to no face that one element alone has: corners by the faces of hexahedra or tetrahedra,
-    /// a middle node by its two corners.
+    fn shape(&self) -> Shape {
+        match self.elements[0].len() {
+            4 => Shape::Tetrahedron4,
+            8 => Shape::Hexahedron8,
+            10 => Shape::Tetrahedron10,
+            _ => Shape::Hexahedron20,
+        }
+    }
+
+    /// The faces that one element alone has.
+    fn boundary(&self) -> Face {
+        let mut faces = Faces::default();
+        for (element, nodes) in self.elements.iter().enumerate() {
+            faces.add(element, self.shape(), nodes);
+        }
+        Face::of(faces.surface().into_iter().cloned().collect())
+    }
+
     fn inner(&self) -> Vec<bool> {
-        let of_hexahedron: [&[usize]; 6] =
-            [&[0, 1, 2, 3], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
-        let of_tetrahedron: [&[usize]; 4] = [&[0, 1, 2], &[0, 1, 3], &[1, 2, 3], &[0, 2, 3]];
-        let count = self.elements[0].len();
-        let (faces, sides): (&[&[usize]], &[[usize; 2]]) = match count {
-            4 | 10 => (&of_tetrahedron, &TETRAHEDRON_SIDES),
-            _ => (&of_hexahedron, &HEXAHEDRON_SIDES),
-        };
-        let corners = if count == 4 || count == 10 { 4 } else { 8 };
-        let mut seen: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
-        for element in &self.elements {
-            for face in faces {
-                let mut key: Vec<usize> = face.iter().map(|&c| element[c]).collect();
-                key.sort_unstable();
-                let mut nodes = key.clone();
-                if count > corners {
-                    let on_face = |[a, b]: &[usize; 2]| face.contains(a) && face.contains(b);
-                    let middles = sides.iter().enumerate().filter(|(_, side)| on_face(side));
-                    nodes.extend(middles.map(|(m, _)| element[corners + m]));
-                }
-                seen.entry(key).or_default().extend(nodes);
-            }
-        }
         let mut inner = vec![true; self.nodes.len()];
-        for (key, nodes) in seen {
-            if nodes.len() < 2 * key.len() || nodes.iter().filter(|node| **node == key[0]).count() == 1 {
-                nodes.into_iter().for_each(|node| inner[node] = false);
-            }
-        }
+        self.boundary().nodes.iter().for_each(|&node| inner[node] = false);
         inner
     }
 }
@@ -178,8 +167,8 @@ fn volume(nodes: &[[f64; 3]], count: usize) -> f64 {
     faces.into_iter().map(of_face).sum()
 }
 
-/// A linear field on distorted elements, sides and faces bulging: its constant stress everywhere, and nothing is left
-/// over at any inner node.
+/// A linear field on distorted elements, sides and faces bulging: its constant stress everywhere, the consistent forces
+/// of its tractions on the surface, and nothing left over at any inner node.
 #[test]
 fn patch_test() {
     let random = &mut ChaCha8Rng::seed_from_u64(1);
@@ -195,11 +184,20 @@ fn patch_test() {
                 assert!((0..6).all(|c| (found[c] - right[c]).abs() < 1e-13), "{kind:?}: {found:?} {right:?}");
             }
         }
-        let inner = mesh.inner();
-        assert!(inner.iter().any(|inner| *inner), "{kind:?}");
-        for ((force, terms), _) in mesh.forces(&linear).into_iter().zip(inner).filter(|(_, inner)| *inner) {
+        // On the surface the forces of σ n, nothing inside.
+        let boundary = mesh.boundary();
+        assert!(boundary.nodes.len() < mesh.nodes.len(), "{kind:?}");
+        let nodes: Vec<Node> = mesh.nodes.iter().map(|&position| Node { id: "n".into(), position }).collect();
+        let stress = hooke(SLOPES);
+        let tractions = boundary.consistent_forces(&nodes, None, &|spot| (stress * Vector3::from(spot.outward)).into());
+        let tractions: HashMap<usize, [f64; 3]> = tractions.into_iter().collect();
+        for (node, (force, terms)) in mesh.forces(&linear).into_iter().enumerate() {
+            let right = tractions.get(&node).copied().unwrap_or_default();
             // Each entry of k is a sum over up to 27 points of products that some 30 roundings made.
-            assert!((0..3).all(|c| force[c].abs() < 256.0 * EPS * terms[c]), "{kind:?}: {force:?} {terms:?}");
+            assert!(
+                (0..3).all(|c| (force[c] - right[c]).abs() < 256.0 * EPS * terms[c]),
+                "{kind:?}: {force:?} {right:?}"
+            );
         }
     }
 }

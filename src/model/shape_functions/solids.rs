@@ -13,7 +13,6 @@
 //! the hexahedron and 3 in all of the tetrahedron with bulging sides. Hughes, *The Finite Element Method*, 1987, §3.2, §3.8
 //! and appendices 3.I, 3.II; fourteen points: Walkington, *Quadrature on simplices of arbitrary dimension*, 2000.
 
-use super::super::jacobian::Triple;
 use crate::doubled::Real;
 
 /// Most nodes of a solid element.
@@ -76,7 +75,7 @@ pub const TETRAHEDRON_SIDES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], 
 const NEAR: f64 = 0.138_196_601_125_010_5;
 
 /// An integration point: (ξ, η, ζ) and weight.
-pub type Point = ([f64; 3], f64);
+pub type VolumePoint = ([f64; 3], f64);
 
 impl SolidShape {
     /// The shape with this number of nodes: 4, 8, 10 or 20.
@@ -109,7 +108,7 @@ impl SolidShape {
     }
 
     /// Points of the stiffness and of the loads on the volume; `bulges` tells whether sides are not straight.
-    pub fn points(self, bulges: bool) -> Vec<Point> {
+    pub fn points(self, bulges: bool) -> Vec<VolumePoint> {
         match self {
             SolidShape::Tetrahedron10 if bulges => fourteen(),
             SolidShape::Tetrahedron4 => vec![([0.25; 3], 1.0 / 6.0)],
@@ -171,7 +170,7 @@ impl SolidShape {
     }
 
     /// (∂N_i/∂ξ, ∂N_i/∂η, ∂N_i/∂ζ) at (ξ, η, ζ); entries beyond the number of nodes are zero.
-    pub fn gradients<T: Real>(self, at: [f64; 3]) -> [Triple<T>; MOST] {
+    pub fn gradients<T: Real>(self, at: [f64; 3]) -> [[T; 3]; MOST] {
         let number = T::from;
         let [x, y, z] = at.map(number);
         let (o, one) = (T::zero(), T::one());
@@ -232,7 +231,7 @@ impl SolidShape {
 }
 
 /// Points of the tetrahedron of degree 5.
-fn fourteen() -> Vec<Point> {
+fn fourteen() -> Vec<VolumePoint> {
     let mut points = Vec::with_capacity(14);
     // Three coordinates equal, the fourth the rest to 1.
     for (a, w) in
@@ -248,7 +247,7 @@ fn fourteen() -> Vec<Point> {
 }
 
 /// Gradient of the function of the serendipity hexahedron's node at `node`.
-fn serendipity<T: Real>(at: Triple<T>, node: Triple<T>) -> Triple<T> {
+fn serendipity<T: Real>(at: [T; 3], node: [T; 3]) -> [T; 3] {
     let (one, two) = (T::one(), T::from(2.0));
     // Products with the node's coordinates, and the factors 1 + c x.
     let p = [0, 1, 2].map(|a| node[a] * at[a]);

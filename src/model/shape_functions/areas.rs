@@ -1,4 +1,4 @@
-//! Shape functions, integration points and sides of the plane elements.
+//! Shape functions and integration points of the plane elements, and of the sides of solids.
 //!
 //! ```text
 //!     3 nodes  L1 = 1 − ξ − η, L2 = ξ, L3 = η                      one point
@@ -15,7 +15,7 @@ pub const MOST: usize = 8;
 
 /// Shape of a plane element; its nodes go round counter-clockwise, corners first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum AreaShape {
     /// Linear triangle.
     Triangle3,
     /// Quadratic triangle.
@@ -43,32 +43,37 @@ const TRIANGLE_NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5,
 /// An integration point: (ξ, η) and weight.
 pub type Point = ([f64; 2], f64);
 
-impl Shape {
+impl AreaShape {
     /// The shape with this number of nodes: 3, 4, 6 or 8.
-    pub fn of(nodes: usize) -> Shape {
+    pub fn of(nodes: usize) -> AreaShape {
         match nodes {
-            3 => Shape::Triangle3,
-            6 => Shape::Triangle6,
-            8 => Shape::Quad8,
-            _ => Shape::Quad4,
+            3 => AreaShape::Triangle3,
+            6 => AreaShape::Triangle6,
+            8 => AreaShape::Quad8,
+            _ => AreaShape::Quad4,
         }
+    }
+
+    /// Whether it is a triangle: 0 ≤ ξ, 0 ≤ η, ξ + η ≤ 1; else −1 ≤ ξ, η ≤ 1.
+    pub fn is_triangle(self) -> bool {
+        matches!(self, AreaShape::Triangle3 | AreaShape::Triangle6)
     }
 
     /// (ξ, η) of the nodes.
     pub fn nodes(self) -> &'static [[f64; 2]] {
         match self {
-            Shape::Triangle3 => &TRIANGLE_NODES[..3],
-            Shape::Triangle6 => &TRIANGLE_NODES,
-            Shape::Quad4 => &QUAD_CORNERS[..4],
-            Shape::Quad8 => &QUAD_CORNERS,
+            AreaShape::Triangle3 => &TRIANGLE_NODES[..3],
+            AreaShape::Triangle6 => &TRIANGLE_NODES,
+            AreaShape::Quad4 => &QUAD_CORNERS[..4],
+            AreaShape::Quad8 => &QUAD_CORNERS,
         }
     }
 
     /// (ξ, η) of the centroid of the parent element.
     pub fn centre(self) -> [f64; 2] {
         match self {
-            Shape::Triangle3 | Shape::Triangle6 => [1.0 / 3.0; 2],
-            Shape::Quad4 | Shape::Quad8 => [0.0; 2],
+            AreaShape::Triangle3 | AreaShape::Triangle6 => [1.0 / 3.0; 2],
+            AreaShape::Quad4 | AreaShape::Quad8 => [0.0; 2],
         }
     }
 
@@ -78,15 +83,15 @@ impl Shape {
             line.iter().flat_map(|&(eta, b)| line.iter().map(move |&(xi, a)| ([xi, eta], a * b))).collect()
         };
         match self {
-            Shape::Triangle3 => vec![([1.0 / 3.0; 2], 0.5)],
-            Shape::Triangle6 => {
+            AreaShape::Triangle3 => vec![([1.0 / 3.0; 2], 0.5)],
+            AreaShape::Triangle6 => {
                 [[1.0 / 6.0; 2], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0]].map(|at| (at, 1.0 / 6.0)).to_vec()
             }
-            Shape::Quad4 => {
+            AreaShape::Quad4 => {
                 let g = 1.0 / 3.0_f64.sqrt();
                 QUAD_CORNERS[..4].iter().map(|corner| ([corner[0] * g, corner[1] * g], 1.0)).collect()
             }
-            Shape::Quad8 => {
+            AreaShape::Quad8 => {
                 let g = 0.6_f64.sqrt();
                 product(&[(-g, 5.0 / 9.0), (0.0, 8.0 / 9.0), (g, 5.0 / 9.0)])
             }
@@ -97,20 +102,20 @@ impl Shape {
     pub fn values(self, [x, y]: [f64; 2]) -> [f64; MOST] {
         let mut n = [0.0; MOST];
         match self {
-            Shape::Triangle3 => n[..3].copy_from_slice(&[1.0 - x - y, x, y]),
-            Shape::Triangle6 => {
+            AreaShape::Triangle3 => n[..3].copy_from_slice(&[1.0 - x - y, x, y]),
+            AreaShape::Triangle6 => {
                 let l = [1.0 - x - y, x, y];
                 for i in 0..3 {
                     n[i] = l[i] * (2.0 * l[i] - 1.0);
                     n[3 + i] = 4.0 * l[i] * l[(i + 1) % 3];
                 }
             }
-            Shape::Quad4 => {
+            AreaShape::Quad4 => {
                 for (n, c) in n.iter_mut().zip(&QUAD_CORNERS[..4]) {
                     *n = 0.25 * (1.0 + c[0] * x) * (1.0 + c[1] * y);
                 }
             }
-            Shape::Quad8 => {
+            AreaShape::Quad8 => {
                 for (i, c) in QUAD_CORNERS.iter().enumerate() {
                     let (a, b) = (c[0] * x, c[1] * y);
                     n[i] = match i {
@@ -130,8 +135,8 @@ impl Shape {
         let (x, y, one, half, quarter) = (number(x), number(y), T::one(), number(0.5), number(0.25));
         let mut n = [[T::zero(); 2]; MOST];
         match self {
-            Shape::Triangle3 => n[..3].copy_from_slice(&[[-one, -one], [one, T::zero()], [T::zero(), one]]),
-            Shape::Triangle6 => {
+            AreaShape::Triangle3 => n[..3].copy_from_slice(&[[-one, -one], [one, T::zero()], [T::zero(), one]]),
+            AreaShape::Triangle6 => {
                 let l = [one - x - y, x, y];
                 let dl = [[-one, -one], [one, T::zero()], [T::zero(), one]];
                 let four = number(4.0);
@@ -143,13 +148,13 @@ impl Shape {
                     }
                 }
             }
-            Shape::Quad4 => {
+            AreaShape::Quad4 => {
                 for (n, c) in n.iter_mut().zip(&QUAD_CORNERS[..4]) {
                     let [cx, cy] = c.map(number);
                     *n = [quarter * cx * (one + cy * y), quarter * cy * (one + cx * x)];
                 }
             }
-            Shape::Quad8 => {
+            AreaShape::Quad8 => {
                 for (i, c) in QUAD_CORNERS.iter().enumerate() {
                     let [cx, cy] = c.map(number);
                     let (a, b, two) = (cx * x, cy * y, number(2.0));
@@ -168,7 +173,7 @@ impl Shape {
     /// (6), bilinear through 2 × 2 points (4 and 8: for 8 the 2 × 2 points where its stresses are best).
     pub fn stress_points(self) -> Vec<[f64; 2]> {
         match self {
-            Shape::Quad8 => Shape::Quad4.stress_points(),
+            AreaShape::Quad8 => AreaShape::Quad4.stress_points(),
             _ => self.points().into_iter().map(|(at, _)| at).collect(),
         }
     }
@@ -176,15 +181,15 @@ impl Shape {
     /// Weights of the values at the [`stress_points`](Self::stress_points) that give the value at (ξ, η).
     pub fn extrapolation(self, [x, y]: [f64; 2]) -> Vec<f64> {
         match self {
-            Shape::Triangle3 => vec![1.0],
-            Shape::Triangle6 => {
+            AreaShape::Triangle3 => vec![1.0],
+            AreaShape::Triangle6 => {
                 // The points are the corners of a triangle of half the size about the same centroid.
                 let (a, b) = (2.0 * x - 1.0 / 3.0, 2.0 * y - 1.0 / 3.0);
                 vec![1.0 - a - b, a, b]
             }
-            Shape::Quad4 | Shape::Quad8 => {
+            AreaShape::Quad4 | AreaShape::Quad8 => {
                 let g = 3.0_f64.sqrt();
-                Shape::Quad4.values([g * x, g * y])[..4].to_vec()
+                AreaShape::Quad4.values([g * x, g * y])[..4].to_vec()
             }
         }
     }
@@ -194,7 +199,7 @@ impl Shape {
 mod tests {
     use super::*;
 
-    const ALL: [Shape; 4] = [Shape::Triangle3, Shape::Triangle6, Shape::Quad4, Shape::Quad8];
+    const ALL: [AreaShape; 4] = [AreaShape::Triangle3, AreaShape::Triangle6, AreaShape::Quad4, AreaShape::Quad8];
 
     #[test]
     fn one_at_its_own_node_and_zero_at_the_others() {
@@ -237,7 +242,7 @@ mod tests {
             let area: f64 = shape.points().iter().map(|(_, w)| w).sum();
             let parent = if shape.nodes().len() % 3 == 0 && shape.nodes().len() < 8 { 0.5 } else { 4.0 };
             assert!((area - parent).abs() < 1e-14, "{shape:?}");
-            let linear = |[x, y]: [f64; 2]| if shape == Shape::Triangle3 { 2.0 } else { 2.0 + 3.0 * x - 5.0 * y };
+            let linear = |[x, y]: [f64; 2]| if shape == AreaShape::Triangle3 { 2.0 } else { 2.0 + 3.0 * x - 5.0 * y };
             for &at in shape.nodes() {
                 let weights = shape.extrapolation(at);
                 let value: f64 = shape.stress_points().iter().zip(&weights).map(|(p, w)| w * linear(*p)).sum();
