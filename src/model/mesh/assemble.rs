@@ -251,9 +251,11 @@ fn said(raw: &RawMesh, element: &MeshElement, fault: ShapeFault) -> (&'static st
             "is a bow tie: two of its sides cross".into(),
             "list its corners in the order in which they go round",
         ),
-        ShapeFault::NoArea if element.shape.is_solid() => {
-            ("volume", "has no volume: its corners lie in one plane".into(), "remove the element, or mesh again")
-        }
+        ShapeFault::NoArea if element.shape.is_solid() => (
+            "volume",
+            format!("is {} without volume: its corners lie in one plane", element.shape.words()),
+            "a mesh of the plane has triangles and quadrilaterals; remove the element, or mesh again",
+        ),
         ShapeFault::Folded if element.shape.is_solid() => (
             "folded",
             "is folded: its nodes are so far from their places that its Jacobian is not positive everywhere".into(),

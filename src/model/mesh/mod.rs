@@ -12,6 +12,8 @@ mod file;
 mod gmsh;
 pub mod overview;
 mod raw;
+#[cfg(test)]
+mod solid_tests;
 mod source;
 pub mod surface;
 #[cfg(test)]
