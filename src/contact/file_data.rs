@@ -17,17 +17,17 @@ const ROUNDS: usize = 3;
 /// The matrix of a file and its load vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileData {
-    /// R or W, 2m × 2m: all normals, then all tangentials.
+    /// R or W: all normals, then all tangentials, in space t1 and t2 of each pair.
     pub matrix: DMatrix<f64>,
     /// Whether `matrix` is the compliance W.
     pub compliance: bool,
-    /// Vector of each load case per unit factor, 2m.
+    /// Vector of each load case per unit factor.
     pub loads: Vec<DVector<f64>>,
     /// Row of the matrix of each joint that is kept, in the order of the joints.
     pub kept: Vec<usize>,
     /// Tangential rows of frictionless pairs: they carry nothing.
     pub released: Vec<usize>,
-    /// Frictionless pair of each released row.
+    /// Frictionless pair of each released row; in space it has two.
     pub released_pairs: Vec<usize>,
     /// R over the released rows, or W over the kept ones: what has to be solved with.
     pub factor: PivotedCholesky,

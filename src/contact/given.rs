@@ -84,12 +84,14 @@ struct Rows {
 
 impl Rows {
     fn of(given: &GivenContactSystem) -> Rows {
-        let m = given.pairs.len();
-        let pairs: Vec<usize> = (0..m).filter(|&i| !given.laws[i].has_tangential_joint()).collect();
+        let (m, tangents) = (given.pairs.len(), given.tangents);
+        let tangential = |i: usize| (0..tangents).map(move |t| m + tangents * i + t);
+        let rubs = |i: &usize| given.laws[*i].has_tangential_joint();
+        let smooth = || (0..m).filter(|i| !rubs(i));
         Rows {
-            kept: (0..m).chain((0..m).filter(|i| !pairs.contains(i)).map(|i| m + i)).collect(),
-            released: pairs.iter().map(|i| m + i).collect(),
-            pairs,
+            kept: (0..m).chain((0..m).filter(rubs).flat_map(tangential)).collect(),
+            released: smooth().flat_map(tangential).collect(),
+            pairs: smooth().flat_map(|i| (0..tangents).map(move |_| i)).collect(),
         }
     }
 
@@ -350,7 +352,7 @@ fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
     (given.pairs.iter().enumerate())
         .map(|(i, id)| {
             let first = next;
-            next += usize::from(given.laws[i].has_tangential_joint());
+            next += if given.laws[i].has_tangential_joint() { given.tangents } else { 0 };
             ContactPair {
                 id: id.clone(),
                 law: given.laws[i].clone(),
@@ -367,14 +369,19 @@ fn nearly_singular(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) 
     format!(
         "the contact stiffness matrix is nearly singular: it resists the motion {} with less than 1e-10 of what its \
          entries would let expect, and yet its digits say that it does; if that motion costs nothing, say so: `kernel`",
-        joints_in_words(given, z, scale, ["z_n", "z_t"])
+        joints_in_words(given, z, scale)
     )
 }
 
-/// `1 z_n of c1, -0.5 z_t of c2`: the entries of a vector over all 2m joints, largest 1; what is small after scaling to
+/// `1 z_n of c1, -0.5 z_t of c2`, in space z_t1 and z_t2: the entries of a vector over all joints, largest 1; what is small after scaling to
 /// unit diagonal is left out.
-fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64], words: [&str; 2]) -> String {
-    let m = given.pairs.len();
+fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) -> String {
+    let (m, tangents) = (given.pairs.len(), given.tangents);
+    let joint = |i: usize| match i.checked_sub(m) {
+        None => ("z_n", i),
+        Some(along) if tangents == 1 => ("z_t", along),
+        Some(along) => (["z_t1", "z_t2"][along % 2], along / 2),
+    };
     let sizes: Vec<f64> = z.iter().zip(scale).map(|(z, scale)| (z * scale).abs()).collect();
     let largest = sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
     let named: Vec<usize> = (0..z.len()).filter(|&i| sizes[i] > 1e-6 * largest).collect();
@@ -385,7 +392,8 @@ fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64], 
         } else {
             format!("{share:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
         };
-        format!("{share} {} of {}", words[usize::from(i >= m)], given.pairs[i % m])
+        let (word, pair) = joint(i);
+        format!("{share} {word} of {}", given.pairs[pair])
     };
     match named.len() {
         0..=6 => named.iter().map(one).collect::<Vec<_>>().join(", "),

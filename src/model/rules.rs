@@ -57,6 +57,8 @@ pub struct UnknownChoice {
 
 /// K of the friction polygon in space where nothing else is said.
 pub const FACETS: u16 = 8;
+/// Most facets: the next polygon would differ from the circle by less than 1 in 10⁴.
+pub const MOST_FACETS: u16 = 256;
 
 /// The choices together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -86,6 +88,33 @@ impl Default for Rules {
 }
 
 impl Rules {
+    /// The words of a number of facets.
+    ///
+    /// # Errors
+    /// Anything else than an even number from 4 to [`MOST_FACETS`].
+    pub fn set_facets(&mut self, word: &str) -> Result<(), UnknownChoice> {
+        let facets = word.parse().ok().filter(|facets: &u16| (4..=MOST_FACETS).contains(facets) && facets % 2 == 0);
+        self.facets = facets.ok_or_else(|| UnknownChoice {
+            what: "number of facets",
+            word: word.into(),
+            expected: "an even number from 4 to 256",
+        })?;
+        Ok(())
+    }
+
+    /// The words on and off: whether the answer is taken to Coulomb's cone.
+    ///
+    /// # Errors
+    /// Any other word.
+    pub fn set_cone(&mut self, word: &str) -> Result<(), UnknownChoice> {
+        self.cone = match word {
+            "on" | "true" => true,
+            "off" | "false" => false,
+            _ => return Err(UnknownChoice { what: "choice of cone", word: word.into(), expected: "on or off" }),
+        };
+        Ok(())
+    }
+
     /// Whether covering and tie-break are the defaults: only then a failed run is retried (method §4).
     pub fn are_default(&self) -> bool {
         self.covering == Covering::default() && self.tie_break == TieBreak::default()

@@ -26,16 +26,18 @@ pub const FORMAT: &str = "stickslip/1";
 pub struct GivenContactSystem {
     /// Ids of the m pairs.
     pub pairs: Vec<String>,
+    /// Tangential joints of each pair: 1 in the plane, 2 in space.
+    pub tangents: usize,
     /// Coordinate of each pair along the contact zone, for plots.
     pub positions: Option<Vec<f64>>,
-    /// What relates forces and displacements, 2m × 2m row by row: all normals, then all tangentials. Symmetric up to 1e-8
-    /// after scaling to unit diagonal.
+    /// What relates forces and displacements, 2m × 2m row by row: all normals, then all tangentials; in space 3m × 3m, the
+    /// two tangentials of a pair one after the other. Symmetric up to 1e-8 after scaling to unit diagonal.
     pub matrix: GivenMatrix,
-    /// Load cases: name, factor, CLV (2m).
+    /// Load cases: name, factor, CLV (an entry per row).
     pub loads: Vec<GivenLoad>,
     /// Law of each pair.
     pub laws: Vec<Law>,
-    /// Motions z with R z = 0 known to the author, each 2m long.
+    /// Motions z with R z = 0 known to the author, an entry per row.
     pub kernel: Option<Vec<Vec<f64>>>,
 }
 
@@ -91,6 +93,13 @@ pub enum Source {
     ContactSystem(GivenContactSystem),
     /// Bare LCP.
     Lcp(GivenLcp),
+}
+
+impl Source {
+    /// Whether pairs slip in a plane of directions.
+    pub fn is_in_space(&self) -> bool {
+        matches!(self, Source::ContactSystem(given) if given.tangents == 2)
+    }
 }
 
 /// A stage of a load history: multiplier of each named case; cases not named count 0.

@@ -69,19 +69,21 @@ fn edited(scenario: &Scenario, values: &ParameterValues, rules: Rules, path: &Pa
         amend::set_parameter(&object, name, Amended::Value, value).map_err(SaveError::Shape)?;
     }
     let file = scenario.rules;
-    let changed: Vec<(&str, String)> = [
+    let changed: Vec<(&str, CstInputValue)> = [
         ("covering", file.covering != rules.covering, rules.covering.to_string()),
         ("tie_break", file.tie_break != rules.tie_break, rules.tie_break.to_string()),
         ("engine", file.engine != rules.engine, rules.engine.to_string()),
     ]
     .into_iter()
     .filter(|(_, changed, _)| *changed)
-    .map(|(key, _, word)| (key, word))
+    .map(|(key, _, word)| (key, CstInputValue::String(word)))
+    .chain((file.facets != rules.facets).then(|| ("facets", CstInputValue::Number(rules.facets.to_string()))))
+    .chain((file.cone != rules.cone).then_some(("cone", CstInputValue::Bool(rules.cone))))
     .collect();
     if !changed.is_empty() {
         let solver = object.object_value_or_create("solver").ok_or_else(|| shape("solver"))?;
-        for (key, word) in changed {
-            put(&solver, key, CstInputValue::String(word));
+        for (key, value) in changed {
+            put(&solver, key, value);
         }
     }
     keep_file_references(&object, scenario, path);

@@ -29,6 +29,7 @@ const STORED: f64 = 256.0 * f64::EPSILON;
 pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSystem> {
     let fields = cursor.fields(&[
         "pairs",
+        "tangents",
         "positions",
         "stiffness",
         "compliance",
@@ -46,18 +47,20 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
     // Everything else is measured by the number of pairs.
     let pairs = pairs?;
     let count = pairs.len();
+    let tangents = fields.optional("tangents").map_or(Some(1), tangents)?;
+    let order = Size::OfPairs { pairs: count, tangents }.order();
     let positions = match fields.optional("positions") {
         Some(cursor) => Some(cursor.numbers(count, "one per pair")?),
         None => None,
     };
     let laws = laws(&fields, count);
     let matrix = matrix.and_then(|(cursor, is_compliance)| {
-        let rows = symmetric_matrix(cursor, count, is_compliance, path)?;
+        let rows = symmetric_matrix(cursor, (count, tangents), is_compliance, path)?;
         Some(if is_compliance { GivenMatrix::Compliance(rows) } else { GivenMatrix::Stiffness(rows) })
     });
-    let loads = loads.and_then(|cursor| load_cases(cursor, count));
+    let loads = loads.and_then(|cursor| load_cases(cursor, (1 + tangents) * count, order));
     let kernel = match (fields.optional("kernel"), &matrix) {
-        (Some(cursor), Some(GivenMatrix::Stiffness(rows))) => Some(kernel(cursor, count, rows)?),
+        (Some(cursor), Some(GivenMatrix::Stiffness(rows))) => Some(kernel(cursor, order, rows)?),
         (Some(cursor), Some(GivenMatrix::Compliance(_))) => {
             cursor.problem(
                 "`kernel` belongs to `stiffness`",
@@ -67,7 +70,20 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
         }
         _ => None,
     };
-    Some(GivenContactSystem { pairs, positions, matrix: matrix?, loads: loads?, laws: laws?, kernel })
+    Some(GivenContactSystem { pairs, tangents, positions, matrix: matrix?, loads: loads?, laws: laws?, kernel })
+}
+
+/// Tangential joints a pair.
+fn tangents(cursor: Cursor<'_>) -> Option<usize> {
+    let found = cursor.whole("number of tangents", 1)?;
+    if found > 2 {
+        cursor.problem(
+            format!("a pair cannot have {found} tangents"),
+            "1 in the plane (2m rows), 2 in space (3m rows: all normals, then t1 and t2 of each pair)",
+        );
+        return None;
+    }
+    Some(found)
 }
 
 /// The matrix and whether it is a compliance; a problem where there is none or two.
@@ -121,28 +137,30 @@ fn is_pair_id(text: &str) -> bool {
 
 fn symmetric_matrix(
     cursor: Cursor<'_>,
-    pairs: usize,
+    (pairs, tangents): (usize, usize),
     is_compliance: bool,
     path: Option<&Path>,
 ) -> Option<Vec<Vec<f64>>> {
-    let size = 2 * pairs;
+    let size = (1 + tangents) * pairs;
+    let expected = Size::OfPairs { pairs, tangents };
     if let Some(refusal) = memory::refusal(memory::for_joints(size as f64)) {
         cursor.problem(format!("the contact system is too large: with {pairs} pairs it {refusal}"), "use fewer pairs");
         return None;
     }
     let (matrix, at): (_, Option<Cursor<'_>>) = if cursor.is_object() {
-        let (matrix, at) = matrix_file::read(cursor, Size::OfPairs(pairs), path)?;
+        let (matrix, at) = matrix_file::read(cursor, expected, path)?;
         (matrix, Some(at))
     } else {
         let rows = cursor.list()?.len();
         if rows != size {
             cursor.problem(
                 format!(
-                    "the matrix has {}, expected 2m = {size} for {}",
+                    "the matrix has {}, expected {}m = {size} for {}",
                     counted(rows, "row", "rows"),
+                    1 + tangents,
                     counted(pairs, "pair", "pairs")
                 ),
-                "rows and columns: all normals, then all tangentials",
+                format!("rows and columns: {}", expected.order()),
             );
             return None;
         }
@@ -184,7 +202,7 @@ fn diagonal_roots(matrix: &[Vec<f64>]) -> Vec<f64> {
     matrix.iter().enumerate().map(root).collect()
 }
 
-fn load_cases(cursor: Cursor<'_>, pairs: usize) -> Option<Vec<GivenLoad>> {
+fn load_cases(cursor: Cursor<'_>, rows: usize, order: &str) -> Option<Vec<GivenLoad>> {
     let mut cases = Vec::new();
     let mut is_right = true;
     for entry in cursor.entries()? {
@@ -195,7 +213,7 @@ fn load_cases(cursor: Cursor<'_>, pairs: usize) -> Option<Vec<GivenLoad>> {
         };
         let factor = factor(&fields);
         let vector =
-            fields.required("vector").and_then(|cursor| cursor.of(Region::Amount).numbers(2 * pairs, TWO_EACH));
+            fields.required("vector").and_then(|cursor| cursor.of(Region::Amount).numbers(rows, order));
         match (factor, vector) {
             (Some(factor), Some(vector)) => cases.push(GivenLoad { name: entry.name().to_string(), factor, vector }),
             _ => is_right = false,
@@ -204,15 +222,13 @@ fn load_cases(cursor: Cursor<'_>, pairs: usize) -> Option<Vec<GivenLoad>> {
     is_right.then_some(cases)
 }
 
-const TWO_EACH: &str = "all normals, then all tangentials";
-
-fn kernel(cursor: Cursor<'_>, pairs: usize, stiffness: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+fn kernel(cursor: Cursor<'_>, order: &str, stiffness: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let roots = diagonal_roots(stiffness);
     let largest = roots.iter().fold(0.0_f64, |largest, root| largest.max(root * root));
     let mut motions = Vec::new();
     let mut is_right = true;
     for entry in cursor.list()? {
-        let Some(motion) = entry.numbers(2 * pairs, TWO_EACH) else {
+        let Some(motion) = entry.numbers(stiffness.len(), order) else {
             is_right = false;
             continue;
         };

@@ -17,8 +17,13 @@ pub struct MatrixError {
 /// What the size of a matrix must be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Size {
-    /// 2m × 2m for m contact pairs.
-    OfPairs(usize),
+    /// 2m × 2m for m contact pairs with one tangential joint each, 3m × 3m with two.
+    OfPairs {
+        /// m.
+        pairs: usize,
+        /// 1 or 2.
+        tangents: usize,
+    },
     /// As many rows as columns, at least one.
     Square,
     /// A row and a column for each of so many displacements.
@@ -28,14 +33,26 @@ pub enum Size {
 }
 
 impl Size {
+    /// The order of the rows of contact pairs.
+    pub fn order(self) -> &'static str {
+        match self {
+            Size::OfPairs { tangents: 2, .. } => "all normals, then t1 and t2 of each pair",
+            _ => "all normals, then all tangentials",
+        }
+    }
+
     /// Why `rows` × `columns` does not fit: what was expected, and what to do.
     fn check(self, rows: usize, columns: usize) -> Result<(), (String, &'static str)> {
         let (fits, expected, help) = match self {
-            Size::OfPairs(pairs) => (
-                rows == 2 * pairs && columns == rows,
-                format!("expected 2m × 2m = {0} × {0}", 2 * pairs),
-                "rows and columns: all normals, then all tangentials",
-            ),
+            Size::OfPairs { pairs, tangents } => {
+                let (each, count) = (1 + tangents, (1 + tangents) * pairs);
+                let help = if tangents == 1 {
+                    "rows and columns: all normals, then all tangentials"
+                } else {
+                    "rows and columns: all normals, then t1 and t2 of each pair"
+                };
+                (rows == count && columns == rows, format!("expected {each}m × {each}m = {count} × {count}"), help)
+            }
             Size::Square => (
                 rows == columns && rows > 0,
                 "expected a square one with at least one row".into(),
@@ -58,7 +75,7 @@ impl Size {
     /// Bytes that a file with so many entries takes.
     fn bytes(self, rows: usize, entries: usize) -> f64 {
         match self {
-            Size::OfPairs(_) | Size::Square => memory::for_joints(rows as f64),
+            Size::OfPairs { .. } | Size::Square => memory::for_joints(rows as f64),
             Size::OfDofs(_) | Size::Forces(_) => memory::for_entries(entries as f64),
         }
     }
@@ -275,7 +292,7 @@ mod tests {
             "%%MatrixMarket matrix coordinate real general\n2 2 4\n1 1 2\n2 1 -1\n1 2 -1\n2 2 3e0\n",
             "%%MatrixMarket matrix coordinate integer symmetric\n2 2 3\n\n1 1 2\n2 1 -1\n2 2 3",
         ] {
-            assert_eq!(read(text, Size::OfPairs(1)).unwrap(), expected(), "{text}");
+            assert_eq!(read(text, Size::OfPairs { pairs: 1, tangents: 1 }).unwrap(), expected(), "{text}");
         }
         let general = "%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n4\n";
         assert_eq!(read(general, Size::Square).unwrap(), [[1.0, 3.0], [2.0, 4.0]]);
@@ -315,7 +332,7 @@ mod tests {
             (format!("{banner}2 2 2\n1 1 1\n"), 3, "1 of 2"),
             (format!("{banner}2 2 1\n1 1 1\n2 2 1\n"), 4, "more than"),
         ] {
-            let error = read(&text, Size::OfPairs(1)).unwrap_err();
+            let error = read(&text, Size::OfPairs { pairs: 1, tangents: 1 }).unwrap_err();
             assert_eq!(error.line, line, "{text}: {error:?}");
             assert!(error.message.contains(part), "{text}: {error:?}");
         }

@@ -24,6 +24,7 @@ mod names;
 mod numbers;
 mod parameters;
 mod plates;
+mod polygon;
 mod reader;
 mod rigid;
 mod sides;
@@ -67,6 +68,9 @@ const COMMON: [&str; 11] = [
     "measured",
     "solver",
 ];
+
+/// Keys of `solver`.
+const SOLVER: [&str; 5] = ["covering", "tie_break", "engine", "facets", "cone"];
 
 /// Keys of the other two sources.
 const OTHER_SOURCES: [&str; 2] = ["contact_system", "lcp"];
@@ -162,6 +166,9 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         Source::ContactSystem(system) => Some(system.loads.iter().map(|load| load.name.as_str()).collect()),
         Source::Lcp(_) => None,
     };
+    if !source.is_in_space() {
+        polygon::refuse_in_plane(solver, &SOLVER);
+    }
     let stages = with_cases(&fields, "stages", cases.as_deref(), stages::read);
     let combinations = with_cases(&fields, "combinations", cases.as_deref(), stages::combinations);
     let mut scenario = Scenario {
@@ -243,12 +250,13 @@ fn units(cursor: Cursor<'_>) -> Option<Units> {
 }
 
 fn rules(cursor: Cursor<'_>) -> Option<Rules> {
-    let fields = cursor.fields(&["covering", "tie_break", "engine"])?;
+    let fields = cursor.fields(&SOLVER)?;
     Some(Rules {
         covering: rule::<Covering>(&fields, "covering"),
         tie_break: rule::<TieBreak>(&fields, "tie_break"),
         engine: rule::<Engine>(&fields, "engine"),
-        ..Rules::default()
+        facets: polygon::facets(&fields),
+        cone: polygon::cone(&fields),
     })
 }
 
@@ -268,7 +276,7 @@ fn rule<T: Default + std::str::FromStr<Err = UnknownChoice>>(fields: &Fields<'_>
 fn refuse_covering(solver: Option<Cursor<'_>>) {
     let Some(fields) = solver
         .filter(|cursor| cursor.is_object())
-        .and_then(|cursor| cursor.fields(&["covering", "tie_break", "engine"]))
+        .and_then(|cursor| cursor.fields(&SOLVER))
     else {
         return;
     };

@@ -48,6 +48,9 @@ pub enum SetError {
     /// `set auto maybe`.
     #[error("`set auto` takes on or off, not `{0}`")]
     Auto(String),
+    /// `set facets` in the plane.
+    #[error("`set {0}` is for problems in space: in the plane a pair slips along +t or -t only")]
+    InPlane(&'static str),
     /// A covering for a bare LCP.
     #[error(
         "the covering of a bare LCP is given in its file (`lcp.covering`, ones by default): `set covering` is for contact problems"
@@ -71,7 +74,7 @@ pub struct Rule {
 }
 
 /// The rules that `set` changes.
-pub static RULES: [Rule; 3] = [
+pub static RULES: [Rule; 5] = [
     Rule {
         name: "covering",
         about: "covering vector",
@@ -93,7 +96,27 @@ pub static RULES: [Rule; 3] = [
         shown: |rules| rules.engine.to_string(),
         set: |rules, word| word.parse().map(|choice| rules.engine = choice),
     },
+    Rule {
+        name: "facets",
+        about: "facets of the friction polygon in space",
+        choices: &["8", "16", "32"],
+        shown: |rules| rules.facets.to_string(),
+        set: Rules::set_facets,
+    },
+    Rule {
+        name: "cone",
+        about: "whether the answer in space is taken to Coulomb's cone",
+        choices: &["on", "off"],
+        shown: |rules| (if rules.cone { "on" } else { "off" }).to_owned(),
+        set: Rules::set_cone,
+    },
 ];
+
+/// The rules that do something in a scenario: those of the polygon belong to space.
+pub fn rules_of(scenario: &Scenario) -> impl Iterator<Item = &'static Rule> {
+    let in_space = scenario.source.is_in_space();
+    RULES.iter().filter(move |rule| in_space || !matches!(rule.name, "facets" | "cone"))
+}
 
 /// The rule of a name.
 pub fn rule(name: &str) -> Option<&'static Rule> {
@@ -125,6 +148,9 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
     };
     if let Some(rule) = rule(name).filter(|rule| rule.name != "covering" || !matches!(scenario.source, Source::Lcp(_)))
     {
+        if rules_of(scenario).all(|known| known.name != rule.name) {
+            return Err(SetError::InPlane(rule.name));
+        }
         let word = choice()?;
         (rule.set)(&mut Rules::default(), word)?;
         return Ok(Setting::Rule(rule, word.to_owned()));
@@ -156,7 +182,7 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
 /// The error for a name that is no parameter.
 pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
     let names: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
-    let rules = RULES.iter().map(|rule| rule.name).chain(["auto"]);
+    let rules = rules_of(scenario).map(|rule| rule.name).chain(["auto"]);
     SetError::UnknownParameter {
         name: name.to_owned(),
         near: did_you_mean_typed(name, names.iter().copied().chain(rules)),
