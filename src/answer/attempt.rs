@@ -58,6 +58,12 @@ impl AttemptRules {
 pub struct Attempt {
     #[serde(flatten)]
     pub rules: AttemptRules,
+    /// K of its friction polygon; in space only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub facets: Option<usize>,
+    /// Angle of its first facet from t1 towards t2, degrees; where it is turned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn: Option<f64>,
     /// How it ended.
     pub outcome: OutcomeKind,
     /// Pivots that it made, where that is known; told in words only.
@@ -66,6 +72,13 @@ pub struct Attempt {
     /// Which limit it reached, where that is no ray and no answer; where a path ended.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
+}
+
+impl Attempt {
+    /// One that made no polygon.
+    pub fn new(rules: AttemptRules, outcome: OutcomeKind) -> Attempt {
+        Attempt { rules, facets: None, turn: None, outcome, pivots: None, why: None }
+    }
 }
 
 impl From<Rules> for AttemptRules {

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::pairs::JointState;
 use super::record::Check;
+use crate::contact::on_cone::OnCone;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::contact::sums::{displacement_share, pair_sums};
@@ -24,6 +25,9 @@ pub const HIDDEN: f64 = 1e-4;
 pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: Option<f64>) -> Check {
     let system = &*problem.system;
     let forces: Vec<Sum> = (0..system.joint_count()).map(|joint| state.sum(joint)).collect();
+    if system.is_in_space() && problem.cone {
+        return check_on_cone(problem, state, &forces, equilibrium);
+    }
     let mut check = Check { equilibrium, ..Check::default() };
     let (unknowns, responses) = state.in_forms(system);
     let share = |joint: usize| match system.is_forced(joint) {
@@ -61,6 +65,22 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
         check.hidden = free.map(|joint| ROUNDING * forces[joint].magnitude / loads).fold(0.0, f64::max);
     }
     check.passed = check.is_within(ROUNDING);
+    check
+}
+
+/// The same against Coulomb's cone; a friction force that does not oppose its slip counts among the couples.
+fn check_on_cone(problem: &ContactProblem, state: &JointState, forces: &[Sum], equilibrium: Option<f64>) -> Check {
+    let found = OnCone::new(problem).check(&state.z, forces);
+    let left = state.left.iter().map(|left| left.share().abs());
+    let mut check = Check {
+        min_w: found.min_w,
+        min_z: found.min_z,
+        complementarity: left.fold(found.complementarity.max(found.misdirection), f64::max),
+        equilibrium,
+        hidden: found.hidden,
+        ..Check::default()
+    };
+    check.passed = found.passed && check.is_within(ROUNDING);
     check
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 use super::record::{InSpace, PairState, State};
+use crate::contact::cone::ConeAnswer;
 use crate::contact::force_form::unknowns;
 use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::least_norm;
@@ -29,6 +30,8 @@ pub struct JointState {
     pub p: f64,
     /// Pairs whose forces the motion leaves undetermined: theirs are those of least norm.
     pub free: Vec<usize>,
+    /// Whether friction obeys Coulomb's cone in space: where a pair slips it stands at its bound against the slip.
+    pub on_cone: bool,
 }
 
 /// What a force in force form is known to a few ε of: the sums it goes into, each as far as it feels it.
@@ -63,7 +66,22 @@ impl JointState {
                 (z[joint], known_to(system, &joints, joint).max(z[joint].abs()), terms[joint]);
         }
         forced.into_iter().for_each(|joint| z[joint] = joints[joint].cleaned());
-        JointState { z, force, terms, z_terms, left, p, free: Vec::new() }.against_file(problem)
+        JointState { z, force, terms, z_terms, left, p, free: Vec::new(), on_cone: false }.against_file(problem)
+    }
+
+    /// The state of an answer on Coulomb's cone.
+    pub fn on_cone(problem: &ContactProblem, ConeAnswer { z, forces, .. }: ConeAnswer) -> JointState {
+        let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(forces.len(), forces.iter().map(pick));
+        JointState {
+            left: state_forces(problem, &z).left,
+            force: read(|sum| sum.value),
+            terms: read(|sum| sum.magnitude),
+            z_terms: DVector::zeros(z.len()),
+            z,
+            p: 0.0,
+            free: Vec::new(),
+            on_cone: true,
+        }
     }
 
     /// With what the compliance of a file leaves over, where joints are in force form.
@@ -230,7 +248,8 @@ fn pair_state(
     }
 }
 
-/// One pair in space. Its tangential force is told as it is: on a polygon it may exceed the bound between two facets.
+/// One pair in space. On a polygon its tangential force may exceed the bound between two facets; on the cone a pair that
+/// slips stands exactly at it.
 fn pair_in_space(problem: &ContactProblem, cover: &Cover, state: &JointState, i: usize) -> PairState {
     let pair = &problem.system.pairs[i];
     let law = &problem.laws[i];
@@ -239,8 +258,6 @@ fn pair_in_space(problem: &ContactProblem, cover: &Cover, state: &JointState, i:
     let open = z_n > 0.0;
     let x_n = if open { Sum::default() } else { state.sum(i).plus(d_n, Sum::exactly(state.p)) };
     let z_t = state.slip(pair);
-    let mut x_t = [0.0; 2];
-    x_t.iter_mut().zip(pair.tangential.clone()).for_each(|(force, joint)| *force = state.sum(joint).cleaned());
     let f = law.friction();
     let bound = match pair.rubs() {
         true => {
@@ -249,24 +266,31 @@ fn pair_in_space(problem: &ContactProblem, cover: &Cover, state: &JointState, i:
         false => 0.0,
     };
     let size = |[along, across]: [f64; 2]| along.hypot(across);
+    let mut x_t = [0.0; 2];
+    if state.on_cone && size(z_t) > 0.0 {
+        x_t = z_t.map(|slip| 0.0 - bound * (slip / size(z_t)));
+    } else if bound > 0.0 {
+        x_t.iter_mut().zip(pair.tangential.clone()).for_each(|(force, joint)| *force = state.sum(joint).cleaned());
+    }
     let slip = if size(z_t) > 0.0 { State::Slip } else { State::Stick };
     let (word, held) = match () {
         () if open => (State::Open, (bound > 0.0).then_some(slip)),
         () if !pair.rubs() => (State::Closed, None),
         () => (slip, None),
     };
+    let friction = if state.on_cone && size(z_t) > 0.0 { bound } else { size(x_t) };
     PairState {
         id: pair.id.clone(),
         law: pair.law.kind(),
         state: word,
         held,
         x_n: x_n.cleaned(),
-        x_t: size(x_t),
+        x_t: friction,
         z_n,
         z_t: size(z_t),
         bound,
-        reserve_plus: bound + size(x_t),
-        reserve_minus: bound - size(x_t),
+        reserve_plus: bound + friction,
+        reserve_minus: bound - friction,
         position: pair.position,
         joint: pair.joint,
         space: Some(InSpace { x_t, z_t, frame: pair.frame }),

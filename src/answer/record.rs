@@ -1,10 +1,13 @@
 //! One solved state in the words of the structure: pairs, forces, displacements and the check of all of it.
 //! The field names are the keys of the JSON result (`stickslip-result/1`).
 
+use nalgebra::DVector;
 use serde::Serialize;
 
 pub use super::attempt::{Attempt, AttemptRules};
 pub use super::pair_record::{InSpace, PairState};
+use crate::contact::polygon::Polygon;
+use crate::contact::system::ContactSystem;
 use crate::fem::Piece;
 use crate::model::uses::Redone;
 
@@ -112,7 +115,45 @@ pub struct PairDirection {
     /// z̄_n.
     pub z_n: f64,
     /// z̄_τ.
-    pub z_t: f64,
+    pub z_t: Slip,
+}
+
+/// Slip of a pair: along t in the plane, along t1 and t2 in space.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Slip {
+    /// z_τ.
+    Plane(f64),
+    /// Its two components.
+    Space([f64; 2]),
+}
+
+impl Slip {
+    /// z_τ; in space its magnitude.
+    pub fn scalar(self) -> f64 {
+        match self {
+            Slip::Plane(slip) => slip,
+            Slip::Space([along, across]) => along.hypot(across),
+        }
+    }
+}
+
+impl PairDirection {
+    /// z̄ over the joints of a pair in a direction.
+    pub fn of(system: &ContactSystem, pair: usize, direction: &DVector<f64>) -> PairDirection {
+        let of = &system.pairs[pair];
+        let at = |t: usize| of.tangential.clone().nth(t).map_or(0.0, |joint| direction[joint]);
+        let z_t = if system.is_in_space() { Slip::Space([at(0), at(1)]) } else { Slip::Plane(at(0)) };
+        PairDirection { pair: of.id.clone(), z_n: direction[pair], z_t }
+    }
+
+    /// z̄_τ along its tangents.
+    pub fn slip(&self) -> Vec<f64> {
+        match self.z_t {
+            Slip::Plane(slip) => vec![slip],
+            Slip::Space(slip) => slip.to_vec(),
+        }
+    }
 }
 
 /// Rate of a variable of a bare LCP along a ray.
@@ -360,6 +401,36 @@ pub struct Timings {
     pub total: f64,
 }
 
+/// The friction polygon behind a result in space, and how its answer came to Coulomb's cone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PolygonRecord {
+    /// K.
+    pub facets: usize,
+    /// Angle of the first facet from t1 towards t2, degrees.
+    pub turn: f64,
+    /// Whether the answer is on the cone; otherwise it is the polygon's own.
+    pub cone: bool,
+    /// Steps of Newton's method from the polygon's answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton: Option<usize>,
+    /// Largest change of a slip on the way, as a share of the largest slip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distance: Option<f64>,
+}
+
+impl PolygonRecord {
+    /// Of a polygon, whose answer is its own so far.
+    pub fn of(polygon: Polygon) -> PolygonRecord {
+        PolygonRecord {
+            facets: polygon.facets(),
+            turn: polygon.turn().to_degrees(),
+            cone: false,
+            newton: None,
+            distance: None,
+        }
+    }
+}
+
 /// From where an answer was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
@@ -386,6 +457,8 @@ pub struct Answer {
     pub p: f64,
     /// Rules of the last attempt.
     pub rules: AttemptRules,
+    /// The polygon of the last attempt; in space only.
+    pub polygon: Option<PolygonRecord>,
     /// All tries, in order.
     pub attempts: Vec<Attempt>,
     /// The pivots of the last attempt: the first ones only where the run was very long.

@@ -25,6 +25,7 @@ pub mod kernel_correction;
 pub mod law;
 pub mod lcp;
 pub mod load_path;
+pub mod on_cone;
 pub mod pivoted;
 pub mod polygon;
 pub mod problem;

@@ -27,6 +27,11 @@ impl Polygon {
         Polygon { facets, turn }
     }
 
+    /// Angle of d_0 from t1 towards t2, radians.
+    pub fn turn(self) -> f64 {
+        self.turn
+    }
+
     /// K.
     pub fn facets(self) -> usize {
         usize::from(self.facets)
@@ -83,6 +88,12 @@ impl Polygon {
 pub fn angle([along, across]: [f64; 2]) -> f64 {
     // 0.0 + takes the sign of a zero away: −0 across is no turn to −180°.
     (0.0 + across).atan2(0.0 + along).to_degrees()
+}
+
+/// `37°`, `22.5°`: an angle in words.
+pub fn degrees(angle: f64) -> String {
+    let text = format!("{angle:.1}");
+    format!("{}°", text.strip_suffix(".0").unwrap_or(&text))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::law::PairLaw;
 use super::polygon::Polygon;
 use super::system::ContactSystem;
 use crate::lcp::exact::scalar::Scalar;
-use crate::model::rules::FACETS;
+use crate::model::rules::{FACETS, Rules};
 
 /// λ = R (z − (g, 0)) + load over the joints, and what the laws demand of λ and z. The system is shared: what changes when
 /// a parameter moves is the rest.
@@ -21,6 +21,8 @@ pub struct ContactProblem {
     pub laws: Vec<PairLaw>,
     /// The directions in which pairs slip.
     pub polygon: Polygon,
+    /// Whether friction in space is Coulomb's cone, which the polygon stands in for until the end; otherwise it is the polygon.
+    pub cone: bool,
     /// Factor of every load case; with none the load is not made of them.
     pub factors: Vec<f64>,
     /// Σ factor·RF over the joints, forces; a history adds what its committed slips do, R z.
@@ -44,6 +46,7 @@ impl ContactProblem {
             system: Arc::clone(system),
             laws,
             polygon,
+            cone: true,
             factors: Vec::new(),
             load_terms: load.abs(),
             load,
@@ -72,6 +75,12 @@ impl ContactProblem {
             self.polygon = polygon;
         }
         self
+    }
+
+    /// The same with the friction of these rules, where pairs are in space.
+    #[must_use]
+    pub fn under(self, rules: Rules) -> ContactProblem {
+        ContactProblem { cone: rules.cone, ..self.with_polygon(Polygon::regular(rules.facets, 0.0)) }
     }
 
     /// The same with other gaps, where pairs have one.

@@ -124,8 +124,13 @@ impl ContactSystem {
         self.force_form.as_ref().is_some_and(|form| form.joints[joint])
     }
 
-    /// Why `command`, which works on R alone, cannot be used; `None` where all joints are independent.
+    /// Why `command`, which works on R alone and in the plane, cannot be used; `None` where it can.
     pub fn refusal(&self, command: &str) -> Option<String> {
+        self.space_refusal(command).or_else(|| self.dependence_refusal(command))
+    }
+
+    /// Why `command`, which works on R alone, cannot be used; `None` where all joints are independent.
+    pub fn dependence_refusal(&self, command: &str) -> Option<String> {
         let form = self.force_form.as_ref()?;
         let felt = |joint: usize| form.self_stress.row(joint).amax() > 0.0;
         let of_pair = |(i, pair): &(usize, &ContactPair)| felt(*i) || pair.tangential.clone().any(felt);

@@ -28,6 +28,7 @@ use super::motions::{Entry, FreeMotions};
 use super::proof::{BUDGET, Certificate, CertificateSearch};
 use crate::contact::cone::ConePair;
 use crate::contact::law::SENSES;
+use crate::contact::on_cone::widest_cone_pairs;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::lcp::exact::dyadic::{nearest, rational};
@@ -46,12 +47,11 @@ const TIGHT: f64 = 1e-6;
 pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSearch {
     let system = &*problem.system;
     let end = Instant::now() + BUDGET;
-    let pairs: Vec<ConePair> = (system.pairs.iter().zip(&problem.laws))
-        .map(|(pair, law)| ConePair { law: *law, tangents: pair.tangential.clone() })
-        .collect();
+    let pairs = widest_cone_pairs(problem);
     let load = Load { forces: &system.forces_of(&problem.load), terms: &system.forces_of(&problem.load_terms) };
     let found = certify_pairs(&pairs, motions, load, end);
-    if found.certificate.is_some() || load.does_no_work(motions) {
+    // The exact program knows the two senses of the plane.
+    if found.certificate.is_some() || load.does_no_work(motions) || system.is_in_space() {
         return found;
     }
     let exactly = certify_exactly(problem, &pairs, end);

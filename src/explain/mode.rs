@@ -1,9 +1,8 @@
 //! A motion that costs no energy, in words: which parts move, how, and what that does to the pairs.
 
-use std::collections::HashMap;
-
 use nalgebra::DVector;
 
+use crate::contact::polygon::{angle, degrees};
 use crate::contact::system::ContactSystem;
 use crate::fem::{MainSystem, mutual_displacements};
 use crate::model::pair::joints;
@@ -263,37 +262,35 @@ fn coordinate(value: f64) -> String {
 /// What a direction does to the pairs: "all pairs slip +", `base[0] to base[3] open`.
 pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<String> {
     let largest = direction.amax();
-    let mut kinds: HashMap<&str, Vec<usize>> = HashMap::new();
-    for i in 0..system.pairs.len() {
-        let z_n = direction[i];
-        let z_t = system.pairs[i].plane_tangential().map_or(0.0, |joint| direction[joint]);
-        let kind = if z_n > STILL * largest {
-            "open"
-        } else if z_n < -STILL * largest {
-            "close"
-        } else if z_t > STILL * largest {
-            "slip +"
-        } else if z_t < -STILL * largest {
-            "slip -"
-        } else {
-            continue;
+    let moves = |z: f64| z.abs() > STILL * largest;
+    let mut kinds: Vec<(String, Vec<usize>)> =
+        ["open", "close", "slip +", "slip -"].map(|k| (k.to_owned(), Vec::new())).into();
+    for (i, pair) in system.pairs.iter().enumerate() {
+        let slip: Vec<f64> = pair.tangential.clone().map(|joint| direction[joint]).collect();
+        let kind = match slip[..] {
+            _ if moves(direction[i]) => (if direction[i] > 0.0 { "open" } else { "close" }).to_owned(),
+            [z_t] if moves(z_t) => (if z_t > 0.0 { "slip +" } else { "slip -" }).to_owned(),
+            [along, across] if moves(along.hypot(across)) => {
+                format!("slip towards {}", degrees(angle([along, across])))
+            }
+            _ => continue,
         };
-        kinds.entry(kind).or_default().push(i);
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, pairs)) => pairs.push(i),
+            None => kinds.push((kind, vec![i])),
+        }
     }
-    ["open", "close", "slip +", "slip -"]
+    kinds
         .into_iter()
-        .filter_map(|kind| {
-            let pairs = kinds.get(kind)?;
-            let verb = if pairs.len() == 1 {
-                match kind {
-                    "open" => "opens".to_owned(),
-                    "close" => "closes".to_owned(),
-                    _ => kind.replace("slip", "slips"),
-                }
-            } else {
-                kind.to_owned()
+        .filter(|(_, pairs)| !pairs.is_empty())
+        .map(|(kind, pairs)| {
+            let verb = match (pairs.len(), kind.as_str()) {
+                (1, "open") => "opens".to_owned(),
+                (1, "close") => "closes".to_owned(),
+                (1, _) => kind.replacen("slip", "slips", 1),
+                _ => kind,
             };
-            Some(format!("{} {verb}", pair_names(system, pairs)))
+            format!("{} {verb}", pair_names(system, &pairs))
         })
         .collect()
 }

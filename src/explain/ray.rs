@@ -100,7 +100,11 @@ pub fn classify(
         let pair = (0..system.pairs.len()).find(|&i| {
             let grows =
                 |row: Option<usize>| row.is_some_and(|row| !contact.swapped[row] && ray.z[row] > 0.5 * largest_z);
-            grows(contact.facet_rows[0][i]) && grows(contact.facet_rows[1][i])
+            match contact.facet_rows.as_slice() {
+                [plus, minus] => grows(plus[i]) && grows(minus[i]),
+                // Slips of several facets that cancel each other.
+                facets => facets.iter().any(|rows| grows(rows[i])),
+            }
         });
         if pair.is_some() {
             return (DVector::zeros(system.joint_count()), RayClass::Artefact, pair);
@@ -189,7 +193,7 @@ pub fn explain(report: &mut RayReport, problem: &ContactProblem, built: Built<'_
     let of_structure = |direction: &DVector<f64>| built.and_then(|(structure, main)| mode(structure, main, direction));
     report.mode = of_structure(&report.direction);
     report.certificate_mode = report.certificate.as_ref().and_then(|found| of_structure(&found.direction));
-    if report.verdict == Some(Verdict::Undecided) {
+    if report.verdict == Some(Verdict::Undecided) && !problem.system.is_in_space() {
         let found = is_balanced(problem, &FreeMotions::new(&problem.system, built), BUDGET.as_secs_f64());
         report.balanced = found == Some(true);
     }
@@ -207,7 +211,7 @@ pub fn report(problem: &ContactProblem, built: Built<'_>, contact: &ContactLcp, 
 pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumeration> {
     let system = &*problem.system;
     let pairs = system.pairs.len();
-    if pairs > MOST_PAIRS || system.force_form.is_some() {
+    if pairs > MOST_PAIRS || system.force_form.is_some() || system.is_in_space() {
         return None;
     }
     let most = MOST_STEPS / (2 * pairs as u64).pow(3).max(1);
@@ -223,7 +227,11 @@ impl RayReport {
     /// The motion in words.
     pub fn mode_words(&self, system: &ContactSystem) -> String {
         if let Some(pair) = self.artefact {
-            return format!("no motion: z+ and z- of pair {} grow together", system.pairs[pair].id);
+            let id = &system.pairs[pair].id;
+            return match system.pairs[pair].is_in_space() {
+                true => format!("no motion: slips of pair {id} in several directions grow together"),
+                false => format!("no motion: z+ and z- of pair {id} grow together"),
+            };
         }
         let parts: Vec<String> =
             self.mode.iter().flat_map(|mode| &mode.parts).map(super::mode::PartMotion::words).collect();
@@ -370,16 +378,7 @@ impl RayReport {
             p: self.p,
             driver: self.driver.clone(),
             direction: Direction::Pairs(
-                system
-                    .pairs
-                    .iter()
-                    .enumerate()
-                    .map(|(i, pair)| PairDirection {
-                        pair: pair.id.clone(),
-                        z_n: self.direction[i],
-                        z_t: pair.plane_tangential().map_or(0.0, |joint| self.direction[joint]),
-                    })
-                    .collect(),
+                (0..system.pair_count()).map(|i| PairDirection::of(system, i, &self.direction)).collect(),
             ),
             mode: self.mode_words(system),
             explanation: self.explanation(system, covering),

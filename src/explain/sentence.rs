@@ -2,6 +2,7 @@
 
 use super::remedy::told_apart;
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
+use crate::contact::polygon::{angle, degrees};
 use crate::contact::rows::{Quantity, RowKind};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
@@ -12,12 +13,13 @@ use crate::text::words::{list, short};
 
 /// The records of a contact run; p in the user's units.
 pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSystem) -> Vec<PivotRecord> {
-    let mut schemes = vec![PairScheme::STICK; system.pairs.len()];
+    let mut schemes =
+        Schemes { pairs: vec![PairScheme::STICK; system.pairs.len()], facets: vec![Vec::new(); system.pairs.len()] };
     // What a run starts from: the joints on, those in force form off.
     for meaning in contact.rows.iter().zip(&contact.swapped).filter(|(_, swapped)| **swapped).map(|(row, _)| row) {
         match meaning.couple {
-            RowKind::Normal => schemes[meaning.pair].open = true,
-            _ => schemes[meaning.pair].tangential = Tangential::SlipPlus,
+            RowKind::Normal => schemes.pairs[meaning.pair].open = true,
+            _ => schemes.pairs[meaning.pair].tangential = Tangential::SlipPlus,
         }
     }
     pivots
@@ -46,19 +48,36 @@ pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSys
         .collect()
 }
 
+/// The working scheme on the way.
+struct Schemes {
+    pairs: Vec<PairScheme>,
+    /// In space: the facets along which each pair slips, one or at a corner two, in the order in which they were released.
+    facets: Vec<Vec<usize>>,
+}
+
 /// Applies the entering variable to the working scheme.
-fn turn(
-    schemes: &mut [PairScheme],
-    entering: Variable,
-    contact: &ContactLcp,
-    system: &ContactSystem,
-) -> Option<Turned> {
+fn turn(schemes: &mut Schemes, entering: Variable, contact: &ContactLcp, system: &ContactSystem) -> Option<Turned> {
     let (row, quantity) = contact.quantity(entering)?;
     let released = quantity == Quantity::Displacement;
     let meaning = contact.rows[row];
-    let scheme = &mut schemes[meaning.pair];
+    if let (Some(facet), true) = (meaning.couple.facet(), system.pairs[meaning.pair].is_in_space()) {
+        let facets = &mut schemes.facets[meaning.pair];
+        let word = |facets: &[usize]| (if facets.is_empty() { "stick" } else { "slip" }).to_owned();
+        let from = word(facets);
+        match released {
+            true => facets.push(facet),
+            false => facets.retain(|own| *own != facet),
+        }
+        let to = word(facets);
+        return Some(Turned { pair: system.pairs[meaning.pair].id.clone(), joint: TurnedJoint::Tangential, from, to });
+    }
+    let scheme = &mut schemes.pairs[meaning.pair];
     let frictionless = !system.pairs[meaning.pair].rubs();
-    let closed_word = if frictionless { "closed" } else { scheme.tangential.word() };
+    let closed_word = match () {
+        () if frictionless => "closed",
+        () if !schemes.facets[meaning.pair].is_empty() => "slip",
+        () => scheme.tangential.word(),
+    };
     let (joint, from, to) = match (meaning.couple, released) {
         (RowKind::Normal, true) => {
             scheme.open = true;
@@ -90,7 +109,7 @@ struct Sentence<'a> {
 }
 
 impl Sentence<'_> {
-    fn tell(&self, pivot: &Pivot, turned: Option<&Turned>, schemes: &[PairScheme]) -> String {
+    fn tell(&self, pivot: &Pivot, turned: Option<&Turned>, schemes: &Schemes) -> String {
         let Some(turned) = turned else {
             let others: Vec<String> = pivot
                 .ties
@@ -111,11 +130,13 @@ impl Sentence<'_> {
             );
         };
         let open = match pivot.entering {
-            Variable::W(row) | Variable::Z(row) => schemes[self.contact.rows[row].pair].open,
+            Variable::W(row) | Variable::Z(row) => schemes.pairs[self.contact.rows[row].pair].open,
             Variable::P => false,
         };
         let pair = &turned.pair;
+        let in_space = self.slip_in_space(pivot.entering, turned, (open, schemes));
         let change = match (turned.joint, turned.to.as_str(), open) {
+            _ if in_space.is_some() => in_space.unwrap_or_default(),
             (TurnedJoint::Normal, "open", _) => format!("pair {pair} opens"),
             (TurnedJoint::Normal, _, _) => format!("pair {pair} closes"),
             (TurnedJoint::Tangential, "stick", false) => format!("pair {pair} sticks"),
@@ -132,15 +153,46 @@ impl Sentence<'_> {
         format!("{change}; {course}, where {}", self.limit(pivot.leaving, schemes))
     }
 
+    /// What an entering slip or reserve of a pair in space does.
+    fn slip_in_space(&self, entering: Variable, turned: &Turned, (open, schemes): (bool, &Schemes)) -> Option<String> {
+        let (row, quantity) = self.contact.quantity(entering)?;
+        let meaning = self.contact.rows[row];
+        let facet = meaning.couple.facet().filter(|_| self.system.pairs[meaning.pair].is_in_space())?;
+        let pair = if open { format!("open pair {}", turned.pair) } else { format!("pair {}", turned.pair) };
+        let facets = &schemes.facets[meaning.pair];
+        Some(match (quantity, facets.as_slice()) {
+            (Quantity::Displacement, [_]) if open => format!("{pair} slides towards {}", self.direction(facet)),
+            (Quantity::Displacement, [_]) => format!("{pair} slips towards {}", self.direction(facet)),
+            (Quantity::Displacement, _) => format!("{pair} turns towards {}", self.direction(facet)),
+            (Quantity::Force, []) if open => format!("{pair} stops sliding"),
+            (Quantity::Force, []) => format!("{pair} sticks"),
+            (Quantity::Force, [.., last]) => format!("{pair} slips on towards {}", self.direction(*last)),
+        })
+    }
+
+    /// `45° from t1`: the direction of a facet.
+    fn direction(&self, facet: usize) -> String {
+        format!("{} from t1", degrees(angle(self.contact.polygon.direction(facet))))
+    }
+
     /// What happens to the leaving variable.
-    fn limit(&self, leaving: Variable, schemes: &[PairScheme]) -> String {
+    fn limit(&self, leaving: Variable, schemes: &Schemes) -> String {
         let Some((row, quantity)) = self.contact.quantity(leaving) else {
             return "nothing more is needed".to_owned();
         };
         let force = quantity == Quantity::Force;
         let meaning = self.contact.rows[row];
         let pair = &self.system.pairs[meaning.pair].id;
-        let open = schemes[meaning.pair].open;
+        let open = schemes.pairs[meaning.pair].open;
+        if let (Some(facet), true) = (meaning.couple.facet(), self.system.pairs[meaning.pair].is_in_space()) {
+            let left = schemes.facets[meaning.pair].iter().find(|own| **own != facet);
+            return match (force, left) {
+                (true, _) => format!("pair {pair} uses up its reserve towards {}", self.direction(facet)),
+                (false, Some(left)) => format!("the slip of pair {pair} has turned to {}", self.direction(*left)),
+                (false, None) if open => format!("the slip of open pair {pair} comes back to zero"),
+                (false, None) => format!("pair {pair} has slipped back to zero"),
+            };
+        }
         match (meaning.couple, force) {
             (RowKind::Normal, true) => format!("pair {pair} loses its contact force"),
             (RowKind::Normal, false) => format!("pair {pair} comes back into contact"),

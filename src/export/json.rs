@@ -70,6 +70,9 @@ pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues
     put("covering", value(&answer.rules.covering));
     put("tie_break", value(&answer.rules.tie_break));
     put("engine", value(&answer.rules.engine));
+    if let Some(polygon) = &answer.polygon {
+        put("polygon", value(polygon));
+    }
     put("attempts", value(&answer.attempts));
     put("pivots", pivots(answer));
     if answer.unrecorded() > 0 {

@@ -58,6 +58,9 @@ impl<'a> Route<'a> {
     /// # Errors
     /// As [`Route::new`].
     pub fn from_end(case: Case<'a>, name: &str, range: [f64; 2], upper: bool) -> Result<Option<Route<'a>>, PathError> {
+        if case.prepared.system().is_some_and(|system| system.is_in_space()) {
+            return Ok(None);
+        }
         let mut route = Route { case, name: name.to_owned(), legs: Vec::new(), stretches: Vec::new() };
         let present = case.present(name).unwrap_or_default();
         let [low, high] = range;

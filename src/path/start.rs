@@ -11,12 +11,24 @@ use crate::lcp::outcome::{Outcome, Point, RayDirection};
 use crate::model::rules::{Covering, TieBreak};
 use crate::solve::engines::run_scheme;
 use crate::solve::error::{QuestionError, SolveError};
+use crate::solve::prepared::Prepared;
 use crate::solve::{Solved, state::RunData};
 use crate::text::number::short;
 use crate::watch::Watch;
 
 /// No path makes more pivots than this.
 pub const PIVOTS: usize = 100_000;
+
+/// Refuses what knows two senses of slip only.
+///
+/// # Errors
+/// In space.
+pub(super) fn in_the_plane(prepared: &Prepared, command: &str) -> Result<(), PathError> {
+    prepared
+        .system()
+        .and_then(|system| system.space_refusal(command))
+        .map_or(Ok(()), |why| Err(PathError::Missing(why)))
+}
 
 /// Why a path cannot be followed. Its own end (turning point, limit) is no error.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -57,7 +57,7 @@ pub struct Chosen {
     /// Every parameter that can be set.
     pub values: IndexMap<String, f64>,
     /// Covering, tie-break and engine, as `set` takes them.
-    pub rules: [String; 3],
+    pub rules: Vec<String>,
 }
 
 /// One line of a journal.
@@ -251,7 +251,7 @@ mod tests {
             file: false,
             text: Hash::of("").long(),
             values: [("f".to_owned(), f)].into_iter().collect(),
-            rules: ["cohesive", "lexicographic", "scheme"].map(str::to_owned),
+            rules: ["cohesive", "lexicographic", "scheme"].map(str::to_owned).to_vec(),
         }
     }
 

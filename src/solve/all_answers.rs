@@ -18,7 +18,6 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::rows::RowKind;
 use crate::contact::schemes::enumerate::{Continuum as ContactContinuum, EnumeratedAnswer, enumerate};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
-use crate::contact::system::ContactPair;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::model::parameter::ParameterValues;
@@ -129,12 +128,8 @@ impl Prepared {
             .collect::<Result<Vec<_>, _>>()?;
         let count = answers.len();
         let pairs = |direction: &DVector<f64>| {
-            let pair = |(i, pair): (usize, &ContactPair)| PairDirection {
-                pair: pair.id.clone(),
-                z_n: direction[i],
-                z_t: pair.plane_tangential().map_or(0.0, |joint| direction[joint]),
-            };
-            Moving::Pairs(system.pairs.iter().enumerate().map(pair).collect())
+            let pair = |i: usize| PairDirection::of(system, i, direction);
+            Moving::Pairs((0..system.pair_count()).map(pair).collect())
         };
         let continuum = |piece: &ContactContinuum| Continuum {
             corners: piece.corners.clone(),
@@ -186,7 +181,7 @@ impl Prepared {
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };
         let rules = AttemptRules::from(Rules::default()).by(AttemptEngine::Enumeration);
-        Ok(self.answer_at(problem, contact, point, rules, Extent::Whole))
+        self.answer_at(problem, contact, point, rules, Extent::Whole)
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use super::case::Case;
+use super::cone;
 use super::engines::{EXACT_PAIRS, keep_scheme, run_exact_contact, run_tableau};
 use super::error::SolveError;
 use super::finish::empty_answer;
@@ -12,7 +13,7 @@ use super::prepared::{Geometry, Prepared};
 use super::state::{LookedAt, Rest, RunData, Solved};
 use super::warm::WarmStart;
 use crate::answer::pairs::{joint_state, pair_states};
-use crate::answer::record::{AttemptRules, OutcomeKind};
+use crate::answer::record::{AttemptRules, OutcomeKind, PolygonRecord};
 use crate::contact::kernel_correction::kernel_correction;
 use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
@@ -23,7 +24,7 @@ use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::parametric::Parametric;
 use crate::lcp::pivot::PivotLog;
 use crate::model::rules::{Covering, Engine, Rules};
-use crate::watch::Watch;
+use crate::watch::{Quiet, Watch};
 
 /// What of an answer is worked out at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -138,14 +139,15 @@ impl Prepared {
             _ => {}
         }
         let seconds = start.elapsed().as_secs_f64();
-        let mut solved = self.state_of(problem, contact, run, rules.into(), extent);
+        let mut solved = self.state_of(problem, contact, run, (rules.into(), extent), watch)?;
         solved.answer.timings.lemke = seconds;
         solved.answer.ray = solved.ray.as_ref().map(|report| report.record(system, rules.covering));
         if let RunData::Contact { contact, pivots, .. } = &solved.run {
             if extent != Extent::Counted {
                 solved.answer.pivots = sentence::pivot_records(pivots.recorded(), contact, system);
             }
-            if let Some(engine) = engine.filter(|_| solved.answer.is_answer()) {
+            // What a warm start follows are slips in two senses.
+            if let Some(engine) = engine.filter(|_| solved.answer.is_answer() && !system.is_in_space()) {
                 let warm = WarmStart::new(engine, contact.clone(), problem.clone());
                 solved.warm = Some(Arc::new(Mutex::new(Some(warm))));
             }
@@ -164,10 +166,10 @@ impl Prepared {
         point: Point,
         rules: AttemptRules,
         extent: Extent,
-    ) -> Solved {
+    ) -> Result<Solved, SolveError> {
         let point = refined(problem, &contact, point);
         let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
-        self.state_of(problem, contact, run, rules, extent)
+        self.state_of(problem, contact, run, (rules, extent), &Quiet)
     }
 
     /// What a run ended in: the pairs, of an answer all the rest of that extent with its check, of a ray its class.
@@ -176,12 +178,28 @@ impl Prepared {
         problem: &ContactProblem,
         contact: ContactLcp,
         run: Run,
-        rules: AttemptRules,
-        extent: Extent,
-    ) -> Solved {
+        (rules, extent): (AttemptRules, Extent),
+        watch: &dyn Watch,
+    ) -> Result<Solved, SolveError> {
         let system = &*problem.system;
-        let state = joint_state(problem, &contact, &run.point);
+        let mut state = joint_state(problem, &contact, &run.point);
         let mut answer = empty_answer(&run, contact.force_unit, rules, self.size(system, &contact));
+        let mut problem = problem.clone();
+        let mut note = None;
+        if system.is_in_space() {
+            answer.polygon = Some(PolygonRecord::of(problem.polygon));
+            if answer.is_answer() {
+                let found = cone::taken(&problem, state, watch)?;
+                (state, problem, note) = (found.state, found.problem, found.note);
+                answer.polygon = Some(found.record);
+            }
+            let polygon = problem.polygon;
+            for attempt in &mut answer.attempts {
+                attempt.facets = Some(polygon.facets());
+                attempt.turn = Some(polygon.turn().to_degrees()).filter(|turn| *turn != 0.0);
+            }
+        }
+        let problem = &problem;
         answer.pairs = pair_states(problem, &contact, &state);
         self.add_released_slips(&mut answer.pairs, problem, &state.z);
         let mut ray = None;
@@ -197,7 +215,8 @@ impl Prepared {
             }
             _ => self.complete(&mut answer, problem, &state),
         }
-        Solved {
+        answer.notes.extend(note);
+        Ok(Solved {
             cycled: matches!(run.outcome, Outcome::Cycle(_)),
             run: RunData::Contact { contact, problem: problem.clone(), pivots: run.pivots, last: run.point },
             answer,
@@ -207,7 +226,7 @@ impl Prepared {
             rest,
             looked_at: LookedAt::default(),
             retry_note: String::new(),
-        }
+        })
     }
 }
 
@@ -224,7 +243,7 @@ fn run_engine(
         Engine::Scheme => keep_scheme(&contact.lcp, tie_rule, watch),
         Engine::Tableau => (run_tableau(&contact.lcp, tie_rule, watch), None),
         Engine::Exact => {
-            if let Some(refusal) = system.refusal("engine exact") {
+            if let Some(refusal) = system.dependence_refusal("engine exact") {
                 return Err(SolveError::Value(refusal));
             }
             let found = system.pairs.len();

@@ -14,6 +14,7 @@ use crate::contact::problem::ContactProblem;
 use crate::explain::loose::{LoosePart, loose_pairs, loose_parts};
 use crate::explain::margin::{FinalScheme, Margin, friction_margin, load_margin};
 use crate::explain::motions::FreeMotions;
+use crate::explain::ray::RayReport;
 use crate::explain::remedy::{Remedies, remedies};
 use crate::explain::tableau::{Dictionary, NoDictionary, dictionary};
 use crate::explain::ties::{TieReport, ties};
@@ -64,6 +65,10 @@ impl Solved {
         let (RunData::Contact { contact, problem, pivots, last }, Some(system)) = (&self.run, prepared.system()) else {
             return Vec::new();
         };
+        if system.is_in_space() {
+            // How far a slip may turn before its pair sticks is no question of the last basis.
+            return Vec::new();
+        }
         let basis = pivots.basis();
         if !self.answer.is_answer() || basis.p || self.answer.marginal {
             return Vec::new();
@@ -114,7 +119,8 @@ impl Prepared {
         let RunData::Contact { problem, .. } = &solved.run else {
             return None;
         };
-        let report = solved.ray.as_ref().filter(|report| report.class == RayClass::Mechanism)?;
+        let plane = |report: &&Box<RayReport>| report.class == RayClass::Mechanism && !problem.system.is_in_space();
+        let report = solved.ray.as_ref().filter(plane)?;
         let budget = Budget::new(watch, REMEDY_TIME);
         let solves = |changed: &ContactProblem| {
             let rules = Rules { engine: Engine::Scheme, ..Rules::default() };

@@ -140,8 +140,16 @@ impl Prepared {
                 }
                 let moved = problem.dislocation(z);
                 let slips = file.forces(&moved, &moved.abs(), &file.load(&problem.factors)).slips;
-                for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
-                    pairs[pair].z_t = *slip;
+                let mut slips = file.released_pairs.iter().zip(slips.iter());
+                while let Some((&pair, along)) = slips.next() {
+                    match &mut pairs[pair].space {
+                        None => pairs[pair].z_t = *along,
+                        Some(space) => {
+                            // t1 and t2 follow one another.
+                            space.z_t = [*along, slips.next().map_or(0.0, |(_, across)| *across)];
+                            pairs[pair].z_t = space.z_t[0].hypot(space.z_t[1]);
+                        }
+                    }
                 }
             }
             Geometry::Plain { .. } => {}
@@ -256,11 +264,11 @@ pub(super) fn empty_answer(run: &Run, force_unit: f64, rules: AttemptRules, size
         marginal: run.outcome == Outcome::Normal { marginal: true },
         ray: None,
         p: run.point.p * force_unit,
+        polygon: None,
         attempts: vec![Attempt {
-            rules,
-            outcome,
             pivots: Some(run.pivots.count()),
             why: failure.clone().filter(|_| outcome == OutcomeKind::PivotLimit),
+            ..Attempt::new(rules, outcome)
         }],
         rules,
         pivots: Vec::new(),

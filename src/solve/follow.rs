@@ -126,7 +126,7 @@ impl Prepared {
         let point =
             Point { z: found.point.z.iter().map(|z| z * length).collect(), w: vec![0.0; contact.rows.len()], p: 0.0 };
         let seconds = start.elapsed().as_secs_f64();
-        let mut solved = self.answer_at(problem, contact, point, rules.into(), extent);
+        let mut solved = self.answer_at(problem, contact, point, rules.into(), extent).ok()?;
         solved.answer.start = Start::Warm { changes: found.pivots };
         Some((solved, seconds))
     }

@@ -68,7 +68,7 @@ impl Prepared {
             End::Breakdown(why) => (OutcomeKind::Breakdown, why),
         };
         if outcome != OutcomeKind::Normal {
-            let attempt = Attempt { rules, outcome, pivots: Some(pivots), why: Some(why) };
+            let attempt = Attempt { pivots: Some(pivots), why: Some(why), ..Attempt::new(rules, outcome) };
             return Ok(AlongLoad::Ended(attempt));
         }
         let contact = contact_lcp_like(Some(&path), problem, Rules::default().covering)?;
@@ -78,7 +78,7 @@ impl Prepared {
             w: vec![0.0; contact.rows.len()],
             p: 0.0,
         };
-        let mut solved = self.answer_at(problem, contact, point, rules, Extent::Whole);
+        let mut solved = self.answer_at(problem, contact, point, rules, Extent::Whole)?;
         solved.answer.attempts.iter_mut().for_each(|attempt| attempt.pivots = Some(pivots));
         Ok(AlongLoad::Answer(Box::new(solved)))
     }

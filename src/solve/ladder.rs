@@ -114,10 +114,20 @@ impl Ladder {
         Ok(self.with_history(again))
     }
 
+    /// Notes a try whatever it came to.
+    pub(super) fn tried(&mut self, again: &mut Solved) {
+        self.tried.append(&mut again.answer.attempts);
+    }
+
+    /// How many runs there were.
+    pub(super) fn count(&self) -> usize {
+        self.first.answer.attempts.len() + self.tried.len()
+    }
+
     /// Notes an exact try that ran out of its time.
     pub(super) fn gave_up(&mut self, rules: AttemptRules, budget: Duration) {
         let why = Some(format!("given up after {} s of exact arithmetic", budget.as_secs()));
-        self.tried.push(Attempt { rules, outcome: OutcomeKind::PivotLimit, pivots: None, why });
+        self.tried.push(Attempt { why, ..Attempt::new(rules, OutcomeKind::PivotLimit) });
     }
 
     /// Notes a try that came to no state at all.
@@ -126,7 +136,7 @@ impl Ladder {
     }
 
     /// The last try as the result, with all before it.
-    fn with_history(&mut self, mut last: Solved) -> Solved {
+    pub(super) fn with_history(&mut self, mut last: Solved) -> Solved {
         let mut attempts = std::mem::take(&mut self.first.answer.attempts);
         attempts.append(&mut self.tried);
         last.answer.attempts = attempts;

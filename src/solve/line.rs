@@ -100,7 +100,7 @@ impl Case<'_> {
         }
         let contact = contact_lcp_like(Some(kept.contact()), &problem, rules.covering).ok()?;
         let point = vertex(&contact.lcp, &basis)?;
-        let mut solved = prepared.answer_at(&problem, contact, point, rules.into(), Extent::Counted);
+        let mut solved = prepared.answer_at(&problem, contact, point, rules.into(), Extent::Counted).ok()?;
         solved.answer.start = Start::Warm { changes };
         let strict = solved.answer.is_answer() && is_strict(&problem, &solved.joints()?);
         strict.then_some(solved)

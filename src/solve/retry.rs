@@ -60,14 +60,18 @@ impl Prepared {
         brief: bool,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        let problem = contact_problem(system, &factors(self, values), values);
+        let problem = contact_problem(system, &factors(self, values), values).under(rules);
         let job = Job { prepared: self, problem: &problem, rules, watch };
         let mut solved = self.attempt_contact(&problem, (rules, extent), watch)?;
-        if solved.answer.is_answer() {
+        if solved.answer.is_answer() && (!system.is_in_space() || super::space::is_final(&solved, &problem)) {
             return Ok(solved);
         }
         let certified = solved.ray.as_mut().is_some_and(|report| certify_ray(report, &problem, self.built()));
-        if !certified && rules.are_default() {
+        if !certified && system.is_in_space() {
+            if rules.are_default() {
+                solved = self.retry_in_space(&problem, rules, solved, watch)?;
+            }
+        } else if !certified && rules.are_default() {
             solved = job.retry(solved)?;
         } else if !certified {
             job.compare_with_default(&mut solved)?;

@@ -26,7 +26,7 @@ fn states(answer: &Answer) -> String {
 fn motion(pairs: &[PairDirection]) -> String {
     let mut words = Vec::new();
     for pair in pairs {
-        for (name, value) in [("z_n", pair.z_n), ("z_t", pair.z_t)] {
+        for (name, value) in [("z_n", pair.z_n), ("z_t", pair.z_t.scalar())] {
             if value != 0.0 {
                 words.push(format!("{name} {} by {}", pair.pair, short(value)));
             }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::force_unit;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
-use crate::answer::record::{PairDirection, Ray, RayClass, VariableRate, Verdict};
+use crate::answer::record::{PairDirection, Ray, RayClass, Slip, VariableRate, Verdict};
 use crate::answer::rounding::denoised;
 use crate::contact::system::ContactSystem;
 use crate::explain::mode::{PartMotion, pair_words};
@@ -42,11 +42,12 @@ pub fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
 /// What a pair does in a ray; `None` where it does not move.
 pub fn motion_words(direction: &PairDirection) -> Option<&'static str> {
     let moves = |value: f64| denoised(value, 1.0) != 0.0;
-    Some(match (moves(direction.z_n), moves(direction.z_t)) {
+    Some(match (moves(direction.z_n), moves(direction.z_t.scalar())) {
         (false, false) => return None,
         (true, true) => "parts and slips",
         (true, false) => "parts",
-        _ if direction.z_t > 0.0 => "slips +",
+        _ if matches!(direction.z_t, Slip::Space(_)) => "slips",
+        _ if direction.z_t.scalar() > 0.0 => "slips +",
         _ => "slips -",
     })
 }
@@ -103,7 +104,7 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         table.rows.push(Row::new(vec![
             Cell::from(direction.pair.as_str()),
             Cell::number(direction.z_n),
-            Cell::number(direction.z_t),
+            Cell::number(direction.z_t.scalar()),
             Cell::from(*motion),
         ]));
     }

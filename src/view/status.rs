@@ -8,7 +8,8 @@ use super::scale::{Scale, lengths};
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
 use crate::answer::attempt::Attempt;
-use crate::answer::record::{Answer, OutcomeKind, PairState, Start, State};
+use crate::answer::record::{Answer, OutcomeKind, PairState, PolygonRecord, Start, State};
+use crate::contact::polygon::degrees;
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::units::Units;
@@ -266,6 +267,9 @@ pub fn write(
             answer.rules.covering, answer.rules.tie_break, answer.rules.engine
         ),
     ));
+    if let Some(polygon) = &answer.polygon {
+        rows.push(("friction", friction_polygon(polygon)));
+    }
     if let Start::Warm { changes } = answer.start {
         let times = if changes == 1 { "change" } else { "changes" };
         rows.push(("start", format!("warm: followed from the last answer, {changes} {times} of the working scheme")));
@@ -371,4 +375,19 @@ pub fn write_loose(out: &mut dyn Write, sentences: &[String], style: &Style) -> 
         }
     }
     Ok(())
+}
+/// `polygon of 8 facets · on Coulomb's cone after 2 Newton steps, which moved slips by up to 3.4 %`.
+fn friction_polygon(polygon: &PolygonRecord) -> String {
+    let mut text = format!("polygon of {} facets", polygon.facets);
+    if polygon.turn != 0.0 {
+        text += &format!(" turned by {}", degrees(polygon.turn));
+    }
+    if let (Some(steps), Some(distance)) = (polygon.newton, polygon.distance) {
+        let word = if steps == 1 { "step" } else { "steps" };
+        text += &format!(
+            " · on Coulomb's cone after {steps} Newton {word}, which moved slips by up to {} % of the largest",
+            short(100.0 * distance)
+        );
+    }
+    text
 }

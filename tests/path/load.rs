@@ -77,7 +77,7 @@ fn the_beam_slips_support_by_support_and_then_as_a_whole() {
         close(limit.factor.expect("a limit"), 6.0 * r, 1e-12);
         assert!(limit.confirmed);
         let collapse = limit.collapse.expect("a mode");
-        assert!(collapse.direction.pairs().iter().all(|d| (d.z_t - 1.0).abs() < 1e-9 && d.z_n == 0.0));
+        assert!(collapse.direction.pairs().iter().all(|d| (d.z_t.scalar() - 1.0).abs() < 1e-9 && d.z_n == 0.0));
     }
     // Beyond the limit there is no answer: the path starts from 0 and the safety is below 1.
     let limit = Case::new("beam", &[("F2", 400.0)]).limit("pull");

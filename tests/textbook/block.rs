@@ -35,7 +35,7 @@ fn overturns_at_a_quarter() {
         if h < 0.4 {
             close("p", ray.p, 0.8 * (h - 0.25), tolerance);
             let z_n: Vec<f64> = ray.direction.pairs().iter().map(|d| d.z_n).collect();
-            let z_t: Vec<f64> = ray.direction.pairs().iter().map(|d| d.z_t).collect();
+            let z_t: Vec<f64> = ray.direction.pairs().iter().map(|d| d.z_t.scalar()).collect();
             near_all("z̄_n", &z_n, &[1.0, 0.75, 0.5, 0.25, 0.0], 1e-9);
             assert_eq!(z_t, [0.0; 5]);
         }

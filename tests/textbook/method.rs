@@ -73,7 +73,7 @@ fn all_slide_where_the_bounds_are_used_up() {
     assert_eq!(ray.verdict, Some(Verdict::Proved));
     pivots(&answer, &[("p", "x+[c3]", 100.0 / D), ("z+[c3]", "x+[c2]", 50.0 / 3.0), ("z+[c2]", "x+[c1]", 30.0 / 4.5)]);
     for direction in ray.direction.pairs() {
-        assert_eq!((direction.z_n, direction.z_t), (0.0, 1.0), "{}", direction.pair);
+        assert_eq!((direction.z_n, direction.z_t.scalar()), (0.0, 1.0), "{}", direction.pair);
     }
 }
 

@@ -286,7 +286,7 @@ fn ladder() {
             let ray = mechanism(&answer);
             let d = if rule == Covering::Ones { 1.0 } else { 1.0 + f };
             close(&format!("p, ×{below}"), ray.p, load * (limit - f) / d, tolerance);
-            near("z̄_τ of the foot", ray.direction.pairs()[0].z_t, 1.0, 1e-9, 1.0);
+            near("z̄_τ of the foot", ray.direction.pairs()[0].z_t.scalar(), 1.0, 1e-9, 1.0);
         }
     }
 }

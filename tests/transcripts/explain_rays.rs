@@ -45,7 +45,7 @@ fn block_on_a_rough_plane() {
     close(ray.p, 0.8 * 0.01, 1e-9);
     assert_eq!(ray.mode, "rotation of `block` about (1.0, 0.0), clockwise: pairs base[0] to base[3] open");
     for (direction, expected) in ray.direction.pairs().iter().zip([1.0, 0.75, 0.5, 0.25, 0.0]) {
-        assert!((direction.z_n - expected).abs() < 1e-9 && direction.z_t.abs() < 1e-9);
+        assert!((direction.z_n - expected).abs() < 1e-9 && direction.z_t.scalar().abs() < 1e-9);
     }
     let found = block.1.remedies(&over, &Quiet).expect("a collapse");
     assert!(found.complete);

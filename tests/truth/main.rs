@@ -10,6 +10,7 @@ mod explain_engines;
 mod judge;
 mod large;
 mod random_contact;
+mod space;
 mod zoo;
 
 use judge::Problem;

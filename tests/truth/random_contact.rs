@@ -271,7 +271,7 @@ fn loose_parts_stand_or_their_ray_is_a_motion_the_loads_drive() {
                 return ray.direction.pairs()[joint].z_n;
             }
             let pair = system.pairs.iter().position(|pair| pair.plane_tangential() == Some(joint));
-            ray.direction.pairs()[pair.unwrap()].z_t
+            ray.direction.pairs()[pair.unwrap()].z_t.scalar()
         });
         assert!((&system.stiffness * &z).amax() <= 1e-9 * system.stiffness.amax(), "{what}");
         assert!(system.loads[0].vector.dot(&z) < 0.0, "{what}");

@@ -33,7 +33,7 @@ pub struct ConeCheck {
 
 impl ConeCheck {
     /// The check of z with its forces λ.
-    pub(super) fn of(problem: &ConeProblem, z: &DVector<f64>, forces: &[Sum]) -> ConeCheck {
+    pub fn of(problem: &ConeProblem, z: &DVector<f64>, forces: &[Sum]) -> ConeCheck {
         let mut check = ConeCheck::default();
         let mut worst = 0.0;
         for pair in 0..problem.pairs.len() {

@@ -212,8 +212,7 @@ fn load_cases(cursor: Cursor<'_>, rows: usize, order: &str) -> Option<Vec<GivenL
             continue;
         };
         let factor = factor(&fields);
-        let vector =
-            fields.required("vector").and_then(|cursor| cursor.of(Region::Amount).numbers(rows, order));
+        let vector = fields.required("vector").and_then(|cursor| cursor.of(Region::Amount).numbers(rows, order));
         match (factor, vector) {
             (Some(factor), Some(vector)) => cases.push(GivenLoad { name: entry.name().to_string(), factor, vector }),
             _ => is_right = false,

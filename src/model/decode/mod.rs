@@ -274,10 +274,7 @@ fn rule<T: Default + std::str::FromStr<Err = UnknownChoice>>(fields: &Fields<'_>
 }
 
 fn refuse_covering(solver: Option<Cursor<'_>>) {
-    let Some(fields) = solver
-        .filter(|cursor| cursor.is_object())
-        .and_then(|cursor| cursor.fields(&SOLVER))
-    else {
+    let Some(fields) = solver.filter(|cursor| cursor.is_object()).and_then(|cursor| cursor.fields(&SOLVER)) else {
         return;
     };
     fields.refuse(

@@ -86,6 +86,10 @@ pub enum OfPair {
     ReserveMinus,
     /// Bound − |x_t|.
     Reserve,
+    /// A component of x_t in space: 0 along t1, 1 along t2.
+    FrictionAlong(usize),
+    /// The same of z_t.
+    SlipAlong(usize),
 }
 
 /// A displacement of a node, or a component of its reaction.
@@ -278,13 +282,17 @@ pub static WORDS: &[Word] = &[
         "work lost in friction; in a stage, of that stage",
     ),
     number("x_n", M::Pair(OfPair::NormalForce), D::Force, "compressive force"),
-    number("x_t", M::Pair(OfPair::FrictionForce), D::Force, "friction force"),
+    number("x_t", M::Pair(OfPair::FrictionForce), D::Force, "friction force (in space its magnitude)"),
     number("z_n", M::Pair(OfPair::Opening), D::Length, "distance open"),
-    number("z_t", M::Pair(OfPair::Slip), D::Length, "slip"),
+    number("z_t", M::Pair(OfPair::Slip), D::Length, "slip (in space its magnitude)"),
     number("bound", M::Pair(OfPair::Bound), D::Force, "friction bound"),
     number("reserve_plus", M::Pair(OfPair::ReservePlus), D::Force, "bound + x_t"),
     number("reserve_minus", M::Pair(OfPair::ReserveMinus), D::Force, "bound − x_t"),
     number("reserve", M::Pair(OfPair::Reserve), D::Force, "bound − |x_t|"),
+    number("x_t1", M::Pair(OfPair::FrictionAlong(0)), D::Force, "in space: friction force along t1"),
+    number("x_t2", M::Pair(OfPair::FrictionAlong(1)), D::Force, "in space: friction force along t2"),
+    number("z_t1", M::Pair(OfPair::SlipAlong(0)), D::Length, "in space: slip along t1"),
+    number("z_t2", M::Pair(OfPair::SlipAlong(1)), D::Length, "in space: slip along t2"),
     chosen("state", M::State, STATES, "open, stick, slip+, slip- (in space: slip) or closed"),
     number("sum", M::Over(Over::Sum), D::Inner, "sum over pairs: sum x_n joint[*]"),
     number("max", M::Over(Over::Max), D::Inner, "largest over pairs, along a bar, or |u|: max M AB, max u"),

@@ -133,21 +133,20 @@ impl<'a> Facts<'a> {
             let (prepared, (_, main)) = (self.prepared?, self.structure().ok()?);
             let system = prepared.system()?;
             let problem = contact_problem(system, &self.factors, self.values);
-            Some(main.displacements(&self.factors, &problem.dislocation(&self.joints(|pair| [pair.z_n, pair.z_t]))))
+            let z = self.joints(|pair| (pair.z_n, pair.slip()));
+            Some(main.displacements(&self.factors, &problem.dislocation(&z)))
         });
         found.as_ref().ok_or_else(|| self.missing())
     }
 
-    /// A normal and a tangential number of every pair over the joints.
-    fn joints(&self, read: impl Fn(&PairState) -> [f64; 2]) -> DVector<f64> {
+    /// A normal number and those along the tangents of every pair over the joints.
+    fn joints(&self, read: impl Fn(&PairState) -> (f64, Vec<f64>)) -> DVector<f64> {
         let Some(system) = self.prepared.and_then(Prepared::system) else { return DVector::zeros(0) };
         let mut joints = DVector::zeros(system.joint_count());
         for (i, (pair, state)) in system.pairs.iter().zip(self.pairs).enumerate() {
-            let [normal, tangential] = read(state);
+            let (normal, tangential) = read(state);
             joints[i] = normal;
-            if let Some(joint) = pair.plane_tangential() {
-                joints[joint] = tangential;
-            }
+            pair.tangential.clone().zip(tangential).for_each(|(joint, value)| joints[joint] = value);
         }
         joints
     }
@@ -169,7 +168,7 @@ impl<'a> Facts<'a> {
             return answer.reactions.clone().ok_or_else(|| self.missing());
         }
         let (Some(prepared), u) = (self.prepared, self.displacements()?) else { return Err(self.missing()) };
-        let force = self.joints(|pair| [pair.x_n, pair.x_t]);
+        let force = self.joints(|pair| (pair.x_n, pair.friction()));
         prepared.reactions(u, &force, &self.factors).ok_or_else(|| self.missing())
     }
 }

@@ -27,6 +27,9 @@ impl Facts<'_> {
         let found = self.resultant(joint).ok_or_else(|| self.missing())?;
         match part {
             ResultantPart::Normal => Ok(found.normal),
+            ResultantPart::Tangential if self.pairs.iter().any(|pair| pair.space.is_some()) => Err(NoValue(
+                "T of a joint in space is no single number: ask `sum x_t1` and `sum x_t2` of its pairs".to_owned(),
+            )),
             ResultantPart::Tangential => Ok(found.tangential),
             ResultantPart::Eccentricity => {
                 found.eccentricity.ok_or_else(|| NoValue("no eccentricity where N = 0".to_owned()))

@@ -1,15 +1,20 @@
 //! Numbers of pairs, and of all pairs that fit a pattern.
 
 use super::facts::Facts;
-use super::value::NoValue;
-use crate::answer::record::PairState;
+use super::value::{NoValue, none};
+use crate::answer::record::{InSpace, PairState};
 use crate::answer::rounding::balance;
 use crate::model::quantity::{OfPair, Over, fits};
 
 impl OfPair {
-    /// Of a pair.
+    /// Of a pair; not a number where it has none.
     pub fn of(self, pair: &PairState) -> f64 {
+        let component =
+            |of: fn(&InSpace) -> [f64; 2], along: usize| pair.space.map_or(f64::NAN, |space| of(&space)[along]);
         match self {
+            OfPair::ReservePlus | OfPair::ReserveMinus if pair.space.is_some() => f64::NAN,
+            OfPair::FrictionAlong(along) => component(|space| space.x_t, along),
+            OfPair::SlipAlong(along) => component(|space| space.z_t, along),
             OfPair::NormalForce => pair.x_n,
             OfPair::FrictionForce => pair.x_t,
             OfPair::Opening => pair.z_n,
@@ -17,7 +22,17 @@ impl OfPair {
             OfPair::Bound => pair.bound,
             OfPair::ReservePlus => pair.reserve_plus,
             OfPair::ReserveMinus => pair.reserve_minus,
-            OfPair::Reserve => pair.bound - pair.x_t.abs(),
+            OfPair::Reserve => pair.reserve(),
+        }
+    }
+
+    /// Of a pair, where it has one.
+    pub fn known(self, pair: &PairState) -> Result<f64, NoValue> {
+        let value = self.of(pair);
+        match (value.is_nan(), pair.space.is_some()) {
+            (false, _) => Ok(value),
+            (true, true) => none("x+ and x- are reserves of the plane; in space ask `reserve`"),
+            (true, false) => none("components along t1 and t2 are those of a pair in space"),
         }
     }
 }
@@ -29,7 +44,8 @@ impl<'a> Facts<'a> {
     }
 
     pub(super) fn of_pairs(&self, over: Over, which: OfPair, pattern: &str) -> Result<f64, NoValue> {
-        let chosen = self.chosen(pattern)?.into_iter().map(|pair| which.of(pair));
+        let chosen = self.chosen(pattern)?.into_iter().map(|pair| which.known(pair)).collect::<Result<Vec<_>, _>>()?;
+        let chosen = chosen.into_iter();
         Ok(match over {
             Over::Sum => balance(chosen),
             Over::Max => chosen.fold(f64::NEG_INFINITY, f64::max),

@@ -239,7 +239,7 @@ pub fn of_file(sweep: &Sweep<'_>, path: &std::path::Path) -> std::io::Result<Vec
 /// An interruption; a value that the scenario cannot take.
 pub fn sample(case: Case<'_>, request: &Request) -> Result<Sampled, PathError> {
     let mut exact = None;
-    if !request.crude && case.prepared.system().is_some() {
+    if !request.crude && case.prepared.system().is_some_and(|system| !system.is_in_space()) {
         let found = match &request.variables[..] {
             [one] => exact::of_one(case, one, &request.quantities),
             [one, other] => exact::of_two(case, [one, other]),

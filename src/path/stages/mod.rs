@@ -28,7 +28,7 @@ use std::time::Instant;
 use standing::Laws;
 use walk::Walk;
 
-use super::start::PathError;
+use super::start::{PathError, in_the_plane};
 use crate::solve::Case;
 use crate::solve::problem::{contact_problem, factors};
 
@@ -89,6 +89,7 @@ pub(super) fn follow_until(
     enough: &mut dyn FnMut(&[StageResult]) -> bool,
 ) -> Result<History, PathError> {
     let Case { prepared, values, watch, .. } = case;
+    in_the_plane(prepared, "stages")?;
     let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let none = vec![0.0; prepared.cases.len()];
     let problem = contact_problem(system, &none, values);

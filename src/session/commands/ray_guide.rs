@@ -133,7 +133,10 @@ fn moving_pair(ray: &Ray) -> Option<String> {
     match &ray.direction {
         Direction::Pairs(pairs) => {
             let size = |z_n: f64, z_t: f64| z_n.abs().max(z_t.abs());
-            pairs.iter().max_by(|a, b| size(a.z_n, a.z_t).total_cmp(&size(b.z_n, b.z_t))).map(|pair| pair.pair.clone())
+            pairs
+                .iter()
+                .max_by(|a, b| size(a.z_n, a.z_t.scalar()).total_cmp(&size(b.z_n, b.z_t.scalar())))
+                .map(|pair| pair.pair.clone())
         }
         Direction::Variables(_) => None,
     }

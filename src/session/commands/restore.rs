@@ -50,7 +50,7 @@ impl Setup {
             file: self.scenario.path.is_some(),
             text: Hash::of(&self.scenario.text).long(),
             values: self.values.free().map(|(name, value)| (name.clone(), value)).collect(),
-            rules: RULES.each_ref().map(|rule| (rule.shown)(&self.rules)),
+            rules: RULES.iter().map(|rule| (rule.shown)(&self.rules)).collect(),
         }
     }
 }

@@ -60,9 +60,7 @@ fn mode_of(prepared: &Prepared, solved: &Solved) -> Option<Vec<NodeDisplacement>
     let mut z = DVector::zeros(system.joint_count());
     for (i, (pair, direction)) in system.pairs.iter().zip(ray.direction.pairs()).enumerate() {
         z[i] = direction.z_n;
-        if let Some(joint) = pair.plane_tangential() {
-            z[joint] = direction.z_t;
-        }
+        pair.tangential.clone().zip(direction.slip()).for_each(|(joint, slip)| z[joint] = slip);
     }
     if z.amax() == 0.0 {
         return None;

@@ -97,7 +97,7 @@ impl Session {
                     Some(words) => format!(
                         "it {words}: z̄_n = {}, z̄_τ = {} of the largest displacement",
                         short(direction.z_n),
-                        short(direction.z_t)
+                        short(direction.z_t.scalar())
                     ),
                     None => "it does not move".to_owned(),
                 };

@@ -263,9 +263,9 @@ fn in_motion(direction: &PairDirection) -> PairMotion {
     const NOTHING: f64 = 1e-9;
     if direction.z_n > NOTHING {
         PairMotion::Open
-    } else if direction.z_t > NOTHING {
+    } else if direction.z_t.scalar() > NOTHING {
         PairMotion::SlipPlus
-    } else if direction.z_t < -NOTHING {
+    } else if direction.z_t.scalar() < -NOTHING {
         PairMotion::SlipMinus
     } else {
         PairMotion::Stick

@@ -238,7 +238,7 @@ pub fn mode(
             direction.map_or(0.0, |d| denoised(value(d), 1.0))
         })
     };
-    let curves = [along("z̄_n", |d| d.z_n), along("z̄_τ", |d| d.z_t)]
+    let curves = [along("z̄_n", |d| d.z_n), along("z̄_τ", |d| d.z_t.scalar())]
         .into_iter()
         .enumerate()
         .flat_map(|(number, series)| series.into_iter().map(move |series| (number, series)))

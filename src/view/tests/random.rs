@@ -117,7 +117,7 @@ proptest! {
             ray.p = pair.x_n;
             ray.mode = pair.id.clone();
             ray.direction =
-                Direction::Pairs(vec![PairDirection { pair: pair.id.clone(), z_n: pair.z_n, z_t: pair.z_t }]);
+                Direction::Pairs(vec![PairDirection { pair: pair.id.clone(), z_n: pair.z_n, z_t: Slip::Plane(pair.z_t) }]);
         }
         let answer = Answer {
             outcome, failure, pairs: pairs_, pivot_count: pivots_.len(), pivots: pivots_, p: f2, marginal: f2 > 0.0,

@@ -64,7 +64,10 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
         ray: None,
         p: 0.0,
         rules: Rules::default().into(),
+        polygon: None,
         attempts: vec![Attempt {
+            facets: None,
+            turn: None,
             rules: Rules::default().into(),
             outcome: OutcomeKind::Normal,
             pivots: Some(pivots.len()),
@@ -164,7 +167,7 @@ pub fn beam_ray() -> Answer {
         p: 10.0 / 3.0,
         driver: "z+[c1]".into(),
         direction: Direction::Pairs(
-            (1..=SUPPORTS).map(|i| PairDirection { pair: format!("c{i}"), z_n: 0.0, z_t: 1.0 }).collect(),
+            (1..=SUPPORTS).map(|i| PairDirection { pair: format!("c{i}"), z_n: 0.0, z_t: Slip::Plane(1.0) }).collect(),
         ),
         mode: "the whole structure slides towards +t on all six pairs".into(),
         explanation: "the loads pull with 20 kN more than friction can hold; more weight, more friction \

@@ -1,0 +1,77 @@
+//! A contact problem as [`super::cone`] takes it.
+
+use nalgebra::DVector;
+
+use super::cone::{ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, answer_on_cone};
+use super::problem::ContactProblem;
+use super::sum::Sum;
+use super::sums::joint_forces;
+use crate::watch::Watch;
+
+/// The parts of a [`ConeProblem`] that are made for it.
+#[derive(Clone, Debug)]
+pub struct OnCone<'a> {
+    problem: &'a ContactProblem,
+    /// RF − R·(g, 0), and what it was summed from.
+    load: DVector<f64>,
+    load_terms: DVector<f64>,
+    pairs: Vec<ConePair>,
+}
+
+impl<'a> OnCone<'a> {
+    /// Of a problem without joints in force form.
+    pub fn new(problem: &'a ContactProblem) -> OnCone<'a> {
+        let constants = joint_forces(problem, &DVector::zeros(problem.system.joint_count()));
+        let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(constants.len(), constants.iter().map(pick));
+        OnCone {
+            problem,
+            load: read(|sum| sum.value),
+            load_terms: read(|sum| sum.magnitude),
+            pairs: cone_pairs(problem),
+        }
+    }
+
+    fn problem(&self) -> ConeProblem<'_> {
+        let system = &*self.problem.system;
+        ConeProblem {
+            stiffness: &system.stiffness,
+            load: &self.load,
+            load_terms: &self.load_terms,
+            rounded: system.rounded,
+            kernel: &system.kernel,
+            pairs: &self.pairs,
+        }
+    }
+
+    /// The answer on the cone that Newton's method finds from displacements `start`.
+    ///
+    /// # Errors
+    /// [`ConeFailure`].
+    pub fn answer(&self, start: &DVector<f64>, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
+        answer_on_cone(&self.problem(), start, watch)
+    }
+
+    /// The fresh check of displacements z and their forces.
+    pub fn check(&self, z: &DVector<f64>, forces: &[Sum]) -> ConeCheck {
+        ConeCheck::of(&self.problem(), z, forces)
+    }
+}
+
+/// The pairs of a problem as they are on Coulomb's cone.
+pub fn cone_pairs(problem: &ContactProblem) -> Vec<ConePair> {
+    let pairs = problem.system.pairs.iter().zip(&problem.laws);
+    pairs.map(|(pair, law)| ConePair { law: *law, tangents: pair.tangential.clone() }).collect()
+}
+
+/// The pairs on a cone that holds all that the friction of the problem admits: Coulomb's cone itself, or the one around a
+/// polygon that is solved for its own sake, whose corners lie 1/cos(π/K) farther out.
+pub fn widest_cone_pairs(problem: &ContactProblem) -> Vec<ConePair> {
+    let mut pairs = cone_pairs(problem);
+    if problem.system.is_in_space() && !problem.cone {
+        let corner = (std::f64::consts::PI / problem.polygon.facets() as f64).cos().recip() * (1.0 + f64::EPSILON);
+        for ConePair { law, .. } in &mut pairs {
+            *law = law.with_friction(corner * law.friction()).with_fixed_bound(corner * law.fixed_bound());
+        }
+    }
+    pairs
+}
