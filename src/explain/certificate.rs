@@ -50,8 +50,7 @@ pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSe
     let pairs = widest_cone_pairs(problem);
     let load = Load { forces: &system.forces_of(&problem.load), terms: &system.forces_of(&problem.load_terms) };
     let found = certify_pairs(&pairs, motions, load, end);
-    // The exact program knows the two senses of the plane.
-    if found.certificate.is_some() || load.does_no_work(motions) || system.is_in_space() {
+    if found.certificate.is_some() || load.does_no_work(motions) {
         return found;
     }
     let exactly = certify_exactly(problem, &pairs, end);

@@ -205,7 +205,7 @@ fn beyond_the_limit_p_is_what_is_missing() {
                         let what = format!("p, n = {n}, L = {length}, f = {f}, ×{beyond}, {rule}");
                         close(&what, ray.p, expected, tolerance);
                         for pair in ray.direction.pairs() {
-                            near("mode", pair.z_t, 1.0, 1e-9, 1.0);
+                            near("mode", pair.z_t.scalar(), 1.0, 1e-9, 1.0);
                             assert_eq!(pair.z_n, 0.0);
                         }
                     }

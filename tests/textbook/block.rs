@@ -57,7 +57,7 @@ fn slides_at_f() {
         let ray = mechanism(&answer);
         close("p", ray.p, (h - 0.2) / 6.0, tolerance);
         for pair in ray.direction.pairs() {
-            near("z̄_τ", pair.z_t, 1.0, 1e-9, 1.0);
+            near("z̄_τ", pair.z_t.scalar(), 1.0, 1e-9, 1.0);
             assert_eq!(pair.z_n, 0.0);
         }
     }

@@ -47,7 +47,7 @@ fn sliding_is_told_apart_at_one_part_in_1e9() {
                 let expected = (4.0 * push - 800.0 * f) / (17.0 * d_t(rule, f));
                 close(&format!("p, f = {f}, ×{beyond}, {rule}"), ray.p, expected, tolerance);
                 for pair in ray.direction.pairs() {
-                    near("z̄_τ", pair.z_t, 1.0, 1e-9, 1.0);
+                    near("z̄_τ", pair.z_t.scalar(), 1.0, 1e-9, 1.0);
                     near("z̄_n", pair.z_n, 0.0, 1e-9, 1.0);
                 }
             }
@@ -73,7 +73,7 @@ fn overturning_is_told_apart_at_one_part_in_1e9() {
                 close(&format!("p, f = {f}, ×{beyond}, {rule}"), ray.p, expected, tolerance);
                 for (i, pair) in ray.direction.pairs().iter().enumerate() {
                     near("z̄_n", pair.z_n, (16 - i) as f64 / 16.0, 1e-9, 1.0);
-                    near("z̄_τ", pair.z_t, 0.0, 1e-9, 1.0);
+                    near("z̄_τ", pair.z_t.scalar(), 0.0, 1e-9, 1.0);
                 }
             }
         }

@@ -173,7 +173,7 @@ fn corner_of_two_blocks() {
     let answer = case.solve(&[("H", 0.4 * (1.0 + 1e-6))]);
     let ray = mechanism(&answer);
     for pair in ray.direction.pairs().iter().filter(|pair| pair.pair.starts_with("bed")) {
-        near("z̄_τ", pair.z_t, 1.0, 1e-6, 1.0);
+        near("z̄_τ", pair.z_t.scalar(), 1.0, 1e-6, 1.0);
     }
 }
 

@@ -145,7 +145,7 @@ fn chain_of_slabs() {
                 close("p", ray.p, (h - limit) / (5.0 * (1.0 + f[which])), tolerance);
                 for (i, pair) in ray.direction.pairs().iter().enumerate() {
                     let expected = f64::from(u8::from(i / 5 == which));
-                    near("z̄_τ", pair.z_t, expected, 1e-9, 1.0);
+                    near("z̄_τ", pair.z_t.scalar(), expected, 1e-9, 1.0);
                     near("z̄_n", pair.z_n, 0.0, 1e-9, 1.0);
                 }
             }

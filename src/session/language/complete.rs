@@ -221,7 +221,7 @@ mod tests {
         assert_eq!(at_end("set F"), ["F2"]);
         assert_eq!(at_end("set covering w"), ["weight"]);
         assert_eq!(at_end("pairs c"), ["c1", "c2"]);
-        assert_eq!(at_end("pairs c1 sort z_"), ["z_n", "z_t"]);
+        assert_eq!(at_end("pairs c1 sort z_"), ["z_n", "z_t", "z_t1", "z_t2"]);
         assert_eq!(at_end("why j"), ["joint[0]"]);
         assert_eq!(at_end("members A"), ["AB"]);
         assert_eq!(at_end("expect state c1 slip"), ["slip+", "slip-"]);
