@@ -8,3 +8,4 @@ mod large;
 mod ordering;
 mod refusals;
 mod rigid;
+mod space;

@@ -186,14 +186,15 @@ impl Solid<'_> {
 
     /// Gradients of all functions at (ξ, η, ζ).
     fn gradients<T: Real>(&self, at: [f64; 3]) -> Gradients<T> {
-        let jacobian = self.jacobian::<T>(at);
+        let natural = self.shape().gradients(at);
+        let jacobian = self.jacobian_of(&natural);
         let determinant = jacobian.determinant;
         let mut of = [[T::zero(); 3]; MOST_OF_SOLID + MODES];
-        for (of, natural) in of.iter_mut().zip(&self.shape().gradients(at)[..self.nodes.len()]) {
+        for (of, natural) in of.iter_mut().zip(&natural[..self.nodes.len()]) {
             *of = jacobian.turn(*natural);
         }
         if self.incompatible {
-            let centre = self.jacobian::<T>(self.shape().centre());
+            let centre = self.jacobian(self.shape().centre());
             let modes = incompatible::gradients_in_space(at, &centre, determinant);
             of[self.nodes.len()..self.functions()].copy_from_slice(&modes);
         }
@@ -201,9 +202,14 @@ impl Solid<'_> {
     }
 
     fn jacobian<T: Real>(&self, at: [f64; 3]) -> SpaceJacobian<T> {
+        self.jacobian_of(&self.shape().gradients(at))
+    }
+
+    /// The Jacobian where the functions of the nodes have these gradients.
+    fn jacobian_of<T: Real>(&self, natural: &[Triple<T>]) -> SpaceJacobian<T> {
         // Coordinates from the first node: the place in space costs no digits.
         let mut j = [[T::zero(); 3]; 3];
-        for (n, node) in self.shape().gradients::<T>(at).iter().zip(&self.nodes) {
+        for (n, node) in natural.iter().zip(&self.nodes) {
             for b in 0..3 {
                 let x = T::difference(node[b], self.nodes[0][b]);
                 for a in 0..3 {
