@@ -39,6 +39,7 @@ use crate::path::record::PathRecord;
 pub use crate::path::stages::History;
 use crate::solve;
 pub use crate::solve::{Prepared, Solved};
+use crate::view::projection::Viewpoint;
 use crate::watch::Watch;
 
 pub use commands::load::write_scenarios;
@@ -145,6 +146,8 @@ pub struct Session {
     followed: Option<Arc<History>>,
     /// The combination whose answer is shown: its name, and the geometry with its factors. `None` for the scenario's own.
     combination: Option<(String, Arc<Prepared>)>,
+    /// From where a structure in space is seen.
+    viewpoint: Viewpoint,
 }
 
 impl Session {
@@ -200,6 +203,7 @@ impl Session {
             remedies: None,
             followed: None,
             combination: None,
+            viewpoint: Viewpoint::default(),
         };
         session.take_answer(Some(solved));
         Ok(session)

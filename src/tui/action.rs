@@ -158,6 +158,10 @@ pub enum LookChange {
     DeformAuto,
     /// Show or hide the loads.
     Loads,
+    /// The viewer walks round a structure in space: so many degrees to the right, up.
+    Turn(i8, i8),
+    /// The next of the named views.
+    NextView,
 }
 
 /// What the mouse did, at a character of the screen.

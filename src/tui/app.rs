@@ -13,6 +13,7 @@ use crate::model::quantity::Quantity;
 use crate::session::commands::screen::Tour;
 use crate::session::results::PairState;
 use crate::session::{AllAnswers, Gauge};
+use crate::view::projection::Viewpoint;
 use crate::view::style::Role;
 
 use super::action::{Job, Leave, Loading};
@@ -128,6 +129,8 @@ pub struct State {
     pub descending: bool,
     /// The part of the structure in view.
     pub view: Viewport,
+    /// From where a structure in space is seen; `None` is as the session says.
+    pub turned: Option<Viewpoint>,
     /// Scale of the displacements; `None` is automatic.
     pub magnification: Option<f64>,
     /// Whether the loads are shown.
@@ -218,6 +221,7 @@ impl State {
             sort: SortKey::File,
             descending: false,
             view: Viewport::default(),
+            turned: None,
             magnification: None,
             loads: true,
             ghost: true,
@@ -263,6 +267,7 @@ impl State {
         self.pair = 0;
         self.answer_scroll = 0;
         self.view = Viewport::default();
+        self.turned = None;
         self.magnification = None;
         self.moving = false;
         self.phase = PERIOD / 4;
@@ -351,6 +356,11 @@ impl State {
     /// The value of a parameter as asked for.
     pub fn value(&self, name: &str) -> f64 {
         self.wanted.get(name).or_else(|| self.shown.values.get(name)).copied().unwrap_or_default()
+    }
+
+    /// From where a structure in space is seen.
+    pub fn viewpoint(&self) -> Viewpoint {
+        self.turned.unwrap_or(self.shown.viewpoint)
     }
 
     /// The pivot shown or asked for.

@@ -2,7 +2,7 @@
 //! come from [`BINDINGS`].
 
 use super::action::Do;
-use super::action::LookChange::{DeformAuto, DeformLess, DeformMore, Fit, Loads, Pan, ZoomIn, ZoomOut};
+use super::action::LookChange::{DeformAuto, DeformLess, DeformMore, Fit, Loads, NextView, Pan, Turn, ZoomIn, ZoomOut};
 use super::entry::Edit;
 use super::pane::Pane;
 
@@ -154,6 +154,11 @@ pub const BINDINGS: &[Binding] = &[
     row(STRUCTURE, "deform-less", &["D"], Do::Look(DeformLess), "displacements smaller", "scale"),
     row(STRUCTURE, "deform-auto", &["A"], Do::Look(DeformAuto), "displacements at the automatic scale", ""),
     row(STRUCTURE, "loads", &["L"], Do::Look(Loads), "show or hide the loads", "loads"),
+    row(STRUCTURE, "turn-right", &["t"], Do::Look(Turn(15, 0)), "in space: turn it, the viewer walks to the right", ""),
+    row(STRUCTURE, "turn-left", &["T"], Do::Look(Turn(-15, 0)), "the viewer walks to the left", ""),
+    row(STRUCTURE, "turn-up", &["w"], Do::Look(Turn(0, 15)), "the viewer rises", ""),
+    row(STRUCTURE, "turn-down", &["W"], Do::Look(Turn(0, -15)), "the viewer sinks", ""),
+    row(STRUCTURE, "next-view", &["V"], Do::Look(NextView), "the next view: ISO, XY, XZ, YZ", ""),
 
     row(STRUCTURE, "why-here", &["enter"], Do::Why, "why the selected pair is in its state", "why"),
 

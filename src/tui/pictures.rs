@@ -14,6 +14,7 @@ use super::pane::{Plot, SortKey};
 use super::shown::{Moment, Motion};
 use super::theme::Look;
 use super::viewport::Viewport;
+use crate::view::projection::Viewpoint;
 
 /// What the table of the pairs shows: rows in an order, on a sheet.
 type PairsKey = (The<Moment>, SortKey, bool, Sheet, Range<usize>);
@@ -84,6 +85,8 @@ pub struct StructureKey {
     pub look: Look,
     /// The part in view.
     pub view: Viewport,
+    /// From where it is seen.
+    pub viewpoint: Viewpoint,
     /// Scale of the displacements.
     pub scale: f64,
     /// Part of a full swing of a ray's mode.

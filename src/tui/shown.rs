@@ -11,6 +11,7 @@ use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution
 use crate::session::{DrawnMap, Glance, History, Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
 use crate::view::plot::scene::{Magnification, factor, nodal};
+use crate::view::projection::Viewpoint;
 
 /// A session at one moment.
 #[derive(Clone)]
@@ -35,6 +36,8 @@ pub struct Shown {
     pub stage: Option<usize>,
     /// The combination whose answer is shown.
     pub combination: Option<String>,
+    /// From where a structure in space is seen.
+    pub viewpoint: Viewpoint,
     /// The state there.
     pub moment: Arc<Moment>,
     /// How the structure moves there.
@@ -104,7 +107,7 @@ impl Motion {
         };
         let before = shown.before().filter(|_| shown.has_before()).and_then(of_answer);
         let factors = if shown.at_ray() { Default::default() } else { shown.factors() };
-        let moves = |u: &Vec<[f64; 6]>| u.iter().any(|u| u[0] != 0.0 || u[1] != 0.0);
+        let moves = |u: &Vec<[f64; 6]>| u.iter().any(|u| u[..3] != [0.0; 3]);
         let measured = end.as_ref().filter(|end| moves(end) && !shown.at_ray()).or(u.as_ref());
         let automatic = measured.map_or(1.0, |u| factor(structure, &factors[0], u, Magnification::Auto));
         Motion { before: before.filter(|before| u.as_ref() != Some(before)), u, factors, automatic }
@@ -135,6 +138,7 @@ impl Shown {
             history: session.history_followed(),
             stage: None,
             combination: session.combination().map(str::to_owned),
+            viewpoint: session.viewpoint(),
             moment: Arc::default(),
             motion: Arc::default(),
             is_behind: false,

@@ -3,6 +3,7 @@
 use crate::model::structure::Structure;
 use crate::view::plot::canvas::Canvas;
 use crate::view::plot::ticks::range;
+use crate::view::projection::Projection;
 
 /// The part of the structure in view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,19 +20,22 @@ impl Default for Viewport {
     }
 }
 
-/// From the plane of the structure to dots of the canvas.
+/// From the picture of the structure to dots of the canvas.
 pub struct View {
     /// Dots of a unit of length.
     pub pitch: f64,
     from: (f64, f64),
     to: (f64, f64),
     dots: (f64, f64),
+    middle: (f64, f64),
+    size: f64,
 }
 
 impl View {
     /// The view of `viewport` on a canvas; `None` where there is nothing to see.
-    pub fn new(structure: &Structure, viewport: Viewport, canvas: &Canvas) -> Option<View> {
-        let of = |axis: usize| range(structure.nodes.iter().map(|node| node.position[axis]));
+    pub fn new(structure: &Structure, projection: &Projection, viewport: Viewport, canvas: &Canvas) -> Option<View> {
+        let places: Vec<[f64; 3]> = structure.nodes.iter().map(|node| projection.seen(node.position)).collect();
+        let of = |axis: usize| range(places.iter().map(|place| place[axis]));
         let ((left, right), (bottom, top)) = (of(0), of(1));
         let size = (right - left).max(top - bottom);
         if !size.is_finite() || structure.nodes.is_empty() {
@@ -51,12 +55,19 @@ impl View {
             from: (0.5 * (left + right) + viewport.centre.0 * size, 0.5 * (bottom + top) + viewport.centre.1 * size),
             to: (0.5 * dots.0, 0.5 * dots.1),
             dots,
+            middle: (0.5 * (left + right), 0.5 * (bottom + top)),
+            size: (right - left).max(top - bottom),
         })
     }
 
     /// Dot of a point.
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         ((x - self.from.0) * self.pitch + self.to.0, (y - self.from.1) * self.pitch + self.to.1)
+    }
+
+    /// Dot of the middle of the structure, and its larger side in dots.
+    pub fn extent(&self) -> ((f64, f64), f64) {
+        (self.place(self.middle), self.size * self.pitch)
     }
 
     /// Whether a dot is in view.

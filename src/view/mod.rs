@@ -21,6 +21,7 @@ pub mod parameters;
 pub mod path;
 pub mod pivots;
 pub mod plot;
+pub mod projection;
 pub mod quantities;
 pub mod ray;
 pub mod reactions;

@@ -48,6 +48,7 @@ pub(in crate::session) mod tableau;
 pub(in crate::session) mod tables;
 pub(in crate::session) mod trace;
 pub(in crate::session) mod undo;
+pub(in crate::session) mod view;
 pub(in crate::session) mod why;
 
 use crate::session::language::command::Command;
@@ -107,7 +108,7 @@ pub static GROUPS: &[(&str, &[Command])] = &[
             calibrate::CALIBRATE,
         ],
     ),
-    ("pictures", &[plots::PLOT, screen::TUI]),
+    ("pictures", &[plots::PLOT, view::VIEW, screen::TUI]),
     ("scripts", &[script::SOURCE, record::RECORD, expect::EXPECT, exports::EXPORT, script::ECHO, restore::RESTORE]),
     ("help", &[help::HELP, screen::TOUR, history::HISTORY, quit::QUIT]),
 ];

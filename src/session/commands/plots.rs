@@ -14,6 +14,7 @@ use crate::view::plot::diagram;
 use crate::view::plot::scene::{self, Magnification};
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
+use crate::view::projection::Viewpoint;
 use crate::view::status::weight;
 
 use crate::session::language::candidates::{Asked, Candidate};
@@ -284,6 +285,7 @@ impl Session {
             structure: self.structure().ok_or_else(not_a_structure)?,
             displacements: self.quantity_displacements(),
             factors: self.quantity_factors(),
+            viewpoint: self.viewpoint,
             pairs: Some(self.quantity_pairs()),
         })
     }
@@ -322,7 +324,8 @@ impl Session {
             .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[5] })
             .collect();
         let title = format!("{}: collapse mode", self.short_name());
-        Ok(Shape { title, structure, displacements: Some(displacements), factors: &[], pairs: None })
+        let viewpoint = self.viewpoint;
+        Ok(Shape { title, structure, displacements: Some(displacements), factors: &[], viewpoint, pairs: None })
     }
 
     /// The forces of the bars and the bars that are meant: the one named, or all.
@@ -354,8 +357,14 @@ impl Session {
         let &[bar] = &bars[..] else {
             let structure = self.structure().ok_or_else(not_a_structure)?;
             let title = self.shape()?.title;
-            let shown =
-                Shape { title, structure, displacements: None, factors: &[], pairs: Some(self.quantity_pairs()) };
+            let shown = Shape {
+                title,
+                structure,
+                displacements: None,
+                factors: &[],
+                viewpoint: self.viewpoint,
+                pairs: Some(self.quantity_pairs()),
+            };
             let curves: Vec<Curve<'_>> = bars.iter().map(|bar| Curve::of(members, bar, force)).collect();
             io.show(&curves, |out, style| {
                 let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
@@ -440,6 +449,9 @@ pub(in crate::session) struct Shape<'a> {
     /// Of the load cases; none of a motion.
     #[serde(skip)]
     pub(in crate::session) factors: &'a [f64],
+    /// From where it is seen, in space.
+    #[serde(skip)]
+    pub(in crate::session) viewpoint: Viewpoint,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(in crate::session) pairs: Option<Vec<PairState>>,
 }
@@ -454,6 +466,7 @@ impl Shape<'_> {
             factors: self.factors,
             pairs: self.pairs.as_deref(),
             magnification: Magnification::Auto,
+            viewpoint: self.viewpoint,
             height,
         }
     }

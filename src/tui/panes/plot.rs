@@ -130,6 +130,7 @@ fn along_bars(state: &State, force: Internal, area: Rect) -> Vec<Line<'static>> 
             factors: &[],
             pairs: Some(shown.pairs()),
             magnification: Magnification::Auto,
+            viewpoint: state.viewpoint(),
             height,
         };
         report(state.look, usize::from(area.width), |out, style| {

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::legend::Legend;
-use crate::session::results::PairState;
+use crate::session::results::{PairState, State as PairMotion};
 use crate::tui::app::State;
 use crate::tui::paint::put_text;
 use crate::view::plot::canvas::{Canvas, Stroke};
@@ -12,6 +12,15 @@ use crate::view::plot::structure::pair_sign;
 use crate::view::plot::ticks::range;
 use crate::view::plot::zone::zone;
 use crate::view::style::Role;
+
+/// Where a pair moves along the line.
+fn along(state: PairMotion) -> Option<(f64, f64)> {
+    match state {
+        PairMotion::SlipPlus => Some((1.0, 0.0)),
+        PairMotion::SlipMinus => Some((-1.0, 0.0)),
+        PairMotion::Open | PairMotion::Stick | PairMotion::Slip | PairMotion::Closed => None,
+    }
+}
 
 /// The pairs of a contact system along a line.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
@@ -31,7 +40,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     for (pair, at) in pairs.iter().zip(&zone.abscissas) {
         let share = if last > first { (at - first) / (last - first) } else { 0.5 };
         let x = 4.0 + share * (width - 8.0);
-        let sign = pair_sign(pair.state, [1.0, 0.0, 0.0], look.ascii);
+        let sign = pair_sign(pair.state, along(pair.state), look.ascii);
         canvas.put(x, y, sign, Role::State(pair.state));
         canvas.label(x, y, &look.text(&pair.id), Role::Muted);
         legend.note(sign, Role::State(pair.state), pair.state.word());

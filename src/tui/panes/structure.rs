@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::legend::Legend;
 use super::{loading, strip};
-use crate::model::structure::{LoadCase, Node, Structure};
+use crate::model::structure::{Dimension, LoadCase, Structure};
 use crate::session::results::{PairDirection, State as PairMotion};
 use crate::text::number::short;
 use crate::tui::app::{PERIOD, State};
@@ -14,15 +14,15 @@ use crate::tui::kept::The;
 use crate::tui::paint::{paste, put_lines, put_text};
 use crate::tui::pane::Pane;
 use crate::tui::pictures::{StructureKey, StructurePicture};
-use crate::tui::shown::Motion;
 use crate::tui::viewport::View;
 use crate::view::pivots::title;
 use crate::view::plot::canvas::{Canvas, Stroke};
 use crate::view::plot::chart::dotted;
+use crate::view::plot::lines::{Displaced, Move};
 use crate::view::plot::loads::{Drawn, Loads};
-use crate::view::plot::scene::{grid, outline, supported};
-use crate::view::plot::structure::{GRID_PITCH, grid_pitch, pair_sign, support_sign, support_word};
-use crate::view::plot::ticks::range;
+use crate::view::plot::scene::{supported, towards};
+use crate::view::plot::structure::{GRID_PITCH, HIDDEN_PITCH, pair_sign, support_sign, support_word};
+use crate::view::projection::Projection;
 use crate::view::style::Role;
 
 /// The scale at which the displacements are drawn.
@@ -32,9 +32,7 @@ pub fn scale(state: &State) -> f64 {
 
 /// What the picture is, for the border.
 pub fn note(state: &State) -> String {
-    if state.shown.structure().is_none() {
-        return String::new();
-    }
+    let Some(structure) = state.shown.structure() else { return String::new() };
     let mut note = match (state.shown.at_ray(), state.shown.has_mode()) {
         (true, true) if state.moving => "mode of the ray, moving".to_owned(),
         (true, true) => "mode of the ray".to_owned(),
@@ -46,6 +44,9 @@ pub fn note(state: &State) -> String {
             _ => "undeformed".to_owned(),
         },
     };
+    if structure.dimension == Dimension::Space {
+        note.push_str(&format!(" · {}", state.viewpoint().words()));
+    }
     if state.view.zoom > 1.0 {
         note.push_str(&format!(" · zoom {}", short(state.view.zoom)));
     }
@@ -82,6 +83,7 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
         size: (area.width, area.height),
         look: state.look,
         view: state.view,
+        viewpoint: state.viewpoint(),
         scale: scale(state),
         phase: state.shown.at_ray().then_some(state.phase),
         ghost: state.ghost,
@@ -110,7 +112,8 @@ fn picture(state: &State, structure: &Structure, area: Rect) -> StructurePicture
     let mut buffer = Buffer::empty(Rect::new(0, 0, area.width, area.height));
     let rows = area.height.saturating_sub(1).max(1);
     let canvas = Canvas::new(usize::from(area.width), usize::from(rows));
-    let Some(view) = View::new(structure, state.view, &canvas) else {
+    let projection = Projection::new(structure.dimension, state.viewpoint());
+    let Some(view) = View::new(structure, &projection, state.view, &canvas) else {
         return StructurePicture { buffer, pairs: Vec::new() };
     };
     let swing = if state.shown.at_ray() {
@@ -119,8 +122,11 @@ fn picture(state: &State, structure: &Structure, area: Rect) -> StructurePicture
         1.0
     };
     let factor = scale(state) * swing;
-    let mut painter =
-        Painter { state, structure, view, motion: &state.shown.motion, factor, canvas, legend: Legend::default() };
+    let motion = &state.shown.motion;
+    let moved = Move { u: motion.u.as_deref().unwrap_or_default(), factors: &motion.factors[0], by: factor };
+    let displaced = Displaced::new(structure, moved, &projection);
+    let legend = Legend::default();
+    let mut painter = Painter { state, structure, projection: &projection, view, displaced, moved, canvas, legend };
     painter.draw_lines();
     painter.draw_supports();
     painter.draw_loads();
@@ -144,10 +150,10 @@ fn picture(state: &State, structure: &Structure, area: Rect) -> StructurePicture
 struct Painter<'s> {
     state: &'s State,
     structure: &'s Structure,
+    projection: &'s Projection,
     view: View,
-    motion: &'s Motion,
-    /// By which the displacements are drawn.
-    factor: f64,
+    displaced: Displaced<'s>,
+    moved: Move<'s>,
     canvas: Canvas,
     legend: Legend,
 }
@@ -155,9 +161,7 @@ struct Painter<'s> {
 impl Painter<'_> {
     /// Dot of a node, displaced.
     fn dot(&self, node: usize) -> (f64, f64) {
-        let position = self.structure.nodes.get(node).map_or([0.0; 2], Node::in_plane);
-        let u = self.motion.u.as_ref().and_then(|u| u.get(node)).copied().unwrap_or_default();
-        self.view.place((position[0] + self.factor * u[0], position[1] + self.factor * u[1]))
+        self.view.place(self.displaced.at(node))
     }
 
     /// A sign at a dot, if that is in view.
@@ -171,23 +175,25 @@ impl Painter<'_> {
     /// The structure as it is, as it was before, as it was built, and its grid.
     fn draw_lines(&mut self) {
         let look = self.state.look;
-        let u: &[[f64; 6]] = self.motion.u.as_deref().unwrap_or_default();
-        let [factors, factors_before] = &self.motion.factors;
-        let now = self.view.clip(&outline(self.structure, factors, u, self.factor));
+        let outline = self.displaced.outline();
+        let now = self.view.clip(&outline.seen);
         self.canvas.draw(Role::Plain, now.into_iter().map(Stroke::Line).collect());
-        if let Some(before) = self.motion.before.as_ref().filter(|_| self.state.ghost) {
-            let before = outline(self.structure, factors_before, before, self.factor);
-            self.draw_faint(Role::Series(1), &before, 2.5);
+        let motion = &self.state.shown.motion;
+        if let Some(before) = motion.before.as_ref().filter(|_| self.state.ghost) {
+            let moved = Move { u: before, factors: &motion.factors[1], ..self.moved };
+            let before = Displaced::new(self.structure, moved, self.projection).outline();
+            self.draw_faint(Role::Series(1), &before.seen, 2.5);
             self.legend.note(look.sign('┈', ':'), Role::Series(1), "before");
         }
-        if self.factor != 0.0 && u.iter().any(|u| *u != [0.0; 6]) {
-            self.draw_faint(Role::Muted, &outline(self.structure, &[], &[], 0.0), 5.0);
+        if self.moved.by != 0.0 && self.moved.u.iter().any(|u| *u != [0.0; 6]) {
+            let built = Displaced::new(self.structure, Move::default(), self.projection).outline();
+            self.draw_faint(Role::Muted, &built.seen, 5.0);
             self.legend.note(look.sign('·', '.'), Role::Muted, "undeformed");
         }
-        if grid_pitch(self.structure, self.view.pitch) >= GRID_PITCH {
-            let strokes = self.view.clip(&grid(self.structure, u, self.factor));
-            let strokes = strokes.iter().map(|line| Stroke::Dots(dotted(line, 2.0))).collect();
-            self.canvas.draw_under(Role::Muted, strokes);
+        self.draw_faint(Role::Muted, &outline.hidden, HIDDEN_PITCH);
+        let grid = self.displaced.grid();
+        if grid.pitch * self.view.pitch >= GRID_PITCH {
+            self.draw_faint(Role::Muted, &grid.lines, 2.0);
         }
     }
 
@@ -212,14 +218,11 @@ impl Painter<'_> {
         if !state.loads {
             return;
         }
-        let of = |axis: usize| range(self.structure.nodes.iter().map(|node| node.position[axis]));
-        let ((left, right), (bottom, top)) = (of(0), of(1));
-        let middle = self.view.place((0.5 * (left + right), 0.5 * (bottom + top)));
-        let extent = (right - left).max(top - bottom) * self.view.pitch;
+        let (middle, extent) = self.view.extent();
         // those of the loading shown
         let shown = &state.shown;
         let factor = |case: &LoadCase| case.factor.value(&shown.values) * shown.multiplier(&case.name);
-        let loads = Loads::of(self.structure, &factor, &|node| self.dot(node));
+        let loads = Loads::of(self.structure, &factor, &|node| self.dot(node), self.projection);
         let arrows = loads.arrows(BETWEEN_ARROWS);
         let words = loads.legend(&arrows, &state.shown.scenario.units);
         for arrow in &arrows.arrows {
@@ -249,7 +252,12 @@ impl Painter<'_> {
                 continue;
             }
             let motion = directions.and_then(|directions| directions.get(index)).map_or(now.state, in_motion);
-            self.put((x, y), pair_sign(motion, pair.tangents[0], look.ascii), Role::State(motion), motion.word());
+            self.put(
+                (x, y),
+                pair_sign(motion, towards(pair, motion, self.projection), look.ascii),
+                Role::State(motion),
+                motion.word(),
+            );
             self.canvas.label(x, y, &look.text(&pair.id), Role::Muted);
             // the canvas is as large as the area
             places.push(self.canvas.cell(x, y).map(|(column, row)| (column as u16, row as u16)));

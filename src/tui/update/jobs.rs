@@ -28,6 +28,9 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
         state.below = Some(done.shown);
     } else {
         state.below = None;
+        if state.shown.viewpoint != done.shown.viewpoint {
+            state.turned = None;
+        }
         state.shown = done.shown;
     }
     if new_scenario {

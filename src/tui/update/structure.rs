@@ -1,5 +1,7 @@
 //! How the structure is looked at.
 
+use crate::model::structure::Dimension;
+use crate::view::projection::Viewpoint;
 use crate::view::style::Role;
 
 use crate::tui::action::LookChange;
@@ -26,6 +28,17 @@ pub(super) fn look(state: &mut State, change: LookChange) {
         LookChange::DeformLess => deform(state, 0.5),
         LookChange::DeformAuto => state.magnification = None,
         LookChange::Loads => state.loads = !state.loads,
+        LookChange::Turn(right, up) => turn(state, |view| view.turned(f64::from(right), f64::from(up))),
+        LookChange::NextView => turn(state, Viewpoint::next),
+    }
+}
+
+/// Sees the structure from elsewhere, if it lies in space.
+fn turn(state: &mut State, to: impl Fn(Viewpoint) -> Viewpoint) {
+    match state.shown.structure().map(|structure| structure.dimension) {
+        Some(Dimension::Space) => state.turned = Some(to(state.viewpoint())),
+        Some(Dimension::Plane) => state.say(Role::Muted, "this structure lies in the plane: there is nothing to turn"),
+        None => state.say(Role::Muted, "there is no structure to turn"),
     }
 }
 

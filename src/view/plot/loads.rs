@@ -7,7 +7,9 @@ use super::canvas::{Canvas, Stroke};
 use crate::model::groups::Groups;
 use crate::model::structure::{ElementLoad, Load, LoadCase, Structure};
 use crate::model::units::Units;
+use crate::model::vector::{distance, length as size};
 use crate::text::number::{short, with_unit};
+use crate::view::projection::Projection;
 use crate::view::style::Role;
 use crate::view::{force_unit, line_load_unit};
 
@@ -21,7 +23,7 @@ pub enum LoadKind {
     Force,
     /// Per length of a bar.
     Line,
-    /// Of a bar, or of all membranes that hang together, at its centre.
+    /// Of a bar, or of all membranes or solids that hang together, at its centre.
     Weight,
 }
 
@@ -32,15 +34,17 @@ impl LoadKind {
 /// Load cases, a bit for each; those from 128 on share the last one.
 type Cases = u128;
 
-/// A point force or a weight: its kind, its place, its force, its cases.
-type Point = (LoadKind, (f64, f64), [f64; 2], Cases);
+/// A point force or a weight: its kind, its place in the picture, its force in the model, its cases.
+type Point = (LoadKind, (f64, f64), [f64; 3], Cases);
 
-/// A line load: both ends of its line, its force per length at each, its cases.
-type LineLoad = ([(f64, f64); 2], [[f64; 2]; 2], Cases);
+/// A line load: both ends of its line in the picture, its force per length at each in the model, its cases.
+type LineLoad = ([(f64, f64); 2], [[f64; 3]; 2], Cases);
 
-/// Loads in the plane of a picture, all cases added up.
+/// Loads in a picture, all cases added up.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
+    /// How forces are seen.
+    projection: Projection,
     /// Point forces and weights.
     points: Vec<Point>,
     /// Line loads: ends and values there.
@@ -54,10 +58,14 @@ pub struct Loads {
 pub struct Arrow {
     /// What it is.
     pub kind: LoadKind,
-    /// Where it acts.
+    /// Where it acts, in the picture.
     pub at: (f64, f64),
-    /// Force, or force per length.
-    pub force: [f64; 2],
+    /// Force, or force per length, in the model.
+    pub force: [f64; 3],
+    /// Its direction in the picture: shorter than 1 where it leads out of it.
+    direction: (f64, f64),
+    /// Whether it leads towards the viewer.
+    pub comes: bool,
     /// Its size as a share of the largest of its kind.
     pub share: f64,
     /// The load cases that it sums.
@@ -73,15 +81,34 @@ pub struct Arrows {
     pub is_added: bool,
 }
 
-fn size(force: [f64; 2]) -> f64 {
-    force[0].hypot(force[1])
+/// A direction shorter than this is seen from its tip or its tail.
+const END_ON: f64 = 0.1;
+
+impl Arrow {
+    /// Of a load that is as large as the largest of its kind.
+    fn new(kind: LoadKind, at: (f64, f64), force: [f64; 3], cases: Cases, projection: &Projection) -> Arrow {
+        let [x, y, towards] = projection.seen(force.map(|f| f / size(force)));
+        Arrow { kind, at, force, direction: (x, y), comes: towards > 0.0, share: 1.0, cases }
+    }
+
+    /// Unit vector along it in the picture; `None` where it leads straight out of it, or into it.
+    pub fn direction(&self) -> Option<(f64, f64)> {
+        let (x, y) = self.direction;
+        let length = x.hypot(y);
+        (length > END_ON).then(|| (x / length, y / length))
+    }
 }
 
 impl Loads {
-    /// The loads of a structure under these factors of its cases, where its nodes stand at `at`.
-    pub fn of(structure: &Structure, factor: &dyn Fn(&LoadCase) -> f64, at: &dyn Fn(usize) -> (f64, f64)) -> Loads {
+    /// The loads of a structure under these factors of its cases, where its nodes stand at `at` in the picture.
+    pub fn of(
+        structure: &Structure,
+        factor: &dyn Fn(&LoadCase) -> f64,
+        at: &dyn Fn(usize) -> (f64, f64),
+        projection: &Projection,
+    ) -> Loads {
         let names = structure.load_cases.iter().map(|case| case.name.clone()).collect();
-        let mut loads = Loads { names, ..Loads::default() };
+        let mut loads = Loads { names, projection: *projection, ..Loads::default() };
         let mut points: Vec<Point> = Vec::new();
         let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
         let mut weights: HashMap<(usize, usize), Weight> = HashMap::new();
@@ -97,25 +124,20 @@ impl Loads {
             for load in case.loads.iter().filter(|_| factor != 0.0) {
                 match *load {
                     Load::Nodal { node, force, .. } => {
-                        points.push((LoadKind::Force, at(node), [force[0], force[1]].map(|f| factor * f), cases));
+                        points.push((LoadKind::Force, at(node), force.map(|f| factor * f), cases));
                     }
                     Load::Element { element, load: ElementLoad::Point { distance, force, .. } } => {
-                        points.push((
-                            LoadKind::Force,
-                            on_bar(element, distance),
-                            [force[0], force[1]].map(|f| factor * f),
-                            cases,
-                        ));
+                        points.push((LoadKind::Force, on_bar(element, distance), force.map(|f| factor * f), cases));
                     }
                     Load::Element { element, load: ElementLoad::Line { range, value } } => {
                         let index = *lines.entry((element, range.map(f64::to_bits))).or_insert_with(|| {
-                            loads.lines.push((range.map(|distance| on_bar(element, distance)), [[0.0; 2]; 2], 0));
+                            loads.lines.push((range.map(|distance| on_bar(element, distance)), [[0.0; 3]; 2], 0));
                             loads.lines.len() - 1
                         });
                         let (_, sums, of) = &mut loads.lines[index];
                         *of |= cases;
                         for (sum, value) in sums.iter_mut().zip(value) {
-                            *sum = [sum[0] + factor * value[0], sum[1] + factor * value[1]];
+                            *sum = std::array::from_fn(|c| sum[c] + factor * value[c]);
                         }
                     }
                     Load::Element { element, load: ElementLoad::Body(value) } => {
@@ -125,11 +147,7 @@ impl Loads {
                         let count = nodes.len().max(1) as f64;
                         let owner = owner.get_or_init(|| owners(structure));
                         let weight = weights.entry(owner[element]).or_default();
-                        weight.add(
-                            (sum.0 / count, sum.1 / count),
-                            [value[0], value[1]].map(|b| factor * b * volume),
-                            cases,
-                        );
+                        weight.add((sum.0 / count, sum.1 / count), value.map(|b| factor * b * volume), cases);
                     }
                     // They have no direction, or are no forces.
                     Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
@@ -148,8 +166,9 @@ impl Loads {
     /// every `apart`. What cancels out has none.
     pub fn arrows(&self, apart: f64) -> Arrows {
         let (points, is_added) = together(self.points.clone(), apart);
+        let arrow = |kind, at, force, cases| Arrow::new(kind, at, force, cases, &self.projection);
         let mut arrows: Vec<Arrow> =
-            points.into_iter().map(|(kind, at, force, cases)| Arrow { kind, at, force, share: 0.0, cases }).collect();
+            points.into_iter().map(|(kind, at, force, cases)| arrow(kind, at, force, cases)).collect();
         let mut last: Option<(f64, f64)> = None;
         for ([a, b], [from, to], cases) in &self.lines {
             let way = (b.0 - a.0).hypot(b.1 - a.1);
@@ -162,8 +181,8 @@ impl Loads {
                     continue;
                 }
                 last = Some(place);
-                let force = [mix(from[0], to[0]), mix(from[1], to[1])];
-                arrows.push(Arrow { kind: LoadKind::Line, at: place, force, share: 0.0, cases: *cases });
+                let force = std::array::from_fn(|c| mix(from[c], to[c]));
+                arrows.push(arrow(LoadKind::Line, place, force, *cases));
             }
         }
         for kind in LoadKind::ALL {
@@ -219,17 +238,17 @@ impl Loads {
 /// The weight of several elements.
 #[derive(Clone, Debug, Default)]
 struct Weight {
-    force: [f64; 2],
+    force: [f64; 3],
     /// Σ |force|, and Σ |force|·place.
     sums: [f64; 3],
     cases: Cases,
 }
 
 impl Weight {
-    fn add(&mut self, (x, y): (f64, f64), force: [f64; 2], cases: Cases) {
+    fn add(&mut self, (x, y): (f64, f64), force: [f64; 3], cases: Cases) {
         let own = size(force);
         self.cases |= cases;
-        self.force = [self.force[0] + force[0], self.force[1] + force[1]];
+        self.force = std::array::from_fn(|c| self.force[c] + force[c]);
         self.sums = [self.sums[0] + own, self.sums[1] + own * x, self.sums[2] + own * y];
     }
 
@@ -238,7 +257,7 @@ impl Weight {
     }
 }
 
-/// What an element belongs to, for its weight: (0, a node of the membranes that hang together), or (1, a bar).
+/// What an element belongs to, for its weight: (0, a node of the membranes or solids that hang together), or (1, a bar).
 fn owners(structure: &Structure) -> Vec<(usize, usize)> {
     let mut bodies = Groups::new(structure.nodes.len());
     for element in structure.elements.iter().filter(|element| element.shape().dimension() > 1) {
@@ -254,7 +273,7 @@ fn owners(structure: &Structure) -> Vec<(usize, usize)> {
 
 fn length(structure: &Structure, element: usize) -> f64 {
     let [a, b] = [0, 1].map(|end| structure.nodes[structure.elements[element].nodes[end]].position);
-    (b[0] - a[0]).hypot(b[1] - a[1])
+    distance(a, b)
 }
 
 /// Volume of an element.
@@ -318,15 +337,19 @@ const SHORTEST: f64 = 3.0;
 pub struct Drawn {
     tail: (f64, f64),
     tip: (f64, f64),
-    direction: (f64, f64),
+    /// `None` where it leads out of the picture or into it.
+    direction: Option<(f64, f64)>,
+    /// Whether it leads towards the viewer.
+    comes: bool,
 }
 
 impl Drawn {
     /// The arrow of a load at `at` (dots): from outside to its place, or away from it where it pulls at the very end of
     /// the structure, whose middle and size these are.
     pub fn new(arrow: &Arrow, at: (f64, f64), middle: (f64, f64), extent: f64) -> Drawn {
-        let size = size(arrow.force);
-        let (c, s) = (arrow.force[0] / size, arrow.force[1] / size);
+        let Some((c, s)) = arrow.direction() else {
+            return Drawn { tail: at, tip: at, direction: None, comes: arrow.comes };
+        };
         let longest = if arrow.kind == LoadKind::Line { 0.6 * LONGEST } else { LONGEST };
         let length = SHORTEST + (longest - SHORTEST) * arrow.share;
         // the sign of a node or a pair keeps its character
@@ -334,7 +357,7 @@ impl Drawn {
         let pulls = (at.0 - middle.0) * c + (at.1 - middle.1) * s > 0.3 * extent;
         let (tail, tip) = if pulls { (apart, apart + length) } else { (-apart - length, -apart) };
         let on_line = |distance: f64| (at.0 + distance * c, at.1 + distance * s);
-        Drawn { tail: on_line(tail), tip: on_line(tip), direction: (c, s) }
+        Drawn { tail: on_line(tail), tip: on_line(tip), direction: Some((c, s)), comes: arrow.comes }
     }
 
     /// Both ends.
@@ -358,7 +381,14 @@ impl Drawn {
 
     /// The sign at the tip.
     pub fn sign(&self, ascii: bool) -> char {
-        let (c, s) = self.direction;
+        let Some((c, s)) = self.direction else {
+            return match (self.comes, ascii) {
+                (true, false) => '⊙',
+                (false, false) => '⊗',
+                (true, true) => '@',
+                (false, true) => 'X',
+            };
+        };
         if ascii {
             return match (c.abs() > s.abs(), c > 0.0, s > 0.0) {
                 (true, true, _) => '}',
@@ -375,7 +405,9 @@ impl Drawn {
 
     /// Draws it.
     pub fn draw(&self, canvas: &mut Canvas, ascii: bool) {
-        canvas.draw_under(Role::Accent, vec![Stroke::Line(vec![self.tail, self.tip])]);
+        if self.direction.is_some() {
+            canvas.draw_under(Role::Accent, vec![Stroke::Line(vec![self.tail, self.tip])]);
+        }
         canvas.put(self.tip.0, self.tip.1, self.sign(ascii), Role::Accent);
     }
 }
@@ -383,10 +415,11 @@ impl Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::vector::flat;
 
     fn nodal(points: &[((f64, f64), [f64; 2])]) -> Loads {
         Loads {
-            points: points.iter().map(|&(at, force)| (LoadKind::Force, at, force, 1)).collect(),
+            points: points.iter().map(|&(at, force)| (LoadKind::Force, at, flat(force), 1)).collect(),
             ..Loads::default()
         }
     }
@@ -398,9 +431,9 @@ mod tests {
         assert!(found.is_added);
         let [first, second] = &found.arrows[..] else { panic!("{found:?}") };
         // 3 at 0 and 1 at 0.1: 4 at 0.025
-        assert_eq!((first.force, first.share), ([0.0, -4.0], 1.0));
+        assert_eq!((first.force, first.share), ([0.0, -4.0, 0.0], 1.0));
         assert!((first.at.0 - 0.025).abs() < 1e-15 && first.at.1 == 0.0);
-        assert_eq!((second.force, second.share), ([2.0, 0.0], 0.5));
+        assert_eq!((second.force, second.share), ([2.0, 0.0, 0.0], 0.5));
         let apart = loads.arrows(0.01);
         assert!(!apart.is_added && apart.arrows.len() == 3);
     }
@@ -415,7 +448,7 @@ mod tests {
     /// From 0 to 4 over a length of 8, an arrow every 2: 0 (none), 1, 2, 3, 4.
     #[test]
     fn a_line_load_has_arrows_as_long_as_its_values() {
-        let line = ([(0.0, 0.0), (8.0, 0.0)], [[0.0, 0.0], [0.0, -4.0]], 1);
+        let line = ([(0.0, 0.0), (8.0, 0.0)], [[0.0; 3], [0.0, -4.0, 0.0]], 1);
         let loads = Loads { lines: vec![line], ..Loads::default() };
         let found = loads.arrows(2.0);
         let shares: Vec<f64> = found.arrows.iter().map(|arrow| arrow.share).collect();
@@ -427,7 +460,7 @@ mod tests {
     /// A body of 20 under its weight and a quake of a quarter of it, pushed at one place by two cases, at another by one.
     #[test]
     fn an_arrow_is_labelled_by_what_it_sums() {
-        let point = |kind, x: f64, force, cases| (kind, (x, 0.0), force, cases);
+        let point = |kind, x: f64, force, cases| (kind, (x, 0.0), flat(force), cases);
         let mut loads = Loads {
             points: vec![
                 point(LoadKind::Weight, 0.0, [0.0, -20.0], 0b1),
@@ -452,7 +485,7 @@ mod tests {
         for (force, sign, ascii) in
             [([0.0, -1.0], '↓', 'V'), ([1.0, 0.0], '→', '}'), ([-1.0, 1.0], '↖', 'U'), ([-1.0, 0.0], '←', '{')]
         {
-            let arrow = Arrow { kind: LoadKind::Force, at: (0.0, 0.0), force, share: 1.0, cases: 1 };
+            let arrow = Arrow::new(LoadKind::Force, (0.0, 0.0), flat(force), 1, &Projection::PLANE);
             let drawn = Drawn::new(&arrow, (0.0, 0.0), (0.0, 0.0), 10.0);
             assert_eq!((drawn.sign(false), drawn.sign(true)), (sign, ascii));
             let [tail, tip] = drawn.ends();

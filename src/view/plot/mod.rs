@@ -1,13 +1,17 @@
 //! Pictures in characters. The data of every plot is there apart from its drawing (`*_series`), because the
 //! full-screen interface draws the same data its own way.
 
+pub mod bar_line;
 pub mod canvas;
 pub mod chart;
+pub mod depth;
 pub mod diagram;
+pub mod lines;
 pub mod loads;
 pub mod path;
 pub mod scene;
 pub mod structure;
+pub mod surface;
 pub mod ticks;
 pub mod trace;
 pub mod zone;

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use super::canvas::{Canvas, Stroke};
 use super::chart::{dotted, write_legend};
+use super::depth::Line;
 use super::diagram;
 use super::loads::{Arrow, Drawn};
 use super::scene::{Picture, Scene};
@@ -11,7 +12,6 @@ use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, State};
 use crate::answer::rounding::largest;
 use crate::model::parameter::ParameterValues;
-use crate::model::structure::{Node, Structure};
 use crate::model::units::Units;
 use crate::text::number::heading;
 use crate::view::members::extremes;
@@ -19,18 +19,13 @@ use crate::view::style::{Role, Style};
 
 /// Bars whose extremes are told below a picture.
 const EXTREMES: usize = 6;
-/// Plates are drawn with their grid as long as its lines are this many dots apart.
+/// Plates and faces are drawn with their grid as long as its lines are this many dots apart.
 pub const GRID_PITCH: f64 = 6.0;
-/// Sign of a pair in a picture. A slip points the way the second side moves over the first.
-pub fn pair_sign(state: State, tangent: [f64; 3], ascii: bool) -> char {
-    let towards = |direction: [f64; 3]| {
-        let signs = if ascii { ['>', '<', '^', 'v'] } else { ['▶', '◀', '▲', '▼'] };
-        if direction[0].abs() >= direction[1].abs() {
-            signs[usize::from(direction[0] < 0.0)]
-        } else {
-            signs[2 + usize::from(direction[1] < 0.0)]
-        }
-    };
+/// Dots of lines behind faces are this far apart.
+pub const HIDDEN_PITCH: f64 = 3.0;
+
+/// Sign of a pair in a picture. A slip points the way the second side moves over the first, if that can be seen.
+pub fn pair_sign(state: State, towards: Option<(f64, f64)>, ascii: bool) -> char {
     match (state, ascii) {
         (State::Stick, false) => '●',
         (State::Stick, true) => '*',
@@ -38,11 +33,21 @@ pub fn pair_sign(state: State, tangent: [f64; 3], ascii: bool) -> char {
         (State::Open, true) => 'o',
         (State::Closed, false) => '■',
         (State::Closed, true) => '#',
-        (State::SlipPlus, _) => towards(tangent),
-        (State::SlipMinus, _) => towards(tangent.map(|t| -t)),
-        (State::Slip, false) => '◆',
-        (State::Slip, true) => '%',
+        (State::SlipPlus | State::SlipMinus | State::Slip, _) => {
+            slip_sign(towards, state == State::Slip && !ascii, ascii)
+        }
     }
+}
+
+/// An arrowhead to one of four sides, or of eight where there are signs for them.
+fn slip_sign(towards: Option<(f64, f64)>, eight: bool, ascii: bool) -> char {
+    let Some((x, y)) = towards else { return if ascii { '%' } else { '◆' } };
+    // tan 22.5°
+    if eight && x.abs().min(y.abs()) > (2.0_f64.sqrt() - 1.0) * x.abs().max(y.abs()) {
+        return ['◥', '◢', '◤', '◣'][2 * usize::from(x < 0.0) + usize::from(y < 0.0)];
+    }
+    let signs = if ascii { ['>', '<', '^', 'v'] } else { ['▶', '◀', '▲', '▼'] };
+    if x.abs() >= y.abs() { signs[usize::from(x < 0.0)] } else { signs[2 + usize::from(y < 0.0)] }
 }
 
 /// What a support is called that holds so many components.
@@ -198,15 +203,18 @@ fn draw(
         fit = Fit::new(bounds, style.width, most, margins);
         arrows = scene.loads.arrows(APART / fit.pitch);
     }
+    let dots = |fit: &Fit, lines: &[Line], pitch: f64| -> Vec<Stroke> {
+        fit.placed(lines).iter().map(|line| Stroke::Dots(dotted(line, pitch))).collect()
+    };
     if scene.is_deformed {
-        let strokes = fit.placed(&scene.before.outline).iter().map(|line| Stroke::Dots(dotted(line, 4.0))).collect();
-        fit.canvas.draw_under(Role::Muted, strokes);
+        fit.canvas.draw_under(Role::Muted, dots(&fit, &scene.before.outline.seen, 4.0));
     }
-    if grid_pitch(picture.structure, fit.pitch) >= GRID_PITCH {
-        let strokes = fit.placed(&scene.now.grid).iter().map(|line| Stroke::Dots(dotted(line, 2.0))).collect();
-        fit.canvas.draw_under(Role::Muted, strokes);
+    let grid = &scene.now.grid;
+    if grid.pitch * fit.pitch >= GRID_PITCH {
+        fit.canvas.draw_under(Role::Muted, dots(&fit, &grid.lines, 2.0));
     }
-    let strokes = fit.placed(&scene.now.outline).into_iter().map(Stroke::Line).collect();
+    fit.canvas.draw_under(Role::Muted, dots(&fit, &scene.now.outline.hidden, HIDDEN_PITCH));
+    let strokes = fit.placed(&scene.now.outline.seen).into_iter().map(Stroke::Line).collect();
     fit.canvas.draw(Role::Plain, strokes);
     let strokes = fit.placed(&scene.diagrams).into_iter().map(Stroke::Line).collect();
     fit.canvas.draw(Role::Accent, strokes);
@@ -239,7 +247,7 @@ fn draw_marks(scene: &Scene, fit: &mut Fit, style: &Style) -> Vec<(char, Role, S
     }
     for pair in &scene.pairs {
         let (sign, role, word) = match pair.state {
-            Some(state) => (pair_sign(state, pair.tangent, style.ascii), Role::State(state), state.word()),
+            Some(state) => (pair_sign(state, pair.towards, style.ascii), Role::State(state), state.word()),
             None => (if style.ascii { 'o' } else { '◦' }, Role::Accent, "contact pair"),
         };
         let (x, y) = fit.place(pair.place);
@@ -248,20 +256,4 @@ fn draw_marks(scene: &Scene, fit: &mut Fit, style: &Style) -> Vec<(char, Role, S
         note(sign, role, word);
     }
     legend
-}
-
-/// Smallest distance of two grid lines of a plate in dots.
-pub fn grid_pitch(structure: &Structure, pitch: f64) -> f64 {
-    let place = |node: &usize| structure.nodes.get(*node).map(Node::in_plane);
-    // a plate is a rectangle: its first row and column have all distances
-    let lines = structure.plates.iter().flat_map(|plate| {
-        let row: Vec<_> = plate.nodes.iter().take(1).flatten().filter_map(place).collect();
-        let column: Vec<_> = plate.nodes.iter().filter_map(|row| row.first()).filter_map(place).collect();
-        [row, column]
-    });
-    let smallest = |line: Vec<[f64; 2]>| {
-        let distances = line.windows(2).map(|two| (two[1][0] - two[0][0]).hypot(two[1][1] - two[0][1]));
-        distances.fold(f64::INFINITY, f64::min) * pitch
-    };
-    lines.map(smallest).fold(f64::INFINITY, f64::min)
 }

@@ -7,40 +7,12 @@ use crate::answer::record::MemberForces;
 use crate::answer::rounding::{denoised, largest};
 use crate::model::structure::{Bar, Structure};
 use crate::text::number::short;
+use crate::view::plot::bar_line::BarLine;
 use crate::view::plot::diagram::series;
 use crate::view::plot::scene::Scene;
 
 /// Height of the largest ordinate.
 const ORDINATE: f64 = 60.0;
-
-/// A bar as a line: where a distance from its start is, and the direction of +y there.
-struct Axis {
-    /// (distance of the start, place of the start, unit vector along, length) of each element.
-    elements: Vec<(f64, [f64; 2], [f64; 2], f64)>,
-}
-
-impl Axis {
-    fn of(structure: &Structure, bar: &Bar) -> Axis {
-        let mut from = 0.0;
-        let mut elements = Vec::new();
-        for element in structure.elements[bar.elements.clone()].iter() {
-            let [a, b] = [0, 1].map(|end| structure.nodes[element.nodes[end]].in_plane());
-            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-            elements.push((from, a, [(b[0] - a[0]) / length, (b[1] - a[1]) / length], length));
-            from += length;
-        }
-        Axis { elements }
-    }
-
-    /// The place at a distance; `late` takes the element after a node that lies there.
-    fn at(&self, distance: f64, late: bool) -> ((f64, f64), (f64, f64)) {
-        let begun = |start: f64| if late { start <= distance } else { start < distance };
-        let element = self.elements.iter().rev().find(|(start, ..)| begun(*start)).or(self.elements.first());
-        let &(start, a, [c, s], _) = element.unwrap_or(&(0.0, [0.0; 2], [1.0, 0.0], 0.0));
-        let along = distance - start;
-        ((a[0] + along * c, a[1] + along * s), (-s, c))
-    }
-}
 
 /// Which forces are drawn.
 pub struct Bars<'a> {
@@ -76,10 +48,10 @@ pub fn figure(scene: &Scene, of: &Bars<'_>, unit: Option<&str>, caption: &Captio
     let side = if force == Internal::Moment { -1.0 } else { 1.0 };
     let mut labels: Vec<Label> = Vec::new();
     for (bar, points) in &drawn {
-        let axis = Axis::of(structure, bar);
+        let axis = BarLine::of(structure, bar);
         let ordinate = |distance: f64, value: f64, late: bool| {
-            let (at, (nx, ny)) = axis.at(distance, late);
-            let (x, y) = place.at(at);
+            let (at, across) = axis.at(distance, late);
+            let ((x, y), (nx, ny)) = (place.at(scene.projection.flat(at)), scene.projection.flat(across));
             let height = if most > 0.0 { side * denoised(value, most) / most * ORDINATE } else { 0.0 };
             ((x, y), (x + height * nx, y - height * ny))
         };

@@ -285,7 +285,10 @@ enum Sign {
 impl Sign {
     fn draw(&self, drawing: &mut Drawing, at: (f64, f64)) {
         match self {
-            Sign::Pair(state) => structure::pair(drawing, at, *state, (1.0, 0.0), 5.5),
+            Sign::Pair(state) => {
+                let right = if *state == Some(crate::answer::record::State::SlipMinus) { -1.0 } else { 1.0 };
+                structure::pair(drawing, at, *state, Some((right, 0.0)), 5.5);
+            }
             Sign::Support(held) => structure::support(drawing, at, *held, 6.0),
             Sign::Load(kind) => drawing.arrow((at.0 - 9.0, at.1), (at.0 + 9.0, at.1), structure::colour(*kind)),
             Sign::Undeformed => {

@@ -4,6 +4,7 @@ use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FACE, FAINT, GREY, MARGIN,
 use crate::answer::record::State;
 use crate::model::units::Units;
 use crate::text::number::{short, with_unit};
+use crate::view::plot::lines::Face;
 use crate::view::plot::loads::{Arrow, LoadKind};
 use crate::view::plot::scene::Scene;
 use crate::view::plot::structure::support_word;
@@ -81,8 +82,14 @@ impl Place {
     }
 }
 
-/// The sign of a pair; a slip points along its tangent, (x, y) in the figure.
-pub(super) fn pair(drawing: &mut Drawing, at: (f64, f64), state: Option<State>, tangent: (f64, f64), radius: f64) {
+/// The sign of a pair; a slip points along `towards`, in the figure, and is a diamond where that cannot be seen.
+pub(super) fn pair(
+    drawing: &mut Drawing,
+    at: (f64, f64),
+    state: Option<State>,
+    towards: Option<(f64, f64)>,
+    radius: f64,
+) {
     let (x, y) = at;
     let r = radius;
     match state {
@@ -92,9 +99,12 @@ pub(super) fn pair(drawing: &mut Drawing, at: (f64, f64), state: Option<State>, 
             let square = [(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)];
             drawing.polygon(&square, COLOURS[2], COLOURS[2]);
         }
-        Some(slip) => {
-            let sign = if slip == State::SlipPlus { 1.3 * r } else { -1.3 * r };
-            let (c, s) = (sign * tangent.0, sign * tangent.1);
+        Some(State::SlipPlus | State::SlipMinus | State::Slip) => {
+            let Some((c, s)) = towards else {
+                drawing.polygon(&[(x, y - r), (x + r, y), (x, y + r), (x - r, y)], COLOURS[1], COLOURS[1]);
+                return;
+            };
+            let (c, s) = (1.3 * r * c, 1.3 * r * s);
             let tip = (x + c, y + s);
             let wings =
                 [(x - 0.7 * c - 0.8 * s, y - 0.7 * s + 0.8 * c), (x - 0.7 * c + 0.8 * s, y - 0.7 * s - 0.8 * c)];
@@ -143,7 +153,13 @@ pub fn figure(scene: &Scene, units: &Units, caption: &Caption) -> String {
     draw_loads(&mut drawing, &arrows.arrows, &place, bounds);
     for mark in &scene.pairs {
         let at = place.at(mark.place);
-        pair(&mut drawing, at, mark.state, (mark.tangent[0], -mark.tangent[1]), radius);
+        if mark.is_hidden {
+            drawing.put("<g opacity=\"0.6\">");
+        }
+        pair(&mut drawing, at, mark.state, mark.towards.map(|(x, y)| (x, -y)), radius);
+        if mark.is_hidden {
+            drawing.put("</g>");
+        }
         drawing.take(at, 1.4 * radius);
         note(&mut legend, Sign::Pair(mark.state), mark.state.map_or("contact pair", State::word));
     }
@@ -163,22 +179,33 @@ pub fn figure(scene: &Scene, units: &Units, caption: &Caption) -> String {
 
 /// Membranes as faces, their inner grid where there is room, bars and outlines; the undeformed ones dashed.
 pub(super) fn draw_lines(drawing: &mut Drawing, scene: &Scene, place: &Place) {
-    let faces: String =
-        place.all(&scene.now.faces).iter().map(|face| format!("M{}Z", points(face))).collect::<Vec<_>>().concat();
-    if !faces.is_empty() {
-        drawing.put(&format!("<path d=\"{faces}\" fill=\"{FACE}\"/>"));
-    }
+    draw_faces(drawing, &scene.now.faces, place);
     if scene.is_deformed {
-        drawing.lines(&place.all(&scene.before.outline), GREY, 1.0, "stroke-dasharray=\"4 3\"");
+        drawing.lines(&place.all(&scene.before.outline.seen), GREY, 1.0, "stroke-dasharray=\"4 3\"");
     }
-    let close = |line: &Vec<(f64, f64)>| {
-        line.windows(2).any(|ends| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1) < GRID)
-    };
-    let grid = place.all(&scene.now.grid);
-    if !grid.iter().any(close) {
-        drawing.lines(&grid, FAINT, 0.7, "");
+    if scene.now.grid.pitch * place.scale >= GRID {
+        drawing.lines(&place.all(&scene.now.grid.lines), FAINT, 0.7, "");
     }
-    drawing.lines(&place.all(&scene.now.outline), BLACK, 2.0, "");
+    drawing.lines(&place.all(&scene.now.outline.hidden), GREY, 0.7, "stroke-dasharray=\"1.5 3\"");
+    drawing.lines(&place.all(&scene.now.outline.seen), BLACK, 2.0, "");
+}
+
+/// Faces in the order given, neighbours of one brightness as one shape.
+fn draw_faces(drawing: &mut Drawing, faces: &[Face], place: &Place) {
+    for alike in faces.chunk_by(|a, b| a.light == b.light) {
+        let shape =
+            |face: &Face| format!("M{}Z", points(&face.corners.iter().map(|&at| place.at(at)).collect::<Vec<_>>()));
+        let shapes: String = alike.iter().map(shape).collect();
+        let light = alike[0].light;
+        if light == 1.0 {
+            drawing.put(&format!("<path d=\"{shapes}\" fill=\"{FACE}\"/>"));
+        } else {
+            // a seam of its own colour covers the gaps between neighbours
+            let grey = |full: f64| (full * (0.72 + 0.28 * light)).round() as u8;
+            let colour = format!("#{:02x}{:02x}{:02x}", grey(238.0), grey(240.0), grey(242.0));
+            drawing.put(&format!("<path d=\"{shapes}\" fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"0.6\"/>"));
+        }
+    }
 }
 
 /// Signs shrink where pairs or supports stand close together.
@@ -197,14 +224,17 @@ fn sign_radius(scene: &Scene, place: &Place) -> f64 {
 fn draw_loads(drawing: &mut Drawing, arrows: &[Arrow], place: &Place, [x, y]: [[f64; 2]; 2]) {
     let middle = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
     for arrow in arrows {
-        let size = arrow.force[0].hypot(arrow.force[1]);
+        let here = place.at(arrow.at);
+        let Some((c, up)) = arrow.direction() else {
+            end_on(drawing, here, arrow.comes, colour(arrow.kind));
+            continue;
+        };
         let longest = if arrow.kind == LoadKind::Line { 0.6 * LONGEST } else { LONGEST };
         let (length, apart) = (SHORTEST + (longest - SHORTEST) * arrow.share, 7.0);
-        let (c, s) = (arrow.force[0] / size, -arrow.force[1] / size);
-        let here = place.at(arrow.at);
-        let outward = (arrow.at.0 - middle.0) * arrow.force[0] + (arrow.at.1 - middle.1) * arrow.force[1];
+        let s = -up;
         // how far from the middle along the force: a pull at the very end leads away from the structure
-        let pulls = outward / size > 0.3 * (x[1] - x[0]).max(y[1] - y[0]);
+        let outward = (arrow.at.0 - middle.0) * c + (arrow.at.1 - middle.1) * up;
+        let pulls = outward > 0.3 * (x[1] - x[0]).max(y[1] - y[0]);
         let (from, to) = if pulls { (apart, apart + length) } else { (-apart - length, -apart) };
         let on_line = |distance: f64| (here.0 + distance * c, here.1 + distance * s);
         drawing.arrow(on_line(from), on_line(to), colour(arrow.kind));
@@ -212,6 +242,20 @@ fn draw_loads(drawing: &mut Drawing, arrows: &[Arrow], place: &Place, [x, y]: [[
             drawing.take(on_line(from + (to - from) * f64::from(step) / 4.0), 4.0);
         }
     }
+}
+
+/// A force that leads straight to the viewer (its tip, a point) or away (the cross of its feathers).
+fn end_on(drawing: &mut Drawing, (x, y): (f64, f64), comes: bool, colour: &str) {
+    let r = 5.0;
+    drawing.circle((x, y), r, "#ffffff", colour);
+    if comes {
+        drawing.circle((x, y), 0.3 * r, colour, colour);
+    } else {
+        let d = 0.7 * r;
+        drawing.line((x - d, y - d), (x + d, y + d), colour, 1.2, "");
+        drawing.line((x - d, y + d), (x + d, y - d), colour, 1.2, "");
+    }
+    drawing.take((x, y), r);
 }
 
 /// Loads at points are black, line loads and weights have colours of their own.

@@ -204,6 +204,7 @@ proptest! {
                 title: "any", structure: &structure, displacements: Some(&displacements), factors: &[1.0],
                 pairs: Some(&states), height,
                 magnification: factor.map_or(Magnification::Auto, Magnification::Factor),
+                viewpoint: crate::view::projection::Viewpoint::default(),
             };
             narrow(s, |out| structure::write(out, &picture, None, s));
             let values = [("F2".to_owned(), u[0][0])].into();
@@ -236,6 +237,7 @@ fn an_empty_structure_draws_nothing() {
         factors: &[],
         pairs: None,
         magnification: crate::view::plot::scene::Magnification::Auto,
+        viewpoint: crate::view::projection::Viewpoint::default(),
         height: 10,
     };
     let style = Style::default();

@@ -252,6 +252,37 @@ pub fn plates() -> Structure {
     structure
 }
 
+/// A block of bricks on frictional ground, with a corner at the origin: nodes `b[i,j,k]`, pairs below in the order of x.
+pub fn block([nx, ny, nz]: [usize; 3], size: [f64; 3]) -> Structure {
+    let counts = [nx, ny, nz];
+    let index = |i: usize, j: usize, k: usize| (k * (ny + 1) + j) * (nx + 1) + i;
+    let mut structure = Structure { dimension: Dimension::Space, materials: vec![steel()], ..Structure::default() };
+    for k in 0..=nz {
+        for j in 0..=ny {
+            for i in 0..=nx {
+                let at = [i, j, k];
+                let position = std::array::from_fn(|c| size[c] * at[c] as f64 / counts[c] as f64);
+                structure.nodes.push(Node { id: format!("b[{i},{j},{k}]"), position });
+            }
+        }
+    }
+    for k in 0..nz {
+        for j in 0..ny {
+            for i in 0..nx {
+                let ring = |k: usize| [index(i, j, k), index(i + 1, j, k), index(i + 1, j + 1, k), index(i, j + 1, k)];
+                let nodes = [ring(k), ring(k + 1)].concat();
+                structure.elements.push(Element { nodes, material: 0, kind: ElementKind::Solid { incompatible: false } });
+            }
+        }
+    }
+    for node in 0..(nx + 1) * (ny + 1) {
+        let normal = [0.0, 0.0, 1.0];
+        let tangents = Dimension::Space.tangents(normal);
+        structure.pairs.push(Pair { normal, tangents, ..ground_pair(&format!("g[{node}]"), node) });
+    }
+    structure
+}
+
 fn point(node: usize, [x, y]: [f64; 2]) -> Load {
     Load::Nodal { node, force: [x, y, 0.0], moment: [0.0; 3] }
 }

@@ -8,6 +8,7 @@ use super::sample::{beam, beam_ray, beam_structure, cantilever, plates, scenario
 use crate::answer::diagram::Internal;
 use crate::answer::record::*;
 use crate::view::plot::{diagram, scene, structure, trace, zone};
+use crate::view::projection::Viewpoint;
 use crate::view::style::Style;
 use crate::view::*;
 
@@ -74,6 +75,7 @@ fn pictures(style: &Style) -> String {
             factors: &[],
             pairs: Some(&last.pairs),
             magnification: scene::Magnification::Auto,
+            viewpoint: Viewpoint::default(),
             height: 16,
         };
         structure::write(&mut out, &picture, None, style)?;
@@ -91,6 +93,7 @@ fn pictures(style: &Style) -> String {
             factors: &[1.0],
             pairs: None,
             magnification: scene::Magnification::Auto,
+            viewpoint: Viewpoint::default(),
             height: 16,
         };
         structure::write(&mut out, &picture, Some((&values, &units)), style)?;
@@ -124,6 +127,7 @@ fn pictures(style: &Style) -> String {
             factors: &[],
             pairs: Some(&states),
             magnification: scene::Magnification::Auto,
+            viewpoint: Viewpoint::default(),
             height: 20,
         };
         structure::write(&mut out, &picture, None, style)

@@ -1,0 +1,44 @@
+//! A bar as a line in the model, with the side on which its ordinates stand.
+
+use crate::model::bar_axes::BarAxes;
+use crate::model::structure::{Bar, Element, ElementKind, Structure};
+
+/// Where a distance from the start of a bar is, and the direction of its local y there.
+pub struct BarLine {
+    /// Distance of the start, place of the start and axes of each element.
+    elements: Vec<(f64, [f64; 3], BarAxes)>,
+}
+
+impl BarLine {
+    /// Of a bar; elements without a length are left out.
+    pub fn of(structure: &Structure, bar: &Bar) -> BarLine {
+        let mut from = 0.0;
+        let mut elements = Vec::new();
+        for element in &structure.elements[bar.elements.clone()] {
+            if let Some(axes) = axes(structure, element) {
+                elements.push((from, structure.nodes[element.nodes[0]].position, axes));
+                from += axes.length;
+            }
+        }
+        BarLine { elements }
+    }
+
+    /// The place at a distance, and the local y; `late` takes the element after a node that lies there.
+    pub fn at(&self, distance: f64, late: bool) -> ([f64; 3], [f64; 3]) {
+        let begun = |start: f64| if late { start <= distance } else { start < distance };
+        let element = self.elements.iter().rev().find(|(start, ..)| begun(*start)).or(self.elements.first());
+        let Some((start, a, axes)) = element else { return ([0.0; 3], [0.0; 3]) };
+        (std::array::from_fn(|c| a[c] + (distance - start) * axes.x[c]), axes.y)
+    }
+}
+
+fn axes(structure: &Structure, element: &Element) -> Option<BarAxes> {
+    let ends = [0, 1].map(|end| structure.nodes[element.nodes[end]].position);
+    match &element.kind {
+        ElementKind::SpaceFrame { orientation, .. } | ElementKind::SpaceTruss { orientation, .. } => {
+            BarAxes::in_space(ends, *orientation).ok()
+        }
+        ElementKind::Frame { .. } | ElementKind::Truss { .. } => BarAxes::in_plane(ends.map(|[x, y, _]| [x, y])),
+        ElementKind::Membrane { .. } | ElementKind::Solid { .. } => None,
+    }
+}
