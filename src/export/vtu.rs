@@ -8,7 +8,7 @@ use std::io::{self, Write};
 
 use crate::answer::record::{PairState, State};
 use crate::model::shape::Shape;
-use crate::model::structure::Element;
+use crate::model::structure::{Dimension, Element};
 use crate::path::quantity::Field;
 use crate::text::printable::xml;
 
@@ -69,8 +69,6 @@ fn integers(out: &mut dyn Write, kind: &str, name: &str, values: impl Iterator<I
     writeln!(out, "</DataArray>")
 }
 
-/// Components of `stress`.
-const STRESS: [&str; 4] = ["xx", "yy", "xy", "zz"];
 /// Components of N, Q, M.
 const ENDS: [&str; 2] = ["start", "end"];
 
@@ -89,8 +87,7 @@ impl Mesh<'_> {
         let (points, cells) = (nodes.len() + pairs.len(), elements.len() + pairs.len());
         writeln!(out, "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">")?;
         writeln!(out, "<Points>")?;
-        let place = |node: usize| [nodes[node].position[0], nodes[node].position[1], 0.0];
-        array(out, "Points", &[], &self.over_points(place))?;
+        array(out, "Points", &[], &self.over_points(|node| nodes[node].position))?;
         writeln!(out, "</Points>\n<Cells>")?;
         let of_pairs = (nodes.len()..points).map(|point| point as i64);
         let corners = elements.iter().flat_map(|element| element.nodes.iter().map(|&node| node as i64));
@@ -126,13 +123,18 @@ impl Mesh<'_> {
     fn write_point_data(&self, out: &mut dyn Write) -> io::Result<()> {
         let u = |node: usize| self.0.displacements.get(node).copied().unwrap_or_default();
         array(out, "displacement", &[], &self.over_points(|node| [u(node)[0], u(node)[1], u(node)[2]]))?;
-        array(out, "rotation", &[], &self.over_points(|node| [u(node)[5]]))?;
-        if !self.0.node_stresses.is_empty() {
-            let mut stresses = vec![[0.0; 4]; self.0.structure.nodes.len()];
-            for at in &self.0.node_stresses {
-                stresses[at.node].copy_from_slice(&at.stress[..4]);
+        match self.0.structure.dimension {
+            Dimension::Plane => array(out, "rotation", &[], &self.over_points(|node| [u(node)[5]]))?,
+            Dimension::Space => {
+                array(out, "rotation", &[], &self.over_points(|node| [u(node)[3], u(node)[4], u(node)[5]]))?;
             }
-            array(out, "stress", &STRESS, &self.over_points(|node| stresses[node]))?;
+        }
+        if !self.0.node_stresses.is_empty() {
+            let mut stresses = vec![[0.0; 6]; self.0.structure.nodes.len()];
+            for at in &self.0.node_stresses {
+                stresses[at.node] = at.stress;
+            }
+            self.write_stresses(out, &self.over_points(|node| stresses[node]))?;
         }
         let pairs = &self.0.structure.pairs;
         let pair = self.over_pairs(-1, |index, _| index as i64);
@@ -153,14 +155,28 @@ impl Mesh<'_> {
         array(out, "opening", &[], &self.over_pairs([0.0], |_, state| [state.z_n]))
     }
 
+    /// σ_xx, σ_yy, σ_xy, σ_zz in the plane; in space the six in the order of VTK's symmetric tensors.
+    fn write_stresses(&self, out: &mut dyn Write, stresses: &[[f64; 6]]) -> io::Result<()> {
+        match self.0.structure.dimension {
+            Dimension::Plane => {
+                let rows: Vec<[f64; 4]> = stresses.iter().map(|s| [s[0], s[1], s[2], s[3]]).collect();
+                array(out, "stress", &["xx", "yy", "xy", "zz"], &rows)
+            }
+            Dimension::Space => {
+                let rows: Vec<[f64; 6]> = stresses.iter().map(|s| [s[0], s[1], s[3], s[2], s[4], s[5]]).collect();
+                array(out, "stress", &["xx", "yy", "zz", "xy", "yz", "xz"], &rows)
+            }
+        }
+    }
+
     fn write_cell_data(&self, out: &mut dyn Write) -> io::Result<()> {
         let cells = self.0.structure.elements.len() + self.0.structure.pairs.len();
         if !self.0.element_stresses.is_empty() {
-            let mut stresses = vec![[0.0; 4]; cells];
+            let mut stresses = vec![[0.0; 6]; cells];
             for of in &self.0.element_stresses {
-                stresses[of.element].copy_from_slice(&of.stress[..4]);
+                stresses[of.element] = of.stress;
             }
-            array(out, "stress", &STRESS, &stresses)?;
+            self.write_stresses(out, &stresses)?;
         }
         if self.0.members.is_empty() {
             return Ok(());

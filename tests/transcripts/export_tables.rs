@@ -60,6 +60,7 @@ const COMMANDS: &[(&str, Exported)] = &[
     ("status", Err("one sentence: `export result FILE.json`")),
     ("why", Err("sentences about one pair")),
     ("plot", Err("a picture: `export PICTURE FILE.svg`")),
+    ("view", Err("how pictures are seen")),
     ("history", Err("what was typed: `record` writes it as a script")),
     ("new", Err("kinds of scenarios to begin with, each with names of its own")),
     ("load", Err("no table")),

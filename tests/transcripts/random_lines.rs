@@ -26,6 +26,8 @@ const WORDS: &[&str] = &[
     "why",
     "ray",
     "plot",
+    "view",
+    "XZ",
     "expect",
     "echo",
     "help",

@@ -52,3 +52,19 @@ fn the_structure_zooms_and_pans() {
     rig.press(&["A"]);
     assert_eq!(rig.screen(), all);
 }
+
+/// A structure in the plane has nothing to turn; the keys say so.
+#[test]
+fn the_plane_is_not_turned() {
+    let mut rig = Rig::new("beam", 100, 30);
+    rig.press(&["1"]);
+    let before = rig.screen();
+    for key in ["t", "T", "w", "W", "V"] {
+        rig.press(&[key]);
+        let said = rig.state.message.as_ref().map(|message| message.text.clone());
+        assert_eq!(said.as_deref(), Some("this structure lies in the plane: there is nothing to turn"));
+    }
+    assert_eq!(rig.state.turned, None);
+    rig.state.message = None;
+    assert_eq!(rig.screen(), before);
+}

@@ -207,8 +207,7 @@ impl<'a> Displaced<'a> {
     /// Membranes, the faces of solids that look to the viewer, hulls; the far ones first.
     pub fn faces(&self) -> Vec<Face> {
         let structure = self.structure;
-        let areas =
-            structure.elements.iter().filter(|element| element.shape().is_area());
+        let areas = structure.elements.iter().filter(|element| element.shape().is_area());
         let mut faces: Vec<Vec<Seen>> = areas.map(|element| self.ring(element.ring())).collect();
         let parts = structure.superelement.iter().flat_map(|element| &element.parts);
         let wide = parts.map(|part| &part.nodes).filter(|nodes| along_a_line(structure, nodes).is_none());

@@ -31,7 +31,8 @@ impl Surface {
     /// Of all solids of a structure.
     pub fn of(structure: &Structure) -> Surface {
         let mut sides = Faces::default();
-        for (index, element) in structure.elements.iter().enumerate().filter(|(_, element)| element.shape().is_solid()) {
+        for (index, element) in structure.elements.iter().enumerate().filter(|(_, element)| element.shape().is_solid())
+        {
             sides.add(index, element.shape(), &element.nodes);
         }
         let faces: Vec<Vec<usize>> = sides.surface().into_iter().map(|side| ring(&side.nodes)).collect();

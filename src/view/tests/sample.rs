@@ -271,7 +271,11 @@ pub fn block([nx, ny, nz]: [usize; 3], size: [f64; 3]) -> Structure {
             for i in 0..nx {
                 let ring = |k: usize| [index(i, j, k), index(i + 1, j, k), index(i + 1, j + 1, k), index(i, j + 1, k)];
                 let nodes = [ring(k), ring(k + 1)].concat();
-                structure.elements.push(Element { nodes, material: 0, kind: ElementKind::Solid { incompatible: false } });
+                structure.elements.push(Element {
+                    nodes,
+                    material: 0,
+                    kind: ElementKind::Solid { incompatible: false },
+                });
             }
         }
     }
