@@ -141,16 +141,16 @@ impl Mesh<'_> {
         integers(out, "Int32", "contact_pair", pair.into_iter())?;
         let state = self.over_pairs(-1, |_, state| i64::from(state_number(state.state)));
         integers(out, "Int32", "contact_state", state.into_iter())?;
-        let along = |index: usize, n: f64, t: f64| {
-            let (normal, tangent) = (pairs[index].normal, pairs[index].tangents[0]);
-            std::array::from_fn(|c| n * normal[c] + t * tangent[c])
+        let along = |index: usize, n: f64, t: Vec<f64>| {
+            let (normal, tangential) = (pairs[index].normal, pairs[index].along_tangents(&t));
+            std::array::from_fn(|c| n * normal[c] + tangential[c])
         };
         // both act on the node of the pair, the opposite ones on what stands against it
-        let force = self.over_pairs([0.0; 3], |index, state| along(index, state.x_n, state.x_t));
+        let force = self.over_pairs([0.0; 3], |index, state| along(index, state.x_n, state.friction()));
         array(out, "contact_force", &[], &force)?;
-        let friction = self.over_pairs([0.0; 3], |index, state| along(index, 0.0, state.x_t));
+        let friction = self.over_pairs([0.0; 3], |index, state| along(index, 0.0, state.friction()));
         array(out, "friction_force", &[], &friction)?;
-        let slip = self.over_pairs([0.0; 3], |index, state| along(index, 0.0, state.z_t));
+        let slip = self.over_pairs([0.0; 3], |index, state| along(index, 0.0, state.slip()));
         array(out, "slip", &[], &slip)?;
         array(out, "opening", &[], &self.over_pairs([0.0], |_, state| [state.z_n]))
     }

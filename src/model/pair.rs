@@ -150,6 +150,12 @@ impl Pair {
         !self.slides_on_ground && matches!(self.weights[..], [(_, 1.0)] | [(_, 1.0), (_, -1.0)])
     }
 
+    /// A vector of the plane of contact, from its components along the tangents.
+    pub fn along_tangents(&self, components: &[f64]) -> [f64; 3] {
+        let parts = components.iter().zip(&self.tangents);
+        parts.fold([0.0; 3], |sum, (size, t)| std::array::from_fn(|c| sum[c] + size * t[c]))
+    }
+
     /// The weights of the motion along its tangents.
     pub fn tangential_weights(&self) -> &[(usize, f64)] {
         if self.slides_on_ground { &self.weights[..1] } else { &self.weights }

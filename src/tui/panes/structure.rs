@@ -7,7 +7,7 @@ use ratatui::style::{Modifier, Style};
 use super::legend::Legend;
 use super::{loading, strip};
 use crate::model::structure::{Dimension, LoadCase, Structure};
-use crate::session::results::{PairDirection, State as PairMotion};
+use crate::session::results::{PairDirection, Slip, State as PairMotion};
 use crate::text::number::short;
 use crate::tui::app::{PERIOD, State};
 use crate::tui::kept::The;
@@ -251,13 +251,12 @@ impl Painter<'_> {
                 places.push(None);
                 continue;
             }
-            let motion = directions.and_then(|directions| directions.get(index)).map_or(now.state, in_motion);
-            self.put(
-                (x, y),
-                pair_sign(motion, towards(pair, motion, self.projection), look.ascii),
-                Role::State(motion),
-                motion.word(),
-            );
+            let (motion, slip) = match directions.and_then(|directions| directions.get(index)) {
+                Some(direction) => (in_motion(direction), direction.slip()),
+                None => (now.state, now.slip()),
+            };
+            let sign = pair_sign(motion, towards(pair, motion, &slip, self.projection), look.ascii);
+            self.put((x, y), sign, Role::State(motion), motion.word());
             self.canvas.label(x, y, &look.text(&pair.id), Role::Muted);
             // the canvas is as large as the area
             places.push(self.canvas.cell(x, y).map(|(column, row)| (column as u16, row as u16)));
@@ -270,12 +269,12 @@ impl Painter<'_> {
 fn in_motion(direction: &PairDirection) -> PairMotion {
     const NOTHING: f64 = 1e-9;
     if direction.z_n > NOTHING {
-        PairMotion::Open
-    } else if direction.z_t.scalar() > NOTHING {
-        PairMotion::SlipPlus
-    } else if direction.z_t.scalar() < -NOTHING {
-        PairMotion::SlipMinus
-    } else {
-        PairMotion::Stick
+        return PairMotion::Open;
+    }
+    match direction.z_t {
+        slip if slip.scalar().abs() <= NOTHING => PairMotion::Stick,
+        Slip::Space(_) => PairMotion::Slip,
+        Slip::Plane(slip) if slip > 0.0 => PairMotion::SlipPlus,
+        Slip::Plane(_) => PairMotion::SlipMinus,
     }
 }

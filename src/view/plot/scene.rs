@@ -146,12 +146,13 @@ pub struct PairMark {
 /// A slip shorter than this in the picture, of 1, is seen from its tip or its tail.
 const END_ON: f64 = 0.1;
 
-/// Which way the second side of a pair in this state slips in the picture.
-pub fn towards(pair: &Pair, state: State, projection: &Projection) -> Option<(f64, f64)> {
+/// Which way the second side of a pair in this state slips in the picture, where in space `slip` is along t1 and t2.
+pub fn towards(pair: &Pair, state: State, slip: &[f64], projection: &Projection) -> Option<(f64, f64)> {
     let slip = match state {
         State::SlipPlus => pair.tangents[0],
         State::SlipMinus => pair.tangents[0].map(|t| -t),
-        State::Slip | State::Open | State::Stick | State::Closed => return None,
+        State::Slip => pair.along_tangents(slip),
+        State::Open | State::Stick | State::Closed => return None,
     };
     let (x, y) = projection.flat(unit(slip)?);
     let length = x.hypot(y);
@@ -193,7 +194,7 @@ impl Scene {
                 is_hidden: displaced.hides(pair.node),
                 id: pair.id.clone(),
                 state: state.map(|state| state.state),
-                towards: state.and_then(|state| towards(pair, state.state, &projection)),
+                towards: state.and_then(|state| towards(pair, state.state, &state.slip(), &projection)),
             }
         };
         Scene {
