@@ -5,8 +5,8 @@
 //! ```
 //!
 //! `screen` is from the key to the bytes of its frames, `session` what the session's own thread works meanwhile; both the
-//! least of several repetitions, as on an idle machine. `first` is what a slider that is held costs until the new states
-//! stand on the screen; displacements, the check of equilibrium and the pivots follow when it rests.
+//! least of several repetitions, as on an idle machine. `first` is what a slider or an arrow that is held costs until
+//! the new states stand on the screen; displacements, the check of equilibrium and the pivots follow when it rests.
 
 #[path = "../benches/common/mod.rs"]
 #[allow(dead_code)]
@@ -138,7 +138,8 @@ const ROWS: &[(&str, &[&str], &[&str])] = &[
     ("row of Parameters", &["2"], &["down", "up"]),
     ("letter of a command", &["2", ":"], &["x"]),
     ("help", &["2"], &["?", "esc"]),
-    ("pivot back", &["4"], &["left"]),
+    ("pivot back, first", &["4"], &["left"]),
+    ("pivot back, all", &["4"], &["left"]),
     ("slider of a load, first", &["2", "down"], &["+", "-"]),
     ("slider of a load, all", &["2", "down"], &["+", "-"]),
     ("slider of f, first", &["2", "up"], &["+", "-"]),

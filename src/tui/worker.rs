@@ -22,7 +22,8 @@ const PATIENCE: Duration = Duration::from_millis(400);
 /// Between two looks at the progress.
 const PACE: Duration = Duration::from_millis(250);
 
-/// What follows the states of a slider waits so long for its next step: longer than between two repeats of a held key.
+/// What follows the states of a slider or a pivot waits so long for the next one: longer than between two repeats of a held
+/// key.
 const QUIET: Duration = Duration::from_millis(40);
 
 /// Does one job after `last` was shown. The session is as it was if it fails.
@@ -74,7 +75,7 @@ pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watc
     let shown = match (&job, glance) {
         (Job::Glance { settings: [(_, x), (_, y)] }, Some(glance)) => Shown::beside(last, session, glance, [*x, *y]),
         (Job::Show(Loading::Stage(stage)), _) => Shown::after(last, session).at_stage(*stage, session),
-        (Job::Motion, _) => {
+        (Job::Motion, _) if !watch.stop() => {
             let mut shown = Shown::after(last, session);
             shown.complete(session);
             shown
@@ -172,7 +173,7 @@ impl Worker {
                 let watch =
                     WatchAdapter { number, stopped: &asked, send: &send, since: Mutex::new((Instant::now(), None)) };
                 let kept = job.clone();
-                if matches!(job, Job::Pivots) || (matches!(job, Job::Motion) && !last.is_whole()) {
+                if matches!(job, Job::Pivots | Job::Motion) {
                     watch.wait(QUIET);
                 }
                 let done = catch_unwind(AssertUnwindSafe(|| perform(&mut session, &last, job, style, &watch)));

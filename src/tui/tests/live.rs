@@ -143,3 +143,24 @@ fn the_next_step_does_not_wait_for_displacements() {
     let done = rig.perform(job);
     assert_eq!(update(&mut rig.state, Action::Done(Box::new(done))), [Effect::Run(Job::Motion)]);
 }
+
+#[test]
+fn the_next_pivot_does_not_wait_for_the_picture_of_the_last() {
+    let mut rig = plates();
+    let back = |rig: &mut Rig| update(&mut rig.state, Action::Do(Do::StepBack));
+    let [Effect::Run(step)] = &back(&mut rig)[..] else { panic!("one job") };
+    let done = rig.perform(step.clone());
+    assert_eq!(update(&mut rig.state, Action::Done(Box::new(done))), [Effect::Run(Job::Motion)]);
+    let at = rig.state.shown.position;
+    assert_eq!(back(&mut rig), [Effect::Stop]);
+    let done = perform(&mut rig.session, &rig.state.shown, Job::Motion, rig.state.look.report(76), &Stops);
+    assert!(done.shown.is_behind() && done.error.is_none());
+    let effects = update(&mut rig.state, Action::Done(Box::new(done)));
+    assert!(rig.state.shown.is_behind() && rig.state.shown.position == at);
+    let [Effect::Run(step @ Job::Step(_))] = &effects[..] else { panic!("{effects:?}") };
+    let done = rig.perform(step.clone());
+    assert_eq!(update(&mut rig.state, Action::Done(Box::new(done))), [Effect::Run(Job::Motion)]);
+    let done = rig.perform(Job::Motion);
+    update(&mut rig.state, Action::Done(Box::new(done)));
+    assert!(!rig.state.shown.is_behind() && rig.state.shown.motion.u.is_some());
+}

@@ -38,7 +38,12 @@ pub(super) fn order(state: &mut State, job: Job) -> Vec<Effect> {
                 return effects;
             }
         }
-        Job::Step(_) => state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_))),
+        Job::Step(_) => {
+            state.waiting.retain(|waiting| !matches!(waiting, Job::Step(_)));
+            if matches!(running, Job::Motion) {
+                effects.push(Effect::Stop);
+            }
+        }
         Job::Show(_) => {
             state.waiting.retain(|waiting| !matches!(waiting, Job::Show(_)));
             if matches!(running, Job::Show(_)) {
