@@ -6,13 +6,18 @@ use std::path::{Path, PathBuf};
 
 /// A file that could not be written; the old one, if there was one, is untouched.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}; the file is as it was before", path.display())]
+#[error("cannot write {}: {source}; {}", path.display(), left(path))]
 pub struct WriteError {
     /// The file.
     pub path: PathBuf,
     /// What the system said.
     #[source]
     pub source: io::Error,
+}
+
+/// What a failure leaves.
+fn left(path: &Path) -> &'static str {
+    if path.exists() { "the file is as it was before" } else { "nothing was written" }
 }
 
 /// Writes `path` by way of a temporary file in the same folder, renamed when everything has reached the disk.
