@@ -3,7 +3,8 @@
 use nalgebra::DVector;
 use serde::Serialize;
 
-use super::mode::{RigidMotion, direction_word, pair_words, parts};
+use super::mode::{pair_words, parts};
+use super::rigid::{RigidMotion, direction_word};
 use crate::contact::system::ContactSystem;
 use crate::fem::MainSystem;
 use crate::model::pair::joints;
@@ -46,12 +47,12 @@ pub fn loose_parts(structure: &Structure, main: &MainSystem) -> Vec<LoosePart> {
                 one.name.clone(),
                 match &one.motion {
                     RigidMotion::Translation(u) => {
-                        let axis = direction_word(*u);
+                        let axis = direction_word(*u, one.dimension);
                         let axis = axis.trim_start_matches(['+', '-']);
                         if opens { format!("lift off along {axis}") } else { format!("slide along {axis}") }
                     }
-                    RigidMotion::Rotation { centre, .. } => {
-                        format!("turn about ({}, {})", short(centre[0]), short(centre[1]))
+                    RigidMotion::Rotation { point, turn, .. } => {
+                        format!("turn about {}", RigidMotion::about(one.dimension, *point, *turn, short))
                     }
                 },
             ),

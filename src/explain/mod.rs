@@ -16,6 +16,7 @@ pub mod plain_why;
 pub mod proof;
 pub mod ray;
 pub mod remedy;
+pub mod rigid;
 pub mod sentence;
 pub mod tableau;
 pub mod ties;

@@ -2,29 +2,17 @@
 
 use nalgebra::DVector;
 
+use super::rigid::{Fitted, RigidMotion};
 use crate::contact::polygon::{angle, degrees};
 use crate::contact::system::ContactSystem;
 use crate::fem::{MainSystem, mutual_displacements};
 use crate::model::pair::joints;
-use crate::model::structure::Structure;
-use crate::text::words::{list, short};
+use crate::model::structure::{Dimension, Structure};
+use crate::model::vector::length;
+use crate::text::words::list;
 
 /// Entries below this share of the largest do not move.
 pub(super) const STILL: f64 = 1e-7;
-
-/// Rigid motion of one part.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RigidMotion {
-    /// All nodes move alike, by this vector.
-    Translation([f64; 2]),
-    /// Turns about a point.
-    Rotation {
-        /// The point that stays.
-        centre: [f64; 2],
-        /// Angle, counter-clockwise > 0.
-        angle: f64,
-    },
-}
 
 /// A part that moves as one rigid body.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +21,15 @@ pub struct PartMotion {
     pub name: String,
     /// How it moves.
     pub motion: RigidMotion,
+    /// Where the structure lies.
+    pub dimension: Dimension,
+}
+
+impl PartMotion {
+    /// "rigid translation of `upper` along +x".
+    pub fn words(&self) -> String {
+        self.motion.words(&self.name, self.dimension)
+    }
 }
 
 /// A motion of the structure that costs no energy.
@@ -114,7 +111,7 @@ fn size(structure: &Structure) -> f64 {
     if structure.nodes.is_empty() {
         return 1.0;
     }
-    let size = span(0).max(span(1));
+    let size = span(0).max(span(1)).max(span(2));
     if size > 0.0 { size } else { 1.0 }
 }
 
@@ -144,38 +141,37 @@ pub fn mode(structure: &Structure, main: &MainSystem, direction: &DVector<f64>) 
 /// The parts that move, each rigid; `None` where one of them is not.
 pub fn parts(structure: &Structure, displacements: &[[f64; 6]]) -> Option<Vec<PartMotion>> {
     let extent = size(structure);
-    let largest = displacements.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+    let moved = |node: usize| length([displacements[node][0], displacements[node][1], displacements[node][2]]);
+    let largest = (0..displacements.len()).map(moved).fold(0.0, f64::max);
     if largest == 0.0 {
         return Some(Vec::new());
     }
-    // Members with the same rigid motion (u at the origin, angle) are one part.
-    let mut groups: Vec<([f64; 3], Vec<usize>)> = Vec::new();
+    // Members with the same rigid motion are one part.
+    let mut groups: Vec<(Fitted, Vec<usize>)> = Vec::new();
     let members = members(structure);
     for (index, member) in members.iter().enumerate() {
-        let rigid = fit(structure, &member.nodes, displacements, 1e-6 * largest)?;
-        let moved = member.nodes.iter().any(|&n| displacements[n][0].hypot(displacements[n][1]) > STILL * largest);
-        if !moved {
+        let rigid = Fitted::of(structure, &member.nodes, displacements, 1e-6 * largest)?;
+        if !member.nodes.iter().any(|&node| moved(node) > STILL * largest) {
             continue;
         }
-        let same = |other: &[f64; 3]| {
-            (other[0] - rigid[0]).abs() <= 1e-6 * largest
-                && (other[1] - rigid[1]).abs() <= 1e-6 * largest
-                && (other[2] - rigid[2]).abs() * extent <= 1e-6 * largest
-        };
-        match groups.iter_mut().find(|(other, _)| same(other)) {
+        match groups.iter_mut().find(|(other, _)| rigid.is_like(other, extent, largest)) {
             Some((_, group)) => group.push(index),
             None => groups.push((rigid, vec![index])),
         }
     }
-    Some(
-        groups
-            .into_iter()
-            .map(|(rigid, group)| {
-                let names: Vec<String> = group.iter().map(|&member| members[member].id.clone()).collect();
-                PartMotion { name: part_name(&names, members.len()), motion: describe(rigid, extent, largest) }
-            })
-            .collect(),
-    )
+    let describe = |(rigid, group): (Fitted, Vec<usize>)| {
+        let names: Vec<String> = group.iter().map(|&member| members[member].id.clone()).collect();
+        let nodes: Vec<usize> = group.iter().flat_map(|&member| members[member].nodes.iter().copied()).collect();
+        let motion = rigid.describe(centre(structure, &nodes), extent, largest);
+        PartMotion { name: part_name(&names, members.len()), motion, dimension: structure.dimension }
+    };
+    Some(groups.into_iter().map(describe).collect())
+}
+
+/// The middle of nodes.
+fn centre(structure: &Structure, nodes: &[usize]) -> [f64; 3] {
+    let count = nodes.len() as f64;
+    std::array::from_fn(|c| nodes.iter().map(|&node| structure.nodes[node].position[c]).sum::<f64>() / count)
 }
 
 fn part_name(names: &[String], all: usize) -> String {
@@ -186,77 +182,6 @@ fn part_name(names: &[String], all: usize) -> String {
     } else {
         list(names)
     }
-}
-
-/// Rigid motion (u_x and u_y at the centre of the nodes, then moved to the origin; angle) of these nodes.
-fn fit(structure: &Structure, nodes: &[usize], u: &[[f64; 6]], tolerance: f64) -> Option<[f64; 3]> {
-    let count = nodes.len() as f64;
-    let mean = |read: &dyn Fn(usize) -> f64| nodes.iter().map(|&n| read(n)).sum::<f64>() / count;
-    let x = |n: usize| structure.nodes[n].position;
-    let centre = [mean(&|n| x(n)[0]), mean(&|n| x(n)[1])];
-    let shift = [mean(&|n| u[n][0]), mean(&|n| u[n][1])];
-    let (mut moment, mut inertia) = (0.0, 0.0);
-    for &n in nodes {
-        let arm = [x(n)[0] - centre[0], x(n)[1] - centre[1]];
-        moment += arm[0] * (u[n][1] - shift[1]) - arm[1] * (u[n][0] - shift[0]);
-        inertia += arm[0] * arm[0] + arm[1] * arm[1];
-    }
-    let angle = if inertia > 0.0 { moment / inertia } else { 0.0 };
-    for &n in nodes {
-        let arm = [x(n)[0] - centre[0], x(n)[1] - centre[1]];
-        let error = [u[n][0] - shift[0] + angle * arm[1], u[n][1] - shift[1] - angle * arm[0]];
-        if error[0].hypot(error[1]) > tolerance {
-            return None;
-        }
-    }
-    Some([shift[0] + angle * centre[1], shift[1] - angle * centre[0], angle])
-}
-
-fn describe([x, y, angle]: [f64; 3], extent: f64, largest: f64) -> RigidMotion {
-    if angle.abs() * extent <= 1e-6 * largest {
-        return RigidMotion::Translation([x, y]);
-    }
-    let tidy = |value: f64| {
-        if value.abs() <= 1e-6 * extent { 0.0 } else { value }
-    };
-    // u = (x − θ Y, y + θ X) is zero at the centre.
-    RigidMotion::Rotation { centre: [tidy(-y / angle), tidy(x / angle)], angle }
-}
-
-/// `+x`, `-y`, `(0.995, 0.0998)`.
-pub fn direction_word(u: [f64; 2]) -> String {
-    let size = u[0].hypot(u[1]);
-    let (x, y) = (u[0] / size, u[1] / size);
-    let sign = |v: f64| if v > 0.0 { '+' } else { '-' };
-    if y.abs() <= 1e-6 {
-        format!("{}x", sign(x))
-    } else if x.abs() <= 1e-6 {
-        format!("{}y", sign(y))
-    } else {
-        format!("({}, {})", short(x), short(y))
-    }
-}
-
-impl PartMotion {
-    /// "rigid translation of `upper` along +x".
-    pub fn words(&self) -> String {
-        match &self.motion {
-            RigidMotion::Translation(u) => {
-                format!("rigid translation of {} along {}", self.name, direction_word(*u))
-            }
-            RigidMotion::Rotation { centre, angle } => format!(
-                "rotation of {} about ({}, {}), {}",
-                self.name,
-                coordinate(centre[0]),
-                coordinate(centre[1]),
-                if *angle > 0.0 { "counter-clockwise" } else { "clockwise" }
-            ),
-        }
-    }
-}
-
-fn coordinate(value: f64) -> String {
-    if value == 0.0 { "0.0".to_owned() } else { short(value) }
 }
 
 /// What a direction does to the pairs: "all pairs slip +", `base[0] to base[3] open`.

@@ -6,8 +6,9 @@
 use serde::Serialize;
 
 use super::balance::{Multiples, balanced_multiples, is_balanced};
-use super::mode::{PartMotion, RigidMotion, direction_word};
+use super::mode::PartMotion;
 use super::motions::FreeMotions;
+use super::rigid::{RigidMotion, direction_word};
 use crate::contact::problem::ContactProblem;
 use crate::text::words::short;
 use crate::watch::{Budget, Watch};
@@ -81,10 +82,10 @@ pub fn remedies(
             part: part.name.clone(),
             against: match &part.motion {
                 RigidMotion::Translation(u) => {
-                    format!("along {}", direction_word(*u).trim_start_matches(['+', '-']))
+                    format!("along {}", direction_word(*u, part.dimension).trim_start_matches(['+', '-']))
                 }
-                RigidMotion::Rotation { centre, .. } => {
-                    format!("against turning about ({}, {})", short(centre[0]), short(centre[1]))
+                RigidMotion::Rotation { point, turn, .. } => {
+                    format!("against turning about {}", RigidMotion::about(part.dimension, *point, *turn, short))
                 }
             },
         })

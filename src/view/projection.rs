@@ -109,10 +109,32 @@ impl Projection {
         (dot(self.right, at), dot(self.up, at))
     }
 
+    /// Where the axes of the model lead in the picture: `x ↘ y ↗ z ↑`; ⊙ is towards the viewer.
+    pub fn axes_in_words(&self) -> String {
+        let unit = |c: usize| std::array::from_fn(|k| f64::from(u8::from(k == c)));
+        let words: Vec<String> = ["x", "y", "z"]
+            .iter()
+            .enumerate()
+            .map(|(c, name)| format!("{name} {}", arrow(self.seen(unit(c)))))
+            .collect();
+        words.join(" ")
+    }
+
     /// Whether lengths in the picture are those of the model along two of its axes.
     pub fn is_along_axes(&self) -> bool {
         [self.right, self.up].iter().all(|axis| axis.iter().filter(|entry| **entry != 0.0).count() == 1)
     }
+}
+
+/// The sign for a direction in a picture.
+fn arrow([x, y, towards]: [f64; 3]) -> char {
+    if x.hypot(y) < 0.1 * towards.abs() {
+        return if towards > 0.0 { '⊙' } else { '⊗' };
+    }
+    // eighths of a turn from → on, counter-clockwise
+    const SIGNS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
+    let eighth = (y.atan2(x) / std::f64::consts::FRAC_PI_4).round().rem_euclid(8.0);
+    SIGNS[eighth as usize % 8]
 }
 
 /// Sine and cosine of degrees; exact at the multiples of a right angle.
@@ -177,6 +199,13 @@ mod tests {
         }
         assert_eq!(Viewpoint::new(0.0, 91.0), None);
         assert_eq!(Viewpoint::new(f64::NAN, 0.0), None);
+    }
+
+    #[test]
+    fn axes_are_told_by_arrows() {
+        assert_eq!(projection("ISO").axes_in_words(), "x ↘ y ↗ z ↑");
+        assert_eq!(projection("XY").axes_in_words(), "x → y ↑ z ⊙");
+        assert_eq!(projection("XZ").axes_in_words(), "x → y ⊗ z ↑");
     }
 
     #[test]

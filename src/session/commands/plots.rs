@@ -7,10 +7,11 @@ use serde::Serialize;
 
 use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PivotRecord};
-use crate::model::structure::Structure;
+use crate::model::structure::{Dimension, Structure};
 use crate::model::words::no_such;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::diagram;
+use crate::view::plot::face_map::{self, FaceMap};
 use crate::view::plot::scene::{self, Magnification};
 use crate::view::plot::zone::{self, Quantity};
 use crate::view::plot::{structure, trace};
@@ -182,10 +183,38 @@ impl Session {
         let states = self.zone_states(at)?;
         let shown: Vec<AtPivot<'_>> = states.iter().map(|(at, pairs)| AtPivot { at, pairs }).collect();
         io.show(&shown, |out, style| {
-            let chart = zone::drawing(quantity, &borrowed(&states), &self.now.scenario.units);
-            Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)
+            let (maps, states) = self.faces(quantity, &states);
+            for map in &maps {
+                map.write(out, height.unwrap_or(STRUCTURE_HEIGHT), style)?;
+            }
+            if !states.is_empty() {
+                let chart = zone::drawing(quantity, &borrowed(&states), &self.now.scenario.units);
+                Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)?;
+            }
+            Ok(())
         })?;
         Ok(())
+    }
+
+    /// The maps of faces, state by state, and the states of the pairs that lie on none.
+    pub(in crate::session) fn faces(
+        &self,
+        quantity: Quantity,
+        states: &[(String, Vec<PairState>)],
+    ) -> (Vec<FaceMap>, Vec<(String, Vec<PairState>)>) {
+        let Some(structure) = self.structure().filter(|structure| structure.dimension == Dimension::Space) else {
+            return (Vec::new(), states.to_vec());
+        };
+        let (mut maps, mut rest) = (Vec::new(), Vec::new());
+        for (label, pairs) in states {
+            let (mut found, others) = face_map::faces(structure, pairs, quantity, &self.now.scenario.units);
+            for map in found.iter_mut().filter(|_| !label.is_empty()) {
+                map.title.push_str(&format!(" · {label}"));
+            }
+            maps.extend(found);
+            rest.extend(Some((label.clone(), others)).filter(|(_, others)| !others.is_empty()));
+        }
+        (maps, rest)
     }
 
     /// The pairs that a plot over the contact zone shows, each with its title: those shown, or those at some pivots.

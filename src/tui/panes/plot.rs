@@ -4,6 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
+use crate::model::structure::Dimension;
 use crate::session::diagram::Internal;
 use crate::session::results::PairState;
 use crate::tui::app::State;
@@ -12,6 +13,7 @@ use crate::tui::paint::{paste, put_lines, put_text, report};
 use crate::tui::pane::Plot;
 use crate::tui::pictures::PlotKey;
 use crate::view::pivots::title;
+use crate::view::plot::face_map::{FaceMap, faces};
 use crate::view::plot::scene::{Magnification, Picture};
 use crate::view::plot::structure::write_with_diagrams;
 use crate::view::plot::trace;
@@ -90,8 +92,23 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         Some(before) => vec![("now", shown.pairs()), ("before", before)],
         None => vec![(now_label.as_str(), shown.pairs())],
     };
+    if let Some(structure) = shown.structure().filter(|structure| structure.dimension == Dimension::Space) {
+        let (maps, rest) = faces(structure, shown.pairs(), quantity, units);
+        if rest.is_empty() && !maps.is_empty() {
+            return over_faces(state, &maps, area);
+        }
+    }
     fitting(area, |height| {
         report(state.look, width, |out, style| zone::write(out, quantity, &states, units, height, style))
+    })
+}
+
+/// The maps of faces, one below the other.
+fn over_faces(state: &State, maps: &[FaceMap], area: Rect) -> Vec<Line<'static>> {
+    let share = usize::from(area.height) / maps.len();
+    report(state.look, usize::from(area.width), |out, style| {
+        // title and notes
+        maps.iter().try_for_each(|map| map.write(out, share.saturating_sub(5).max(3), style))
     })
 }
 

@@ -45,7 +45,9 @@ pub fn note(state: &State) -> String {
         },
     };
     if structure.dimension == Dimension::Space {
-        note.push_str(&format!(" · {}", state.viewpoint().words()));
+        let viewpoint = state.viewpoint();
+        let axes = Projection::new(Dimension::Space, viewpoint).axes_in_words();
+        note.push_str(&format!(" · {} · {axes}", viewpoint.words()));
     }
     if state.view.zoom > 1.0 {
         note.push_str(&format!(" · zoom {}", short(state.view.zoom)));
@@ -164,6 +166,12 @@ impl Painter<'_> {
         self.view.place(self.displaced.at(node))
     }
 
+    /// The same with its depth.
+    fn seen(&self, node: usize) -> [f64; 3] {
+        let (x, y) = self.dot(node);
+        [x, y, self.displaced.seen(node)[2]]
+    }
+
     /// A sign at a dot, if that is in view.
     fn put(&mut self, (x, y): (f64, f64), sign: char, role: Role, word: &str) {
         if self.view.holds((x, y)) {
@@ -222,7 +230,7 @@ impl Painter<'_> {
         // those of the loading shown
         let shown = &state.shown;
         let factor = |case: &LoadCase| case.factor.value(&shown.values) * shown.multiplier(&case.name);
-        let loads = Loads::of(self.structure, &factor, &|node| self.dot(node), self.projection);
+        let loads = Loads::of(self.structure, &factor, &|node| self.seen(node), self.projection);
         let arrows = loads.arrows(BETWEEN_ARROWS);
         let words = loads.legend(&arrows, &state.shown.scenario.units);
         for arrow in &arrows.arrows {

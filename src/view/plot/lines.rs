@@ -88,7 +88,8 @@ impl<'a> Displaced<'a> {
         std::array::from_fn(|c| position[c] + self.moved.by * u[c])
     }
 
-    fn seen(&self, node: usize) -> Seen {
+    /// The same with its depth.
+    pub fn seen(&self, node: usize) -> Seen {
         self.projection.seen(self.place(node))
     }
 

@@ -4,6 +4,7 @@ use std::cell::OnceCell;
 use std::collections::HashMap;
 
 use super::canvas::{Canvas, Stroke};
+use super::depth::Seen;
 use crate::model::groups::Groups;
 use crate::model::structure::{ElementLoad, Load, LoadCase, Structure};
 use crate::model::units::Units;
@@ -35,10 +36,10 @@ impl LoadKind {
 type Cases = u128;
 
 /// A point force or a weight: its kind, its place in the picture, its force in the model, its cases.
-type Point = (LoadKind, (f64, f64), [f64; 3], Cases);
+type Point = (LoadKind, Seen, [f64; 3], Cases);
 
 /// A line load: both ends of its line in the picture, its force per length at each in the model, its cases.
-type LineLoad = ([(f64, f64); 2], [[f64; 3]; 2], Cases);
+type LineLoad = ([Seen; 2], [[f64; 3]; 2], Cases);
 
 /// Loads in a picture, all cases added up.
 #[derive(Clone, Debug, Default)]
@@ -104,7 +105,7 @@ impl Loads {
     pub fn of(
         structure: &Structure,
         factor: &dyn Fn(&LoadCase) -> f64,
-        at: &dyn Fn(usize) -> (f64, f64),
+        at: &dyn Fn(usize) -> Seen,
         projection: &Projection,
     ) -> Loads {
         let names = structure.load_cases.iter().map(|case| case.name.clone()).collect();
@@ -116,8 +117,8 @@ impl Loads {
         let on_bar = |element: usize, distance: f64| {
             let [a, b] = [0, 1].map(|end| structure.elements[element].nodes[end]);
             let share = distance / length(structure, element);
-            let ((ax, ay), (bx, by)) = (at(a), at(b));
-            (ax + share * (bx - ax), ay + share * (by - ay))
+            let (a, b) = (at(a), at(b));
+            std::array::from_fn(|c| a[c] + share * (b[c] - a[c]))
         };
         for (number, case) in structure.load_cases.iter().enumerate() {
             let (factor, cases) = (factor(case), 1 << number.min(127));
@@ -143,11 +144,12 @@ impl Loads {
                     Load::Element { element, load: ElementLoad::Body(value) } => {
                         let volume = volume(structure, element);
                         let nodes = &structure.elements[element].nodes;
-                        let sum = nodes.iter().map(|&node| at(node)).fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));
+                        let places: Vec<Seen> = nodes.iter().map(|&node| at(node)).collect();
                         let count = nodes.len().max(1) as f64;
+                        let middle = std::array::from_fn(|c| places.iter().map(|place| place[c]).sum::<f64>() / count);
                         let owner = owner.get_or_init(|| owners(structure));
                         let weight = weights.entry(owner[element]).or_default();
-                        weight.add((sum.0 / count, sum.1 / count), value.map(|b| factor * b * volume), cases);
+                        weight.add(middle, value.map(|b| factor * b * volume), cases);
                     }
                     // They have no direction, or are no forces.
                     Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
@@ -168,15 +170,15 @@ impl Loads {
         let (points, is_added) = together(self.points.clone(), apart);
         let arrow = |kind, at, force, cases| Arrow::new(kind, at, force, cases, &self.projection);
         let mut arrows: Vec<Arrow> =
-            points.into_iter().map(|(kind, at, force, cases)| arrow(kind, at, force, cases)).collect();
+            points.into_iter().map(|(kind, [x, y, _], force, cases)| arrow(kind, (x, y), force, cases)).collect();
         let mut last: Option<(f64, f64)> = None;
         for ([a, b], [from, to], cases) in &self.lines {
-            let way = (b.0 - a.0).hypot(b.1 - a.1);
+            let way = (b[0] - a[0]).hypot(b[1] - a[1]);
             let count = (way / apart).floor().clamp(1.0, 1e4) as usize;
             for step in 0..=count {
                 let t = step as f64 / count as f64;
                 let mix = |x: f64, y: f64| x + t * (y - x);
-                let place = (mix(a.0, b.0), mix(a.1, b.1));
+                let place = (mix(a[0], b[0]), mix(a[1], b[1]));
                 if last.is_some_and(|last| (place.0 - last.0).hypot(place.1 - last.1) < 0.8 * apart) {
                     continue;
                 }
@@ -240,20 +242,21 @@ impl Loads {
 struct Weight {
     force: [f64; 3],
     /// Σ |force|, and Σ |force|·place.
-    sums: [f64; 3],
+    sums: [f64; 4],
     cases: Cases,
 }
 
 impl Weight {
-    fn add(&mut self, (x, y): (f64, f64), force: [f64; 3], cases: Cases) {
+    fn add(&mut self, [x, y, z]: Seen, force: [f64; 3], cases: Cases) {
         let own = size(force);
         self.cases |= cases;
         self.force = std::array::from_fn(|c| self.force[c] + force[c]);
-        self.sums = [self.sums[0] + own, self.sums[1] + own * x, self.sums[2] + own * y];
+        let add = [own, own * x, own * y, own * z];
+        self.sums = std::array::from_fn(|k| self.sums[k] + add[k]);
     }
 
-    fn centre(&self) -> (f64, f64) {
-        (self.sums[1] / self.sums[0], self.sums[2] / self.sums[0])
+    fn centre(&self) -> Seen {
+        [1, 2, 3].map(|k| self.sums[k] / self.sums[0])
     }
 }
 
@@ -296,9 +299,9 @@ fn volume(structure: &Structure, index: usize) -> f64 {
 /// Point loads of one kind nearer than `apart` (or at one place) added up, at the centre of their sizes; whether any were
 /// at different places.
 fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
-    let mut groups: Vec<(LoadKind, (f64, f64), Weight)> = Vec::new();
+    let mut groups: Vec<(LoadKind, Seen, Weight)> = Vec::new();
     let mut cells: HashMap<(bool, i64, i64), Vec<usize>> = HashMap::new();
-    let cell = |(x, y): (f64, f64)| match apart > 0.0 {
+    let cell = |[x, y, _]: Seen| match apart > 0.0 {
         true => ((x / apart).floor() as i64, (y / apart).floor() as i64),
         false => (x.to_bits() as i64, y.to_bits() as i64),
     };
@@ -313,8 +316,8 @@ fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
             .flatten()
             .copied()
             .filter(|&group| {
-                let (_, (x, y), _) = groups[group];
-                (x - at.0).hypot(y - at.1) <= 0.8 * apart
+                let (_, [x, y, z], _) = groups[group];
+                (x - at[0]).hypot(y - at[1]) <= 0.8 * apart && (apart > 0.0 || z == at[2])
             })
             .min();
         let group = near.unwrap_or_else(|| {
@@ -416,10 +419,11 @@ impl Drawn {
 mod tests {
     use super::*;
     use crate::model::vector::flat;
+    use crate::view::projection::Viewpoint;
 
     fn nodal(points: &[((f64, f64), [f64; 2])]) -> Loads {
         Loads {
-            points: points.iter().map(|&(at, force)| (LoadKind::Force, at, flat(force), 1)).collect(),
+            points: points.iter().map(|&(at, force)| (LoadKind::Force, [at.0, at.1, 0.0], flat(force), 1)).collect(),
             ..Loads::default()
         }
     }
@@ -438,6 +442,29 @@ mod tests {
         assert!(!apart.is_added && apart.arrows.len() == 3);
     }
 
+    /// Two loads of which one stands behind the other are two, and told to be added up where they are drawn as one.
+    #[test]
+    fn loads_behind_each_other_are_told_to_be_added_up() {
+        let points = [1.0, 5.0].map(|depth| (LoadKind::Force, [0.0, 0.0, depth], [0.0, -2.0, 0.0], 1)).to_vec();
+        let (kept, is_added) = together(points, 0.0);
+        assert!(kept.len() == 2 && !is_added);
+        let loads = Loads { points: kept, ..Loads::default() };
+        let found = loads.arrows(1.0);
+        assert!(found.is_added && found.arrows.len() == 1 && found.arrows[0].force == [0.0, -4.0, 0.0]);
+    }
+
+    /// A force along the view has no direction in the picture, but a sign and its size.
+    #[test]
+    fn a_force_along_the_view_is_seen_from_its_end() {
+        let from_above = Projection::new(crate::model::structure::Dimension::Space, Viewpoint::named("XY").unwrap());
+        for (force, sign, ascii) in [([0.0, 0.0, -5.0], '⊗', 'X'), ([0.0, 0.0, 5.0], '⊙', '@')] {
+            let arrow = Arrow::new(LoadKind::Force, (0.0, 0.0), force, 1, &from_above);
+            assert_eq!(arrow.direction(), None);
+            let drawn = Drawn::new(&arrow, (0.0, 0.0), (0.0, 0.0), 10.0);
+            assert_eq!((drawn.sign(false), drawn.sign(true)), (sign, ascii));
+        }
+    }
+
     #[test]
     fn what_cancels_out_has_no_arrow() {
         let loads = nodal(&[((0.0, 0.0), [1.0, 0.0]), ((0.0, 0.0), [-1.0, 0.0]), ((3.0, 0.0), [1.0, 0.0])]);
@@ -448,7 +475,7 @@ mod tests {
     /// From 0 to 4 over a length of 8, an arrow every 2: 0 (none), 1, 2, 3, 4.
     #[test]
     fn a_line_load_has_arrows_as_long_as_its_values() {
-        let line = ([(0.0, 0.0), (8.0, 0.0)], [[0.0; 3], [0.0, -4.0, 0.0]], 1);
+        let line = ([[0.0; 3], [8.0, 0.0, 0.0]], [[0.0; 3], [0.0, -4.0, 0.0]], 1);
         let loads = Loads { lines: vec![line], ..Loads::default() };
         let found = loads.arrows(2.0);
         let shares: Vec<f64> = found.arrows.iter().map(|arrow| arrow.share).collect();
@@ -460,7 +487,7 @@ mod tests {
     /// A body of 20 under its weight and a quake of a quarter of it, pushed at one place by two cases, at another by one.
     #[test]
     fn an_arrow_is_labelled_by_what_it_sums() {
-        let point = |kind, x: f64, force, cases| (kind, (x, 0.0), flat(force), cases);
+        let point = |kind, x: f64, force, cases| (kind, [x, 0.0, 0.0], flat(force), cases);
         let mut loads = Loads {
             points: vec![
                 point(LoadKind::Weight, 0.0, [0.0, -20.0], 0b1),

@@ -6,6 +6,7 @@ pub mod canvas;
 pub mod chart;
 pub mod depth;
 pub mod diagram;
+pub mod face_map;
 pub mod lines;
 pub mod loads;
 pub mod path;

@@ -173,7 +173,7 @@ impl Scene {
             title.push_str(&format!(" · displacements × {}", short(factor)));
         }
         if structure.dimension == Dimension::Space {
-            title.push_str(&format!(" · {}", picture.viewpoint.words()));
+            title.push_str(&format!(" · {} · {}", picture.viewpoint.words(), projection.axes_in_words()));
         }
         let at_rest = Displaced::new(structure, Move::default(), &projection);
         let displaced = Displaced::new(structure, Move { u: moved, factors, by: factor }, &projection);
@@ -205,7 +205,7 @@ impl Scene {
             supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
             pairs: structure.pairs.iter().enumerate().map(mark).collect(),
             loads: loads.map_or_else(Loads::default, |parameters| {
-                Loads::of(structure, &|case| case.factor.value(parameters), &at, &projection)
+                Loads::of(structure, &|case| case.factor.value(parameters), &|node| displaced.seen(node), &projection)
             }),
             diagrams: Vec::new(),
             before,

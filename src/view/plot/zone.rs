@@ -168,8 +168,15 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
                 if let Some(first) = plus.first_mut() {
                     first.label = if several { format!("{label}: bound") } else { "±(f x_n + c)".into() };
                 }
+                let in_space = pairs.iter().any(|pair| pair.space.is_some());
+                if in_space && let Some(first) = plus.first_mut().filter(|_| !several) {
+                    first.label = "f x_n + c".into();
+                }
                 push(plus, Line::Dotted);
-                push(minus, Line::Dotted);
+                // a magnitude has one bound
+                if !in_space {
+                    push(minus, Line::Dotted);
+                }
                 push(force, Line::Marked);
             }
         }

@@ -2,6 +2,7 @@
 //! colour-blind (Okabe and Ito), and nothing is said by colour alone.
 
 pub mod chart;
+pub mod face_map;
 pub mod forces;
 pub mod map;
 pub mod structure;

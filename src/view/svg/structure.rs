@@ -8,6 +8,7 @@ use crate::view::plot::lines::Face;
 use crate::view::plot::loads::{Arrow, LoadKind};
 use crate::view::plot::scene::Scene;
 use crate::view::plot::structure::support_word;
+use crate::view::projection::Projection;
 
 /// px between arrows of loads.
 const APART: f64 = 24.0;
@@ -60,8 +61,32 @@ impl Place {
         (self.left + (x - self.corner.0) * self.scale, self.top + (self.corner.1 - y) * self.scale)
     }
 
+    /// Height of the whole area.
+    pub(super) fn height(&self) -> f64 {
+        self.height
+    }
+
     pub(super) fn all(&self, lines: &[Vec<(f64, f64)>]) -> Vec<Vec<(f64, f64)>> {
         lines.iter().map(|line| line.iter().map(|&point| self.at(point)).collect()).collect()
+    }
+
+    /// The axes of the model, each with a length of it as long as it is seen, in the right lower corner.
+    fn axes(&self, drawing: &mut Drawing, projection: &Projection, unit: Option<&str>) {
+        if self.has_no_size {
+            return;
+        }
+        let length = round_length(60.0 / self.scale);
+        let origin = (WIDTH - MARGIN - 70.0, drawing.y - 16.0);
+        for (c, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let (x, y) = projection.flat(std::array::from_fn(|k| if k == c { length * self.scale } else { 0.0 }));
+            let tip = (origin.0 + x, origin.1 - y);
+            drawing.line(origin, tip, BLACK, 1.2, "");
+            let size = x.hypot(y).max(1.0);
+            let beyond = (tip.0 + 9.0 * x / size, tip.1 - 9.0 * y / size + 4.0);
+            drawing.text(beyond, name, SMALL, Anchor::Middle, BLACK, "");
+        }
+        let label = format!("{} along each axis", with_unit(&short(length), unit));
+        drawing.text((origin.0 - 64.0, drawing.y), &label, SMALL, Anchor::End, BLACK, "");
     }
 
     /// A length of the model, drawn as long as it is.
@@ -69,9 +94,7 @@ impl Place {
         if self.has_no_size {
             return;
         }
-        let most = 150.0 / self.scale;
-        let power = 10f64.powi(most.log10().floor() as i32);
-        let length = [5.0, 2.0].into_iter().map(|digit| digit * power).find(|length| *length <= most).unwrap_or(power);
+        let length = round_length(150.0 / self.scale);
         let (x, y) = (WIDTH - MARGIN - length * self.scale, drawing.y);
         drawing.line((x, y), (WIDTH - MARGIN, y), BLACK, 1.5, "");
         for x in [x, WIDTH - MARGIN] {
@@ -80,6 +103,12 @@ impl Place {
         let label = with_unit(&short(length), unit);
         drawing.text((x - 8.0, y + 4.0), &label, SMALL, Anchor::End, BLACK, "");
     }
+}
+
+/// A length of 5, 2 or 1 × 10^k, at most so long.
+fn round_length(most: f64) -> f64 {
+    let power = 10f64.powi(most.log10().floor() as i32);
+    [5.0, 2.0].into_iter().map(|digit| digit * power).find(|length| *length <= most).unwrap_or(power)
 }
 
 /// The sign of a pair; a slip points along `towards`, in the figure, and is a diamond where that cannot be seen.
@@ -171,7 +200,11 @@ pub fn figure(scene: &Scene, units: &Units, caption: &Caption) -> String {
         note(&mut legend, Sign::Undeformed, "undeformed");
     }
     drawing.y = top + place.height;
-    place.scale_bar(&mut drawing, units.length.as_deref());
+    if scene.projection.is_along_axes() {
+        place.scale_bar(&mut drawing, units.length.as_deref());
+    } else {
+        place.axes(&mut drawing, &scene.projection, units.length.as_deref());
+    }
     drawing.y += 4.0;
     drawing.legend(&legend);
     drawing.finish()

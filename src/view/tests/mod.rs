@@ -3,3 +3,4 @@
 mod random;
 pub(crate) mod sample;
 mod snapshots;
+mod space;

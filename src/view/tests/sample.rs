@@ -9,6 +9,7 @@ use crate::model::pair::{Law, LawKind, Pair};
 use crate::model::parameter::{Number, Parameter};
 use crate::model::rules::Rules;
 use crate::model::scenario::{Places, Scenario, Source};
+use crate::model::space_section::{EndJoint, SpaceSection};
 use crate::model::structure::*;
 use crate::model::units::Units;
 
@@ -285,6 +286,77 @@ pub fn block([nx, ny, nz]: [usize; 3], size: [f64; 3]) -> Structure {
         structure.pairs.push(Pair { normal, tangents, ..ground_pair(&format!("g[{node}]"), node) });
     }
     structure
+}
+
+/// Four columns of two storeys, braced by beams, on frictional ground, pushed at the top.
+pub fn tower() -> Structure {
+    let mut structure = Structure { dimension: Dimension::Space, materials: vec![steel()], ..Structure::default() };
+    for k in 0..3 {
+        for (i, j) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
+            let position = [4.0 * f64::from(i), 3.0 * f64::from(j), 3.0 * f64::from(k)];
+            structure.nodes.push(Node { id: format!("n{i}{j}{k}"), position });
+        }
+    }
+    let mut bar = |nodes: Vec<usize>| {
+        let section = SpaceSection {
+            area: 0.01,
+            inertia_y: 1e-4,
+            inertia_z: 1e-4,
+            torsion: 1e-4,
+            shear_area_y: None,
+            shear_area_z: None,
+        };
+        let joints = [EndJoint::Rigid; 2];
+        structure.elements.push(Element {
+            nodes,
+            material: 0,
+            kind: ElementKind::SpaceFrame { section, orientation: None, joints },
+        });
+        let element = structure.elements.len();
+        structure.bars.push(Bar { id: format!("b{element}"), elements: element - 1..element });
+    };
+    for k in 0..2 {
+        (0..4).for_each(|corner| bar(vec![4 * k + corner, 4 * k + 4 + corner]));
+        (0..4).for_each(|corner| bar(vec![4 * k + 4 + corner, 4 * k + 4 + (corner + 1) % 4]));
+    }
+    for node in 0..4 {
+        let normal = [0.0, 0.0, 1.0];
+        let tangents = Dimension::Space.tangents(normal);
+        structure.pairs.push(Pair { normal, tangents, ..ground_pair(&format!("g{node}"), node) });
+    }
+    let push = |node: usize, force: [f64; 3]| Load::Nodal { node, force, moment: [0.0; 3] };
+    structure.load_cases = vec![LoadCase {
+        name: "wind".into(),
+        factor: Number::Value(1.0),
+        loads: vec![push(8, [0.0, 20.0, 0.0]), push(9, [0.0, 20.0, 0.0]), push(10, [0.0, 0.0, -50.0])],
+    }];
+    structure
+}
+
+/// States of the pairs of a [`block`]: at x they slip by x mm towards 30° from t1, at x = 0 they stick.
+pub fn block_states(structure: &Structure) -> Vec<PairState> {
+    let (s, c) = 30.0_f64.to_radians().sin_cos();
+    let state = |pair: &Pair| {
+        let slip = 1e-3 * structure.nodes[pair.node].position[0];
+        let (x_n, bound) = (100.0, 50.0);
+        PairState {
+            id: pair.id.clone(),
+            law: LawKind::Coulomb,
+            state: if slip > 0.0 { State::Slip } else { State::Stick },
+            held: None,
+            x_n,
+            x_t: bound,
+            z_n: 0.0,
+            z_t: slip,
+            bound,
+            reserve_plus: 0.0,
+            reserve_minus: 0.0,
+            position: None,
+            joint: 0,
+            space: Some(InSpace { x_t: [-bound * c, -bound * s], z_t: [slip * c, slip * s], frame: None }),
+        }
+    };
+    structure.pairs.iter().map(state).collect()
 }
 
 fn point(node: usize, [x, y]: [f64; 2]) -> Load {

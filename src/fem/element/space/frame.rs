@@ -80,6 +80,13 @@ impl SpaceFrame {
         (0..12).filter(|row| row % 6 < 3 || self.joints[row / 6] != EndJoint::Ball).collect()
     }
 
+    /// All twelve displacements, those of the rows that are left out 0.
+    fn with_left_out(&self, u: &[f64]) -> Vector12 {
+        let mut all = Vector12::zeros();
+        self.rows().into_iter().zip(u).for_each(|(row, u)| all[row] = *u);
+        all
+    }
+
     fn stiffness_in<T: Real>(&self) -> Result<Stiffness<T>, AxesFault> {
         let k = self.global_stiffness(&BarAxes::<T>::in_space(self.ends, self.orientation)?);
         let rows = self.rows();
@@ -166,11 +173,22 @@ impl FiniteElement for SpaceFrame {
 
     fn bar_forces(&self, u: &[f64], acting: &Acting) -> Option<BarForces> {
         let load = BarLoad::of(acting, &self.axes, self.area);
-        let mut all = Vector12::zeros();
-        for (row, u) in self.rows().into_iter().zip(u) {
-            all[row] = *u;
-        }
-        Some(load.forces_along(self.end_forces(&all, &load), self.axes.length))
+        Some(load.forces_along(self.end_forces(&self.with_left_out(u), &load), self.axes.length))
+    }
+
+    fn elastic_curve(&self, u: &[f64], acting: &Acting, shares: &[f64]) -> Option<Vec<[f64; 3]>> {
+        let load = BarLoad::of(acting, &self.axes, self.area);
+        let all = self.with_left_out(u);
+        let forces = load.forces_along(self.end_forces(&all, &load), self.axes.length);
+        forces.pieces.first()?; // there is none where the length is no number
+        let local = rotation(&self.axes) * all;
+        let places: Vec<f64> = shares.iter().map(|share| share * self.axes.length).collect();
+        let [y, z] = [(0, 1), (1, 2)].map(|(beam, row): (usize, usize)| {
+            self.beams[beam].curve(&load, &forces, [local[0], local[row]], local[6 + row], &places)
+        });
+        // what pulls along the bar belongs to the first
+        let across = z.into_iter().map(|[_, w]| w);
+        Some(y.into_iter().zip(across).map(|([u, v], w)| self.axes.to_global([u, v, w])).collect())
     }
 }
 

@@ -40,7 +40,11 @@ impl Session {
         let units = &self.now.scenario.units;
         let zone = |quantity| -> Result<String, CommandError> {
             let states = self.zone_states(of)?;
-            Ok(self.chart_figure(&zone::drawing(quantity, &borrowed(&states), units), ""))
+            match self.faces(quantity, &states) {
+                // pairs beside faces, if any, are in the table of the pairs
+                (maps, _) if !maps.is_empty() => Ok(svg::face_map::figure(&maps, &self.about())),
+                (_, states) => Ok(self.chart_figure(&zone::drawing(quantity, &borrowed(&states), units), "")),
+            }
         };
         match what {
             Exported::Slip => zone(Quantity::Slip),

@@ -424,3 +424,26 @@ fn rows_and_doubled_precision() {
         assert!(frame.bar_forces(u.as_slice(), &[]).is_some());
     }
 }
+
+/// Without a load between the nodes and without shear: linear along the bar, cubic across it, with slopes θ × e at the ends.
+#[test]
+fn the_elastic_curve_of_an_unloaded_bar_is_cubic() {
+    let mut random = ChaCha8Rng::seed_from_u64(19);
+    let ends = [[0.3, -0.2, 0.5], [1.7, 0.9, -0.4]];
+    let bar = frame(ends, Some([0.2, 1.0, 0.3]), false, [EndJoint::Rigid; 2]);
+    let (length, e) = (bar.axes.length, Vector3::from(bar.axes.x));
+    let u: Vec<f64> = (0..12).map(|_| random.random_range(-1.0..1.0)).collect();
+    let vector = |row: usize| Vector3::new(u[row], u[row + 1], u[row + 2]);
+    let (ua, ub, slope_a, slope_b) = (vector(0), vector(6), vector(3).cross(&e), vector(9).cross(&e));
+    let across = |v: Vector3<f64>| v - e * e.dot(&v);
+    let shares = [0.0, 0.2, 0.55, 1.0];
+    let curve = bar.elastic_curve(&u, &[], &shares).unwrap();
+    for (t, found) in shares.into_iter().zip(curve) {
+        let along = e * (e.dot(&ua) * (1.0 - t) + e.dot(&ub) * t);
+        let cubic = across(ua) * (1.0 - 3.0 * t * t + 2.0 * t * t * t)
+            + across(ub) * (3.0 * t * t - 2.0 * t * t * t)
+            + slope_a * (length * (t - 2.0 * t * t + t * t * t))
+            + slope_b * (length * (t * t * t - t * t));
+        assert!((Vector3::from(found) - along - cubic).amax() < 1e-13, "{found:?} at {t}");
+    }
+}

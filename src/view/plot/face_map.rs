@@ -1,0 +1,344 @@
+//! Slip, friction force, opening and pressure over a face of contact, whose pairs lie on a plane and not on a line: a map of
+//! cells, each as its nearest pair.
+
+use std::io::{self, Write};
+
+use super::lines::straight_order;
+use super::structure::pair_sign;
+use super::zone::Quantity;
+use crate::answer::record::{PairState, State};
+use crate::answer::rounding::denoised;
+use crate::model::structure::Structure;
+use crate::model::units::Units;
+use crate::model::vector::{dot, way};
+use crate::text::number::{heading, short, with_unit};
+use crate::view::style::{Role, Style};
+use crate::view::{force_unit, length_unit};
+
+/// Nodes this far out of the plane, of the size of the face, are on another one.
+const FLAT: f64 = 1e-6;
+/// Levels of a value, from 0 on.
+pub const LEVELS: usize = 10;
+/// Rows that a character is higher than wide.
+const ASPECT: f64 = 2.0;
+
+/// A pair on a face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spot {
+    /// Its place along t1 and t2.
+    pub at: (f64, f64),
+    /// Its name.
+    pub id: String,
+    /// Its state.
+    pub state: State,
+    /// The value shown there.
+    pub value: f64,
+    /// Unit vector of its slip along t1 and t2; `None` where it does not slip.
+    pub towards: Option<(f64, f64)>,
+}
+
+/// A quantity over one face, as seen from the second side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaceMap {
+    /// What is shown, with the name of the face.
+    pub title: String,
+    /// Unit of the values.
+    pub unit: Option<String>,
+    /// The pairs.
+    pub spots: Vec<Spot>,
+    /// The largest value.
+    pub largest: f64,
+    /// Least distance of two pairs along t1 and along t2.
+    pub spacing: (f64, f64),
+    /// t1 and t2.
+    pub tangents: [[f64; 3]; 2],
+    quantity: Quantity,
+}
+
+/// The faces among the contacts of a structure in space, each with this quantity, and the pairs that are on none.
+pub fn faces(
+    structure: &Structure,
+    states: &[PairState],
+    quantity: Quantity,
+    units: &Units,
+) -> (Vec<FaceMap>, Vec<PairState>) {
+    let (mut maps, mut rest) = (Vec::new(), Vec::new());
+    let mut joints: Vec<(usize, Vec<usize>)> = Vec::new();
+    for (index, state) in states.iter().enumerate() {
+        match joints.iter_mut().find(|(joint, _)| *joint == state.joint) {
+            Some((_, pairs)) => pairs.push(index),
+            None => joints.push((state.joint, vec![index])),
+        }
+    }
+    for (_, pairs) in joints {
+        match FaceMap::of(structure, states, &pairs, quantity, units) {
+            Some(map) => maps.push(map),
+            None => rest.extend(pairs.into_iter().map(|pair| states[pair].clone())),
+        }
+    }
+    (maps, rest)
+}
+
+impl FaceMap {
+    /// Of these pairs; `None` where they are on no plane, or on a line.
+    fn of(
+        structure: &Structure,
+        states: &[PairState],
+        pairs: &[usize],
+        quantity: Quantity,
+        units: &Units,
+    ) -> Option<FaceMap> {
+        let first = structure.pairs.get(*pairs.first()?)?;
+        let &[t1, t2] = &first.tangents[..] else { return None };
+        let place = |pair: usize| structure.nodes[structure.pairs[pair].node].position;
+        let places: Vec<[f64; 3]> = pairs.iter().map(|&pair| place(pair)).collect();
+        if straight_order(&places).is_some() {
+            return None;
+        }
+        let from = places[0];
+        let at: Vec<(f64, f64)> = places.iter().map(|&p| (dot(way(from, p), t1), dot(way(from, p), t2))).collect();
+        let size = at.iter().map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max);
+        if places.iter().any(|&p| dot(way(from, p), first.normal).abs() > FLAT * size) {
+            return None;
+        }
+        let value = |state: &PairState| match quantity {
+            Quantity::Slip => state.z_t.abs(),
+            Quantity::Force => state.x_t.abs(),
+            Quantity::Gap => state.z_n,
+            Quantity::Pressure => state.x_n,
+        };
+        let of = || pairs.iter().map(|&pair| &states[pair]);
+        // what is rounding beside the other values of its unit is nothing
+        let scale = of().map(|state| match quantity {
+            Quantity::Slip | Quantity::Gap => state.z_t.abs().max(state.z_n),
+            Quantity::Force | Quantity::Pressure => state.x_t.abs().max(state.x_n),
+        });
+        let scale = scale.fold(0.0, f64::max);
+        let spot = |(state, at): (&PairState, (f64, f64))| Spot {
+            at,
+            id: state.id.clone(),
+            state: state.state,
+            value: denoised(value(state), scale),
+            towards: direction(&state.slip()).filter(|_| state.state == State::Slip),
+        };
+        let spots: Vec<Spot> = of().zip(at.iter().copied()).map(spot).collect();
+        let largest = spots.iter().map(|spot| spot.value).fold(0.0, f64::max);
+        let name = match spots[0].id.split_once('[') {
+            Some((face, _)) => face,
+            None => &spots[0].id,
+        };
+        let (what, unit) = match quantity {
+            Quantity::Slip => ("Slip |z_τ|", length_unit(units)),
+            Quantity::Force => ("Friction force |x_τ|", force_unit(units)),
+            Quantity::Gap => ("Opening z_n", length_unit(units)),
+            Quantity::Pressure => ("Pressing force x_n", force_unit(units)),
+        };
+        let title = format!("{} over {name}", heading(what, unit.as_deref()));
+        let spacing = (least_step(at.iter().map(|at| at.0), size), least_step(at.iter().map(|at| at.1), size));
+        Some(FaceMap { title, unit, spots, largest, spacing, tangents: [t1, t2], quantity })
+    }
+
+    /// Level of a value, 0 … [`LEVELS`] − 1: tenths of the largest.
+    pub fn level(&self, value: f64) -> usize {
+        if self.largest <= 0.0 {
+            return 0;
+        }
+        ((value / self.largest * LEVELS as f64) as usize).min(LEVELS - 1)
+    }
+
+    /// Least and largest place along t1 and t2, half a cell beyond the pairs.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        let range = |read: fn(&Spot) -> f64, step: f64| {
+            let values = self.spots.iter().map(read);
+            let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+            [low - 0.5 * step, high + 0.5 * step]
+        };
+        [range(|spot| spot.at.0, self.spacing.0), range(|spot| spot.at.1, self.spacing.1)]
+    }
+
+    /// What stands under the map.
+    pub fn notes(&self) -> Vec<String> {
+        let most = self.spots.iter().max_by(|a, b| a.value.total_cmp(&b.value));
+        let largest = match most.filter(|_| self.largest > 0.0) {
+            Some(most) => format!(
+                "0 … 9: tenths of the largest, {} at {}",
+                with_unit(&short(self.largest), self.unit.as_deref()),
+                most.id
+            ),
+            None => "0 everywhere".to_owned(),
+        };
+        let vector = |v: [f64; 3]| format!("({}, {}, {})", short(tidy(v[0])), short(tidy(v[1])), short(tidy(v[2])));
+        let [t1, t2] = self.tangents.map(vector);
+        let mut notes = vec![largest, format!("to the right t1 = {t1}, upwards t2 = {t2}")];
+        if matches!(self.quantity, Quantity::Slip | Quantity::Force) {
+            let slipping = self.spots.iter().filter(|spot| spot.state == State::Slip).count();
+            notes.push(format!("{slipping} of {} pairs slip", self.spots.len()));
+        }
+        notes
+    }
+
+    /// Columns and rows of a map in characters, and the size of a column.
+    fn raster(&self, width: usize, height: usize) -> (usize, usize, f64) {
+        let [[left, right], [bottom, top]] = self.bounds();
+        let (wide, high) = (right - left, top - bottom);
+        let least = (wide / width.max(1) as f64).max(high / (ASPECT * height.max(1) as f64));
+        // a whole number of columns to a pair, where there is room
+        let columns_to_a_pair = (self.spacing.0 / least).floor();
+        let column = if columns_to_a_pair >= 1.0 { self.spacing.0 / columns_to_a_pair } else { least };
+        let count = |size: f64, most: usize| ((size).round() as usize).clamp(1, most.max(1));
+        (count(wide / column, width), count(high / (ASPECT * column), height), column)
+    }
+
+    /// Draws the map, at most `height` rows high.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(&self, out: &mut dyn Write, height: usize, style: &Style) -> io::Result<()> {
+        writeln!(out, "{}", style.paint(Role::Title, &style.fit(&style.text(&self.title), style.width)))?;
+        let (columns, rows, _) = self.raster(style.width.saturating_sub(2).max(4), height);
+        let [[left, right], [bottom, top]] = self.bounds();
+        let at = |k: f64, count: usize, [low, high]: [f64; 2]| low + (high - low) * k / count as f64;
+        let cell = |spot: &Spot| {
+            let share = |x: f64, [low, high]: [f64; 2]| (x - low) / (high - low);
+            let column = (share(spot.at.0, [left, right]) * columns as f64) as usize;
+            let row = ((1.0 - share(spot.at.1, [bottom, top])) * rows as f64) as usize;
+            (column.min(columns - 1), row.min(rows - 1))
+        };
+        // a pair has a sign of its own where its cell is wide enough to show its level too
+        let has_signs = columns as f64 * self.spacing.0 >= 3.0 * (right - left);
+        for row in 0..rows {
+            let y = at((rows - row) as f64 - 0.5, rows, [bottom, top]);
+            let mut cells: Vec<(char, Role)> = vec![(' ', Role::Plain)];
+            for column in 0..columns {
+                let x = at(column as f64 + 0.5, columns, [left, right]);
+                cells.push(self.nearest((x, y)).map_or((' ', Role::Plain), |spot| {
+                    if has_signs && cell(spot) == (column, row) {
+                        return (pair_sign(spot.state, spot.towards, style.ascii), Role::State(spot.state));
+                    }
+                    let level = self.level(spot.value);
+                    (char::from(b'0' + level as u8), level_role(level))
+                }));
+            }
+            writeln!(out, "{}", super::canvas::paint_runs(&cells, style))?;
+        }
+        let mut notes = self.notes();
+        if has_signs {
+            notes.push(self.states_in_words(style));
+        }
+        style.paragraph(out, Role::Muted, &notes.join(&format!(" {} ", style.dot())))
+    }
+
+    /// The signs that occur with their words.
+    fn states_in_words(&self, style: &Style) -> String {
+        let mut words: Vec<String> = Vec::new();
+        for spot in &self.spots {
+            let sign = match spot.state {
+                State::Slip => {
+                    if style.ascii {
+                        '>'
+                    } else {
+                        '▶'
+                    }
+                }
+                state => pair_sign(state, None, style.ascii),
+            };
+            let word = format!("{sign} {}", spot.state.word());
+            if !words.contains(&word) {
+                words.push(word);
+            }
+        }
+        words.join(", ")
+    }
+
+    /// The pair nearest to a place, if one is near.
+    fn nearest(&self, (x, y): (f64, f64)) -> Option<&Spot> {
+        let (dx, dy) = self.spacing;
+        let away = |spot: &Spot| ((spot.at.0 - x) / dx).hypot((spot.at.1 - y) / dy);
+        let nearest = self.spots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        // the corner of a cell is √½ away
+        (away(nearest) <= 1.0).then_some(nearest)
+    }
+}
+
+/// Unit vector along a slip.
+fn direction(slip: &[f64]) -> Option<(f64, f64)> {
+    let &[along, across] = slip else { return None };
+    let size = along.hypot(across);
+    (size > 0.0).then(|| (along / size, across / size))
+}
+
+/// −0 and what is rounding of a unit vector are 0.
+fn tidy(entry: f64) -> f64 {
+    if entry.abs() < 1e-12 { 0.0 } else { entry }
+}
+
+/// The least step between values that differ; `size` where they do not.
+fn least_step(values: impl Iterator<Item = f64>, size: f64) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let steps = values.windows(2).map(|two| two[1] - two[0]).filter(|step| *step > 1e-3 * size);
+    let least = steps.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { size }
+}
+
+/// From cold to hot.
+fn level_role(level: usize) -> Role {
+    match level {
+        0 => Role::Muted,
+        1..=2 => Role::Series(4),
+        3..=4 => Role::Series(0),
+        5..=6 => Role::Series(3),
+        7..=8 => Role::Series(1),
+        _ => Role::Series(5),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::tests::sample::{block, block_states, units};
+
+    /// Pairs of a block on a grid of 3 × 2 elements, whose slip grows with x: the largest at the right edge.
+    #[test]
+    fn a_face_is_a_map_and_a_line_is_none() {
+        let structure = block([3, 2, 1], [3.0, 2.0, 1.0]);
+        let states = block_states(&structure);
+        let (maps, rest) = faces(&structure, &states, Quantity::Slip, &units());
+        let [map] = &maps[..] else { panic!("{maps:?}") };
+        assert!(rest.is_empty());
+        assert_eq!(map.title, "Slip |z_τ| [m] over g");
+        assert_eq!((map.spacing, map.bounds()), ((1.0, 1.0), [[-0.5, 3.5], [-0.5, 2.5]]));
+        // z_t = x mm at (x, y)
+        assert!((map.largest - 3e-3).abs() < 1e-15);
+        let levels: Vec<usize> = map.spots.iter().map(|spot| map.level(spot.value)).collect();
+        assert_eq!(levels, [0, 3, 6, 9].repeat(3));
+        // it slips at 30° from t1 but where it sticks, at x = 0
+        for spot in &map.spots {
+            match spot.towards {
+                Some((c, s)) => assert!((s.atan2(c).to_degrees() - 30.0).abs() < 1e-9 && spot.at.0 > 0.0),
+                None => assert_eq!(spot.at.0, 0.0),
+            }
+        }
+        let mut line = structure.clone();
+        line.pairs.truncate(4);
+        let (maps, rest) = faces(&line, &states[..4], Quantity::Slip, &units());
+        assert!(maps.is_empty() && rest.len() == 4);
+        // a pair above the others is on no plane with them
+        let mut bent = structure.clone();
+        bent.pairs[0].node = bent.nodes.len() - 1;
+        assert!(faces(&bent, &states, Quantity::Slip, &units()).0.is_empty());
+    }
+
+    #[test]
+    fn a_map_in_characters_shows_levels_and_states() {
+        let structure = block([3, 2, 1], [3.0, 2.0, 1.0]);
+        let states = block_states(&structure);
+        let (maps, _) = faces(&structure, &states, Quantity::Slip, &units());
+        for style in [Style { width: 40, ..Style::default() }, Style { width: 40, ascii: true, ..Style::default() }] {
+            let mut out = Vec::new();
+            maps[0].write(&mut out, 12, &style).unwrap();
+            let text = String::from_utf8(out).unwrap();
+            insta::assert_snapshot!(if style.ascii { "face_map_ascii" } else { "face_map" }, text);
+        }
+    }
+}
