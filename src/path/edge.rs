@@ -9,7 +9,7 @@ use crate::answer::record::{OutcomeKind, RayClass, Verdict};
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
 use crate::model::uses::Redone;
-use crate::solve::Case;
+use crate::solve::{Case, Solved};
 
 /// Values looked at before the search between two of them.
 const CELLS: usize = 32;
@@ -42,7 +42,13 @@ pub struct Run {
 }
 
 impl Run {
-    fn is_answer(&self) -> bool {
+    pub(super) fn of(value: f64, solved: &Solved) -> Run {
+        let ray = solved.ray.as_ref();
+        let (class, verdict) = (ray.map(|ray| ray.class), ray.and_then(|ray| ray.verdict));
+        Run { value, outcome: solved.answer.outcome, class, verdict }
+    }
+
+    pub(super) fn is_answer(&self) -> bool {
         self.outcome.is_answer()
     }
 
@@ -72,16 +78,8 @@ pub struct Edge {
 /// # Errors
 /// No answer anywhere in the range; see [`PathError`].
 pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result<Edge, PathError> {
-    let run = |value: f64| -> Result<Run, PathError> {
-        let solved = case.at(name, value)?.case(case).solve_pairs()?;
-        let ray = solved.ray.as_ref();
-        Ok(Run {
-            value,
-            outcome: solved.answer.outcome,
-            class: ray.map(|ray| ray.class),
-            verdict: ray.and_then(|ray| ray.verdict),
-        })
-    };
+    let run =
+        |value: f64| -> Result<Run, PathError> { Ok(Run::of(value, &case.at(name, value)?.case(case).solve_pairs()?)) };
     let [from, to] = if which == Which::Least { range } else { [range[1], range[0]] };
     let mut before: Vec<Run> = Vec::new();
     let mut answer = None;
@@ -95,7 +93,7 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
         }
         before.push(next);
     }
-    let Some(mut answer) = answer else {
+    let Some(answer) = answer else {
         return Err(PathError::Missing(format!(
             "no answer was found at any of {} values of {name} from {} to {}",
             CELLS + 1,
@@ -103,7 +101,6 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
             range[1]
         )));
     };
-    let mut unknown = 0;
     let Some(mut collapse) = before.pop() else {
         return Ok(Edge { value: answer.value, exact: false, answer, collapse: None, beyond: false });
     };
@@ -112,6 +109,25 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
         let Some(farther) = before.pop() else { break };
         collapse = farther;
     }
+    let [answer, collapse] = narrowed(&run, answer, collapse)?;
+    let exact = end_of_path(case, name, &answer, &collapse)?;
+    Ok(Edge {
+        value: exact.unwrap_or(answer.value),
+        exact: exact.is_some(),
+        // A motion that certifies the collapse does so under less friction too; a search through the schemes holds only there.
+        beyond: which == Which::Least && collapse.verdict == Some(Verdict::Certified) && is_friction_alone(case, name),
+        answer,
+        collapse: Some(collapse),
+    })
+}
+
+/// The answer and the collapse nearest to each other that further runs between them show.
+pub(super) fn narrowed(
+    run: &dyn Fn(f64) -> Result<Run, PathError>,
+    mut answer: Run,
+    mut collapse: Run,
+) -> Result<[Run; 2], PathError> {
+    let mut unknown = 0;
     while (answer.value - collapse.value).abs() > NARROW * answer.value.abs().max(collapse.value.abs()) {
         // Where a proof fails close to the edge, nearer to it there may still be one.
         let share = SHARES[unknown];
@@ -131,15 +147,7 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
             }
         }
     }
-    let exact = end_of_path(case, name, &answer, &collapse)?;
-    Ok(Edge {
-        value: exact.unwrap_or(answer.value),
-        exact: exact.is_some(),
-        // A motion that certifies the collapse does so under less friction too; a search through the schemes holds only there.
-        beyond: which == Which::Least && collapse.verdict == Some(Verdict::Certified) && is_friction_alone(case, name),
-        answer,
-        collapse: Some(collapse),
-    })
+    Ok([answer, collapse])
 }
 
 /// Where the exact path from the answer towards the collapse ends, between the two or within their rounding.

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::edge::{Which, edge};
 use super::end::PathEnd;
+use super::limit_by_runs::limit_by_runs;
 use super::load::{LoadPath, LoadReach, trace};
+use super::load_parameter::LoadParameter;
 use super::start::PathError;
 use crate::answer::record::{Ray, Verdict};
 use crate::contact::problem::ContactProblem;
@@ -16,13 +18,17 @@ use crate::solve::{Case, Prepared, Solved};
 use crate::text::number::short;
 
 /// The limit is confirmed by independent runs at (1 ± this) of it.
-const BESIDE: f64 = 1e-6;
+pub(super) const BESIDE: f64 = 1e-6;
 
 /// What was found about the limit of a load.
 #[derive(Clone, Debug)]
 pub struct Limit {
-    /// The path that led there.
-    pub path: LoadPath,
+    /// The load case or parameter.
+    pub name: String,
+    /// The path that led there; none in space, where runs of their own bracket the limit.
+    pub path: Option<LoadPath>,
+    /// Its last value with an answer.
+    pub last: f64,
     /// Present factor.
     pub present: f64,
     /// The limit factor; `None` where the path ended otherwise (see [`Limit::end_sentence`]).
@@ -40,29 +46,37 @@ pub struct Limit {
     /// their own between which the limit lies, one with an answer, one with a proof that there is none.
     pub bracket: Option<[f64; 2]>,
     /// Whether no answer was found just before the end of the path.
-    lost: bool,
+    pub(super) lost: bool,
 }
 
 impl Limit {
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
+        let name = &self.name;
+        let Some(path) = &self.path else {
+            return match self.bracket {
+                None => format!("there is an answer at {name} = {}, and no collapse was found", nine_digits(self.last)),
+                Some([answer, none]) => {
+                    let proof = if self.is_proved() { "prove that there is none" } else { "find none" };
+                    format!("runs of their own find an answer at {name} = {answer} and {proof} at {name} = {none}")
+                }
+            };
+        };
         if let (None, Some([answer, none])) = (self.factor, self.bracket) {
-            let name = &self.path.parameter.name;
             return format!(
                 "the path leads on for rounding only; runs of their own find an answer at {name} = {answer} and prove that \
                  there is none at {name} = {none}"
             );
         }
-        let (Some(beyond), Some(last)) = (self.beyond, self.path.factors.last()) else {
-            return self.path.end_sentence();
+        let Some(beyond) = self.beyond else {
+            return path.end_sentence();
         };
-        let name = &self.path.parameter.name;
         format!(
             "the path ends at {name} = {}, but an answer exists at {name} = {}: not the largest load that can be carried; \
              {} looks further",
-            nine_digits(*last),
+            nine_digits(self.last),
             nine_digits(beyond),
-            self.search(beyond, beyond - self.path.start)
+            self.search(beyond, beyond - path.start)
         )
     }
 
@@ -82,26 +96,61 @@ impl Limit {
         Some(format!("whether loads beyond it can be carried is not proved: {search} looks"))
     }
 
+    /// Takes a collapse at the limit, with what it means in a sentence.
+    pub(super) fn put_collapse(&mut self, collapse: Ray) {
+        let moving = format!("At this load the structure is on the point of moving: {}", collapse.mode);
+        self.collapse = Some(collapse);
+        let beyond = self.beyond_sentence().map_or(String::new(), |beyond| format!("; {beyond}"));
+        if let Some(collapse) = &mut self.collapse {
+            collapse.explanation = format!("{moving}{beyond}.");
+        }
+    }
+
+    /// Whether it is proved that there is no answer at the end of the bracket.
+    fn is_proved(&self) -> bool {
+        self.collapse.as_ref().and_then(|collapse| collapse.verdict).is_some_and(Verdict::is_proof)
+    }
+
+    /// What runs of their own say of the limit, in a sentence.
+    pub fn confirmation(&self) -> String {
+        match self.bracket {
+            Some([answer, none]) if self.confirmed => {
+                format!(
+                    "confirmed: runs of their own find an answer at {answer} and prove that there is none at {none}"
+                )
+            }
+            Some([answer, none]) => {
+                format!("not proved: runs of their own find an answer at {answer} and none at {none}")
+            }
+            None if self.confirmed => {
+                "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001".to_owned()
+            }
+            None => "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer and none"
+                .to_owned(),
+        }
+    }
+
     /// The command that looks for answers from a value on, as far as `reach`.
     fn search(&self, from: f64, reach: f64) -> String {
         let to = from + reach;
         let (low, high) = (nine_digits(from.min(to)), nine_digits(from.max(to)));
-        format!("`find {} {low}..{high} where outcome answer`", self.path.parameter.name)
+        format!("`find {} {low}..{high} where outcome answer`", self.name)
     }
 }
 
 impl Limit {
     /// In a few words: why there is no limit, or that no run of its own confirms it; empty for a confirmed one.
     pub fn brief(&self) -> String {
-        let at = short(self.path.factors.last().copied().unwrap_or(self.path.start));
-        match (self.factor, self.bracket, self.beyond, &self.path.end) {
+        let at = short(self.last);
+        match (self.factor, self.bracket, self.beyond, self.path.as_ref().map(|path| &path.end)) {
             (Some(factor), ..) if self.confirmed || factor == 0.0 => String::new(),
             (Some(_), ..) => "not confirmed by a run of its own".to_owned(),
             (None, Some([answer, none]), ..) => format!("between {} and {}", short(answer), short(none)),
             (None, None, Some(_), _) => format!("none: the path ends at {at}, with answers beyond"),
-            (None, None, None, PathEnd::Unbounded) => "none, however large the load".to_owned(),
-            (None, None, None, PathEnd::Turning) => format!("none found: the path turns back at {at}"),
-            (None, None, None, _) => format!("none found: the path ends at {at}"),
+            (None, None, None, Some(PathEnd::Unbounded)) => "none, however large the load".to_owned(),
+            (None, None, None, Some(PathEnd::Turning)) => format!("none found: the path turns back at {at}"),
+            (None, None, None, Some(_)) => format!("none found: the path ends at {at}"),
+            (None, None, None, None) => format!("none found up to {at}"),
         }
     }
 }
@@ -112,25 +161,31 @@ fn nine_digits(value: f64) -> f64 {
 }
 
 /// The structure under another value of what is followed, made ready, and its load factors.
-fn beside(path: &LoadPath, case: Case<'_>, value: f64) -> Result<(Prepared, Vec<f64>), PathError> {
-    if path.moves_loads() {
+pub(super) fn beside(
+    parameter: &LoadParameter,
+    moves_loads: bool,
+    case: Case<'_>,
+    value: f64,
+) -> Result<(Prepared, Vec<f64>), PathError> {
+    if moves_loads {
         // Where the parameter stands in the loads themselves they are told as they are there.
-        let there = case.at(&path.parameter.name, value)?;
+        let there = case.at(&parameter.name, value)?;
         let factors = factors(&there.prepared, &there.values);
         return Ok((there.prepared.with_factors(&factors), factors));
     }
-    let factors = path.case_factors(value);
+    let mut factors = factors(case.prepared, case.values);
+    parameter.drive(&mut factors, value);
     Ok((case.prepared.with_factors(&factors), factors))
 }
 
 /// Whether a run of its own finds an answer at a value.
 fn beside_answers(path: &LoadPath, case: Case<'_>, value: f64) -> Result<bool, PathError> {
-    let (there, _) = beside(path, case, value)?;
+    let (there, _) = beside(&path.parameter, path.moves_loads(), case, value)?;
     Ok(Case { prepared: &there, ..case }.under(Rules::default()).solve_pairs()?.answer.is_answer())
 }
 
 /// The size of a limit: one of 0 has none of its own.
-fn size(factor: f64, present: f64) -> f64 {
+pub(super) fn size(factor: f64, present: f64) -> f64 {
     [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0)
 }
 
@@ -141,19 +196,20 @@ fn size(factor: f64, present: f64) -> f64 {
 /// See [`PathError`].
 pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limit, PathError> {
     let negative = case.present(name).is_some_and(|present| present < 0.0);
+    if case.prepared.system().is_some_and(|system| system.is_in_space()) {
+        return limit_by_runs(case, name);
+    }
     let to = negative.then_some(f64::NEG_INFINITY);
     let path = trace(case, solved, name, LoadReach { to, through: false })?;
     let found = of_path(case, path, negative)?;
-    match found.path.factors.last() {
-        Some(&end) if found.lost => bracketed(case, name, end, found),
-        _ => Ok(found),
-    }
+    if found.lost { bracketed(case, name, found) } else { Ok(found) }
 }
 
 /// The limit by runs of their own, where the path led on beyond it for rounding only: an answer on one side, a proved
 /// collapse on the other.
-fn bracketed(case: Case<'_>, name: &str, end: f64, found: Limit) -> Result<Limit, PathError> {
-    let start = found.path.start;
+fn bracketed(case: Case<'_>, name: &str, found: Limit) -> Result<Limit, PathError> {
+    let Some(start) = found.path.as_ref().map(|path| path.start) else { return Ok(found) };
+    let end = found.last;
     let (range, which) = if end < start { ([end, start], Which::Least) } else { ([start, end], Which::Most) };
     let edge = match edge(case, name, range, which) {
         Ok(edge) => edge,
@@ -179,6 +235,9 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
     let factor = path.limit().map(|factor| if factor.abs() <= NOISE * present.abs() { 0.0 } else { factor });
     let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
     let mut limit = Limit {
+        name: path.parameter.name.clone(),
+        last: path.factors.last().copied().unwrap_or(path.start),
+        path: None,
         present,
         factor,
         safety,
@@ -187,31 +246,38 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
         beyond: None,
         bracket: None,
         lost: false,
-        path,
     };
-    let (Some(factor), PathEnd::Limit(direction)) = (factor, &limit.path.end) else {
+    look_beside(&mut limit, &path, case, negative)?;
+    limit.path = Some(path);
+    Ok(limit)
+}
+
+/// Adds what runs of their own on both sides of the end of a path show.
+fn look_beside(limit: &mut Limit, path: &LoadPath, case: Case<'_>, negative: bool) -> Result<(), PathError> {
+    let (Some(factor), PathEnd::Limit(direction)) = (limit.factor, &path.end) else {
         // Before a turning point there are answers, unless the path was led there by rounding.
-        if let (PathEnd::Turning, Some(end)) = (&limit.path.end, limit.path.factors.last()) {
-            let inside = end - BESIDE * (end - limit.path.start);
-            limit.lost = !beside_answers(&limit.path, case, inside)?;
+        if let PathEnd::Turning = &path.end {
+            let inside = limit.last - BESIDE * (limit.last - path.start);
+            limit.lost = !beside_answers(path, case, inside)?;
         }
-        return Ok(limit);
+        return Ok(());
     };
-    let outwards = if negative { -1.0 } else { 1.0 } * BESIDE * size(factor, present);
+    let outwards = if negative { -1.0 } else { 1.0 } * BESIDE * size(factor, limit.present);
     let over = factor + outwards;
     let solve = |prepared: &Prepared| Case { prepared, ..case }.under(Rules::default()).solve_pairs();
-    let (there, factors) = beside(&limit.path, case, over)?;
-    let Some(system) = there.system() else { return Ok(limit) };
+    let (there, factors) = beside(&path.parameter, path.moves_loads(), case, over)?;
+    let Some(system) = there.system() else { return Ok(()) };
     let above = solve(&there)?;
     if above.answer.is_answer() && !above.answer.marginal {
-        return Ok(Limit { factor: None, safety: None, beyond: Some(over), ..limit });
+        (limit.factor, limit.safety, limit.beyond) = (None, None, Some(over));
+        return Ok(());
     }
     if factor != 0.0 && !above.answer.is_answer() {
-        limit.confirmed = beside_answers(&limit.path, case, factor - outwards)?;
+        limit.confirmed = beside_answers(path, case, factor - outwards)?;
         limit.lost = !limit.confirmed;
     }
-    let problem = ContactProblem { system: Arc::clone(system), factors, ..limit.path.problem_at(over) };
-    let mut collapse = ray::look(&problem, limit.path.contact(), direction, 0.0);
+    let problem = ContactProblem { system: Arc::clone(system), factors, ..path.problem_at(over) };
+    let mut collapse = ray::look(&problem, path.contact(), direction, 0.0);
     if let Some(found) = &above.ray {
         collapse.class = found.class;
     }
@@ -219,11 +285,6 @@ fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, Path
     ray::explain(&mut collapse, &problem, there.built());
     let mut collapse = collapse.record(system, Covering::default());
     collapse.p = 0.0;
-    let moving = format!("At this load the structure is on the point of moving: {}", collapse.mode);
-    limit.collapse = Some(collapse);
-    let beyond = limit.beyond_sentence().map_or(String::new(), |beyond| format!("; {beyond}"));
-    if let Some(collapse) = &mut limit.collapse {
-        collapse.explanation = format!("{moving}{beyond}.");
-    }
-    Ok(limit)
+    limit.put_collapse(collapse);
+    Ok(())
 }

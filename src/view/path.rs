@@ -115,7 +115,7 @@ pub fn write_friction(out: &mut dyn Write, path: &FrictionPath, units: &Units, s
 
 /// Writes the limit load, the safety and the collapse.
 pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style: &Style) -> io::Result<()> {
-    let name = &limit.path.parameter.name;
+    let name = &limit.name;
     let Some(factor) = limit.factor else {
         let text = format!("no limit was found: {}", limit.end_sentence());
         return style.paragraph(out, Role::Plain, &text);
@@ -137,16 +137,5 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
     if factor == 0.0 {
         return Ok(());
     }
-    let confirmed = match limit.bracket {
-        Some([answer, none]) if limit.confirmed => {
-            format!("confirmed: runs of their own find an answer at {answer} and prove that there is none at {none}")
-        }
-        _ if limit.confirmed => {
-            "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001".to_owned()
-        }
-        _ => {
-            "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer and none".to_owned()
-        }
-    };
-    style.paragraph(out, Role::Muted, &confirmed)
+    style.paragraph(out, Role::Muted, &limit.confirmation())
 }

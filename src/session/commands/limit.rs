@@ -100,10 +100,11 @@ impl Session {
             end: found.end_sentence(),
         };
         io.show(&report, |out, style| view::path::write_limit(out, &found, unit.as_deref(), style))?;
-        let record = PathRecord::of_load(&found.path, &cases);
-        // A single place draws no picture: a path that does is kept.
-        if record.places.len() > 1 || self.path.is_none() {
-            self.keep_path(record);
+        if let Some(record) = found.path.as_ref().map(|path| PathRecord::of_load(path, &cases)) {
+            // A single place draws no picture: a path that does is kept.
+            if record.places.len() > 1 || self.path.is_none() {
+                self.keep_path(record);
+            }
         }
         Ok(())
     }
