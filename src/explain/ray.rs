@@ -16,7 +16,7 @@ use super::remedy::digits;
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::enumerate::{Enumeration, enumerate};
-use crate::contact::system::ContactSystem;
+use crate::contact::system::{ContactSystem, JointLoad};
 use crate::contact::written::ContactLcp;
 use crate::fem::MainSystem;
 use crate::lcp::outcome::RayDirection;
@@ -55,7 +55,7 @@ pub struct RayReport {
     pub verdict: Option<Verdict>,
     /// p at the last vertex, user's units.
     pub p: f64,
-    /// Name of the entering variable.
+    /// Name of the entering variable; empty where no ray led to the collapse, only its certificate.
     pub driver: String,
     /// z̄ over the joints, largest entry 1.
     pub direction: DVector<f64>,
@@ -132,26 +132,24 @@ fn power(load: &DVector<f64>, z: &DVector<f64>) -> (f64, f64) {
     load.iter().zip(z.iter()).fold((0.0, 0.0), |(sum, terms), (a, b)| (sum - a * b, terms + (a * b).abs()))
 }
 
+/// Work of each load case on a motion.
+fn powers(problem: &ContactProblem, direction: &DVector<f64>) -> Vec<CasePower> {
+    let system = &*problem.system;
+    let of_case = |(load, factor): (&JointLoad, &f64)| {
+        let forces = system.forces_of(&load.vector);
+        let (power, _) = power(&forces, direction);
+        let noise = power.abs() <= 1e-12 * forces.amax();
+        CasePower { case: load.name.clone(), factor: *factor, power: if noise { 0.0 } else { factor * power } }
+    };
+    system.loads.iter().zip(&problem.factors).map(of_case).collect()
+}
+
 /// Class, direction and power; nothing proved, nothing put into words of the structure yet.
 pub fn look(problem: &ContactProblem, contact: &ContactLcp, ray: &RayDirection, p: f64) -> RayReport {
     let system = &*problem.system;
     let (direction, class, artefact) = classify(problem, contact, ray);
     let moves = matches!(class, RayClass::Mechanism | RayClass::NoEquilibrium);
-    let powers = if moves {
-        system
-            .loads
-            .iter()
-            .zip(&problem.factors)
-            .map(|(load, factor)| {
-                let forces = system.forces_of(&load.vector);
-                let (power, _) = power(&forces, &direction);
-                let noise = power.abs() <= 1e-12 * forces.amax();
-                CasePower { case: load.name.clone(), factor: *factor, power: if noise { 0.0 } else { factor * power } }
-            })
-            .collect()
-    } else {
-        Vec::new()
-    };
+    let powers = if moves { powers(problem, &direction) } else { Vec::new() };
     RayReport {
         class,
         verdict: None,
@@ -171,6 +169,9 @@ pub fn look(problem: &ContactProblem, contact: &ContactLcp, ray: &RayDirection, 
 
 /// Looks for a certificate; true if it proves that there is no answer.
 pub fn certify_ray(report: &mut RayReport, problem: &ContactProblem, built: Built<'_>) -> bool {
+    if report.certificate.is_some() {
+        return true;
+    }
     if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
         return false;
     }
@@ -224,6 +225,25 @@ pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumer
 }
 
 impl RayReport {
+    /// A collapse on Coulomb's cone where the run on the polygon ended in an answer: the motion of its certificate.
+    pub fn of_certificate(problem: &ContactProblem, certificate: Certificate) -> RayReport {
+        RayReport {
+            class: RayClass::Mechanism,
+            verdict: Some(Verdict::Certified),
+            p: 0.0,
+            driver: String::new(),
+            direction: certificate.direction.clone(),
+            artefact: None,
+            mode: None,
+            powers: powers(problem, &certificate.direction),
+            certificate: Some(certificate),
+            misfit: None,
+            out_of_time: false,
+            certificate_mode: None,
+            balanced: false,
+        }
+    }
+
     /// The motion in words.
     pub fn mode_words(&self, system: &ContactSystem) -> String {
         if let Some(pair) = self.artefact {
@@ -298,6 +318,11 @@ impl RayReport {
         // In force form p adds to distances too and to some reserves twice: it is no force that is missing.
         let forced = system.force_form.is_some();
         let mut text = match (self.class == RayClass::Mechanism, forced) {
+            _ if self.driver.is_empty() => {
+                "The motion costs no energy and the loads do work on it. The friction polygon holds it, whose corners lie \
+                 outside of Coulomb's cone; the cone does not."
+                    .to_owned()
+            }
             (true, false) => {
                 format!("The motion costs no energy and the loads do work on it; only {missing} would just hold it.")
             }

@@ -9,7 +9,7 @@ use crate::answer::record::{OutcomeKind, RayClass, Verdict};
 use crate::model::pair::Law;
 use crate::model::parameter::Number;
 use crate::model::uses::Redone;
-use crate::solve::{Case, Solved};
+use crate::solve::Case;
 
 /// Values looked at before the search between two of them.
 const CELLS: usize = 32;
@@ -39,17 +39,24 @@ pub struct Run {
     pub class: Option<RayClass>,
     /// What is proved of it.
     pub verdict: Option<Verdict>,
+    /// Whether it ended in an answer; in space the polygon's own answer is none on Coulomb's cone.
+    #[serde(skip)]
+    stands: bool,
 }
 
 impl Run {
-    pub(super) fn of(value: f64, solved: &Solved) -> Run {
+    /// What a case solved at a value showed.
+    pub(super) fn of(value: f64, case: Case<'_>) -> Result<Run, PathError> {
+        let solved = case.solve_pairs()?;
         let ray = solved.ray.as_ref();
         let (class, verdict) = (ray.map(|ray| ray.class), ray.and_then(|ray| ray.verdict));
-        Run { value, outcome: solved.answer.outcome, class, verdict }
+        let reached = !case.rules.cone || solved.answer.polygon.is_none_or(|polygon| polygon.cone);
+        let stands = solved.answer.is_answer() && reached;
+        Ok(Run { value, outcome: solved.answer.outcome, class, verdict, stands })
     }
 
     pub(super) fn is_answer(&self) -> bool {
-        self.outcome.is_answer()
+        self.stands
     }
 
     /// Whether it is proved that there is no answer.
@@ -78,8 +85,7 @@ pub struct Edge {
 /// # Errors
 /// No answer anywhere in the range; see [`PathError`].
 pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result<Edge, PathError> {
-    let run =
-        |value: f64| -> Result<Run, PathError> { Ok(Run::of(value, &case.at(name, value)?.case(case).solve_pairs()?)) };
+    let run = |value: f64| -> Result<Run, PathError> { Run::of(value, case.at(name, value)?.case(case)) };
     let [from, to] = if which == Which::Least { range } else { [range[1], range[0]] };
     let mut before: Vec<Run> = Vec::new();
     let mut answer = None;

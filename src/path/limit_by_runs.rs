@@ -19,7 +19,7 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
     let run = |value: f64| -> Result<Run, PathError> {
         case.watch.progress(&format!("{name} = {value}"), 0.0);
         let (prepared, _) = there(value)?;
-        Ok(Run::of(value, &Case { prepared: &prepared, ..case }.solve_pairs()?))
+        Run::of(value, Case { prepared: &prepared, ..case })
     };
     let present = parameter.present;
     let (mut answer, mut collapse) = (run(present)?, None);

@@ -1,11 +1,17 @@
 //! From the answer on the friction polygon to that on Coulomb's cone (method §7).
 
 use super::error::SolveError;
+use super::prepared::Prepared;
+use super::state::Solved;
 use crate::answer::pairs::JointState;
-use crate::answer::record::PolygonRecord;
+use crate::answer::record::{Check, OutcomeKind, PolygonRecord};
 use crate::contact::cone::ConeFailure;
 use crate::contact::on_cone::OnCone;
 use crate::contact::problem::ContactProblem;
+use crate::explain::certificate::certify;
+use crate::explain::motions::FreeMotions;
+use crate::explain::ray::RayReport;
+use crate::model::rules::Covering;
 use crate::watch::Watch;
 
 /// An answer in space: on the cone, or on the polygon where that was asked for or where the cone was not reached.
@@ -51,6 +57,31 @@ pub(super) fn taken(problem: &ContactProblem, polygon: JointState, watch: &dyn W
             let note = format!("{failure}; this is the answer on the polygon of {facets} facets: {circle}");
             Ok(own(record, Some(note)))
         }
+    }
+}
+
+impl Prepared {
+    /// Whether the cone has no answer where the polygon has one, which is proved: then the result is that collapse.
+    pub(super) fn collapses_on_cone(&self, solved: &mut Solved, problem: &ContactProblem, covering: Covering) -> bool {
+        let motions = FreeMotions::new(&problem.system, self.built());
+        let Some(certificate) = certify(problem, &motions).certificate else { return false };
+        let report = RayReport::of_certificate(problem, certificate);
+        let answer = &mut solved.answer;
+        answer.outcome = OutcomeKind::Ray;
+        answer.marginal = false;
+        answer.ray = Some(report.record(&problem.system, covering));
+        answer.check = Check::default();
+        (answer.displacements, answer.members, answer.reactions) = (None, None, None);
+        answer.notes = vec![format!(
+            "the states of the pairs are those of the polygon of {} facets, which has an answer; Coulomb's cone has none",
+            problem.polygon.facets()
+        )];
+        if let Some(last) = answer.attempts.last_mut() {
+            last.outcome = OutcomeKind::Ray;
+            last.why = Some("an answer on the polygon, a certified collapse on the cone".to_owned());
+        }
+        (solved.ray, solved.rest, solved.warm) = (Some(Box::new(report)), None, None);
+        true
     }
 }
 

@@ -66,7 +66,11 @@ impl Prepared {
         if solved.answer.is_answer() && (!system.is_in_space() || super::space::is_final(&solved, &problem)) {
             return Ok(solved);
         }
-        let certified = solved.ray.as_mut().is_some_and(|report| certify_ray(report, &problem, self.built()));
+        let certified = match solved.ray.as_mut() {
+            Some(report) => certify_ray(report, &problem, self.built()),
+            // An answer on the polygon that Newton's method did not take to the cone.
+            None => solved.answer.is_answer() && self.collapses_on_cone(&mut solved, &problem, rules.covering),
+        };
         if !certified && system.is_in_space() {
             if rules.are_default() {
                 solved = self.retry_in_space(&problem, rules, solved, watch)?;

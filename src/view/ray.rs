@@ -68,7 +68,10 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         None => String::new(),
     };
     let p = with_unit(&short(ray.p), force_unit(units).as_deref());
-    let driver = format!("{} enters and nothing blocks it", ray.driver);
+    let driver = match ray.driver.as_str() {
+        "" => String::new(),
+        driver => format!("{driver} enters and nothing blocks it"),
+    };
     let rows = [
         ("class", class_meaning(ray.class)),
         ("verdict", verdict.as_str()),

@@ -81,7 +81,7 @@ fn the_beam_slips_support_by_support_and_then_as_a_whole() {
     }
     // Beyond the limit there is no answer: the path starts from 0 and the safety is below 1.
     let limit = Case::new("beam", &[("F2", 400.0)]).limit("pull");
-    assert!(limit.path.from_zero);
+    assert!(limit.path.expect("a path").from_zero);
     close(limit.safety.expect("a limit"), 0.75, 1e-12);
 }
 

@@ -9,6 +9,7 @@ mod friction;
 mod hertz;
 mod history;
 mod limit;
+mod limit_in_space;
 mod load;
 mod load_amounts;
 mod map;
