@@ -23,6 +23,7 @@ use stickslip::model::rules::{Covering, TieBreak};
 fn main() -> Result<(), Box<dyn Error>> {
     let friction = 0.5;
     let system = ContactSystem {
+        tangents: 1,
         pairs: vec![ContactPair {
             id: "c1".to_owned(),
             law: Law::Coulomb {
@@ -31,8 +32,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                 gap: Number::Value(0.0),
             },
             position: None,
+            frame: None,
             joint: 0,
-            tangential: Some(1),
+            tangential: 1..2,
         }],
         stiffness: DMatrix::from_row_slice(2, 2, &[2.0, 1.5, 1.5, 2.0]),
         loads: vec![JointLoad::exactly("load".to_owned(), DVector::from_row_slice(&[1.0, -2.0]))],

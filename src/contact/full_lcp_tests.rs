@@ -24,6 +24,7 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
     let m = stiffness.nrows() / 2;
     let zero = || Number::Value(0.0);
     ContactSystem {
+        tangents: 1,
         pairs: (0..m)
             .map(|i| ContactPair {
                 id: format!("c{}", i + 1),

@@ -149,8 +149,17 @@ fn from_stiffness(
     let file = (!rows.released.is_empty()).then(|| Arc::new(rows.data(data, false, given, factor)));
     let loads = joint_loads(given, &stiffness, file.as_deref())?;
     let rounded = file.is_some();
-    let system =
-        ContactSystem { pairs: pairs(given), stiffness, loads, rounded, kernel, corrected, force_form: None, file };
+    let system = ContactSystem {
+        pairs: pairs(given),
+        tangents: given.tangents,
+        stiffness,
+        loads,
+        rounded,
+        kernel,
+        corrected,
+        force_form: None,
+        file,
+    };
     Ok((system, remarks))
 }
 
@@ -264,6 +273,7 @@ fn from_compliance(
     let loads = joint_loads(given, &stiffness, Some(&file))?;
     let system = ContactSystem {
         pairs: pairs(given),
+        tangents: given.tangents,
         stiffness,
         loads,
         rounded: true,
@@ -306,6 +316,7 @@ fn singular_compliance(
     let loads = loads.map(|(load, vector)| JointLoad::exactly(load.name.clone(), vector)).collect();
     Ok(ContactSystem {
         pairs: pairs(given),
+        tangents: given.tangents,
         stiffness: mixed.matrix,
         loads,
         rounded: false,

@@ -80,6 +80,8 @@ pub struct ForceForm {
 pub struct ContactSystem {
     /// The m pairs.
     pub pairs: Vec<ContactPair>,
+    /// Tangential joints of each pair that rubs: 1 in the plane, 2 in space.
+    pub tangents: usize,
     /// R, k × k, symmetric, positive semidefinite: what answers are checked against. Of a structure its kernel is exact
     /// (method §4, "Zero"); of a file it stands as given. With a [`ForceForm`] the mixed matrix of both forms.
     pub stiffness: DMatrix<f64>,
@@ -111,7 +113,7 @@ impl ContactSystem {
 
     /// Whether pairs slip in a plane of directions: what their friction polygon has more than two facets for.
     pub fn is_in_space(&self) -> bool {
-        self.pairs.iter().any(ContactPair::is_in_space)
+        self.tangents == 2
     }
 
     /// Why `command` cannot be used in space; `None` in the plane.

@@ -262,6 +262,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     let loads = joint_loads(structure, &main);
     let mut system = ContactSystem {
         pairs,
+        tangents: structure.dimension.coordinates() - 1,
         stiffness: main.stiffness().clone(),
         loads,
         rounded: true,

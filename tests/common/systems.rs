@@ -24,6 +24,7 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> Co
         })
         .collect();
     let system = ContactSystem {
+        tangents: 1,
         pairs,
         stiffness,
         loads: vec![JointLoad::exactly("load".into(), load)],

@@ -63,8 +63,17 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> ContactProblem {
     let laws = pairs.iter().map(|pair| PairLaw::of(&pair.law, &|number| number.value(&values))).collect();
     let load = DVector::from_fn(k, |i, _| f64::from(rng.random_range(if i < m { -1..=3 } else { -2..=2 })));
     let loads = vec![JointLoad::exactly("load".into(), load)];
-    let system =
-        ContactSystem { pairs, stiffness, loads, rounded: true, kernel, corrected: None, force_form: None, file: None };
+    let system = ContactSystem {
+        tangents: 1,
+        pairs,
+        stiffness,
+        loads,
+        rounded: true,
+        kernel,
+        corrected: None,
+        force_form: None,
+        file: None,
+    };
     ContactProblem::new(&Arc::new(system), laws, &[1.0])
 }
 
