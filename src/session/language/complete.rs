@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(at_end("pairs c1 sort z_"), ["z_n", "z_t", "z_t1", "z_t2"]);
         assert_eq!(at_end("why j"), ["joint[0]"]);
         assert_eq!(at_end("members A"), ["AB"]);
-        assert_eq!(at_end("expect state c1 slip"), ["slip+", "slip-"]);
+        assert_eq!(at_end("expect state c1 slip"), ["slip", "slip+", "slip-"]);
         assert_eq!(at_end("expect x_n "), ["c1", "c2", "joint[0]"]);
         assert_eq!(at_end("plot sl"), ["slip"]);
         assert_eq!(at_end("plot slip --w"), ["--width"]);
