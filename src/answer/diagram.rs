@@ -48,16 +48,16 @@ impl Diagram {
     /// The force at a distance from the start; beyond a jump that stands there, except at the end of the bar.
     pub fn at(&self, which: Internal, distance: f64) -> Option<f64> {
         let piece = self.pieces.iter().rev().find(|piece| piece.range[0] <= distance)?;
-        (distance <= piece.range[1]).then(|| piece.at(distance)[which as usize])
+        (distance <= piece.range[1]).then(|| piece.at(distance)[which.index()])
     }
 
     /// The least and the largest value; the first place of each.
     pub fn extremes(&self, which: Internal) -> [Place; 2] {
-        let place = |piece: &Piece, distance: f64| Place { distance, value: piece.at(distance)[which as usize] };
+        let place = |piece: &Piece, distance: f64| Place { distance, value: piece.at(distance)[which.index()] };
         let first = place(&self.pieces[0], self.pieces[0].range[0]);
         let mut extremes = [first; 2];
         for piece in &self.pieces {
-            for distance in piece.candidates(which as usize) {
+            for distance in piece.candidates(which.index()) {
                 let next = place(piece, distance);
                 if next.value < extremes[0].value {
                     extremes[0] = next;

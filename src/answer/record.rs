@@ -2,14 +2,17 @@
 //! The field names are the keys of the JSON result (`stickslip-result/1`).
 
 use nalgebra::DVector;
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 pub use super::attempt::{Attempt, AttemptRules};
 pub use super::pair_record::{InSpace, PairState};
 use crate::contact::polygon::Polygon;
 use crate::contact::system::ContactSystem;
 use crate::fem::Piece;
+use crate::model::dimension::Dimension;
 use crate::model::uses::Redone;
+use crate::model::vector::length;
 
 /// How the run ended, as the user reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -316,8 +319,8 @@ pub struct Check {
     pub passed: bool,
 }
 
-/// Displacements of a node, in the user's unit of length.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// Displacement of a node in the units of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct NodeDisplacement {
     /// Node id.
     pub node: String,
@@ -325,23 +328,86 @@ pub struct NodeDisplacement {
     pub ux: f64,
     /// Along y.
     pub uy: f64,
-    /// Rotation in radians, counter-clockwise; 0 at nodes without one.
+    /// Rotation about z in radians, in the plane the only one, counter-clockwise; 0 at nodes without one.
     pub rz: f64,
+    /// u_z, r_x, r_y of a structure in space.
+    pub space: Option<[f64; 3]>,
+}
+
+impl NodeDisplacement {
+    /// From the displacements of a node by component.
+    pub fn of(dimension: Dimension, node: &str, [ux, uy, uz, rx, ry, rz]: [f64; 6]) -> NodeDisplacement {
+        let space = (dimension == Dimension::Space).then_some([uz, rx, ry]);
+        NodeDisplacement { node: node.to_owned(), ux, uy, rz, space }
+    }
+
+    /// By component.
+    pub fn all(&self) -> [f64; 6] {
+        let [uz, rx, ry] = self.space.unwrap_or_default();
+        [self.ux, self.uy, uz, rx, ry, self.rz]
+    }
+
+    /// The length of its translation.
+    pub fn length(&self) -> f64 {
+        let [x, y, z, ..] = self.all();
+        length([x, y, z])
+    }
+}
+
+impl Serialize for NodeDisplacement {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let numbers = match self.space {
+            None => vec![("ux", self.ux), ("uy", self.uy), ("rz", self.rz)],
+            Some(_) => ["ux", "uy", "uz", "rx", "ry", "rz"].into_iter().zip(self.all()).collect(),
+        };
+        named(serializer, Some(("node", &self.node)), numbers)
+    }
+}
+
+/// A map of one name and numbers.
+fn named<S: Serializer>(
+    serializer: S,
+    name: Option<(&str, &str)>,
+    numbers: Vec<(&str, f64)>,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(usize::from(name.is_some()) + numbers.len()))?;
+    if let Some((key, name)) = name {
+        map.serialize_entry(key, name)?;
+    }
+    numbers.into_iter().try_for_each(|(key, number)| map.serialize_entry(key, &number))?;
+    map.end()
 }
 
 /// Internal forces at one end of an element in the user's units, bar axes: N > 0 tension, Q = dM/dx, M > 0 tension on the
 /// −y side.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EndForces {
     /// Normal force.
-    #[serde(rename = "N")]
     pub n: f64,
-    /// Shear force.
-    #[serde(rename = "Q")]
+    /// Shear force Q, in space V_y.
     pub q: f64,
-    /// Bending moment.
-    #[serde(rename = "M")]
+    /// Bending moment M, in space M_z.
     pub m: f64,
+    /// V_z, M_y and T of a bar in space: M_y > 0 tension on the −z side, V_z = dM_y/dx, T along +x.
+    pub space: Option<[f64; 3]>,
+}
+
+impl EndForces {
+    /// Names and values as results show them.
+    pub fn named(&self) -> Vec<(&'static str, f64)> {
+        match self.space {
+            None => vec![("N", self.n), ("Q", self.q), ("M", self.m)],
+            Some([vz, my, t]) => {
+                vec![("N", self.n), ("Vy", self.q), ("Vz", vz), ("T", t), ("My", my), ("Mz", self.m)]
+            }
+        }
+    }
+}
+
+impl Serialize for EndForces {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        named(serializer, None, self.named())
+    }
 }
 
 /// Internal forces of one element of a bar.
@@ -361,7 +427,7 @@ pub struct MemberForces {
 }
 
 /// Force of the supports and springs of a node on the structure, their sum, in the user's units.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reaction {
     /// Node id.
     pub node: String,
@@ -369,8 +435,40 @@ pub struct Reaction {
     pub fx: f64,
     /// Along y.
     pub fy: f64,
-    /// Moment, counter-clockwise.
+    /// Moment about z, in the plane the only one, counter-clockwise.
     pub m: f64,
+    /// F_z, M_x, M_y of a structure in space.
+    pub space: Option<[f64; 3]>,
+}
+
+impl Reaction {
+    /// (F_x, F_y, F_z).
+    pub fn force(&self) -> [f64; 3] {
+        [self.fx, self.fy, self.space.map_or(0.0, |[fz, ..]| fz)]
+    }
+
+    /// (M_x, M_y, M_z).
+    pub fn moment(&self) -> [f64; 3] {
+        let [_, mx, my] = self.space.unwrap_or_default();
+        [mx, my, self.m]
+    }
+
+    /// Names and values as results show them.
+    pub fn named(&self) -> Vec<(&'static str, f64)> {
+        match self.space {
+            None => vec![("fx", self.fx), ("fy", self.fy), ("m", self.m)],
+            Some(_) => {
+                let values = self.force().into_iter().chain(self.moment());
+                ["fx", "fy", "fz", "mx", "my", "mz"].into_iter().zip(values).collect()
+            }
+        }
+    }
+}
+
+impl Serialize for Reaction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        named(serializer, Some(("node", &self.node)), self.named())
+    }
 }
 
 /// How large the problem is.

@@ -1,6 +1,6 @@
 //! What is rounding beside the other numbers of a result: `show`, `expect` and every table read 0 there.
 
-use super::record::{MemberForces, Reaction};
+use super::record::{EndForces, MemberForces, Reaction};
 
 /// Largest share of a column's largest entry that is rounding noise and shown as 0. The smallest difference the
 /// solver tells apart in a load is 1e-10 of it (method §4).
@@ -24,11 +24,18 @@ pub fn balance(terms: impl Iterator<Item = f64>) -> f64 {
 
 /// The largest force and the largest moment of the reactions: what each of them is judged by.
 pub fn of_reactions(reactions: &[Reaction]) -> [f64; 2] {
-    [largest(reactions.iter().flat_map(|r| [r.fx, r.fy])), largest(reactions.iter().map(|r| r.m))]
+    [largest(reactions.iter().flat_map(Reaction::force)), largest(reactions.iter().flat_map(Reaction::moment))]
 }
 
 /// The same of forces (N and Q) and moments at the ends of bar elements.
 pub fn of_members<'m>(members: impl Iterator<Item = &'m MemberForces> + Clone) -> [f64; 2] {
     let ends = members.flat_map(|member| [member.start, member.end]);
-    [largest(ends.clone().flat_map(|end| [end.n, end.q])), largest(ends.map(|end| end.m))]
+    let [forces, moments] = [0, 1].map(|moment| {
+        let of_end = move |end: EndForces| {
+            let [vz, my, t] = end.space.unwrap_or_default();
+            if moment == 0 { [end.n, end.q, vz] } else { [end.m, my, t] }
+        };
+        largest(ends.clone().flat_map(of_end))
+    });
+    [forces, moments]
 }

@@ -3,8 +3,10 @@
 use std::io::{self, Write};
 
 use crate::answer::record::Answer;
+use crate::model::quantity::Internal;
 
 /// One field: text that is quoted where it must be, or a number.
+#[derive(Clone, Copy)]
 enum Field<'a> {
     Text(&'a str),
     Number(f64),
@@ -73,9 +75,11 @@ pub fn pivots(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
 /// Writes the nodal displacements; only the head line where there are none.
 pub fn displacements(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Number, Text};
-    head(out, "node,ux,uy,rz")?;
+    let is_in_space = answer.displacements.iter().flatten().any(|node| node.space.is_some());
+    head(out, if is_in_space { "node,ux,uy,uz,rx,ry,rz" } else { "node,ux,uy,rz" })?;
     for node in answer.displacements.iter().flatten() {
-        row(out, &[Text(&node.node), Number(node.ux), Number(node.uy), Number(node.rz)])?;
+        let numbers = if is_in_space { node.all().to_vec() } else { vec![node.ux, node.uy, node.rz] };
+        row(out, &[vec![Text(&node.node)], numbers.into_iter().map(Number).collect()].concat())?;
     }
     Ok(())
 }
@@ -83,21 +87,14 @@ pub fn displacements(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
 /// Writes the member end forces; only the head line where there are none.
 pub fn members(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Count, Number, Text};
-    head(out, "bar,element,start_N,start_Q,start_M,end_N,end_Q,end_M")?;
+    let is_in_space = answer.members.iter().flatten().any(|member| member.start.space.is_some());
+    let symbols = || Internal::of(is_in_space).iter().map(|which| which.symbol());
+    let named = |end: &str| symbols().map(|symbol| format!(",{end}_{symbol}")).collect::<String>();
+    head(out, &format!("bar,element{}{}", named("start"), named("end")))?;
     for member in answer.members.iter().flatten() {
-        row(
-            out,
-            &[
-                Text(&member.bar),
-                Count(member.element),
-                Number(member.start.n),
-                Number(member.start.q),
-                Number(member.start.m),
-                Number(member.end.n),
-                Number(member.end.q),
-                Number(member.end.m),
-            ],
-        )?;
+        let ends = [member.start, member.end].into_iter().flat_map(|end| end.named());
+        let forces = ends.map(|(_, force)| Number(force)).collect();
+        row(out, &[vec![Text(&member.bar), Count(member.element)], forces].concat())?;
     }
     Ok(())
 }
@@ -105,9 +102,11 @@ pub fn members(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
 /// Writes the reactions; only the head line where there are none.
 pub fn reactions(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Number, Text};
-    head(out, "node,fx,fy,m")?;
+    let is_in_space = answer.reactions.iter().flatten().any(|reaction| reaction.space.is_some());
+    head(out, if is_in_space { "node,fx,fy,fz,mx,my,mz" } else { "node,fx,fy,m" })?;
     for reaction in answer.reactions.iter().flatten() {
-        row(out, &[Text(&reaction.node), Number(reaction.fx), Number(reaction.fy), Number(reaction.m)])?;
+        let numbers = reaction.named().into_iter().map(|(_, number)| Number(number)).collect();
+        row(out, &[vec![Text(&reaction.node)], numbers].concat())?;
     }
     Ok(())
 }

@@ -136,7 +136,7 @@ pub fn member(member: &MemberForces) -> Value {
     let mut object = value(member);
     let (Some(diagram), Value::Object(map)) = (Diagram::of_element(member), &mut object) else { return object };
     let named = |of: &dyn Fn(Internal) -> Value| -> Map<String, Value> {
-        Internal::ALL.into_iter().map(|which| (which.symbol().to_owned(), of(which))).collect()
+        Internal::of(member.start.space.is_some()).iter().map(|&which| (which.symbol().to_owned(), of(which))).collect()
     };
     let extremes = named(&|which| {
         let [least, largest] = diagram.extremes(which).map(|place| json!({"value": place.value, "at": place.distance}));
@@ -144,7 +144,7 @@ pub fn member(member: &MemberForces) -> Value {
     });
     let pieces = diagram.pieces().iter().map(|piece| {
         let polynomials = piece.polynomials();
-        let mut map = named(&|which| json!(polynomials[which as usize]));
+        let mut map = named(&|which| json!(polynomials[which.index()]));
         map.insert("range".to_owned(), json!(piece.range));
         Value::Object(map)
     });

@@ -153,12 +153,15 @@ impl Stiffness<'_> {
             let own = spring.terms.iter().find(|term| term.node == ends[0] && term.component == wanted);
             own.map_or(0.0, |term| term.factor)
         };
-        let mut value = match factor(Component::Rz) {
-            0.0 => {
-                let direction = self.structure.dimension.shown(Component::TRANSLATIONS.map(factor));
-                json!({"direction": direction, "stiffness": spring.stiffness})
-            }
-            _ => json!({"rotation": spring.stiffness}),
+        let dimension = self.structure.dimension;
+        let axis = Component::ROTATIONS.map(factor);
+        let mut value = if axis == [0.0; 3] {
+            let direction = dimension.shown(Component::TRANSLATIONS.map(factor));
+            json!({"direction": direction, "stiffness": spring.stiffness})
+        } else if dimension.rotations().len() == 1 {
+            json!({"rotation": spring.stiffness})
+        } else {
+            json!({"direction": axis, "rotation": spring.stiffness})
         };
         match ends[..] {
             [a, b, ..] => value["between"] = json!([nodes[a], nodes[b]]),

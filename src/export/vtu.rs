@@ -7,6 +7,7 @@
 use std::io::{self, Write};
 
 use crate::answer::record::{PairState, State};
+use crate::model::quantity::Internal;
 use crate::model::shape::Shape;
 use crate::model::structure::{Dimension, Element};
 use crate::path::quantity::Field;
@@ -181,17 +182,17 @@ impl Mesh<'_> {
         if self.0.members.is_empty() {
             return Ok(());
         }
-        let mut forces = [const { Vec::new() }; 3].map(|_: Vec<[f64; 2]>| vec![[0.0; 2]; cells]);
+        let all = Internal::of(self.0.members.iter().any(|member| member.start.space.is_some()));
+        let mut forces = vec![vec![[0.0; 2]; cells]; all.len()];
         let elements = self.0.structure.bars.iter().flat_map(|bar| bar.elements.clone());
         for (element, member) in elements.zip(self.0.members) {
-            let (start, end) = (&member.start, &member.end);
-            let both = [[start.n, end.n], [start.q, end.q], [start.m, end.m]];
-            for (of, both) in forces.iter_mut().zip(both) {
-                of[element] = both;
+            let ends = member.start.named().into_iter().zip(member.end.named());
+            for (of, ((_, start), (_, end))) in forces.iter_mut().zip(ends) {
+                of[element] = [start, end];
             }
         }
-        for (name, of) in ["N", "Q", "M"].into_iter().zip(&forces) {
-            array(out, name, &ENDS, of)?;
+        for (which, of) in all.iter().zip(&forces) {
+            array(out, which.symbol(), &ENDS, of)?;
         }
         Ok(())
     }

@@ -10,7 +10,8 @@
 use super::classes::Classes;
 use super::dof::Dofs;
 use super::error::{Holder, OverConstraint};
-use crate::model::structure::Structure;
+use super::parts::axis;
+use crate::model::structure::{Component, Dimension, Element, Load, Structure};
 use crate::model::vector::way;
 
 /// Σ a·u = 0 on the base dofs.
@@ -37,8 +38,43 @@ pub fn body_rows(structure: &Structure, dofs: &Dofs) -> Vec<BodyRow> {
                 rows.push(BodyRow { body, terms: terms.collect() });
             }
         }
+        if let Some(axis) = idle_spin(structure, body) {
+            let terms =
+                structure.dimension.rotations().iter().map(|&about| (dofs.of(first, about), axis[about.axis()]));
+            let terms = terms.filter_map(|(dof, a)| Some((dof?, a))).filter(|(_, a)| *a != 0.0);
+            rows.push(BodyRow { body, terms: terms.collect() });
+        }
     }
     rows
+}
+
+/// The line about which a body in space can turn without moving or turning anything else: all its nodes lie on it, and
+/// nothing but itself has to do with its rotations. It is held there.
+pub fn idle_spin(structure: &Structure, body: usize) -> Option<[f64; 3]> {
+    if structure.dimension == Dimension::Plane {
+        return None;
+    }
+    let nodes = &structure.rigid[body].nodes;
+    let axis = axis(structure, nodes)?;
+    let is_own = |node: &usize| nodes.contains(node);
+    let turned_by_bar = |element: &Element| {
+        let ends = element.nodes.iter().enumerate();
+        element.bends()
+            && !element.nodes.iter().all(is_own)
+            && ends.filter(|(_, node)| is_own(node)).any(|(at, _)| element.components(at).contains(&Component::Rx))
+    };
+    let moment = |load: &Load| match load {
+        Load::Nodal { node, moment, .. } => *moment != [0.0; 3] && is_own(node),
+        Load::Element { .. } | Load::Settlement { .. } => false,
+    };
+    let turns = |component: &Component| component.is_rotation();
+    let is_felt = structure.elements.iter().any(turned_by_bar)
+        || structure.supports.iter().any(|support| turns(&support.component) && is_own(&support.node))
+        || structure.ties.iter().any(|tie| tie.components.iter().any(turns) && tie.nodes.iter().any(is_own))
+        || structure.springs.iter().flat_map(|s| &s.terms).any(|term| turns(&term.component) && is_own(&term.node))
+        || structure.superelement.iter().flat_map(|s| &s.dofs).any(|(node, c)| turns(c) && is_own(node))
+        || structure.load_cases.iter().flat_map(|case| &case.loads).any(moment);
+    (!is_felt).then_some(axis)
 }
 
 /// Who holds the nodes of a body so that rows of bodies repeat what others hold.

@@ -9,11 +9,13 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::body_rows::idle_spin;
 use super::dof::Dofs;
 use super::null_space::{DENSE, Terms, null_basis};
-use super::parts::{Parts, superelement_parts};
+use super::parts::{Parts, axis, superelement_parts};
 use crate::model::groups::Groups;
-use crate::model::structure::{Component, Structure};
+use crate::model::space_section::EndJoint;
+use crate::model::structure::{Component, Dimension, ElementKind, Structure};
 use crate::model::superelement::Part;
 use crate::model::vector::{distance, way};
 
@@ -132,7 +134,11 @@ impl Cluster {
     /// Motions of the cluster; `None` if the decomposition did not converge.
     fn null_space(&self, structure: &Structure, dofs: &Dofs, parts: &Parts) -> Option<Vec<Motion>> {
         let unknowns = Unknowns::of(self, structure, dofs, parts);
-        let rows: Vec<Terms> = [unknowns.pins(self), unknowns.given_resistance(), unknowns.holders(self)].concat();
+        let mut rows: Vec<Terms> = [unknowns.pins(self), unknowns.given_resistance(), unknowns.holders(self)].concat();
+        if structure.dimension == Dimension::Space {
+            rows.extend(unknowns.torsions(self));
+            rows.extend(unknowns.idle_spins(self));
+        }
         let largest = self.nodes.iter().flat_map(|&n| structure.nodes[n].position).fold(0.0_f64, |m, x| m.max(x.abs()));
         let basis = null_basis(&rows, unknowns.count, NULL * (1.0 + largest / unknowns.size))?;
         let motions = basis.column_iter().map(|q| {
@@ -228,6 +234,71 @@ impl<'a> Unknowns<'a> {
                     row.extend(negative(self.moved(node, other, component)));
                     rows.push(row);
                 }
+            }
+        }
+        rows
+    }
+
+    /// Hinged bars turn with their nodes about their own axes.
+    fn torsions(&self, cluster: &Cluster) -> Vec<Terms> {
+        let own: HashSet<u32> = cluster.parts.iter().copied().collect();
+        let mut rows = Vec::new();
+        for element in &self.structure.elements {
+            let ElementKind::SpaceFrame { joints, .. } = &element.kind else { continue };
+            let [a, b] = [element.nodes[0], element.nodes[1]];
+            if !own.contains(&self.parts.at_node[a][0]) && !own.contains(&self.parts.at_node[b][0]) {
+                continue;
+            }
+            // The part of the element: the one that both of its nodes have.
+            let both = |part: &&u32| self.parts.at_node[b].contains(part);
+            let Some(&part) = self.parts.at_node[a].iter().find(both) else { continue };
+            let Some(axis) = axis(self.structure, &[a, b]) else { continue };
+            for (node, joint) in [a, b].into_iter().zip(joints) {
+                let Some(with) = self.parts.turning[node].filter(|_| *joint == EndJoint::Hinge) else { continue };
+                if with == part || self.dofs.of(node, Component::Rx).is_none() {
+                    continue;
+                }
+                let about = |part: u32, sign: f64| {
+                    Component::ROTATIONS.into_iter().flat_map(move |component| {
+                        let turned = self.moved(node, part, component);
+                        turned.into_iter().map(move |(unknown, a)| (unknown, sign * axis[component.axis()] * a))
+                    })
+                };
+                rows.push(about(part, 1.0).chain(about(with, -1.0)).collect());
+            }
+        }
+        rows
+    }
+
+    /// A part on one line of which no node turns with it does not turn about that line: nothing would move. So does a body
+    /// that [cannot be felt](idle_spin) turning.
+    fn idle_spins(&self, cluster: &Cluster) -> Vec<Terms> {
+        let mut nodes_of: HashMap<u32, Vec<usize>> = HashMap::new();
+        for &node in &cluster.nodes {
+            for &part in &self.parts.at_node[node] {
+                nodes_of.entry(part).or_default().push(node);
+            }
+        }
+        let spin = |part: u32, axis: [f64; 3]| -> Terms {
+            let turned = Component::ROTATIONS.map(|component| (self.of_part[&part][component as usize], component));
+            turned.into_iter().map(|(unknown, component)| (unknown, axis[component.axis()])).collect()
+        };
+        let mut rows = Vec::new();
+        for &part in cluster.parts.iter().filter(|part| self.parts.turns[**part as usize]) {
+            let Some(nodes) = nodes_of.get(&part) else { continue };
+            let turns =
+                |node: &usize| self.parts.turning[*node] == Some(part) && self.dofs.of(*node, Component::Rx).is_some();
+            if !nodes.iter().any(turns)
+                && let Some(axis) = axis(self.structure, nodes)
+            {
+                rows.push(spin(part, axis));
+            }
+        }
+        for body in 0..self.structure.rigid.len() {
+            let first = self.structure.rigid[body].nodes[0];
+            let part = self.parts.turning[first].filter(|part| self.of_part.contains_key(part));
+            if let (Some(part), Some(axis)) = (part, idle_spin(self.structure, body)) {
+                rows.push(spin(part, axis));
             }
         }
         rows

@@ -76,6 +76,6 @@ pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub(crate) use kernel::mutual_displacements;
 pub use loose::Motion;
 pub use main_system::{MainSystem, Seconds, Unknowns};
-pub use recovery::{EndForces, MemberForces, MembraneStress, NodeStress, Reaction};
+pub use recovery::{MemberForces, MembraneStress, NodeStress, Reaction};
 pub use repeated::Repeated;
 pub use sparse::SymmetricSparse;

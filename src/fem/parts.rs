@@ -1,12 +1,14 @@
 //! Parts of a structure: elements that can only move as one rigid body.
 //!
-//! They have an edge in common, or are frame bars rigidly attached to one node, or have two nodes in one rigid body; a lone
+//! They have an edge in common (solids a face), or are frame bars rigidly attached to one node, or have two nodes in one rigid body (solids three that are not on
+//! one line); a lone
 //! node is a part without rotation. A part of a superelement moves as its stiffness lets it. Parts that share a node are
 //! pinned there.
 
 use crate::model::groups::Groups;
 use crate::model::structure::Structure;
 use crate::model::superelement::Part;
+use crate::model::vector::{cross, length, unit, way};
 
 /// Parts at every node.
 pub struct Parts {
@@ -18,6 +20,18 @@ pub struct Parts {
     pub turns: Vec<bool>,
     /// The part of each part of the superelement; `u32::MAX` for one that lies in another cluster.
     pub of_superelement: Vec<u32>,
+}
+
+/// The unit vector along the line on which all these nodes lie; `None` where they do not.
+pub fn axis(structure: &Structure, nodes: &[usize]) -> Option<[f64; 3]> {
+    // Sines below this are rounding of coordinates.
+    const STRAIGHT: f64 = 1e-9;
+    let place = |node: usize| structure.nodes[node].position;
+    let (&first, others) = nodes.split_first()?;
+    let ways = || others.iter().map(|&node| way(place(first), place(node)));
+    let longest = ways().max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
+    let along = unit(longest)?;
+    ways().all(|way| length(cross(along, way)) <= STRAIGHT * length(longest)).then_some(along)
 }
 
 /// The parts of the superelement, if there is one.
@@ -45,12 +59,15 @@ impl Parts {
                 join(pair[0].1, pair[1].1);
             }
         }
-        // Elements with two nodes in one body.
+        // Elements with so many nodes in one body that they cannot turn against it.
         let body_of = structure.body_of_nodes();
         for (index, element) in structure.elements.iter().enumerate() {
-            let bodies: Vec<usize> = element.nodes.iter().filter_map(|&node| body_of[node]).collect();
-            for (at, &body) in bodies.iter().enumerate() {
-                if bodies[..at].contains(&body) {
+            let bodies: Vec<(usize, usize)> =
+                element.nodes.iter().filter_map(|&node| Some((body_of[node]?, node))).collect();
+            for (at, &(body, _)) in bodies.iter().enumerate() {
+                let own = bodies[..=at].iter().filter(|(other, _)| *other == body).map(|(_, node)| *node);
+                let own: Vec<usize> = own.collect();
+                if own.len() > 1 && (!element.shape().is_solid() || axis(structure, &own).is_none()) {
                     join(index as u32, (elements + body) as u32);
                 }
             }
@@ -60,7 +77,7 @@ impl Parts {
             body_of.iter().map(|body| body.map(|body| (elements + body) as u32)).collect();
         for (index, element) in structure.elements.iter().enumerate() {
             for (end, &node) in element.nodes.iter().enumerate() {
-                if element.components(end).iter().any(|component| component.is_rotation()) {
+                if element.turns_with(end) {
                     match turning[node] {
                         Some(other) => join(index as u32, other),
                         None => turning[node] = Some(index as u32),

@@ -3,23 +3,12 @@
 use nalgebra::DVector;
 
 use super::displacements::Displacements;
-use super::element::bar_load::Piece;
+use super::element::bar_load::{Internal, Piece};
 use super::element::{Stress, finite_element, slots, spring};
 use super::loads::ActingLoads;
 use super::main_system::MainSystem;
 use crate::doubled::{Doubled, Real};
 use crate::model::structure::{Component, Structure};
-
-/// Internal forces at one end of an element in bar axes: local x from start to end, local y = x turned +90°.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EndForces {
-    /// Normal force N, > 0 tension.
-    pub normal: f64,
-    /// Shear force Q = dM/dx.
-    pub shear: f64,
-    /// Bending moment M, > 0 tension on the −y side.
-    pub moment: f64,
-}
 
 /// Internal forces of one element of a bar.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,9 +18,9 @@ pub struct MemberForces {
     /// Element along the bar, from 0.
     pub element: usize,
     /// At its start.
-    pub start: EndForces,
+    pub start: Internal,
     /// At its end.
-    pub end: EndForces,
+    pub end: Internal,
     /// Exactly in between; ranges are distances from the start of the bar.
     pub pieces: Vec<Piece>,
 }
@@ -88,7 +77,7 @@ fn take_out_slivers(pieces: &mut Vec<Piece>) {
 }
 
 impl MainSystem {
-    /// N, Q, M of every bar element under Σ factor·F and the displacements `u`: at both ends and in between.
+    /// Internal forces of every bar element under Σ factor·F and the displacements `u`: at both ends and in between.
     pub fn member_forces(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MemberForces> {
         let loads = ActingLoads::of(structure, factors);
         let mut members = Vec::new();
@@ -104,7 +93,7 @@ impl MainSystem {
                 }
                 take_out_slivers(&mut forces.pieces);
                 from += forces.length;
-                let [start, end] = forces.ends.map(|[normal, shear, moment, ..]| EndForces { normal, shear, moment });
+                let [start, end] = forces.ends;
                 members.push(MemberForces { bar, element: position, start, end, pieces: forces.pieces });
             }
         }

@@ -45,6 +45,14 @@ impl Dimension {
         vector.into_iter().take(self.coordinates()).collect()
     }
 
+    /// `the plane`, `space`.
+    pub fn in_which(self) -> &'static str {
+        match self {
+            Dimension::Plane => "the plane",
+            Dimension::Space => "space",
+        }
+    }
+
     /// A vector as it stands in messages: `(0.6, 0.8)`.
     pub fn in_words(self, vector: [f64; 3]) -> String {
         let entries: Vec<String> = self.shown(vector).iter().map(f64::to_string).collect();

@@ -137,6 +137,15 @@ impl Element {
         }
     }
 
+    /// Whether its end number `at` turns with its node.
+    pub fn turns_with(&self, at: usize) -> bool {
+        match &self.kind {
+            ElementKind::Frame { hinges, .. } => !hinges[at],
+            ElementKind::SpaceFrame { joints, .. } => joints[at] == EndJoint::Rigid,
+            _ => false,
+        }
+    }
+
     /// Whether it bends, so that its nodes have rotations.
     pub fn bends(&self) -> bool {
         matches!(self.kind, ElementKind::Frame { .. } | ElementKind::SpaceFrame { .. })

@@ -57,10 +57,10 @@ pub enum ElementLoad {
     Body([f64; 3]),
     /// What an element would do if nothing held it: temperature, lack of fit, prestress.
     FreeStrain {
-        /// Along a bar; in all directions of a membrane.
+        /// Along a bar; in all directions of a membrane or a solid.
         strain: f64,
-        /// Of a frame bar, > 0 when the −y side is the longer one.
-        curvature: f64,
+        /// Of a frame bar in its local x–y plane, > 0 when the −y side is the longer one, and in x–z likewise.
+        curvature: [f64; 2],
     },
 }
 
@@ -82,7 +82,7 @@ impl ElementLoad {
             ElementLoad::Line { value, .. } => *value == [[0.0; 3]; 2],
             ElementLoad::Point { force, moment, .. } => *force == [0.0; 3] && *moment == [0.0; 3],
             ElementLoad::Body(force) => *force == [0.0; 3],
-            ElementLoad::FreeStrain { strain, curvature } => *strain == 0.0 && *curvature == 0.0,
+            ElementLoad::FreeStrain { strain, curvature } => *strain == 0.0 && *curvature == [0.0; 2],
         }
     }
 }

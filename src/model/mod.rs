@@ -5,6 +5,7 @@
 
 pub mod amend;
 pub mod bar_axes;
+pub mod brick;
 pub mod catalog;
 mod decode;
 pub mod dimension;

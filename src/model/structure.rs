@@ -4,6 +4,7 @@
 //! the generated ones (plate nodes `lower[i,j]`, mesh nodes `dam/17`, bar divisions `AB/1`), so that results keep the
 //! author's order.
 
+pub use super::brick::Brick;
 pub use super::dimension::Dimension;
 use super::edge::EdgeSide;
 pub use super::element::{Element, ElementKind, Material, Plane};
@@ -67,12 +68,14 @@ pub struct Structure {
     pub nodes: Vec<Node>,
     /// Materials by index.
     pub materials: Vec<Material>,
-    /// All elements: of bars, of plates, of meshes, then single ones, in file order.
+    /// All elements: of bars, of plates, of bricks, of meshes, then single ones, in file order.
     pub elements: Vec<Element>,
     /// The bars, in the order of their elements.
     pub bars: Vec<Bar>,
     /// The plates.
     pub plates: Vec<Plate>,
+    /// The bricks.
+    pub bricks: Vec<Brick>,
     /// The meshes.
     pub meshes: Vec<MeshElements>,
     /// Id and index of every element that the author named by itself: triangles and quads, in increasing order.
@@ -142,6 +145,9 @@ impl Structure {
             return Some(element);
         }
         let (id, indices) = name.strip_suffix('}')?.split_once('{')?;
+        if let Some(brick) = self.bricks.iter().find(|brick| brick.id == id) {
+            return brick.element(three_indices(indices)?);
+        }
         let (i, j) = indices.split_once(',')?;
         let (i, j): (usize, usize) = (i.parse().ok()?, j.parse().ok()?);
         let plate = self.plates.iter().find(|plate| plate.id == id)?;
@@ -158,6 +164,10 @@ impl Structure {
         if let Some(mesh) = self.meshes.iter().find(|mesh| mesh.elements.contains(&element)) {
             return Some(format!("{}#{}", mesh.id, mesh.tags[element - mesh.elements.start]));
         }
+        if let Some(brick) = self.bricks.iter().find(|brick| brick.elements.contains(&element)) {
+            let [i, j, k] = brick.indices(element);
+            return Some(format!("{}{{{i},{j},{k}}}", brick.id));
+        }
         let plate = self.plates.iter().find(|plate| plate.elements.contains(&element))?;
         let k = element - plate.elements.start;
         Some(format!("{}{{{},{}}}", plate.id, k % plate.columns(), k / plate.columns()))
@@ -171,4 +181,14 @@ impl Structure {
         let nodes: Vec<&str> = self.elements[element].nodes.iter().map(|&node| self.nodes[node].id.as_str()).collect();
         format!("the element with the nodes {}", nodes.join(", "))
     }
+}
+
+/// `i,j,k`.
+pub fn three_indices(text: &str) -> Option<[usize; 3]> {
+    let index = |digits: &str| {
+        let plain = digits.bytes().all(|byte| byte.is_ascii_digit());
+        digits.parse::<usize>().ok().filter(|_| plain)
+    };
+    let indices: Vec<usize> = text.split(',').map(index).collect::<Option<_>>()?;
+    indices.try_into().ok()
 }

@@ -52,20 +52,27 @@ pub struct SpringTerm {
 impl Spring {
     /// From a node to the ground, or to another node, along a unit vector.
     pub fn along(node: usize, other: Option<usize>, direction: [f64; 3], stiffness: f64) -> Spring {
+        Spring::of(node, other, Component::TRANSLATIONS.into_iter().zip(direction), stiffness)
+    }
+
+    /// Against the rotation of a node about a unit vector, or between those of two nodes.
+    pub fn about(node: usize, other: Option<usize>, axis: [f64; 3], stiffness: f64) -> Spring {
+        let components = Component::ROTATIONS.into_iter().zip(axis);
+        Spring::of(node, other, components.filter(|(_, a)| *a != 0.0), stiffness)
+    }
+
+    fn of(
+        node: usize,
+        other: Option<usize>,
+        components: impl Iterator<Item = (Component, f64)> + Clone,
+        stiffness: f64,
+    ) -> Spring {
         let ends = [Some((node, 1.0)), other.map(|other| (other, -1.0))];
-        let components = Component::TRANSLATIONS.into_iter().zip(direction);
         let terms = ends.into_iter().flatten().flat_map(|(node, sign)| {
             let term = move |(component, a): (Component, f64)| SpringTerm { node, component, factor: sign * a };
             components.clone().map(term)
         });
         Spring { terms: terms.collect(), stiffness }
-    }
-
-    /// Against a rotation of a node, or between those of two nodes.
-    pub fn rotational(node: usize, other: Option<usize>, component: Component, stiffness: f64) -> Spring {
-        let ends = [Some((node, 1.0)), other.map(|other| (other, -1.0))];
-        let term = |(node, factor)| SpringTerm { node, component, factor };
-        Spring { terms: ends.into_iter().flatten().map(term).collect(), stiffness }
     }
 
     /// Its nodes, each once.

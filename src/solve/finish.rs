@@ -17,7 +17,7 @@ use crate::contact::written::ContactLcp;
 use crate::fem::Displacements;
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::pivot::Cycle;
-use crate::model::structure::Structure;
+use crate::model::structure::{Dimension, Structure};
 use crate::model::uses::Redone;
 use crate::model::vector::dot;
 use crate::text::words::{list, short};
@@ -75,8 +75,8 @@ impl Prepared {
         let members = main.member_forces(structure, u, factors).into_iter().map(|member| MemberForces {
             bar: structure.bars[member.bar].id.clone(),
             element: member.element,
-            start: end_forces(member.start),
-            end: end_forces(member.end),
+            start: end_forces(structure.dimension, member.start),
+            end: end_forces(structure.dimension, member.end),
             pieces: member.pieces,
         });
         Some(members.collect())
@@ -92,6 +92,11 @@ impl Prepared {
             fx: reaction.force[0],
             fy: reaction.force[1],
             m: reaction.moment[2],
+            space: (structure.dimension == Dimension::Space).then_some([
+                reaction.force[2],
+                reaction.moment[0],
+                reaction.moment[1],
+            ]),
         });
         Some(reactions.collect())
     }
@@ -197,17 +202,12 @@ fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<S
     kinds.iter().filter(|(pairs, _)| !pairs.is_empty()).map(note).collect()
 }
 
-fn end_forces(ends: crate::fem::EndForces) -> EndForces {
-    EndForces { n: ends.normal, q: ends.shear, m: ends.moment }
+fn end_forces(dimension: Dimension, [n, q, m, vz, my, t]: [f64; 6]) -> EndForces {
+    EndForces { n, q, m, space: (dimension == Dimension::Space).then_some([vz, my, t]) }
 }
 
 pub(super) fn named(structure: &Structure, u: &Displacements) -> Vec<NodeDisplacement> {
-    structure
-        .nodes
-        .iter()
-        .zip(&u.0)
-        .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[5] })
-        .collect()
+    structure.nodes.iter().zip(&u.0).map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u)).collect()
 }
 
 /// Takes the check over, and says what holds open pairs.

@@ -30,7 +30,7 @@ pub fn write(
     }
     table(&chosen, units).write(out, style)?;
     let Some(diagram) = bar.and_then(|bar| Diagram::of(members, bar)) else { return Ok(()) };
-    for which in Internal::ALL {
+    for &which in Internal::of(chosen.iter().any(|member| member.start.space.is_some())) {
         style.paragraph(out, Role::Plain, &extremes(&diagram, which, units))?;
     }
     Ok(())
@@ -39,25 +39,24 @@ pub fn write(
 /// The table that is written of some elements.
 pub fn table(chosen: &[&MemberForces], units: &Units) -> Table {
     let force = |head: &str| Column::numbers(head, force_unit(units)).of(1);
-    let mut table = Table::new(vec![
-        Column::words("bar"),
-        Column::count("element"),
-        Column::words("end"),
-        force("N"),
-        force("Q"),
-        Column::numbers("M", moment_unit(units)),
-    ]);
+    let mut table = Table::new(vec![Column::words("bar"), Column::count("element"), Column::words("end")]);
+    let is_in_space = chosen.iter().any(|member| member.start.space.is_some());
+    for which in Internal::of(is_in_space) {
+        table.columns.push(match which.is_moment() {
+            true => Column::numbers(which.symbol(), moment_unit(units)),
+            false => force(which.symbol()),
+        });
+    }
     for member in chosen {
         for (word, end) in [("start", member.start), ("end", member.end)] {
             let first = word == "start";
-            table.rows.push(Row::new(vec![
+            let mut cells = vec![
                 Cell::from(if first { member.bar.as_str() } else { "" }),
                 Cell::from(if first { member.element.to_string() } else { String::new() }),
                 Cell::new(word, Role::Muted),
-                Cell::number(end.n),
-                Cell::number(end.q),
-                Cell::number(end.m),
-            ]));
+            ];
+            cells.extend(end.named().into_iter().map(|(_, force)| Cell::number(force)));
+            table.rows.push(Row::new(cells));
         }
     }
     table
@@ -65,7 +64,7 @@ pub fn table(chosen: &[&MemberForces], units: &Units) -> Table {
 
 /// `M: largest 12.5 kN m at 2.1 m, least 0 kN m at 0 m`: between the nodes too.
 pub fn extremes(diagram: &Diagram, which: Internal, units: &Units) -> String {
-    let unit = if which == Internal::Moment { moment_unit(units) } else { force_unit(units) };
+    let unit = if which.is_moment() { moment_unit(units) } else { force_unit(units) };
     let extremes = diagram.extremes(which);
     let scale = largest(extremes.iter().map(|place| place.value));
     let [least, most] = extremes.map(|Place { distance, value }| {

@@ -15,7 +15,7 @@ use crate::text::number::{short, with_unit};
 pub fn write(
     out: &mut dyn Write,
     reactions: &[Reaction],
-    about_origin: f64,
+    about_origin: [f64; 3],
     units: &Units,
     style: &Style,
 ) -> io::Result<()> {
@@ -23,33 +23,44 @@ pub fn write(
         return writeln!(out, "{}", style.fit("no supports and no springs", style.width));
     }
     table(reactions, units).write(out, style)?;
-    let moment = with_unit(&short(about_origin), moment_unit(units).as_deref());
-    writeln!(out, "{}", style.fit(&style.text(&format!("moment of all of them about (0, 0): {moment}")), style.width))
+    let unit = moment_unit(units);
+    let (origin, moment) = match reactions.iter().any(|reaction| reaction.space.is_some()) {
+        false => ("(0, 0)", short(about_origin[2])),
+        true => ("(0, 0, 0)", format!("({})", about_origin.map(short).join(", "))),
+    };
+    let moment = with_unit(&moment, unit.as_deref());
+    writeln!(out, "{}", style.fit(&style.text(&format!("moment of all of them about {origin}: {moment}")), style.width))
 }
 
 /// The table that is written, with the sums.
 pub fn table(reactions: &[Reaction], units: &Units) -> Table {
     let force = |head: &str| Column::numbers(head, force_unit(units)).of(1);
-    let moments = reactions.iter().any(|reaction| reaction.m != 0.0);
-    let mut table = Table::new(vec![Column::words("node"), force("F_x"), force("F_y")]);
+    let is_in_space = reactions.iter().any(|reaction| reaction.space.is_some());
+    let moments = reactions.iter().any(|reaction| reaction.moment() != [0.0; 3]);
+    let (forces, turns): (&[&str], &[&str]) = match is_in_space {
+        false => (&["F_x", "F_y"], &["M"]),
+        true => (&["F_x", "F_y", "F_z"], &["M_x", "M_y", "M_z"]),
+    };
+    let mut table = Table::new(vec![Column::words("node")]);
+    table.columns.extend(forces.iter().map(|head| force(head)));
     if moments {
-        table.columns.push(Column::numbers("M", moment_unit(units)).droppable(1));
+        table.columns.extend(turns.iter().map(|head| Column::numbers(head, moment_unit(units)).droppable(1)));
     }
-    let mut push = |name: &str, fx: f64, fy: f64, m: Option<f64>| {
-        let mut cells = vec![Cell::from(name), Cell::number(fx), Cell::number(fy)];
+    let mut push = |name: &str, force: [f64; 3], moment: Option<[f64; 3]>| {
+        let mut cells = vec![Cell::from(name)];
+        cells.extend(force[..forces.len()].iter().map(|force| Cell::number(*force)));
         if moments {
-            cells.push(Cell::maybe(m));
+            cells.extend((3 - turns.len()..3).map(|c| Cell::maybe(moment.map(|moment| moment[c]))));
         }
         table.rows.push(Row::new(cells));
     };
     for reaction in reactions {
-        push(&reaction.node, reaction.fx, reaction.fy, Some(reaction.m));
+        push(&reaction.node, reaction.force(), Some(reaction.moment()));
     }
     if reactions.len() > 1 {
-        let fx = balance(reactions.iter().map(|r| r.fx));
-        let fy = balance(reactions.iter().map(|r| r.fy));
+        let sum = [0, 1, 2].map(|c| balance(reactions.iter().map(|reaction| reaction.force()[c])));
         // Moments at different places do not add up to anything.
-        push("sum", fx, fy, None);
+        push("sum", sum, None);
     }
     table
 }

@@ -57,10 +57,14 @@ pub struct Safety {
 }
 
 impl Summary {
-    /// Σ fx and Σ fy of the reactions.
-    pub fn sum_of_reactions(&self) -> [f64; 2] {
-        let of = |component: fn(&Reaction) -> f64| balance(self.reactions.iter().map(component));
-        [of(|reaction| reaction.fx), of(|reaction| reaction.fy)]
+    /// Sum of the reactions; F_z is 0 in the plane.
+    pub fn sum_of_reactions(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| balance(self.reactions.iter().map(|reaction| reaction.force()[axis])))
+    }
+
+    /// Whether the structure stands in space.
+    pub fn is_in_space(&self) -> bool {
+        self.reactions.iter().any(|reaction| reaction.space.is_some())
     }
 }
 
@@ -139,16 +143,18 @@ fn peaks_table(peaks: &[Peak], units: &Units, ascii: bool) -> Table {
 /// The reactions and their sum, or the sum alone of many.
 fn reactions_table(summary: &Summary, units: &Units) -> Table {
     let force = |head: &str| Column::numbers(head, force_unit(units)).of(1);
-    let mut table = Table::new(vec![Column::words("reactions"), force("F_x"), force("F_y")]);
-    let mut push = |name: &str, fx: f64, fy: f64| {
-        table.rows.push(Row::new(vec![Cell::from(name), Cell::number(fx), Cell::number(fy)]));
+    let heads: &[&str] = if summary.is_in_space() { &["F_x", "F_y", "F_z"] } else { &["F_x", "F_y"] };
+    let mut table = Table::new(vec![Column::words("reactions")]);
+    table.columns.extend(heads.iter().map(|head| force(head)));
+    let mut push = |name: &str, force: [f64; 3]| {
+        let forces = force[..heads.len()].iter().map(|force| Cell::number(*force));
+        table.rows.push(Row::new(std::iter::once(Cell::from(name)).chain(forces).collect()));
     };
     for reaction in summary.reactions.iter().filter(|_| summary.reactions.len() <= REACTIONS) {
-        push(&reaction.node, reaction.fx, reaction.fy);
+        push(&reaction.node, reaction.force());
     }
     if !summary.reactions.is_empty() {
-        let [fx, fy] = summary.sum_of_reactions();
-        push(&format!("sum of {}", summary.reactions.len()), fx, fy);
+        push(&format!("sum of {}", summary.reactions.len()), summary.sum_of_reactions());
     }
     table
 }

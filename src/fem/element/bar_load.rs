@@ -121,7 +121,8 @@ impl BarLoad {
                 }
                 ElementLoad::FreeStrain { strain, curvature } => {
                     all.strain += factor * strain;
-                    all.curvature[0] += factor * curvature;
+                    std::iter::zip(&mut all.curvature, curvature)
+                        .for_each(|(all, curvature)| *all += factor * curvature);
                 }
             }
         }

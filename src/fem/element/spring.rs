@@ -17,7 +17,6 @@ pub fn force(spring: &Spring, u: &[[f64; 6]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::structure::Component;
 
     /// Force on the terms by k u against s (Σ a u) a.
     #[test]
@@ -26,8 +25,8 @@ mod tests {
         let springs = [
             Spring::along(0, None, [0.6, 0.8, 0.0], 50.0),
             Spring::along(0, Some(1), [-0.8, 0.6, 0.0], 50.0),
-            Spring::rotational(1, None, Component::Rz, 7.0),
-            Spring::rotational(0, Some(1), Component::Rz, 7.0),
+            Spring::about(1, None, [0.0, 0.0, 1.0], 7.0),
+            Spring::about(0, Some(1), [0.0, 0.0, 1.0], 7.0),
         ];
         for spring in springs {
             let force = force(&spring, &u);

@@ -2,9 +2,12 @@
 
 use std::sync::Arc;
 
-use super::builder::{Builder, Section, id_of, material_of};
+use super::builder::{Bending, Builder, Section, id_of, material_of};
 use super::reader::{Cursor, Fields};
-use crate::model::structure::{Bar, Element, ElementKind, Node};
+use crate::model::bar_axes::{AxesFault, BarAxes};
+use crate::model::space_section::EndJoint;
+use crate::model::structure::{Bar, Dimension, Element, ElementKind, Node};
+use crate::model::vector::distance;
 
 /// A bar before its division.
 pub struct BarOutline<'d> {
@@ -28,7 +31,12 @@ impl BarOutline<'_> {
 
 /// Reads one bar; its nodes are resolved by [`divide`], once those of the plates are known.
 pub fn bar<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<BarOutline<'d>> {
-    let fields = cursor.fields(&["id", "nodes", "polyline", "kind", "material", "section", "divisions", "hinges"])?;
+    const KEYS: [&str; 9] =
+        ["id", "nodes", "polyline", "kind", "material", "section", "divisions", "hinges", "orientation"];
+    let fields = match cursor.dimension() {
+        Dimension::Plane => cursor.fields(&KEYS[..8])?,
+        Dimension::Space => cursor.fields(&KEYS)?,
+    };
     let id = id_of(builder, &fields, "bar");
     let outline = bar_outline(builder, cursor, &fields, id);
     if outline.is_none() {
@@ -61,6 +69,10 @@ fn bar_outline<'d>(
         Some(cursor) => hinges(cursor),
         None => Some([false; 2]),
     };
+    let orientation = match fields.optional("orientation") {
+        Some(cursor) => cursor.direction("orientation").map(Some),
+        None => Some(None),
+    };
     let section = section_of(builder, fields);
     let is_frame = is_frame?;
     if !is_frame && fields.entry("polyline").is_some() {
@@ -90,7 +102,7 @@ fn bar_outline<'d>(
         return None;
     }
     let (at, name, section) = section?;
-    let kind = bar_kind(at, name, section, is_frame, hinges?)?;
+    let kind = bar_kind(at, name, section, is_frame, hinges?, orientation?)?;
     Some(BarOutline { cursor, id: id?, section: name, nodes: nodes?, divisions: divisions?, material: material?, kind })
 }
 
@@ -114,18 +126,33 @@ pub fn bar_kind(
     section: &Section,
     is_frame: bool,
     hinges: [bool; 2],
+    orientation: Option<[f64; 3]>,
 ) -> Option<ElementKind> {
+    let area = section.area;
     if !is_frame {
-        return Some(ElementKind::Truss { area: section.area });
+        return Some(match at.dimension() {
+            Dimension::Plane => ElementKind::Truss { area },
+            Dimension::Space => ElementKind::SpaceTruss { area, orientation },
+        });
     }
-    let Some(inertia) = section.inertia else {
-        at.problem(
-            format!("the section \"{name}\" has no `inertia`, which a frame bar needs"),
-            format!("add sections.{name}.inertia, or make the bar a truss"),
-        );
-        return None;
-    };
-    Some(ElementKind::Frame { area: section.area, inertia, shear_area: section.shear_area, hinges })
+    match section.bending {
+        Some(Bending::Plane { inertia, shear_area }) => Some(ElementKind::Frame { area, inertia, shear_area, hinges }),
+        Some(Bending::Space(section)) => {
+            let joints = hinges.map(|hinge| if hinge { EndJoint::Hinge } else { EndJoint::Rigid });
+            Some(ElementKind::SpaceFrame { section, orientation, joints })
+        }
+        None => {
+            let (needs, first) = match at.dimension() {
+                Dimension::Plane => ("no `inertia`, which a frame bar needs", "inertia"),
+                Dimension::Space => ("no `inertia_y`, `inertia_z` and `torsion`, which a frame bar needs", "inertia_y"),
+            };
+            at.problem(
+                format!("the section \"{name}\" has {needs}"),
+                format!("add sections.{name}.{first}, or make the bar a truss"),
+            );
+            None
+        }
+    }
 }
 
 /// The nodes along a bar: `nodes`, start and end, or `polyline`.
@@ -169,8 +196,8 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
     let mut chain = vec![nodes[0]];
     for ends in nodes.windows(2) {
         let [from, to] = [0, 1].map(|end| builder.structure.nodes[ends[end]].position);
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let size = [from[0], from[1], to[0], to[1]].iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        let length = distance(from, to);
+        let size = from.iter().chain(&to).fold(0.0_f64, |size, x| size.max(x.abs()));
         // Written so that an unknown place (NaN, reported at the node) passes.
         if ends[0] == ends[1] || length <= 1e-12 * size {
             let what = if nodes.len() == 2 {
@@ -178,7 +205,8 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
             } else {
                 format!("a segment of the bar \"{}\" has no length: both its ends are", bar.id)
             };
-            bar.cursor.problem(format!("{what} at ({}, {})", from[0], from[1]), "join two nodes at different places");
+            let at = builder.structure.dimension.in_words(from);
+            bar.cursor.problem(format!("{what} at {at}"), "join two nodes at different places");
             builder.broken.insert(bar.id);
             return;
         }
@@ -196,10 +224,28 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
     let last = chain.len() - 2;
     for (index, pair) in chain.windows(2).enumerate() {
         let mut kind = bar.kind.clone();
-        if let ElementKind::Frame { hinges, .. } = &mut kind {
-            // A hinge stays only at the end of the bar that has it.
-            hinges[0] &= index == 0;
-            hinges[1] &= index == last;
+        // A hinge stays only at the end of the bar that has it.
+        let is_end = [index == 0, index == last];
+        match &mut kind {
+            ElementKind::Frame { hinges, .. } => {
+                hinges.iter_mut().zip(is_end).for_each(|(hinge, is_end)| *hinge &= is_end);
+            }
+            ElementKind::SpaceFrame { joints, .. } => {
+                let inner = joints.iter_mut().zip(is_end).filter(|(_, is_end)| !is_end);
+                inner.for_each(|(joint, _)| *joint = EndJoint::Rigid);
+            }
+            _ => {}
+        }
+        if let ElementKind::SpaceFrame { orientation, .. } | ElementKind::SpaceTruss { orientation, .. } = &kind {
+            let ends = [0, 1].map(|end| builder.structure.nodes[pair[end]].position);
+            if let Err(AxesFault::Orientation) = BarAxes::<f64>::in_space(ends, *orientation) {
+                bar.cursor.problem(
+                    format!("the orientation of the bar \"{}\" points along it, and should lie across it", bar.id),
+                    "give a vector in its local x–y plane, on the side of +y",
+                );
+                builder.broken.insert(bar.id);
+                return;
+            }
         }
         builder.structure.elements.push(Element { nodes: pair.to_vec(), material: bar.material, kind });
         builder.places.elements.push(place.clone());

@@ -7,21 +7,30 @@ use std::sync::Arc;
 use super::mesh_names::MeshPart;
 use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, is_id, quoted};
+use crate::model::bar_axes::BarAxes;
 use crate::model::edge::Edge;
 use crate::model::scenario::Places;
-use crate::model::structure::{Component, Node, Structure};
+use crate::model::space_section::SpaceSection;
+use crate::model::structure::{Component, ElementKind, Node, Structure};
 use crate::model::superelement::Superelement;
 use crate::model::vector::{distance, way};
 
 /// Cross-section of bars.
 pub struct Section {
     pub area: f64,
-    /// Only frames need one.
-    pub inertia: Option<f64>,
-    /// Frames yield to shear only with one.
-    pub shear_area: Option<f64>,
-    /// Needed where the temperature varies across the bar.
-    pub depth: Option<f64>,
+    /// Of bars in the plane that bend; only frames need one.
+    pub bending: Option<Bending>,
+    /// Needed where the temperature varies across the bar: along y, and in space along z.
+    pub depth: [Option<f64>; 2],
+}
+
+/// What a section needs to bend.
+#[derive(Clone, Copy)]
+pub enum Bending {
+    /// In the plane; frames yield to shear only with a shear area.
+    Plane { inertia: f64, shear_area: Option<f64> },
+    /// In space.
+    Space(SpaceSection),
 }
 
 /// Displacement that a load case imposes on a component held by a support.
@@ -62,6 +71,7 @@ pub struct Builder<'d> {
     /// Section of each bar, in the order of the bars.
     pub bar_sections: Vec<&'d str>,
     pub plates: HashMap<&'d str, usize>,
+    pub bricks: HashMap<&'d str, usize>,
     pub meshes: HashMap<&'d str, MeshPart>,
     /// What was put right in mesh files.
     pub notes: Vec<String>,
@@ -143,6 +153,18 @@ impl<'d> Builder<'d> {
             stretch
         };
         structure.bars[bar].elements.clone().map(stretch).collect()
+    }
+
+    /// The local axes of an element of a bar, which has a length and, in space, an orientation across it.
+    pub fn bar_axes(&self, element: usize) -> Option<BarAxes> {
+        let element = &self.structure.elements[element];
+        let ends = [0, 1].map(|end| self.structure.nodes[element.nodes[end]].position);
+        match element.kind {
+            ElementKind::SpaceFrame { orientation, .. } | ElementKind::SpaceTruss { orientation, .. } => {
+                BarAxes::in_space(ends, orientation).ok()
+            }
+            _ => BarAxes::in_plane(ends.map(|[x, y, _]| [x, y])),
+        }
     }
 
     /// The element of a bar at a distance from its start, and the distance from the start of that element.

@@ -8,10 +8,12 @@ use super::face_sides;
 use super::law::{self, NUMBERS, per_pair};
 use super::reader::{Cursor, Fields};
 use super::sides::{self, Sides};
+use crate::model::dimension::projection;
 use crate::model::memory;
 use crate::model::pair::{LawKind, Pair};
 use crate::model::parameter::Number;
 use crate::model::structure::{Dimension, EdgeContact};
+use crate::model::vector::cross;
 
 /// Reads `contacts`. `None` if their matrix would be too large to go on.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
@@ -33,9 +35,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
     let border = border(builder);
     let mut keys = vec!["id", "node", border];
     keys.extend(["against", "normal", "law", "friction", "cohesion", "gap", "bound", "skip"]);
-    if border == "edge" {
-        keys.push("method");
-    }
+    keys.push(if border == "edge" { "method" } else { "tangent" });
     let fields = cursor.fields(&keys)?;
     let id = fields.required("id").and_then(|cursor| {
         let id = cursor.string()?;
@@ -76,6 +76,12 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             None
         }
     };
+    let tangents = match fields.optional("tangent") {
+        Some(at) => tangents(at, sides.as_ref()),
+        None => sides.as_ref().map(|sides| {
+            sides.normals.iter().map(|&normal| builder.structure.dimension.tangents(normal)).collect::<Vec<_>>()
+        }),
+    };
     let sides = sides.filter(|sides| !is_within_a_body(builder, cursor, sides));
     let sides = sides.filter(|sides| has_its_displacements(builder, cursor, sides, law));
     if !is_border {
@@ -94,7 +100,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             }
         })
         .unwrap_or(Some(HashSet::new()));
-    let (id, law, sides, numbers, skipped) = (id?, law?, sides?, numbers?, skipped?);
+    let (id, law, sides, numbers, skipped, tangents) = (id?, law?, sides?, numbers?, skipped?, tangents?);
     let kept = sides.weights.iter().enumerate().filter(|(index, _)| !skipped.contains(index));
     let pairs = kept.filter_map(|(index, weights)| {
         Some(Pair {
@@ -102,7 +108,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             node: sides.nodes[index],
             weights: weights.clone()?,
             normal: sides.normals[index],
-            tangents: builder.structure.dimension.tangents(sides.normals[index]),
+            tangents: tangents[index].clone(),
             slides_on_ground: false,
             law: law.with(|key| Some(numbers.get(key)?[index].clone())),
         })
@@ -118,6 +124,20 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
 /// The key of a contact of many pairs: `edge` in the plane, `face` in space.
 fn border(builder: &Builder<'_>) -> &'static str {
     if builder.structure.dimension == Dimension::Space { "face" } else { "edge" }
+}
+
+/// The two tangents of every pair in space from a vector whose projection on the plane of contact is t1.
+fn tangents<'d>(at: Cursor<'d>, sides: Option<&Sides>) -> Option<Vec<Vec<[f64; 3]>>> {
+    let wanted = at.direction("tangent")?;
+    let of = |&normal: &[f64; 3]| projection(wanted, normal).map(|t| vec![t, cross(normal, t)]);
+    let found: Option<Vec<_>> = sides?.normals.iter().map(of).collect();
+    if found.is_none() {
+        at.problem(
+            "the tangent points along the normal, so it gives no direction in the plane of contact",
+            "give a vector across the normal: t1 is its projection on the plane of contact",
+        );
+    }
+    found
 }
 
 /// Reports a node of a superelement without a displacement that a joint needs.

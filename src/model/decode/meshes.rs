@@ -449,7 +449,7 @@ fn lines_of<'d>(
             return None;
         }
         let is_frame = is_frame.unwrap_or(line.line_type == LineType::Beam);
-        kinds.push((index, bar_kind(at, section, data, is_frame, [false; 2])?));
+        kinds.push((index, bar_kind(at, section, data, is_frame, [false; 2], None)?));
     }
     Some(Lines { group: group.name.clone(), material, section, lines: kinds })
 }

@@ -1,6 +1,7 @@
 //! Text of a scenario → checked [`Scenario`], collecting every problem on the way.
 
 mod bars;
+mod bricks;
 mod builder;
 mod contact_system;
 mod contacts;
@@ -43,6 +44,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::dimension::Dimension;
 use super::locate::{Document, position};
 use super::mesh::MeshFiles;
 use super::parameter::ParameterValues;
@@ -55,9 +57,10 @@ use super::words::{self, quoted};
 use reader::{Cursor, Entry, Fields, Reading};
 
 /// Keys of any scenario.
-const COMMON: [&str; 11] = [
+const COMMON: [&str; 12] = [
     "$schema",
     "format",
+    "dimension",
     "title",
     "description",
     "units",
@@ -140,6 +143,7 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         // Nothing has asked for them before.
         let _ = root.reading.parameters.set(parameters::read(cursor, under));
     }
+    read_dimension(&fields);
     let solver = fields.optional("solver");
     let rules = solver.and_then(rules).unwrap_or_default();
 
@@ -230,6 +234,28 @@ fn format(fields: &Fields<'_>) {
             format!("unknown format {}, expected \"{FORMAT}\"", quoted(word)),
             format!("this version of the program reads \"{FORMAT}\" only"),
         );
+    }
+}
+
+/// Whether points and vectors have two numbers or three.
+fn read_dimension(fields: &Fields<'_>) {
+    let Some(cursor) = fields.optional("dimension") else { return };
+    if let Some(other) = OTHER_SOURCES.into_iter().find_map(|key| fields.entry(key)) {
+        let what = if other.name() == "lcp" { "an lcp" } else { "a contact system" };
+        cursor.problem(
+            format!("`dimension` is that of a structure, and this is {what}"),
+            "remove it; a contact system in space has \"tangents\": 2",
+        );
+        return;
+    }
+    match cursor.whole("dimension", 2) {
+        Some(2) => {}
+        Some(3) => cursor.reading.dimension.set(Dimension::Space),
+        Some(_) => cursor.problem(
+            format!("dimension must be 2 or 3, found {}", cursor.found()),
+            "write 2 for a structure in the plane, 3 for one in space",
+        ),
+        None => {}
     }
 }
 

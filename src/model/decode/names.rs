@@ -5,9 +5,11 @@ use super::mesh_names::MeshPart;
 use super::reader::Cursor;
 use super::spot::Spot;
 use super::words::{did_you_mean, listed, quoted};
+use crate::model::brick::{Brick, BrickSide};
 use crate::model::edge::Edge;
 use crate::model::face::Face;
 use crate::model::plate::PlateSide;
+use crate::model::structure::{Dimension, three_indices};
 
 impl<'d> Builder<'d> {
     /// The node or edge that a string names.
@@ -24,6 +26,9 @@ impl<'d> Builder<'d> {
         }
         if self.is_of_broken_mesh(name) {
             return None;
+        }
+        if self.structure.dimension == Dimension::Space {
+            return self.spot_in_space(cursor, name);
         }
         if let Some((id, side)) = name.split_once('.') {
             let plate = self.plate(cursor, id, name)?;
@@ -56,6 +61,52 @@ impl<'d> Builder<'d> {
         None
     }
 
+    /// The face or node of a brick that a string names.
+    fn spot_in_space(&self, cursor: Cursor<'d>, name: &str) -> Option<Spot> {
+        if let Some((id, side)) = name.split_once('.') {
+            let brick = self.brick(cursor, id, name)?;
+            let Some((_, side)) = BrickSide::WORDS.iter().find(|(word, _)| *word == side) else {
+                let sides = BrickSide::WORDS.map(|(word, _)| format!("{id}.{word}"));
+                let sides: Vec<&str> = sides.iter().map(String::as_str).collect();
+                cursor.problem(
+                    format!("the brick \"{id}\" has no face {}", quoted(side)),
+                    format!("expected {}", listed(&sides)),
+                );
+                return None;
+            };
+            return Some(Spot::Face(side.face(brick)));
+        }
+        if let Some((id, indices)) = name.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
+            let brick = self.brick(cursor, id, name)?;
+            let node = three_indices(indices).and_then(|at| brick.node(at));
+            if node.is_none() {
+                let [nx, ny, nz] = brick.divisions;
+                cursor.problem(
+                    format!("the brick \"{id}\" has no node {}", quoted(name)),
+                    format!("its nodes are {id}[i,j,k] with i = 0…{nx}, j = 0…{ny} and k = 0…{nz}, without spaces"),
+                );
+            }
+            return node.map(Spot::Node);
+        }
+        self.unknown_spot(cursor, name);
+        None
+    }
+
+    fn brick(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<&Brick> {
+        let brick = self.bricks.get(id).map(|&brick| &self.structure.bricks[brick]);
+        if brick.is_none() && !self.broken.contains(id) {
+            let hint = did_you_mean(id, self.bricks.keys().copied());
+            let mut known: Vec<&str> = self.bricks.keys().copied().collect();
+            known.sort_unstable();
+            let help = match &known[..] {
+                [] => "the structure has no bricks".into(),
+                known => format!("expected {}", listed(known)),
+            };
+            cursor.problem(format!("unknown brick {} in {}{hint}", quoted(id), quoted(name)), help);
+        }
+        brick
+    }
+
     /// The mesh that a name begins with, and what follows its id.
     fn mesh_name<'n>(&self, name: &'n str) -> Option<(&MeshPart, &'n str)> {
         let at = name.find(['/', '.', '#'])?;
@@ -81,6 +132,7 @@ impl<'d> Builder<'d> {
     pub fn edge_nodes_at(&self, cursor: Cursor<'d>) -> Option<Vec<usize>> {
         match self.nodes_at(cursor)? {
             nodes if nodes.len() > 1 => Some(nodes),
+            _ if self.structure.dimension == Dimension::Space => self.face(cursor).map(|face| face.nodes),
             _ => self.edge(cursor).map(|edge| edge.nodes),
         }
     }
@@ -116,6 +168,13 @@ impl<'d> Builder<'d> {
             );
             return;
         }
+        if self.bricks.contains_key(name) {
+            cursor.problem(
+                format!("\"{name}\" is a brick, expected a node or a face"),
+                format!("name one of its nodes, \"{name}[i,j,k]\", or faces, \"{name}.top\""),
+            );
+            return;
+        }
         if self.plates.contains_key(name) {
             cursor.problem(
                 format!("\"{name}\" is a plate, expected a node or an edge"),
@@ -135,7 +194,14 @@ impl<'d> Builder<'d> {
         }
         let hint = did_you_mean(name, self.nodes.keys().map(String::as_str));
         let help = if hint.is_empty() {
-            "expected the id of a node, a plate node like \"lower[0,8]\" or an edge like \"lower.top\""
+            match self.structure.dimension {
+                Dimension::Plane => {
+                    "expected the id of a node, a plate node like \"lower[0,8]\" or an edge like \"lower.top\""
+                }
+                Dimension::Space => {
+                    "expected the id of a node, a node of a brick like \"lower[0,8,2]\" or a face like \"lower.top\""
+                }
+            }
         } else {
             "nodes are named by their id"
         };
@@ -198,6 +264,9 @@ impl<'d> Builder<'d> {
         if let Some(&plate) = self.plates.get(name) {
             return Some(self.structure.plates[plate].elements.clone().collect());
         }
+        if let Some(&brick) = self.bricks.get(name) {
+            return Some(self.structure.bricks[brick].elements.clone().collect());
+        }
         if let Some(&element) = self.single_elements.get(name) {
             return Some(vec![element]);
         }
@@ -206,7 +275,13 @@ impl<'d> Builder<'d> {
             return part.elements(cursor, rest);
         }
         if !self.broken.contains(name) && !self.is_of_broken_mesh(name) {
-            let own = self.plates.keys().chain(self.single_elements.keys()).chain(self.meshes.keys()).copied();
+            let own = self
+                .plates
+                .keys()
+                .chain(self.bricks.keys())
+                .chain(self.single_elements.keys())
+                .chain(self.meshes.keys())
+                .copied();
             let mut known: Vec<&str> = self.bars.keys().map(|id| &**id).chain(own).collect();
             known.sort_unstable();
             cursor.unknown("element", name, &known);

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, entries};
 use super::reader::{Cursor, Fields};
-use crate::model::structure::{Component, Spring};
+use crate::model::structure::{Dimension, Spring};
 
 /// Reads `springs`.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
@@ -17,18 +17,26 @@ fn springs<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Spring>>
     let ends = spring_ends(builder, &fields);
     let amount = |at: Cursor<'d>, what: &str| at.number_that(what, "0 or more", |value| value >= 0.0);
     if let Some(entry) = fields.entry("rotation") {
-        if fields.entry("direction").is_some() || fields.entry("stiffness").is_some() {
+        let is_plane = cursor.dimension() == Dimension::Plane;
+        if fields.entry("stiffness").is_some() || is_plane && fields.entry("direction").is_some() {
             entry.key_problem(
-                "`rotation` cannot stand beside `direction` and `stiffness`",
+                match is_plane {
+                    true => "`rotation` cannot stand beside `direction` and `stiffness`",
+                    false => "`rotation` cannot stand beside `stiffness`",
+                },
                 "it is the moment per rotation: give a second spring for the displacement",
             );
             return None;
         }
+        let axis = match is_plane {
+            true => Some([0.0, 0.0, 1.0]),
+            false => fields.required("direction").and_then(|cursor| cursor.direction("direction")),
+        };
         let stiffness = amount(entry.value(), "rotation");
-        let (ends, stiffness) = (ends?, stiffness?);
+        let (ends, stiffness, axis) = (ends?, stiffness?, axis?);
         let turn = |node: usize| builder.demand_rotation(entry.value(), node, "no `rotation` spring can act there");
         let is_right = ends.iter().all(|&(node, other)| turn(node) && other.is_none_or(turn));
-        let spring = |(node, other): (usize, Option<usize>)| Spring::rotational(node, other, Component::Rz, stiffness);
+        let spring = |(node, other): (usize, Option<usize>)| Spring::about(node, other, axis, stiffness);
         return is_right.then(|| ends.into_iter().map(spring).collect());
     }
     let direction = fields.required("direction").and_then(|cursor| cursor.direction("direction"));

@@ -6,10 +6,15 @@ use super::builder::Builder;
 use super::reader::{Fields, Place};
 use super::{contacts, edges, elements, foundations, loads, rigid, springs, superelement, supports, ties};
 use crate::model::scenario::Places;
-use crate::model::structure::Structure;
+use crate::model::space_section::EndJoint;
+use crate::model::structure::{Dimension, ElementKind, Structure};
 
 /// Elements, and what they are made of: in their place a superelement may stand.
-pub const ELEMENTS: [&str; 8] = ["materials", "sections", "nodes", "bars", "plates", "meshes", "triangles", "quads"];
+pub const ELEMENTS: [&str; 9] =
+    ["materials", "sections", "nodes", "bars", "plates", "bricks", "meshes", "triangles", "quads"];
+
+/// What lies in the plane only.
+const OF_PLANE: [&str; 4] = ["plates", "triangles", "quads", "edges"];
 
 /// What links and holds nodes: its key and its reader. Each is read after those before it, which it may name.
 const HOLDERS: [(&str, Reader); 5] = [
@@ -39,6 +44,18 @@ pub struct Found {
 /// Reads a structure. `None`, or an incomplete structure, only after a problem was reported.
 pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     let before = fields.cursor().problems_so_far();
+    match fields.cursor().dimension() {
+        Dimension::Plane => fields.refuse(
+            &["bricks"],
+            |_| "`bricks` are solids: they stand in space".into(),
+            "add \"dimension\": 3, and give every point and vector its z",
+        ),
+        Dimension::Space => fields.refuse(
+            &OF_PLANE,
+            |key| format!("`{key}` lie in the plane, and this structure stands in space"),
+            "use `bars` and `bricks`; shells come through `superelement`",
+        ),
+    }
     let mut builder = Builder::default();
     builder.structure.dimension = fields.cursor().dimension();
     let names = match fields.optional("superelement") {
@@ -52,6 +69,7 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     builder.elements_complete = fields.cursor().problems_so_far() == before;
     find_rotations(&mut builder);
     HOLDERS.iter().for_each(|(_, read)| read(&mut builder, fields));
+    release_torsion(&mut builder.structure);
     contacts::read(&mut builder, fields)?;
     foundations::read(&mut builder, fields);
     loads::read(&mut builder, fields);
@@ -71,6 +89,37 @@ fn find_rotations(builder: &mut Builder<'_>) {
         if element.bends() {
             for &node in &element.nodes {
                 builder.has_rotation[node] = true;
+            }
+        }
+    }
+}
+
+/// Makes ball joints of the hinges in space at nodes whose rotations nothing holds but hinges: see [`EndJoint`].
+fn release_torsion(structure: &mut Structure) {
+    if structure.dimension == Dimension::Plane {
+        return;
+    }
+    let mut turns = vec![false; structure.nodes.len()];
+    for element in &structure.elements {
+        for (at, &node) in element.nodes.iter().enumerate() {
+            turns[node] |= element.turns_with(at);
+        }
+    }
+    structure.rigid.iter().flat_map(|body| &body.nodes).for_each(|&node| turns[node] = true);
+    let supports = structure.supports.iter().map(|support| (support.node, support.component));
+    let springs = structure.springs.iter().flat_map(|spring| &spring.terms).map(|term| (term.node, term.component));
+    let ties = structure.ties.iter().flat_map(|tie| {
+        tie.nodes.iter().flat_map(|&node| tie.components.iter().map(move |&component| (node, component)))
+    });
+    for (node, component) in supports.chain(springs).chain(ties) {
+        turns[node] |= component.is_rotation();
+    }
+    for element in &mut structure.elements {
+        if let ElementKind::SpaceFrame { joints, .. } = &mut element.kind {
+            for (joint, &node) in joints.iter_mut().zip(&element.nodes) {
+                if *joint == EndJoint::Hinge && !turns[node] {
+                    *joint = EndJoint::Ball;
+                }
             }
         }
     }

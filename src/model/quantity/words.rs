@@ -4,6 +4,7 @@
 //! To add a quantity of a pair, a node, a bar, a stress or an answer: a variant of its family here, its line in
 //! [`WORDS`], and its reader in `path/quantity`, which the compiler asks for.
 
+use crate::model::structure::{self, Component};
 use crate::model::units::Units;
 
 use Dimension as D;
@@ -99,14 +100,53 @@ pub enum OfNode {
     Ux,
     /// u_y.
     Uy,
-    /// Rotation.
+    /// u_z.
+    Uz,
+    /// Rotation about x.
+    Rx,
+    /// Rotation about y.
+    Ry,
+    /// Rotation about z, in the plane the only one.
     Rz,
     /// Reaction along x, on the structure.
     Fx,
     /// Along y.
     Fy,
-    /// Its moment.
+    /// Along z.
+    Fz,
+    /// Its moment in the plane.
     M,
+    /// Its moment about x.
+    Mx,
+    /// About y.
+    My,
+    /// About z.
+    Mz,
+}
+
+impl OfNode {
+    /// The component of a displacement; `None` of a reaction.
+    pub fn displaced(self) -> Option<Component> {
+        match self {
+            OfNode::Ux => Some(Component::X),
+            OfNode::Uy => Some(Component::Y),
+            OfNode::Uz => Some(Component::Z),
+            OfNode::Rx => Some(Component::Rx),
+            OfNode::Ry => Some(Component::Ry),
+            OfNode::Rz => Some(Component::Rz),
+            _ => None,
+        }
+    }
+
+    /// Whether it is one of the plane, or of space.
+    pub fn is_of(self, dimension: structure::Dimension) -> bool {
+        let only_space =
+            matches!(self, OfNode::Uz | OfNode::Rx | OfNode::Ry | OfNode::Fz | OfNode::Mx | OfNode::My | OfNode::Mz);
+        match dimension {
+            structure::Dimension::Plane => !only_space,
+            structure::Dimension::Space => self != OfNode::M,
+        }
+    }
 }
 
 /// An internal force of a bar.
@@ -118,13 +158,62 @@ pub enum Internal {
     Shear,
     /// M, positive with tension on the −y side of the bar.
     Moment,
+    /// V_z = dM_y/dx of a bar in space.
+    ShearZ,
+    /// M_y, positive with tension on the −z side of the bar.
+    MomentY,
+    /// T, along +x on the cut that faces it.
+    Torsion,
+    /// V_y: Q of a bar in space.
+    ShearY,
+    /// M_z: M of a bar in space.
+    MomentZ,
 }
 
 impl Internal {
-    /// All three in the order N, Q, M.
+    /// All three of the plane in the order N, Q, M.
     pub const ALL: [Internal; 3] = [Internal::Axial, Internal::Shear, Internal::Moment];
 
-    /// `N`, `Q` or `M`.
+    /// All six of space in the order of results.
+    pub const IN_SPACE: [Internal; 6] =
+        [Internal::Axial, Internal::ShearY, Internal::ShearZ, Internal::Torsion, Internal::MomentY, Internal::MomentZ];
+
+    /// Those of a bar in space, or in the plane.
+    pub fn of(is_in_space: bool) -> &'static [Internal] {
+        if is_in_space { &Internal::IN_SPACE } else { &Internal::ALL }
+    }
+
+    /// Its place among the internal forces of a bar element.
+    pub fn index(self) -> usize {
+        match self {
+            Internal::Axial => 0,
+            Internal::Shear | Internal::ShearY => 1,
+            Internal::Moment | Internal::MomentZ => 2,
+            Internal::ShearZ => 3,
+            Internal::MomentY => 4,
+            Internal::Torsion => 5,
+        }
+    }
+
+    /// Whether it is a moment.
+    pub fn is_moment(self) -> bool {
+        matches!(self, Internal::Moment | Internal::MomentZ | Internal::MomentY | Internal::Torsion)
+    }
+
+    /// Whether it is a bending moment.
+    pub fn is_bending(self) -> bool {
+        matches!(self, Internal::Moment | Internal::MomentZ | Internal::MomentY)
+    }
+
+    /// Whether bars of the plane, or of space, have it by this name.
+    pub fn is_of(self, dimension: structure::Dimension) -> bool {
+        match dimension {
+            structure::Dimension::Plane => Internal::ALL.contains(&self),
+            structure::Dimension::Space => Internal::IN_SPACE.contains(&self),
+        }
+    }
+
+    /// `N`, `Q`, `Vy` ….
     pub fn symbol(self) -> &'static str {
         Meaning::Bar(self).word()
     }
@@ -301,7 +390,10 @@ pub static WORDS: &[Word] = &[
     number("resultant", M::Resultant, D::Inner, "of an edge contact: N, T, or the eccentricity e of N"),
     number("ux", M::Node(OfNode::Ux), D::Length, "displacement along x"),
     number("uy", M::Node(OfNode::Uy), D::Length, "displacement along y"),
-    number("rz", M::Node(OfNode::Rz), D::None, "rotation"),
+    number("uz", M::Node(OfNode::Uz), D::Length, "displacement along z, in space"),
+    number("rx", M::Node(OfNode::Rx), D::None, "rotation about x, in space"),
+    number("ry", M::Node(OfNode::Ry), D::None, "rotation about y, in space"),
+    number("rz", M::Node(OfNode::Rz), D::None, "rotation, in space about z"),
     number(
         "N",
         M::Bar(Internal::Axial),
@@ -310,9 +402,18 @@ pub static WORDS: &[Word] = &[
     ),
     number("Q", M::Bar(Internal::Shear), D::Force, "shear force of a bar; likewise"),
     number("M", M::Bar(Internal::Moment), D::Moment, "bending moment of a bar; likewise"),
+    number("Vy", M::Bar(Internal::ShearY), D::Force, "shear force along y of a bar in space; likewise"),
+    number("Vz", M::Bar(Internal::ShearZ), D::Force, "shear force along z of a bar in space; likewise"),
+    number("T", M::Bar(Internal::Torsion), D::Moment, "torque of a bar in space; likewise"),
+    number("My", M::Bar(Internal::MomentY), D::Moment, "bending moment about y of a bar in space; likewise"),
+    number("Mz", M::Bar(Internal::MomentZ), D::Moment, "bending moment about z of a bar in space; likewise"),
     number("fx", M::Node(OfNode::Fx), D::Force, "reaction along x"),
     number("fy", M::Node(OfNode::Fy), D::Force, "reaction along y"),
+    number("fz", M::Node(OfNode::Fz), D::Force, "reaction along z, in space"),
     number("m", M::Node(OfNode::M), D::Moment, "moment of the reaction"),
+    number("mx", M::Node(OfNode::Mx), D::Moment, "moment of the reaction about x, in space"),
+    number("my", M::Node(OfNode::My), D::Moment, "moment of the reaction about y, in space"),
+    number("mz", M::Node(OfNode::Mz), D::Moment, "moment of the reaction about z, in space"),
     number("sx", M::Stress(OfStress::X), D::Stress, "stress along x"),
     number("sy", M::Stress(OfStress::Y), D::Stress, "stress along y"),
     number("sxy", M::Stress(OfStress::Xy), D::Stress, "shear stress"),
@@ -341,7 +442,7 @@ pub fn pair_words() -> impl Iterator<Item = (&'static str, OfPair)> {
 /// The words for the displacements of a node.
 pub fn displacement_words() -> impl Iterator<Item = (&'static str, OfNode)> {
     WORDS.iter().filter_map(|entry| match entry.meaning {
-        Meaning::Node(which @ (OfNode::Ux | OfNode::Uy | OfNode::Rz)) => Some((entry.word, which)),
+        Meaning::Node(which) if which.displaced().is_some() => Some((entry.word, which)),
         _ => None,
     })
 }

@@ -174,5 +174,5 @@ impl<'a> Facts<'a> {
 }
 
 fn from_nodes(nodes: &[NodeDisplacement]) -> Displacements {
-    nodes.iter().map(|node| [node.ux, node.uy, 0.0, 0.0, 0.0, node.rz]).collect::<Vec<_>>().into()
+    nodes.iter().map(|node| node.all()).collect::<Vec<_>>().into()
 }

@@ -17,10 +17,14 @@ impl Facts<'_> {
     }
 
     pub(super) fn of_bar(&self, which: Internal, bar: &str, place: BarPlace) -> Result<f64, NoValue> {
+        let (structure, _) = self.structure()?;
+        if !which.is_of(structure.dimension) {
+            return Err(NoValue(format!("no {} in {}", which.symbol(), structure.dimension.in_which())));
+        }
         let members = self.members()?;
         let diagram = Diagram::of(members, bar).ok_or_else(|| self.missing())?;
         let [force, moment] = of_members(members.iter());
-        let scale = if which == Internal::Moment { moment } else { force };
+        let scale = if which.is_moment() { moment } else { force };
         let [least, largest] = diagram.extremes(which).map(|place| place.value);
         let beyond = |s: f64| NoValue(format!("{s} is beyond the bar {bar}, which is {} long", diagram.length()));
         match place {

@@ -4,43 +4,40 @@ use super::facts::Facts;
 use super::value::NoValue;
 use crate::answer::record::{NodeDisplacement, Reaction};
 use crate::answer::rounding::{denoised, of_reactions};
-use crate::model::quantity::OfNode;
-use crate::model::structure::Component;
+use crate::model::quantity::{Meaning, OfNode};
 use crate::model::vector::length;
 
 impl OfNode {
     /// Of a displaced node; `None` for components of a reaction.
     pub fn of(self, node: &NodeDisplacement) -> Option<f64> {
-        match self {
-            OfNode::Ux => Some(node.ux),
-            OfNode::Uy => Some(node.uy),
-            OfNode::Rz => Some(node.rz),
-            OfNode::Fx | OfNode::Fy | OfNode::M => None,
-        }
+        self.displaced().map(|component| node.all()[component as usize])
     }
 
     /// A component of a reaction, and the scale up to whose rounding it is 0.
     fn of_reaction(self, reaction: &Reaction, [force, moment]: [f64; 2]) -> f64 {
+        let ([fx, fy, fz], [mx, my, mz]) = (reaction.force(), reaction.moment());
         match self {
-            OfNode::Fx => denoised(reaction.fx, force),
-            OfNode::Fy => denoised(reaction.fy, force),
-            _ => denoised(reaction.m, moment),
+            OfNode::Fx => denoised(fx, force),
+            OfNode::Fy => denoised(fy, force),
+            OfNode::Fz => denoised(fz, force),
+            OfNode::Mx => denoised(mx, moment),
+            OfNode::My => denoised(my, moment),
+            _ => denoised(mz, moment),
         }
     }
 }
 
 impl Facts<'_> {
     pub(super) fn of_node(&self, which: OfNode, node: &str) -> Result<f64, NoValue> {
-        let component = match which {
-            OfNode::Ux => Component::X,
-            OfNode::Uy => Component::Y,
-            OfNode::Rz => Component::Rz,
-            OfNode::Fx | OfNode::Fy | OfNode::M => {
-                let reactions = self.reactions()?;
-                let found = reactions.iter().find(|reaction| reaction.node == node);
-                let found = found.ok_or_else(|| NoValue(format!("no support at node {node}")))?;
-                return Ok(which.of_reaction(found, of_reactions(&reactions)));
-            }
+        let (structure, _) = self.structure()?;
+        if !which.is_of(structure.dimension) {
+            return Err(NoValue(format!("no {} in {}", Meaning::Node(which).word(), structure.dimension.in_which())));
+        }
+        let Some(component) = which.displaced() else {
+            let reactions = self.reactions()?;
+            let found = reactions.iter().find(|reaction| reaction.node == node);
+            let found = found.ok_or_else(|| NoValue(format!("no support at node {node}")))?;
+            return Ok(which.of_reaction(found, of_reactions(&reactions)));
         };
         let u = self.displacements()?;
         Ok(u.0[self.node(node)?][component as usize])

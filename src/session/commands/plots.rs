@@ -350,7 +350,7 @@ impl Session {
             .nodes
             .iter()
             .zip(&mode.displacements)
-            .map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[5] })
+            .map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u))
             .collect();
         let title = format!("{}: collapse mode", self.short_name());
         let viewpoint = self.viewpoint;

@@ -67,7 +67,7 @@ fn mode_of(prepared: &Prepared, solved: &Solved) -> Option<Vec<NodeDisplacement>
     }
     let u = main.displacements(&vec![0.0; prepared.cases.len()], &z);
     let nodes = structure.nodes.iter().zip(&u.0);
-    Some(nodes.map(|(node, u)| NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[5] }).collect())
+    Some(nodes.map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u)).collect())
 }
 
 /// Most pairs whose answers are shown side by side.

@@ -43,7 +43,8 @@ impl Session {
         if io.watch.stop() {
             return Err(CommandError::Interrupted);
         }
-        let [fx, fy] = summary.sum_of_reactions();
+        let [fx, fy, fz] = summary.sum_of_reactions();
+        let fz = summary.is_in_space().then_some(fz);
         let extreme = |peak: &'_ Peak| ExtremeReport { quantity: peak.what, value: peak.value, at: peak.at.clone() };
         let probe = |(name, _, value): &(String, Quantity, Result<Value, NoValue>)| {
             (name.clone(), value.as_ref().map_or(Json::Null, |value| value.json()))
@@ -53,7 +54,7 @@ impl Session {
             resultants: &summary.resultants,
             extremes: summary.peaks.iter().map(extreme).collect(),
             reactions: &summary.reactions,
-            sum_of_reactions: Force { fx, fy },
+            sum_of_reactions: Force { fx, fy, fz },
             safety: summary.safety.iter().map(SafetyReport::of).collect(),
             probes: summary.probes.iter().map(probe).collect(),
         };
@@ -112,6 +113,8 @@ struct ExtremeReport {
 struct Force {
     fx: f64,
     fy: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fz: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -172,6 +175,11 @@ fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
         bars("normal force", Internal::Axial),
         bars("shear force", Internal::Shear),
         bars("bending moment", Internal::Moment),
+        bars("shear force V_y", Internal::ShearY),
+        bars("shear force V_z", Internal::ShearZ),
+        bars("torque", Internal::Torsion),
+        bars("bending moment M_y", Internal::MomentY),
+        bars("bending moment M_z", Internal::MomentZ),
     ]
     .into_iter()
     .flatten()

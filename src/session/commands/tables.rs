@@ -177,7 +177,7 @@ impl Session {
             rows.chosen("node", &ids)?.into_iter().map(|index| all[index].clone()).collect();
         rows.order(&mut chosen, "u", |node, key| {
             let component = displacement_words().find(|(word, _)| *word == key).and_then(|(_, which)| which.of(node));
-            component.map_or(node.ux.hypot(node.uy), f64::abs)
+            component.map_or(node.length(), f64::abs)
         });
         io.show(&chosen, |out, style| {
             self.write_place_shown(out, style)?;
@@ -194,8 +194,10 @@ impl Session {
         let bars: Vec<&str> = all.iter().map(|member| member.bar.as_str()).collect();
         let mut chosen: Vec<MemberForces> =
             rows.chosen("bar", &bars)?.into_iter().map(|index| all[index].clone()).collect();
-        rows.order(&mut chosen, "M", |member, key| {
-            let which = Internal::ALL.into_iter().find(|which| which.symbol() == key);
+        let main = if all.iter().any(|member| member.start.space.is_some()) { "Mz" } else { "M" };
+        rows.order(&mut chosen, main, |member, key| {
+            let all = Internal::of(member.start.space.is_some());
+            let which = all.iter().copied().find(|which| which.symbol() == key);
             let extremes = which.zip(Diagram::of_element(member)).map(|(which, diagram)| diagram.extremes(which));
             extremes.map_or(0.0, |ends| ends.iter().fold(0.0, |size, place| size.max(place.value.abs())))
         });
@@ -211,16 +213,19 @@ impl Session {
         Ok(())
     }
 
-    /// Σ (m + x f_y − y f_x).
-    fn moment_about_origin(&self, reactions: &[Reaction]) -> f64 {
-        let Source::Structure(structure) = &self.now.scenario.source else { return 0.0 };
-        let positions: HashMap<&str, [f64; 2]> =
-            structure.nodes.iter().map(|node| (node.id.as_str(), node.in_plane())).collect();
-        let moment = |reaction: &Reaction| {
-            let [x, y] = positions.get(reaction.node.as_str()).copied().unwrap_or_default();
-            [reaction.m, x * reaction.fy, -y * reaction.fx]
-        };
-        crate::answer::rounding::balance(reactions.iter().flat_map(moment))
+    /// Σ (m + x × f).
+    fn moment_about_origin(&self, reactions: &[Reaction]) -> [f64; 3] {
+        let Source::Structure(structure) = &self.now.scenario.source else { return [0.0; 3] };
+        let positions: HashMap<&str, [f64; 3]> =
+            structure.nodes.iter().map(|node| (node.id.as_str(), node.position)).collect();
+        [0, 1, 2].map(|axis| {
+            let terms = |reaction: &Reaction| {
+                let (x, f) = (positions.get(reaction.node.as_str()).copied().unwrap_or_default(), reaction.force());
+                let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+                [reaction.moment()[axis], x[a] * f[b], -x[b] * f[a]]
+            };
+            crate::answer::rounding::balance(reactions.iter().flat_map(terms))
+        })
     }
 
     pub(in crate::session) fn report_reactions(&self, io: &mut Output<'_>) -> Result<(), CommandError> {

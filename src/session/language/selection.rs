@@ -15,7 +15,10 @@ pub fn displacement_keys() -> Vec<&'static str> {
 
 /// Keys of `members … sort KEY`, by the largest magnitude along an element.
 pub fn member_keys() -> Vec<&'static str> {
-    Internal::ALL.map(Internal::symbol).to_vec()
+    let all = Internal::ALL.into_iter().chain(Internal::IN_SPACE);
+    let mut words: Vec<&str> = all.map(Internal::symbol).collect();
+    words.dedup();
+    words
 }
 
 /// Keys of `pairs … sort KEY`.

@@ -23,20 +23,23 @@ pub fn series(members: &[MemberForces], bar: &str, force: Internal) -> Option<Se
     let mut points = Vec::new();
     for piece in diagram.pieces() {
         let [from, to] = piece.range;
-        let [[ax, ay, _], [bx, by, _]] = piece.q;
+        let [[ax, ay, az], [bx, by, bz]] = piece.q;
         let straight = match force {
             Internal::Axial => ax == 0.0 && bx == 0.0,
-            Internal::Shear => ay == by,
-            Internal::Moment => ay == 0.0 && by == 0.0,
+            Internal::Shear | Internal::ShearY => ay == by,
+            Internal::Moment | Internal::MomentZ => ay == 0.0 && by == 0.0,
+            Internal::ShearZ => az == bz,
+            Internal::MomentY => az == 0.0 && bz == 0.0,
+            Internal::Torsion => true,
         };
         let parts = if straight { 1 } else { PARTS };
         let mut places: Vec<f64> = (0..=parts)
             .map(|part| if part == parts { to } else { from + (to - from) * part as f64 / parts as f64 })
             .collect();
-        places.extend(piece.candidates(force as usize));
+        places.extend(piece.candidates(force.index()));
         places.sort_by(f64::total_cmp);
         places.dedup();
-        points.extend(places.into_iter().map(|s| (s, denoised(piece.at(s)[force as usize], scale))));
+        points.extend(places.into_iter().map(|s| (s, denoised(piece.at(s)[force.index()], scale))));
     }
     Some(Series { label: String::new(), points })
 }
@@ -80,6 +83,11 @@ pub fn name(force: Internal, units: &Units) -> (&'static str, Option<String>) {
         Internal::Axial => ("Normal force N", force_unit(units)),
         Internal::Shear => ("Shear force Q", force_unit(units)),
         Internal::Moment => ("Bending moment M", moment_unit(units)),
+        Internal::ShearY => ("Shear force V_y", force_unit(units)),
+        Internal::ShearZ => ("Shear force V_z", force_unit(units)),
+        Internal::Torsion => ("Torque T", moment_unit(units)),
+        Internal::MomentY => ("Bending moment M_y", moment_unit(units)),
+        Internal::MomentZ => ("Bending moment M_z", moment_unit(units)),
     }
 }
 
@@ -97,13 +105,13 @@ pub fn chart(members: &[MemberForces], bar: &str, force: Internal, units: &Units
     Some(Chart {
         title: format!("{name} along {bar}"),
         ordinate: unit,
-        about: if force == Internal::Moment { ", on the tension side".to_owned() } else { String::new() },
+        about: if force.is_bending() { ", on the tension side".to_owned() } else { String::new() },
         curves: vec![curve(series, Line::Plain), curve(nodes, Line::Points)],
         names: joints.unwrap_or_default(),
         values: Values::Lengths,
         abscissa: format!("along {bar}"),
         unit: length_unit(units),
-        inverted: force == Internal::Moment,
+        inverted: force.is_bending(),
         ..Chart::default()
     })
 }

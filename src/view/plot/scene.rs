@@ -54,7 +54,7 @@ const ORDINATE: f64 = 0.125;
 
 /// u of every node of the structure, in the order of the components; 0 where the list has no such node.
 pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[f64; 6]> {
-    let finite = |u: &NodeDisplacement| [u.ux, u.uy, 0.0, 0.0, 0.0, u.rz].map(|u| if u.is_finite() { u } else { 0.0 });
+    let finite = |u: &NodeDisplacement| u.all().map(|u| if u.is_finite() { u } else { 0.0 });
     let nodes = &structure.nodes;
     if nodes.len() == displacements.len() && nodes.iter().zip(displacements).all(|(node, u)| node.id == u.node) {
         return displacements.iter().map(finite).collect();

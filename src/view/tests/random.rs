@@ -140,16 +140,16 @@ proptest! {
         narrow(s, |out| check::write(out, &answer, s));
         narrow(s, |out| difference::write(out, &previous, &answer, s));
         let nodes: Vec<NodeDisplacement> = answer.pairs.iter().map(|p| NodeDisplacement {
-            node: p.id.clone(), ux: p.z_n, uy: p.z_t, rz: p.x_n,
+            node: p.id.clone(), ux: p.z_n, uy: p.z_t, rz: p.x_n, space: None,
         }).collect();
         narrow(s, |out| displacements::write(out, &nodes, &units, s));
         let supports: Vec<Reaction> = answer.pairs.iter().map(|p| Reaction {
-            node: p.id.clone(), fx: p.z_n, fy: p.z_t, m: p.x_n,
+            node: p.id.clone(), fx: p.z_n, fy: p.z_t, m: p.x_n, space: None,
         }).collect();
-        narrow(s, |out| reactions::write(out, &supports, 1.5, &units, s));
+        narrow(s, |out| reactions::write(out, &supports, [0.0, 0.0, 1.5], &units, s));
         let forces: Vec<MemberForces> = answer.pairs.iter().map(|p| MemberForces {
             bar: p.id.clone(), element: 0,
-            start: EndForces { n: p.x_n, q: p.x_t, m: p.z_n }, end: EndForces::default(), pieces: Vec::new(),
+            start: EndForces { n: p.x_n, q: p.x_t, m: p.z_n, space: None }, end: EndForces::default(), pieces: Vec::new(),
         }).collect();
         narrow(s, |out| members::write(out, &forces, None, &units, s));
         if let Some(ray) = &answer.ray {
@@ -198,7 +198,7 @@ proptest! {
         let s = &style;
         for structure in [beam_structure(), plates(), moved] {
             let displacements: Vec<NodeDisplacement> = structure.nodes.iter().zip(&u).map(|(node, u)| {
-                NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2] }
+                NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2], space: None }
             }).collect();
             let picture = Picture {
                 title: "any", structure: &structure, displacements: Some(&displacements), factors: &[1.0],
@@ -211,8 +211,8 @@ proptest! {
             narrow(s, |out| structure::write(out, &picture, Some((&values, &units())), s));
             let members: Vec<MemberForces> = (0..5).map(|element| MemberForces {
                 bar: "AF".into(), element,
-                start: EndForces { n: u[element][0], q: u[element][1], m: u[element][2] },
-                end: EndForces { n: u[element + 9][0], q: u[element + 9][1], m: u[element + 9][2] },
+                start: EndForces { n: u[element][0], q: u[element][1], m: u[element][2], space: None },
+                end: EndForces { n: u[element + 9][0], q: u[element + 9][1], m: u[element + 9][2], space: None },
                 pieces: vec![Piece {
                     range: [element as f64, element as f64 + 1.0],
                     start: [u[element][0], u[element][1], u[element][2], 0.0, 0.0, 0.0],

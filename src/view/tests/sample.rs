@@ -89,14 +89,20 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             pairs
                 .iter()
                 .zip(["A", "B", "C", "D", "E", "F"])
-                .map(|(pair, node)| NodeDisplacement { node: node.into(), ux: pair.z_t, uy: -1e-21, rz: -0.0 })
+                .map(|(pair, node)| NodeDisplacement {
+                    node: node.into(),
+                    ux: pair.z_t,
+                    uy: -1e-21,
+                    rz: -0.0,
+                    space: None,
+                })
                 .collect(),
         ),
         members: Some(
             (0..SUPPORTS - 1)
                 .map(|element| {
                     let n: f64 = pull + pairs[element + 1..].iter().map(|p| p.x_t).sum::<f64>();
-                    let end = EndForces { n, q: 0.0, m: 0.0 };
+                    let end = EndForces { n, ..EndForces::default() };
                     let along = element as f64;
                     let pieces = vec![Piece {
                         range: [along, along + 1.0],
@@ -386,10 +392,10 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
             })
             .collect(),
     }];
-    let at = |x: f64| EndForces { n: 0.0, q: q * (l - x), m: -q * (l - x) * (l - x) / 2.0 };
+    let at = |x: f64| EndForces { q: q * (l - x), m: -q * (l - x) * (l - x) / 2.0, ..EndForces::default() };
     let members = [(0, 0.0, 2.0), (1, 2.0, 4.0)]
         .map(|(element, start, end)| {
-            let EndForces { n, q: shear, m } = at(start);
+            let EndForces { n, q: shear, m, .. } = at(start);
             let pieces =
                 vec![Piece { range: [start, end], start: [n, shear, m, 0.0, 0.0, 0.0], q: [[0.0, -q, 0.0]; 2] }];
             MemberForces { bar: "AF".into(), element, start: at(start), end: at(end), pieces }
@@ -406,6 +412,7 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
                 ux: 0.0,
                 uy: -q * x * x * (6.0 * l * l - 4.0 * l * x + x * x) / (24.0 * ei),
                 rz: -q * x * (12.0 * l * l - 12.0 * l * x + 4.0 * x * x) / (24.0 * ei),
+                space: None,
             }
         })
         .collect();

@@ -1,6 +1,7 @@
 //! `line`: force per length of a bar, constant or linear, on all of it or between two distances.
 
 use super::{bar, between, one_or_two_vectors};
+use crate::model::bar_axes::BarAxes;
 use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::{Cursor, Fields};
 use crate::model::structure::{ElementLoad, Load};
@@ -13,19 +14,21 @@ enum Axes {
     Global,
     /// Along the bar and across it, per length of bar.
     Local,
-    /// Global; the x component per vertical length, the y component per horizontal length.
+    /// Global; each component per length across it: the x component per vertical length, the y component per horizontal
+    /// length.
     Projected,
 }
 
 const AXES: [(&str, Axes); 3] = [("global", Axes::Global), ("local", Axes::Local), ("projected", Axes::Projected)];
 
 impl Axes {
-    /// Global force per length of a bar in the direction (cos, sin).
-    fn to_global(self, [x, y, _]: [f64; 3], [cos, sin, _]: [f64; 3]) -> [f64; 3] {
+    /// Global force per length of a bar with these axes.
+    fn to_global(self, force: [f64; 3], axes: &BarAxes) -> [f64; 3] {
+        let ([x, y, z], [a, b, c]) = (force, axes.x);
         match self {
-            Axes::Global => [x, y, 0.0],
-            Axes::Local => [cos * x - sin * y, sin * x + cos * y, 0.0],
-            Axes::Projected => [x * sin.abs(), y * cos.abs(), 0.0],
+            Axes::Global => force,
+            Axes::Local => axes.to_global(force),
+            Axes::Projected => [x * b.hypot(c), y * a.hypot(c), z * a.hypot(b)],
         }
     }
 }
@@ -48,9 +51,10 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
         if ends[1] <= ends[0] {
             return None;
         }
+        let bar_axes = builder.bar_axes(stretch.element)?;
         let load = ElementLoad::Line {
             range: ends.map(|s| s - stretch.from),
-            value: ends.map(|s| axes.to_global(between(value, (s - a) / (b - a)), stretch.direction)),
+            value: ends.map(|s| axes.to_global(between(value, (s - a) / (b - a)), &bar_axes)),
         };
         Some(Load::Element { element: stretch.element, load })
     });

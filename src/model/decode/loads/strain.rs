@@ -9,7 +9,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
     let fields = cursor.fields(&["on", "value"])?;
     let strain = fields.required("value").and_then(Cursor::number);
     let elements = named_elements(builder, fields.required("on")?, |at, element| {
-        let is_bar = !element.shape().is_area();
+        let is_bar = element.shape().dimension() == 1;
         if !is_bar {
             at.problem(
                 format!("{} is no bar: `strain` is the lack of fit of bars", at.quoted()),
@@ -19,6 +19,6 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
         is_bar
     });
     let (elements, strain) = (elements?, strain?);
-    let load = ElementLoad::FreeStrain { strain, curvature: 0.0 };
+    let load = ElementLoad::FreeStrain { strain, curvature: [0.0; 2] };
     Some(elements.into_iter().map(|element| Load::Element { element, load }).collect())
 }

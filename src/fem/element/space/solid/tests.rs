@@ -251,7 +251,7 @@ fn six_rigid_motions() {
 #[test]
 fn free_expansion_makes_no_stress() {
     let random = &mut ChaCha8Rng::seed_from_u64(4);
-    let heat = ElementLoad::FreeStrain { strain: 0.01, curvature: 0.0 };
+    let heat = ElementLoad::FreeStrain { strain: 0.01, curvature: [0.0; 2] };
     for kind in KINDS {
         let mesh = Mesh::new(kind, 1, [1.0, 1.2, 0.9], 0.2, random);
         let material = material();
