@@ -42,8 +42,8 @@ pub struct PairState {
     pub reserve_plus: f64,
     /// x⁻ = bound − x_t ≥ 0, a force: what is left before the pair slips −. In space, where x_t is the magnitude, the reserve.
     pub reserve_minus: f64,
-    /// Place; for a contact system [s, 0] or null.
-    pub position: Option<[f64; 2]>,
+    /// Place, in the plane shown as (x, y); for a contact system [s, 0] or null.
+    pub position: Option<[f64; 3]>,
     /// Number of the joint it belongs to; for pictures.
     pub joint: usize,
     /// Its vectors; `None` in the plane.
@@ -100,8 +100,10 @@ impl Serialize for PairState {
             map.serialize_entry("reserve_plus", &self.reserve_plus)?;
             map.serialize_entry("reserve_minus", &self.reserve_minus)?;
         }
-        map.serialize_entry("position", &self.position)?;
-        if let Some([normal, t1]) = self.space.and_then(|space| space.frame) {
+        let frame = self.space.and_then(|space| space.frame);
+        let shown = if frame.is_some() { 3 } else { 2 };
+        map.serialize_entry("position", &self.position.as_ref().map(|at| &at[..shown]))?;
+        if let Some([normal, t1]) = frame {
             map.serialize_entry("normal", &normal)?;
             map.serialize_entry("t1", &t1)?;
         }

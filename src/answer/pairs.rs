@@ -155,7 +155,7 @@ pub fn pair_states(problem: &ContactProblem, contact: &ContactLcp, state: &Joint
     pairs
         .map(|(i, pair)| {
             let cover = Cover { force: contact.covering_of(i), distance: contact.covered_distance(i, state.p) };
-            if pair.is_in_space() || (!pair.rubs() && system.is_in_space()) {
+            if pair.is_in_space() || pair.frame.is_some() || (!pair.rubs() && system.is_in_space()) {
                 pair_in_space(problem, &cover, state, i)
             } else {
                 pair_state(problem, &cover, state, (i, pair.plane_tangential()))

@@ -367,7 +367,7 @@ fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
             ContactPair {
                 id: id.clone(),
                 law: given.laws[i].clone(),
-                position: given.positions.as_ref().map(|s| [s[i], 0.0]),
+                position: given.positions.as_ref().map(|s| [s[i], 0.0, 0.0]),
                 frame: None,
                 joint: 0,
                 tangential: first..next,

@@ -19,8 +19,8 @@ pub struct ContactPair {
     pub id: String,
     /// Its law and the numbers of the law (values or parameters).
     pub law: Law,
-    /// Place in the plane; for a contact system read from a file [s, 0], or `None` without positions.
-    pub position: Option<[f64; 2]>,
+    /// Its place; for a contact system read from a file [s, 0, 0], or `None` without positions.
+    pub position: Option<[f64; 3]>,
     /// n and t1 of a pair of a structure in space.
     pub frame: Option<[[f64; 3]; 2]>,
     /// Number of the joint it belongs to: a line along which its pairs follow one another.

@@ -13,7 +13,7 @@ use super::parameter::{Formulas, Number, Parameter, ParameterValues};
 use super::problem::{Problem, Problems};
 use super::quantity::Quantity;
 use super::rules::Rules;
-use super::structure::{Load, Structure};
+use super::structure::{Dimension, Load, Structure};
 use super::units::Units;
 use super::uses::Uses;
 use crate::text::hash::Hash;
@@ -98,7 +98,11 @@ pub enum Source {
 impl Source {
     /// Whether pairs slip in a plane of directions.
     pub fn is_in_space(&self) -> bool {
-        matches!(self, Source::ContactSystem(given) if given.tangents == 2)
+        match self {
+            Source::Structure(structure) => structure.dimension == Dimension::Space,
+            Source::ContactSystem(given) => given.tangents == 2,
+            Source::Lcp(_) => false,
+        }
     }
 }
 

@@ -111,9 +111,11 @@ impl Prepared {
                 }
                 let u = main.displacements(&problem.factors, &problem.dislocation(z));
                 for (pair, shown) in structure.pairs.iter().zip(pairs) {
-                    if !pair.law.has_tangential_joint() {
-                        let t = pair.tangents[0];
-                        // Both components of a displacement are as well known as the larger one.
+                    if pair.law.has_tangential_joint() {
+                        continue;
+                    }
+                    let mut slips = pair.tangents.iter().map(|&t| {
+                        // All components of a displacement are as well known as the largest one.
                         let along = |&(node, weight): &(usize, f64)| {
                             let [x, y, z, ..] = u.0[node];
                             [weight * dot(t, [x, y, z]), weight.abs() * (x.abs() + y.abs() + z.abs())]
@@ -123,7 +125,14 @@ impl Prepared {
                             .iter()
                             .map(along)
                             .fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]]);
-                        shown.z_t = if slip.abs() <= SLIP_ZERO * terms { 0.0 } else { slip };
+                        if slip.abs() <= SLIP_ZERO * terms { 0.0 } else { slip }
+                    });
+                    match &mut shown.space {
+                        None => shown.z_t = slips.next().unwrap_or(0.0),
+                        Some(space) => {
+                            space.z_t.iter_mut().zip(slips).for_each(|(shown, slip)| *shown = slip);
+                            shown.z_t = space.z_t[0].hypot(space.z_t[1]);
+                        }
                     }
                 }
             }

@@ -20,7 +20,7 @@ use crate::model::pair::{Joint, JointDirection, joints};
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::problem::{LISTED, Problems};
 use crate::model::scenario::{GivenLcp, Scenario, Source};
-use crate::model::structure::Structure;
+use crate::model::structure::{Dimension, Structure};
 use crate::model::uses::Redone;
 use crate::watch::Watch;
 
@@ -253,8 +253,8 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         .map(|(i, pair)| ContactPair {
             id: pair.id.clone(),
             law: pair.law.clone(),
-            position: Some(structure.nodes[pair.node].in_plane()),
-            frame: None,
+            position: Some(structure.nodes[pair.node].position),
+            frame: (structure.dimension == Dimension::Space).then(|| [pair.normal, pair.tangents[0]]),
             joint: numbers[i],
             tangential: tangential(i),
         })

@@ -169,9 +169,9 @@ pub(in crate::session) fn sort(pairs: &mut [PairState], key: &str) {
         "id" => pairs.sort_by(|a, b| a.id.cmp(&b.id)),
         "state" => pairs.sort_by_key(|pair| pair.state.word()),
         _ => pairs.sort_by(|a, b| {
-            let place = |pair: &PairState| pair.position.unwrap_or([f64::INFINITY; 2]);
+            let place = |pair: &PairState| pair.position.unwrap_or([f64::INFINITY; 3]);
             let (a, b) = (place(a), place(b));
-            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
         }),
     }
 }

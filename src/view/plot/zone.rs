@@ -7,6 +7,7 @@ use super::chart::{Chart, Curve, Line, Values};
 use crate::answer::record::{PairState, Ray};
 use crate::answer::rounding::{denoised, largest};
 use crate::model::units::Units;
+use crate::model::vector::distance;
 use crate::view::style::Style;
 use crate::view::{force_unit, length_unit, line_load_unit};
 
@@ -50,7 +51,7 @@ pub fn zone(pairs: &[PairState]) -> Zone {
         let mut at = 0.0;
         let steps = joint.windows(2).map(|ends| {
             let [a, b] = [place(ends[0]), place(ends[1])];
-            at += (b[0] - a[0]).hypot(b[1] - a[1]);
+            at += distance(a, b);
             at
         });
         [0.0].into_iter().chain(steps.collect::<Vec<_>>()).collect::<Vec<f64>>()

@@ -40,7 +40,7 @@ fn state() -> impl Strategy<Value = State> {
 
 fn pair() -> impl Strategy<Value = PairState> {
     let law = prop::sample::select(LawKind::WORDS.map(|(_, law)| law).to_vec());
-    let position = prop::option::weighted(0.9, prop::array::uniform2(number()));
+    let position = prop::option::weighted(0.9, prop::array::uniform3(number()));
     let numbers = prop::array::uniform7(number());
     let held = prop::option::of(state());
     (name(), law, state(), held, numbers, position, 0..4usize).prop_map(

@@ -53,7 +53,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
             bound: r,
             reserve_plus: r + x_t,
             reserve_minus: r - x_t,
-            position: Some([i as f64, 0.0]),
+            position: Some([i as f64, 0.0, 0.0]),
             joint: 0,
             space: None,
         });
