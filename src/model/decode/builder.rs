@@ -156,14 +156,18 @@ impl<'d> Builder<'d> {
     }
 
     /// The local axes of an element of a bar, which has a length and, in space, an orientation across it.
-    pub fn bar_axes(&self, element: usize) -> Option<BarAxes> {
-        let element = &self.structure.elements[element];
-        let ends = [0, 1].map(|end| self.structure.nodes[element.nodes[end]].position);
+    pub fn bar_axes(&self, stretch: &Stretch) -> Option<BarAxes> {
+        let element = &self.structure.elements[stretch.element];
         match element.kind {
             ElementKind::SpaceFrame { orientation, .. } | ElementKind::SpaceTruss { orientation, .. } => {
+                let ends = [0, 1].map(|end| self.structure.nodes[element.nodes[end]].position);
                 BarAxes::in_space(ends, orientation).ok()
             }
-            _ => BarAxes::in_plane(ends.map(|[x, y, _]| [x, y])),
+            _ => {
+                let [cos, sin, _] = stretch.direction;
+                let (x, y) = ([cos, sin, 0.0], [-sin, cos, 0.0]);
+                Some(BarAxes { length: stretch.length, x, y, z: [0.0, 0.0, 1.0] })
+            }
         }
     }
 

@@ -4,6 +4,7 @@
 use super::builder::{Builder, entries, id_of};
 use super::reader::{Cursor, Fields};
 use super::spot::Spot;
+use crate::model::face::Face;
 use crate::model::pair::{Law, Pair};
 use crate::model::parameter::Number;
 use crate::model::structure::{Node, Spring};
@@ -13,7 +14,7 @@ use crate::model::vector::{distance, length};
 /// What a foundation has in common along its line.
 struct Foundation<'d> {
     id: &'d str,
-    /// Force per length of line and displacement, along the normal.
+    /// Force per length of line (of a face per area) and displacement, along the normal.
     stiffness: f64,
     /// The same along the line.
     tangential: Option<f64>,
@@ -21,7 +22,7 @@ struct Foundation<'d> {
     friction: Option<Number>,
 }
 
-/// A node of the line: its normal (from the ground to the body) and the length that belongs to it.
+/// A node of the line or face: its normal (from the ground to the body) and the length or area that belongs to it.
 struct Place {
     node: usize,
     normal: [f64; 3],
@@ -102,6 +103,7 @@ fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
     }
     let edge = match builder.spot(on)? {
         Spot::Edge(edge) => edge,
+        Spot::Face(face) => return over_face(builder, on, &face),
         other => {
             on.problem(
                 format!("expected a bar or an edge, found the {} {}", other.word(), on.quoted()),
@@ -135,12 +137,24 @@ fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
     Some(places)
 }
 
+/// The nodes of a face with their inward normals and areas.
+fn over_face<'d>(builder: &Builder<'d>, on: Cursor<'d>, face: &Face) -> Option<Vec<Place>> {
+    let nodes = &builder.structure.nodes;
+    let outward: Option<Vec<[f64; 3]>> = face.outward_normals(nodes).into_iter().collect();
+    if outward.is_none() {
+        on.problem("the face has no normal where its sides cancel", "name one side of the body");
+    }
+    let places = face.nodes.iter().zip(outward?).zip(face.nodal_areas(nodes));
+    Some(places.map(|((&node, n), length)| Place { node, normal: n.map(|n| 0.0 - n), length }).collect())
+}
+
 /// The ground lies on the −y side of a bar: the normal is its local y, at a corner the mean of both sides.
 fn along_bar(builder: &Builder<'_>, bar: usize) -> Vec<Place> {
     let structure = &builder.structure;
     let mut places: Vec<Place> = Vec::new();
     for stretch in builder.stretches(bar) {
-        let normal = [0.0 - stretch.direction[1], stretch.direction[0], 0.0];
+        let Some(axes) = builder.bar_axes(&stretch) else { continue };
+        let normal = axes.y.map(|y| 0.0 + y);
         let half = 0.5 * stretch.length;
         let nodes = &structure.elements[stretch.element].nodes;
         if places.is_empty() {
@@ -159,12 +173,19 @@ fn along_bar(builder: &Builder<'_>, bar: usize) -> Vec<Place> {
     places
 }
 
+/// Along which it resists beside its normal; without the sign of zeros.
+fn tangents(builder: &Builder<'_>, at: &Place) -> Vec<[f64; 3]> {
+    let tangents = builder.structure.dimension.tangents(at.normal);
+    tangents.into_iter().map(|tangent| tangent.map(|t| 0.0 + t)).collect()
+}
+
 fn bonded(builder: &mut Builder<'_>, foundation: &Foundation<'_>, at: &Place) {
-    let [x, y, _] = at.normal;
+    let tangents = tangents(builder, at);
     let springs = &mut builder.structure.springs;
     springs.push(Spring::along(at.node, None, at.normal, foundation.stiffness * at.length));
     if let Some(tangential) = foundation.tangential.filter(|stiffness| *stiffness > 0.0) {
-        springs.push(Spring::along(at.node, None, [y, 0.0 - x, 0.0], tangential * at.length));
+        let along = |tangent| Spring::along(at.node, None, tangent, tangential * at.length);
+        springs.extend(tangents.into_iter().map(along));
     }
 }
 
@@ -176,11 +197,11 @@ fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: us
     let ground = builder.add_node(Node { id: format!("{}/{index}", foundation.id), position }, place.into());
     builder.has_rotation.push(false);
     builder.structure.yielding_ground.push(ground);
-    let [x, y, _] = at.normal;
+    let tangents = tangents(builder, at);
     let along = foundation.tangential.filter(|stiffness| *stiffness > 0.0);
-    for (direction, stiffness) in
-        [(at.normal, foundation.stiffness), ([y, 0.0 - x, 0.0], along.unwrap_or(foundation.stiffness))]
-    {
+    let across = along.unwrap_or(foundation.stiffness);
+    let springs = [(at.normal, foundation.stiffness)].into_iter().chain(tangents.into_iter().map(|t| (t, across)));
+    for (direction, stiffness) in springs {
         builder.structure.springs.push(Spring::along(ground, None, direction, stiffness * at.length));
     }
     let law = match &foundation.friction {

@@ -51,7 +51,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
         if ends[1] <= ends[0] {
             return None;
         }
-        let bar_axes = builder.bar_axes(stretch.element)?;
+        let bar_axes = builder.bar_axes(&stretch)?;
         let load = ElementLoad::Line {
             range: ends.map(|s| s - stretch.from),
             value: ends.map(|s| axes.to_global(between(value, (s - a) / (b - a)), &bar_axes)),
