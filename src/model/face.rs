@@ -1,5 +1,6 @@
 //! Faces of solids: sides of their elements, areas, normals, and the consistent loads on them.
 
+use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
 use super::edge::{STRAIGHT, crossings, crossings_through};
@@ -32,9 +33,15 @@ pub struct FaceSpot {
     pub position: [f64; 3],
     /// Unit normal out of the body.
     pub outward: [f64; 3],
+    /// How far it lies below the level, where there is one: as well known as the heights of the nodes are from it.
+    pub depth: f64,
     /// The element whose side it is on.
     pub element: usize,
 }
+
+/// So often is the strip of a side halved. Kinks take some forty halvings each; more are wasted on rounding where hardly
+/// anything of a side lies below the level.
+const HALVINGS: u32 = 1000;
 
 /// Four Gauss points on (0, 1): exact to degree 7.
 const GAUSS: [(f64, f64); 4] = [
@@ -76,6 +83,8 @@ struct Patch<'a> {
     level: Option<f64>,
     /// Force per area.
     acts: &'a dyn Fn(&FaceSpot) -> [f64; 3],
+    /// Halvings that are left.
+    left: Cell<u32>,
 }
 
 impl Patch<'_> {
@@ -94,6 +103,11 @@ impl Patch<'_> {
         (position, cross(along[0], along[1]))
     }
 
+    /// How far a place lies below `level`.
+    fn depth(&self, at: [f64; 2], level: f64) -> f64 {
+        self.places.iter().zip(self.shape.values(at)).map(|(place, n)| n * (level - place[2])).sum()
+    }
+
     /// Between which (ξ, η) lies for a given ξ: (0, 1 − ξ) on triangles, (−1, 1) on quadrilaterals.
     fn across(&self, xi: f64) -> [f64; 2] {
         if self.shape.is_triangle() { [0.0, 1.0 - xi] } else { [-1.0, 1.0] }
@@ -104,7 +118,7 @@ impl Patch<'_> {
         let [from, to] = self.across(xi);
         let mut cuts = vec![0.0];
         if let Some(level) = self.level {
-            let [a, m, b] = [0.0, 0.5, 1.0].map(|t| self.at([xi, from + t * (to - from)]).0[2] - level);
+            let [a, m, b] = [0.0, 0.5, 1.0].map(|t| self.depth([xi, from + t * (to - from)], level));
             let is_straight = self.places.len() <= 4;
             cuts.extend(if is_straight { crossings(a, b - a, 0.0) } else { crossings_through([a, m, b]) });
         }
@@ -116,7 +130,8 @@ impl Patch<'_> {
                 let at = [xi, from + (ends[0] + size * x) * (to - from)];
                 let (position, normal) = self.at(at);
                 let area = length(normal);
-                let spot = FaceSpot { position, outward: normal.map(|n| n / area), element: self.element };
+                let depth = self.level.map_or(0.0, |level| self.depth(at, level));
+                let spot = FaceSpot { position, outward: normal.map(|n| n / area), depth, element: self.element };
                 let q = (self.acts)(&spot).map(|q| q * area * w * size * (to - from) * weight);
                 for (force, n) in sum.forces.iter_mut().zip(self.shape.values(at)) {
                     force.iter_mut().zip(q).for_each(|(force, q)| *force += n * q);
@@ -134,16 +149,18 @@ impl Patch<'_> {
     }
 
     /// The same, its strip halved until nothing changes but by the rounding of `terms`: where the line of the level is a
-    /// conic it makes kinks inside. Forty halvings leave a strip in which a kink is worth less than that.
-    fn settle(&self, [from, to]: [f64; 2], whole: Sum, terms: f64, halvings: u32) -> Sum {
+    /// conic it makes kinks inside.
+    fn settle(&self, [from, to]: [f64; 2], whole: Sum, terms: f64) -> Sum {
         let middle = 0.5 * (from + to);
         let halves = [[from, middle], [middle, to]];
         let parts = halves.map(|half| self.over_strip(half));
         let both = parts[0].plus(&parts[1]);
-        if halvings == 0 || both.distance(&whole) <= 8.0 * f64::EPSILON * terms {
+        let left = self.left.get();
+        if left == 0 || both.distance(&whole) <= 8.0 * f64::EPSILON * terms {
             return both;
         }
-        let [a, b] = [0, 1].map(|i| self.settle(halves[i], parts[i], terms, halvings - 1));
+        self.left.set(left - 1);
+        let [a, b] = [0, 1].map(|i| self.settle(halves[i], parts[i], terms));
         a.plus(&b)
     }
 
@@ -155,7 +172,7 @@ impl Patch<'_> {
         for side in [0, 1] {
             let height = |t: f64| {
                 let xi = from + t * (to - from);
-                self.at([xi, self.across(xi)[side]]).0[2] - level
+                self.depth([xi, self.across(xi)[side]], level)
             };
             let crossed = crossings_through([0.0, 0.5, 1.0].map(height));
             cuts.extend(crossed.into_iter().map(|t| from + t * (to - from)));
@@ -172,7 +189,7 @@ impl Patch<'_> {
         let strips: Vec<([f64; 2], Sum)> =
             strips.windows(2).map(|ends| ([ends[0], ends[1]], self.over_strip([ends[0], ends[1]]))).collect();
         let terms = strips.iter().map(|(_, sum)| sum.terms).sum();
-        let settled = strips.into_iter().map(|(strip, whole)| self.settle(strip, whole, terms, 40));
+        let settled = strips.into_iter().map(|(strip, whole)| self.settle(strip, whole, terms));
         settled.fold(Sum::default(), |all, strip| all.plus(&strip))
     }
 }
@@ -252,7 +269,8 @@ impl Face {
 impl FaceSide {
     fn patch<'a>(&self, nodes: &[Node], level: Option<f64>, acts: &'a dyn Fn(&FaceSpot) -> [f64; 3]) -> Patch<'a> {
         let places = self.nodes.iter().map(|&node| nodes[node].position).collect();
-        Patch { shape: AreaShape::of(self.nodes.len()), places, element: self.element, level, acts }
+        let (shape, left) = (AreaShape::of(self.nodes.len()), Cell::new(HALVINGS));
+        Patch { shape, places, element: self.element, level, acts, left }
     }
 }
 

@@ -86,7 +86,8 @@ fn a_closed_surface_is_in_balance() {
 
 fn water(level: f64) -> impl Fn(&FaceSpot) -> [f64; 3] {
     move |spot| {
-        let pressure = (level - spot.position[2]).max(0.0);
+        assert!((spot.depth - (level - spot.position[2])).abs() < 1e-14);
+        let pressure = spot.depth.max(0.0);
         spot.outward.map(|n| -pressure * n)
     }
 }
@@ -164,6 +165,24 @@ fn water_on_a_wall() {
                 "{node}: {force:?} {right}"
             );
         }
+    }
+}
+
+/// Far from the origin, and where the level hardly wets a side: as exact as the heights are known, and soon.
+#[test]
+fn levels_far_away_and_low() {
+    for (z, level) in [(1e6, 0.7), (-3e4, 1e-7), (0.0, 1e-9), (0.0, 2.0 - 1e-9)] {
+        let tip = [[0.0, 0.0, z], [1.0, 0.2, z + 2.0], [-0.3, 1.1, z + 2.0], [-0.4, -0.9, z + 2.0]];
+        let volume = Shape::Tetrahedron4.volume(&tip);
+        let forces = surface(Shape::Tetrahedron4)
+            .consistent_forces(&nodes(&tip), Some(z + level), &|spot| spot.outward.map(|n| -spot.depth.max(0.0) * n));
+        // The level above the tip as it is in the numbers.
+        let wet = z + level - z;
+        let right = volume * (wet / 2.0).powi(3);
+        let found = resultant(&forces, &tip).0[2];
+        // Depths are sums of numbers as large as the side is high.
+        let rounding = 64.0 * f64::EPSILON * (2.0 / wet);
+        assert!((found - right).abs() < rounding * right, "{z} {level}: {found} {right}");
     }
 }
 

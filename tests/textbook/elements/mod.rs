@@ -5,3 +5,4 @@ mod bars;
 mod bending;
 mod membranes;
 mod mesh;
+mod solids;

@@ -22,7 +22,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
     let structure = &builder.structure;
     if let Some(face) = face {
         let pushes = |spot: &FaceSpot| {
-            let pressure = weight * (level - spot.position[2]).max(0.0);
+            let pressure = weight * spot.depth.max(0.0);
             spot.outward.map(|n| -pressure * n)
         };
         return Some(nodal(face.consistent_forces(&structure.nodes, Some(level), &pushes)));
