@@ -137,6 +137,29 @@ fn propped_by_a_ball_joint() {
     }
 }
 
+/// A tripod of trusses over the corners of a triangle, height 4: each leg carries its share of a vertical load,
+/// N = −(F/3)(l/4), and the tip sinks by F l³/(3 EA 4²).
+#[test]
+fn tripod() {
+    let mut model = space();
+    let feet = [0.0, 120.0, 240.0_f64].map(|angle| {
+        let (sin, cos) = angle.to_radians().sin_cos();
+        node(&mut model, [3.0 * cos, 3.0 * sin, 0.0])
+    });
+    let tip = node(&mut model, [0.0, 0.0, 4.0]);
+    for foot in feet {
+        bar(&mut model, [foot, tip], ElementKind::SpaceTruss { area: 2.0, orientation: None });
+        hold(&mut model, foot, &Component::TRANSLATIONS);
+    }
+    model.case(vec![Load::Nodal { node: tip, force: [0.0, 0.0, -6.0], moment: [0.0; 3] }]);
+    let (system, u, _, factors) = main_answer(&model);
+    for member in system.member_forces(&model.0, &u, &factors) {
+        near(member.start[0], -2.0 * 5.0 / 4.0);
+    }
+    near(u.0[tip][2], -6.0 * 125.0 / (3.0 * 2.0 * 16.0));
+    near(u.0[tip][0], 0.0);
+}
+
 /// A box of bricks; nodes by x, then y, then z.
 fn bricks(
     model: &mut Model,

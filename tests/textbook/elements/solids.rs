@@ -220,7 +220,8 @@ fn tetrahedra_and_hexahedra() {
         let mesh = Mesh::new(kind);
         mesh.write(&folder.path().join("patch.msh"));
         let name = |node: usize| format!("m/{}", node + 1);
-        for field in fields() {
+        // Quadratic elements take a while: the field of all.
+        for field in fields().into_iter().skip(if kind.0 > 8 { 12 } else { 0 }) {
             let mut scenario = mesh.scenario();
             let surface =
                 mesh.nodes.iter().enumerate().filter(|(_, at)| (0..3).any(|c| at[c] < 1e-9 || at[c] > SIZE[c] - 1e-9));
