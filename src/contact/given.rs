@@ -37,6 +37,12 @@ pub enum GivenError {
         /// Id of the pair.
         pair: String,
     },
+    /// Singular W in space.
+    #[error(
+        "the compliance matrix is singular: some joints repeat others, which is solved in the plane only so far; give \
+         `stiffness`, or a compliance in which no joint repeats others"
+    )]
+    SingularInSpace,
     /// A load acts on a tangential motion of frictionless pairs that nothing resists.
     #[error("load case {case} pushes frictionless pair {pair} along a tangential motion that nothing resists")]
     Unheld {
@@ -261,6 +267,9 @@ fn from_compliance(
     let rows = Rows::of(given);
     let own = Rows::block(&matrix, &rows.kept, &rows.kept);
     let factor = PivotedCholesky::new(&own);
+    if factor.rank < rows.kept.len() && given.tangents == 2 {
+        return Err(GivenError::SingularInSpace);
+    }
     if factor.rank < rows.kept.len() {
         return singular_compliance(given, matrix, rows, own, factor).map(|system| (system, Vec::new()));
     }

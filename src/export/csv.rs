@@ -17,6 +17,9 @@ enum Field<'a> {
 /// Writes the pairs.
 pub fn pairs(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Empty, Number, Text};
+    if answer.pairs.iter().any(|pair| pair.space.is_some()) {
+        return pairs_in_space(out, answer);
+    }
     head(out, "id,law,state,held,x_n,x_t,z_n,z_t,bound,reserve_plus,reserve_minus,x,y")?;
     for pair in &answer.pairs {
         let place = |i: usize| pair.position.map_or(Empty, |at| Number(at[i]));
@@ -36,6 +39,39 @@ pub fn pairs(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
                 Number(pair.reserve_minus),
                 place(0),
                 place(1),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+/// The same in space.
+fn pairs_in_space(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
+    use Field::{Empty, Number, Text};
+    head(out, "id,law,state,held,x_n,x_t1,x_t2,z_n,z_t1,z_t2,direction,bound,reserve,x,y,z")?;
+    for pair in &answer.pairs {
+        let place = |i: usize| pair.position.map_or(Empty, |at| Number(at[i]));
+        let (friction, slip) = (pair.friction(), pair.slip());
+        let along = |vector: &[f64], t: usize| vector.get(t).map_or(Empty, |value| Number(*value));
+        row(
+            out,
+            &[
+                Text(&pair.id),
+                Text(pair.law.word()),
+                Text(pair.state.word()),
+                pair.held.map_or(Empty, |held| Text(held.word())),
+                Number(pair.x_n),
+                along(&friction, 0),
+                along(&friction, 1),
+                Number(pair.z_n),
+                along(&slip, 0),
+                along(&slip, 1),
+                pair.direction().map_or(Empty, Number),
+                Number(pair.bound),
+                Number(pair.reserve()),
+                place(0),
+                place(1),
+                place(2),
             ],
         )?;
     }

@@ -388,6 +388,9 @@ pub(super) fn fields(answer: &Answer) -> Vec<Value> {
         let best = (0..answer.pairs.len()).fold(0, |best, k| if value(k).abs() > value(best).abs() { k } else { best });
         [json!(value(best)), json!(answer.pairs[best].id)]
     };
+    // Slips in space have directions of their own: neither + nor −.
+    let in_space = answer.pairs.iter().any(|pair| pair.space.is_some());
+    let sense = |state: State| if in_space { Value::Null } else { count(state) };
     let [slip, slip_pair] = largest(&|k| answer.pairs[k].z_t);
     let [gap, gap_pair] = largest(&|k| answer.pairs[k].z_n);
     let [force, force_pair] = largest(&|k| answer.pairs[k].x_n);
@@ -398,8 +401,8 @@ pub(super) fn fields(answer: &Answer) -> Vec<Value> {
         json!(answer.pivot_count),
         count(State::Open),
         count(State::Stick),
-        count(State::SlipPlus),
-        count(State::SlipMinus),
+        sense(State::SlipPlus),
+        sense(State::SlipMinus),
         count(State::Closed),
         slip,
         slip_pair,

@@ -145,7 +145,7 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
 fn given_problem(scenario: &Scenario, error: GivenError) -> PrepareError {
     let path = match &error {
         GivenError::Indefinite { key, .. } => format!("contact_system.{key}"),
-        GivenError::Held { .. } => "contact_system.compliance".to_owned(),
+        GivenError::Held { .. } | GivenError::SingularInSpace => "contact_system.compliance".to_owned(),
         GivenError::Unheld { case, .. } => format!("contact_system.loads.{case}"),
     };
     PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))
@@ -235,6 +235,22 @@ fn dependence(main: &MainSystem) -> Dependence<'_> {
     Dependence { independent: main.independent(), repeated, offsets: main.repeated_offsets() }
 }
 
+/// Joints that repeat one another are solved in the plane only: in space all of them are refused with their places.
+fn repeated_in_space(scenario: &Scenario, system: &ContactSystem, main: &MainSystem) -> PrepareError {
+    let problem = |joint: usize| {
+        let holds = |(i, pair): &(usize, &ContactPair)| *i == joint || pair.tangential.contains(&joint);
+        let pair = system.pairs.iter().enumerate().find(holds).map_or(0, |(i, _)| i);
+        let place = scenario.places.pairs.get(pair).map_or("contacts".to_owned(), ToString::to_string);
+        let message = format!(
+            "a joint of {} repeats those of other pairs, which is solved in the plane only so far: use `skip` or a \
+             `frictionless` pair, or split the node",
+            system.pairs[pair].id
+        );
+        (place, message)
+    };
+    problems_at(scenario, main.repeated().iter().map(|one| problem(one.joint)))
+}
+
 fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
     let joints = joints(&structure.pairs);
     let main =
@@ -273,6 +289,9 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     };
     system.zero_free_joints();
     if !main.repeated().is_empty() {
+        if system.is_in_space() {
+            return Err(repeated_in_space(scenario, &system, &main));
+        }
         system = with_repeated(system, &dependence(&main));
     }
     let seconds = main.timings();
