@@ -184,6 +184,9 @@ fn part_name(names: &[String], all: usize) -> String {
     }
 }
 
+/// More ways of slip than this are not told one by one.
+const MOST_WAYS: usize = 6;
+
 /// What a direction does to the pairs: "all pairs slip +", `base[0] to base[3] open`.
 pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<String> {
     let largest = direction.amax();
@@ -204,6 +207,15 @@ pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<Strin
             Some((_, pairs)) => pairs.push(i),
             None => kinds.push((kind, vec![i])),
         }
+    }
+    // a body that turns slips everywhere another way
+    let ways = |kind: &str| kind.starts_with("slip towards");
+    if kinds.iter().filter(|(kind, _)| ways(kind)).count() > MOST_WAYS {
+        let (turning, mut rest): (Vec<_>, Vec<_>) = kinds.into_iter().partition(|(kind, _)| ways(kind));
+        let mut pairs: Vec<usize> = turning.into_iter().flat_map(|(_, pairs)| pairs).collect();
+        pairs.sort_unstable();
+        rest.push(("slip each its own way".to_owned(), pairs));
+        kinds = rest;
     }
     kinds
         .into_iter()
