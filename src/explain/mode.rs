@@ -60,6 +60,7 @@ fn members(structure: &Structure) -> Vec<Member> {
         .iter()
         .map(|bar| (&bar.id, &bar.elements))
         .chain(structure.plates.iter().map(|plate| (&plate.id, &plate.elements)))
+        .chain(structure.bricks.iter().map(|brick| (&brick.id, &brick.elements)))
         .map(|(id, elements)| Member { id: format!("`{id}`"), nodes: nodes_of(elements.clone()) })
         .collect();
     for mesh in &structure.meshes {
@@ -77,6 +78,7 @@ fn members(structure: &Structure) -> Vec<Member> {
         .iter()
         .map(|bar| &bar.elements)
         .chain(structure.plates.iter().map(|plate| &plate.elements))
+        .chain(structure.bricks.iter().map(|brick| &brick.elements))
         .chain(structure.meshes.iter().map(|mesh| &mesh.elements))
     {
         named[elements.clone()].fill(true);

@@ -9,7 +9,7 @@ use crate::fem::matrices::Matrices;
 use crate::model::pair::Pair;
 use crate::model::parameter::ParameterValues;
 use crate::model::scenario::FORMAT;
-use crate::model::structure::{Component, Load, Spring, Structure};
+use crate::model::structure::{Component, Dimension, Load, Spring, Structure};
 use crate::model::units::Units;
 
 /// A structure with its matrices and its values.
@@ -95,6 +95,9 @@ impl Stiffness<'_> {
         if !labels.is_empty() {
             scenario["units"] = labels.into();
         }
+        if dimension == Dimension::Space {
+            scenario["dimension"] = json!(3);
+        }
         (scenario, untold.len())
     }
 
@@ -141,6 +144,9 @@ impl Stiffness<'_> {
         let mut contact = json!({
             "id": id, "node": nodes[pair.node], "against": against, "normal": self.structure.dimension.shown(pair.normal), "law": pair.law.kind(),
         });
+        if self.structure.dimension == Dimension::Space {
+            contact["tangent"] = json!(pair.tangents[0]);
+        }
         for (key, number) in pair.law.numbers() {
             contact[key] = json!(number.value(self.values));
         }

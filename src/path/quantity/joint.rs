@@ -1,12 +1,13 @@
-//! Resultants of edge contacts.
+//! Resultants of the contacts of edges and faces.
 
 use super::facts::Facts;
 use super::value::NoValue;
 use crate::answer::record::PairState;
 use crate::answer::rounding::balance;
 use crate::model::quantity::ResultantPart;
+use crate::model::vector::{cross, length};
 
-/// Resultant of the forces of an edge contact.
+/// Resultant of the forces of the contact of an edge or a face.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Resultant {
     /// Id of the contact.
@@ -14,12 +15,23 @@ pub struct Resultant {
     /// Σ x_n.
     #[serde(rename = "N")]
     pub normal: f64,
-    /// Σ x_t.
+    /// Σ x_t; in space the length of the sum of the vectors.
     #[serde(rename = "T")]
     pub tangential: f64,
-    /// Distance of N from the middle, > 0 towards later nodes; `None` where N = 0.
+    /// Distance of N from the middle, > 0 towards later nodes; `None` where N = 0, and in space.
     #[serde(rename = "e")]
     pub eccentricity: Option<f64>,
+}
+
+/// Friction of a pair in space: in global axes, or along t1 and t2 where those are not known.
+fn friction(pair: &PairState) -> [f64; 3] {
+    let Some(space) = &pair.space else { return [0.0; 3] };
+    let [along, across] = space.x_t;
+    let [t1, t2] = match space.frame {
+        Some([normal, t1]) => [t1, cross(normal, t1)],
+        None => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+    };
+    std::array::from_fn(|c| along * t1[c] + across * t2[c])
 }
 
 impl Facts<'_> {
@@ -27,12 +39,13 @@ impl Facts<'_> {
         let found = self.resultant(joint).ok_or_else(|| self.missing())?;
         match part {
             ResultantPart::Normal => Ok(found.normal),
-            ResultantPart::Tangential if self.pairs.iter().any(|pair| pair.space.is_some()) => Err(NoValue(
-                "T of a joint in space is no single number: ask `sum x_t1` and `sum x_t2` of its pairs".to_owned(),
-            )),
             ResultantPart::Tangential => Ok(found.tangential),
             ResultantPart::Eccentricity => {
-                found.eccentricity.ok_or_else(|| NoValue("no eccentricity where N = 0".to_owned()))
+                let why = match self.pairs.iter().any(|pair| pair.space.is_some()) {
+                    true => "no eccentricity over a face: it has no first and last node",
+                    false => "no eccentricity where N = 0",
+                };
+                found.eccentricity.ok_or_else(|| NoValue(why.to_owned()))
             }
         }
     }
@@ -42,6 +55,11 @@ impl Facts<'_> {
         let head = format!("{joint}[");
         let pairs: Vec<&PairState> = self.pairs.iter().filter(|pair| pair.id.starts_with(&head)).collect();
         let normal = balance(pairs.iter().map(|pair| pair.x_n));
+        if pairs.iter().any(|pair| pair.space.is_some()) {
+            let friction: Vec<[f64; 3]> = pairs.iter().map(|pair| friction(pair)).collect();
+            let tangential = length([0, 1, 2].map(|c| balance(friction.iter().map(|force| force[c]))));
+            return Some(Resultant { joint: joint.to_owned(), normal, tangential, eccentricity: None });
+        }
         let tangential = balance(pairs.iter().map(|pair| pair.x_t));
         let places = self.places(joint, &pairs);
         let moments: Option<Vec<f64>> = pairs.iter().zip(&places).map(|(pair, s)| Some(pair.x_n * (*s)?)).collect();
