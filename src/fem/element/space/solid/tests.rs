@@ -357,8 +357,8 @@ fn quadratic_fields_are_exact() {
         let corners = if kind.0 == 10 { 4 } else { 8 };
         if kind.0 == 10 {
             let mut moved = mesh.nodes.clone();
-            for node in 0..27 {
-                moved[node] = moved[node].map(|x| x + 0.1 * random.random_range(-1.0..1.0));
+            for at in &mut moved[..27] {
+                *at = at.map(|x| x + 0.1 * random.random_range(-1.0..1.0));
             }
             for element in &mesh.elements {
                 for (m, [a, b]) in TETRAHEDRON_SIDES.into_iter().enumerate() {
