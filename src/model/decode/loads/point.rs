@@ -4,8 +4,10 @@ use super::{bar, nodal};
 use crate::model::decode::builder::Builder;
 use crate::model::decode::reader::{Cursor, Fields};
 use crate::model::decode::spot::Spot;
-use crate::model::structure::{ElementLoad, Load};
+use crate::model::space_section::EndJoint;
+use crate::model::structure::{ElementKind, ElementLoad, Load};
 use crate::model::uses::Region;
+use crate::model::vector::{dot, length, way};
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
     let fields = cursor.fields(&["at", "bar", "distance", "force", "moment"])?;
@@ -87,6 +89,25 @@ fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
         cursor.problem("a truss bar carries no `moment`", "remove it, or make the bar a frame");
         return None;
     }
+    if let Some((cursor, moment)) = moment
+        && !takes_torque(builder, element, moment)
+    {
+        cursor.problem(
+            "nothing takes the torque of this `moment`: the bar is hinged at both ends, to nodes without rotations",
+            "give a moment across the bar, or remove a hinge",
+        );
+        return None;
+    }
     let (force, moment) = (force.unwrap_or_default(), moment.map_or([0.0; 3], |(_, moment)| moment));
     Some(vec![Load::Element { element, load: ElementLoad::Point { distance, force, moment } }])
+}
+
+/// Whether an element of a bar passes the torque of a moment on to one of its nodes.
+fn takes_torque(builder: &Builder<'_>, element: usize, moment: [f64; 3]) -> bool {
+    let element = &builder.structure.elements[element];
+    let ElementKind::SpaceFrame { joints: [EndJoint::Ball, EndJoint::Ball], .. } = element.kind else { return true };
+    let [a, b] = [0, 1].map(|end| builder.structure.nodes[element.nodes[end]].position);
+    let along = way(a, b);
+    // The direction of the bar, the moment and their product are rounded.
+    dot(along, moment).abs() <= 8.0 * f64::EPSILON * length(along) * length(moment)
 }
