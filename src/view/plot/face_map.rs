@@ -63,15 +63,17 @@ pub fn faces(
     units: &Units,
 ) -> (Vec<FaceMap>, Vec<PairState>) {
     let (mut maps, mut rest) = (Vec::new(), Vec::new());
-    let mut joints: Vec<(usize, Vec<usize>)> = Vec::new();
+    // those of a face are `joint[0]`, `joint[1]` …; a contact of a single node is no face
+    let mut contacts: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
     for (index, state) in states.iter().enumerate() {
-        match joints.iter_mut().find(|(joint, _)| *joint == state.joint) {
+        let name = state.id.split_once('[').map(|(name, _)| name);
+        match contacts.iter_mut().find(|(known, _)| *known == name) {
             Some((_, pairs)) => pairs.push(index),
-            None => joints.push((state.joint, vec![index])),
+            None => contacts.push((name, vec![index])),
         }
     }
-    for (_, pairs) in joints {
-        match FaceMap::of(structure, states, &pairs, quantity, units) {
+    for (name, pairs) in contacts {
+        match name.and_then(|_| FaceMap::of(structure, states, &pairs, quantity, units)) {
             Some(map) => maps.push(map),
             None => rest.extend(pairs.into_iter().map(|pair| states[pair].clone())),
         }
