@@ -5,9 +5,10 @@ use std::io::{self, IsTerminal};
 use clap::Args;
 
 use super::ending::Failure;
+use super::input::named;
 use super::look::Look;
 use crate::model::embedded;
-use crate::session::{Session, load};
+use crate::session::Session;
 use crate::signals::{Signals, TerminalWatch, is_dumb};
 use crate::view::style::Style;
 
@@ -74,7 +75,7 @@ pub(super) fn start(look: &Look, scenario: &str, errors: Style) -> Result<Start,
     let style = look.style(&io::stdout());
     let signals = Signals::install()?;
     let watch = TerminalWatch::new(&signals);
-    let scenario = load::scenario(scenario, &watch)?;
+    let scenario = named(scenario, &watch)?;
     let session = Session::new(scenario, &watch);
     watch.clear();
     Ok(Start { session: session?, style, signals, errors })

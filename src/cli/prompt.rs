@@ -57,9 +57,12 @@ pub fn write_help(word: &str, style: &Style, out: &mut dyn Write) -> Result<u8, 
 /// How to give a command of the prompt that was given to the shell; `None` where the arguments begin with none, or with one
 /// that the shell has too.
 pub fn hint(arguments: &[OsString]) -> Option<String> {
-    let words: Vec<String> = arguments.get(1..)?.iter().map(|word| printable::line(&word.to_string_lossy())).collect();
-    let command = exact(words.first()?).filter(|command| !is_of_the_shell(command.name))?;
-    let line = command.name;
+    hint_of(&printable::line(&arguments.get(1)?.to_string_lossy()))
+}
+
+/// The same of the first word.
+pub fn hint_of(word: &str) -> Option<String> {
+    let line = exact(word).filter(|command| !is_of_the_shell(command.name))?.name;
     Some(format!(
         "`{line}` is a command of the prompt: `stickslip SCENARIO`, then `{line} …`, or `echo '{line} …' | stickslip \
          SCENARIO`; `stickslip help {line}` says more"

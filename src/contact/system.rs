@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::file_data::FileData;
 
+use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
 
 /// A joint whose unit dislocation is this close (squared) to the kernel lies in it.
@@ -119,6 +120,14 @@ impl ContactSystem {
     /// Why `command` cannot be used in space; `None` in the plane.
     pub fn space_refusal(&self, command: &str) -> Option<String> {
         self.is_in_space().then(|| format!("`{command}` works in the plane only so far; this problem is in space"))
+    }
+
+    /// Up to where an entry of R is the rounding of a zero; 0 where the entries are data.
+    pub fn entry_noise(&self, i: usize, j: usize) -> f64 {
+        if !self.rounded {
+            return 0.0;
+        }
+        NOISE * (self.stiffness[(i, i)] * self.stiffness[(j, j)]).max(0.0).sqrt()
     }
 
     /// Whether the force of a joint is the unknown.

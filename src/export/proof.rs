@@ -1,5 +1,6 @@
 //! A proof as `stickslip-proof/1`, and the system it is about as a scenario (docs/proofs.md).
 
+use nalgebra::DMatrix;
 use num_rational::BigRational;
 use serde_json::{Map, Value, json};
 
@@ -16,15 +17,17 @@ pub fn system(system: &ProvedSystem, title: &str) -> Value {
     let (key, source) = match system {
         ProvedSystem::Contact(contact) => ("contact_system", of_contact(contact)),
         ProvedSystem::Plain { matrix, q, names } => {
-            let rows: Vec<Vec<f64>> = matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
-            ("lcp", json!({"names": names, "M": rows, "q": q.as_slice()}))
+            ("lcp", json!({"names": names, "M": rows(matrix), "q": q.as_slice()}))
         }
     };
     json!({"format": FORMAT, "title": title, key: source})
 }
 
+fn rows(matrix: &DMatrix<f64>) -> Value {
+    matrix.row_iter().map(|row| row.iter().copied().collect::<Value>()).collect()
+}
+
 fn of_contact(contact: &ProvedContact) -> Value {
-    let rows: Vec<Vec<f64>> = contact.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
     let laws = || contact.laws.iter();
     let fixed = |law: &PairLaw, bilateral: bool| if law.is_bilateral() == bilateral { law.fixed_bound() } else { 0.0 };
     let mut value = json!({
@@ -34,7 +37,7 @@ fn of_contact(contact: &ProvedContact) -> Value {
         "cohesion": laws().map(|law| fixed(law, false)).collect::<Vec<_>>(),
         "bound": laws().map(|law| fixed(law, true)).collect::<Vec<_>>(),
         "gap": laws().map(PairLaw::gap).collect::<Vec<_>>(),
-        "stiffness": rows,
+        "stiffness": rows(&contact.stiffness),
         "loads": {"all": {"factor": 1.0, "vector": contact.load.as_slice()}},
     });
     if !contact.kernel.is_empty() {

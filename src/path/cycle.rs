@@ -6,7 +6,7 @@
 use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
 use super::start::{PathError, in_the_plane};
 use super::static_shakedown::{Static, static_limit, static_shakedown};
-use crate::answer::record::Ray;
+use crate::answer::record::{PairState, Ray};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
@@ -157,6 +157,47 @@ fn within_reason(problem: &ContactProblem, slips: &[f64]) -> Result<(), PathErro
     Ok(())
 }
 
+/// What differences and rounding of a history are judged against.
+#[derive(Clone, Copy)]
+struct Sizes {
+    /// The largest contact force.
+    force: f64,
+    /// The largest Σ |terms| of a contact force: it is known to a few ε of that.
+    terms: f64,
+    /// The largest way of a pair, or what such terms move the softest joint by.
+    way: f64,
+    /// The largest gap, or way.
+    gap: f64,
+}
+
+impl Sizes {
+    fn of(stages: &[StageResult], softest: f64) -> Sizes {
+        let moments = || stages.iter().flat_map(|stage| &stage.moments);
+        let largest = |of: &dyn Fn(&PairState) -> f64| {
+            moments().flat_map(|moment| &moment.pairs).map(|pair| of(pair).abs()).fold(0.0, f64::max)
+        };
+        let force = largest(&|pair| pair.x_n.abs().max(pair.x_t.abs()));
+        let terms = moments().map(|moment| moment.state.terms.amax()).fold(force, f64::max);
+        let slips = stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
+        let way = slips.max(terms * softest);
+        Sizes { force, terms, way, gap: largest(&|pair| pair.z_n).max(way) }
+    }
+
+    /// A difference of forces as a share of the largest; 0 where it is rounding.
+    fn force_share(&self, off: f64) -> f64 {
+        if off <= NOISE * self.terms { 0.0 } else { off / self.force }
+    }
+
+    fn gap_share(&self, off: f64) -> f64 {
+        if off <= NOISE * self.gap { 0.0 } else { off / self.gap }
+    }
+
+    /// A way without what is rounding of it.
+    fn moved(&self, way: f64) -> f64 {
+        if way.abs() <= SAME * self.way { 0.0 } else { way }
+    }
+}
+
 /// Follows a load from the first value to the second and back, until a cycle repeats: the other loads stand at their
 /// present factors. It begins at the unloaded structure, or at the first value with slips left behind.
 ///
@@ -217,16 +258,7 @@ fn softest(system: &ContactSystem) -> f64 {
 /// `complete` ends in a limit.
 fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Turn>) {
     let end = |stage: usize| &stages[stage].end.pairs;
-    let largest = |of: &dyn Fn(&crate::answer::record::PairState) -> f64| {
-        let pairs = stages.iter().flat_map(|stage| &stage.end.pairs);
-        pairs.map(|pair| of(pair).abs()).fold(0.0, f64::max)
-    };
-    let force = largest(&|pair| pair.x_n.abs().max(pair.x_t.abs()));
-    let slips = stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
-    // What the forces move at least by: rounding is small against it, also where nothing slips.
-    let slips = slips.max(force * softest);
-    let gap = largest(&|pair| pair.z_n).max(slips);
-    let share = |off: f64, size: f64| if off == 0.0 { 0.0 } else { off / size };
+    let sizes = Sizes::of(stages, softest);
     let cycles = (stages.len() - usize::from(!complete)).saturating_sub(1) / 2;
     let mut turns: Vec<Turn> = Vec::new();
     let mut kind = Kind::Undecided;
@@ -234,14 +266,14 @@ fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Tu
         let (there, back) = (2 * number + 1, 2 * number + 2);
         let halves: [&StageResult; 2] = [&stages[there], &stages[back]];
         let pairs = end(back).iter().enumerate().map(|(index, pair)| {
-            let [there, back] = halves.map(|half| half.slip[index]);
-            PairCycle { pair: pair.id.clone(), there, back, net: there + back, total: pair.z_t }
+            let [there, back] = halves.map(|half| sizes.moved(half.slip[index]));
+            PairCycle { pair: pair.id.clone(), there, back, net: sizes.moved(there + back), total: pair.z_t }
         });
         let pairs: Vec<PairCycle> = pairs.collect();
         let off = |now: usize, before: usize| {
             end(now).iter().zip(end(before)).fold(0.0, |largest: f64, (a, b)| {
-                let forces = share((a.x_n - b.x_n).abs().max((a.x_t - b.x_t).abs()), force);
-                largest.max(forces).max(share((a.z_n - b.z_n).abs(), gap))
+                let forces = sizes.force_share((a.x_n - b.x_n).abs().max((a.x_t - b.x_t).abs()));
+                largest.max(forces).max(sizes.gap_share((a.z_n - b.z_n).abs()))
             })
         };
         // The place before the first cycle is the end of the way there from the unloaded structure.
@@ -249,7 +281,8 @@ fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Tu
         let difference = (number > 0).then(|| closed.max(off(there, there - 2)));
         let lost = halves.map(|half| half.dissipated);
         // What moves to and fro without loss is open, or on a bound of 0.
-        let lossless = lost.iter().all(|lost| *lost <= SAME * force * slips);
+        let lossless = lost.iter().all(|lost| *lost <= SAME * sizes.terms * sizes.way);
+        let lost = if lossless { [0.0; 2] } else { lost };
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
         let schemes = |first: usize| stages[first..].iter().take(2).flat_map(StageResult::schemes);
         let repeated = (number + 1 < cycles).then(|| schemes(there).eq(schemes(there + 2)));
@@ -267,8 +300,8 @@ fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Tu
             now.zip(before).all(|(now, before)| (now.net - before.net).abs() <= SAME_NET * net)
         });
         kind = match () {
-            () if lossless && net <= SAME * slips => Kind::ShakesDown,
-            () if net <= SAME * slips => Kind::Alternates,
+            () if lossless && net == 0.0 => Kind::ShakesDown,
+            () if net == 0.0 => Kind::Alternates,
             () if same => Kind::Ratchets,
             () => continue,
         };
@@ -319,15 +352,18 @@ fn recurrence(turns: &[Turn]) -> String {
     let before = turns.len().checked_sub(2).and_then(|before| turns[before].difference);
     let near = match (last.difference, before) {
         (None, _) => format!("to {SAME:e} of the largest"),
-        (Some(now), _) if now <= NOISE => "to rounding".to_owned(),
-        (Some(now), Some(before)) if now < before => {
-            format!("to {now:.1e} of the largest, {:.3} times the difference of the cycle before", now / before)
-        }
+        (Some(now), _) if now <= NOISE => "to rounding (256 ε of the terms that each force sums)".to_owned(),
+        (Some(now), Some(before)) if now < before => format!(
+            "to {now:.1e} of the largest, {:.3} times the difference of the cycle before: where that goes on, all later cycles \
+             together come {:.0e} nearer",
+            now / before,
+            tail(now, before)
+        ),
         (Some(now), _) => format!("to {now:.1e} of the largest"),
     };
     format!(
-        "its forces and gaps are at its end what they were at its beginning, {near}, and the rates depend on nothing else: every \
-         further cycle is the same{next}"
+        "its forces and gaps are at its end what they were at its beginning, {near}. The rates depend on nothing else: to these \
+         digits every further cycle is the same{next}"
     )
 }
 

@@ -12,7 +12,7 @@ use nalgebra::DVector;
 use super::cycle::{Cycle, Kind, PairSlip, Turn, cycle, followed, target};
 use super::stages::{Begin, loose_motions};
 use super::start::PathError;
-use super::static_shakedown::Static;
+use super::static_shakedown::{SECONDS, Static, units};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactPair;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
@@ -22,8 +22,6 @@ use crate::text::number::short;
 
 /// Pairs up to which each one's extreme slips are tried.
 pub const MOST_PAIRS: usize = 40;
-/// Seconds for one linear programme.
-const SECONDS: f64 = 10.0;
 /// What two cycles dissipate and leave behind is the same where it differs by less than this share of the largest.
 const SAME: f64 = 1e-9;
 
@@ -156,9 +154,7 @@ fn extreme_slips(
     moving.extend(system.pairs.iter().flat_map(|pair| pair.tangential.clone()));
     let constants = problem.joint_constants();
     let stiffness = system.stiffness.diagonal().amax();
-    let force = constants.amax();
-    let force = if force > 0.0 { force } else { 1.0 };
-    let length = if stiffness > 0.0 { force / stiffness } else { 1.0 };
+    let (force, length) = units(constants.amax(), stiffness);
     let mut program = LinearProgram::default();
     moving.iter().for_each(|_| _ = program.variable(0.0));
     let row = |joint: usize, sign: f64| -> Vec<(usize, f64)> {

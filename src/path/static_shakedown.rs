@@ -17,10 +17,8 @@ use crate::lcp::problem::NOISE;
 use crate::solve::Case;
 use crate::solve::problem::{contact_problem, factors};
 
-/// An entry of a condensed R below this share of √(R_ii R_kk) is the rounding of a zero.
-const STORED_ZERO: f64 = 256.0 * f64::EPSILON;
 /// Seconds for one linear programme.
-const SECONDS: f64 = 10.0;
+pub(super) const SECONDS: f64 = 10.0;
 /// How far before the end of the linear programme the proof is tried, as shares of the way: at the end itself no reserve is
 /// left.
 const BEFORE: [f64; 4] = [1e-9, 1e-8, 1e-7, 1e-6];
@@ -61,6 +59,12 @@ struct Search<'a> {
     units: (f64, f64),
 }
 
+/// Units of force and length of a programme in which the largest force and stiffness are these.
+pub(super) fn units(force: f64, stiffness: f64) -> (f64, f64) {
+    let force = if force > 0.0 { force } else { 1.0 };
+    (force, if stiffness > 0.0 { force / stiffness } else { 1.0 })
+}
+
 /// Why the theorem cannot be asked; `None` where it can.
 fn refusal(problem: &ContactProblem) -> Option<Static> {
     let system = &*problem.system;
@@ -79,12 +83,10 @@ fn refusal(problem: &ContactProblem) -> Option<Static> {
 /// A pair whose contact force depends on the slip of another one.
 fn coupled(problem: &ContactProblem) -> Option<(usize, usize)> {
     let system: &ContactSystem = &problem.system;
-    let r = &system.stiffness;
-    let floor = if system.rounded { STORED_ZERO } else { 0.0 };
     let unilateral = (0..system.pair_count()).filter(|&i| !problem.laws[i].is_bilateral());
     unilateral.into_iter().find_map(|i| {
         let slips = system.pairs.iter().enumerate().filter_map(|(j, pair)| Some((j, pair.plane_tangential()?)));
-        let strong = |t: usize| r[(i, t)].abs() > floor * (r[(i, i)] * r[(t, t)]).max(0.0).sqrt();
+        let strong = |t: usize| system.stiffness[(i, t)].abs() > system.entry_noise(i, t);
         slips.into_iter().find(|&(_, t)| strong(t)).map(|(j, _)| (i, j))
     })
 }
@@ -105,10 +107,8 @@ impl Search<'_> {
         let bounds = places.iter().flat_map(|place| place.bounds.iter().flatten());
         let loads = places.iter().flat_map(|place| joints.iter().map(|&(_, t)| &place.load[t]));
         let force = bounds.chain(loads).fold(0.0, |most: f64, value| most.max(value.abs()));
-        let force = if force > 0.0 { force } else { 1.0 };
         let stiffness = joints.iter().map(|&(_, t)| problem.system.stiffness[(t, t)]).fold(0.0, f64::max);
-        let length = if stiffness > 0.0 { force / stiffness } else { 1.0 };
-        Search { problem, joints, units: (force, length) }
+        Search { problem, joints, units: units(force, stiffness) }
     }
 
     /// R s of the k-th tangential joint as terms of a programme.

@@ -2,6 +2,7 @@
 //! threads. Each row tells what a cold run finds at its point, whichever way it was found ([`super::sweep_points`]).
 
 use std::io::Write;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -205,9 +206,14 @@ impl Sweep<'_> {
         let hash = self.header().hash;
         let start = Instant::now();
         let mut next = points.start + found;
+        let told = |ready: usize| {
+            let words = progress(ready, points.len(), ready - found, start.elapsed().as_secs_f64());
+            watch.progress(&words, ready as f64 / points.len() as f64);
+        };
         while next < points.end && !watch.stop() {
             let end = (next + CHUNK).min(points.end);
             let stop_only = StopOnly(watch);
+            let solved = AtomicUsize::new(done.found + done.written);
             let rows: Vec<Vec<Option<Row>>> = solver
                 .blocks(next..end)
                 .into_par_iter()
@@ -216,6 +222,8 @@ impl Sweep<'_> {
                         return vec![None];
                     }
                     let found = solver.solve(block.clone(), &stop_only);
+                    let ready = solved.fetch_add(block.len(), Ordering::Relaxed) + block.len();
+                    told(ready);
                     block.zip(found).map(|(index, found)| self.row(index, found, &hash)).collect()
                 })
                 .collect();
@@ -231,11 +239,6 @@ impl Sweep<'_> {
                 break;
             }
             next = end;
-            let ready = done.found + done.written;
-            watch.progress(
-                &progress(ready, done.total, done.written, start.elapsed().as_secs_f64()),
-                ready as f64 / done.total as f64,
-            );
         }
         Ok(done)
     }

@@ -15,7 +15,7 @@ use crate::contact::written::ContactLcp;
 use crate::explain::kernel::clean;
 use crate::lcp::basis_solution::{direction, vertex};
 use crate::lcp::driver::{Engine, run};
-use crate::lcp::exact::dyadic::{nearest, rational};
+use crate::lcp::exact::dyadic::{nearest, rational, rational_rows};
 use crate::lcp::exact::lemke::Exact;
 use crate::lcp::exact::tableau::Tableau;
 use crate::lcp::lemke::SchemeEngine;
@@ -202,15 +202,13 @@ fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run
 /// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ; `None` if it was stopped.
 pub fn exact_stiffness(system: &ContactSystem, watch: &dyn Watch) -> Option<Vec<Vec<BigRational>>> {
     let k = system.joint_count();
-    let r: Vec<Vec<BigRational>> =
-        (0..k).map(|i| (0..k).map(|j| rational(system.stiffness[(i, j)])).collect()).collect();
+    let r = rational_rows(&system.stiffness);
     let free = system.kernel.ncols();
     if free == 0 {
         return Some(r);
     }
     // Entries of Z that are rounding noise would only blur motions that are exactly simple.
-    let z: Vec<Vec<BigRational>> =
-        clean(&system.kernel).row_iter().map(|row| row.iter().map(|v| rational(*v)).collect()).collect();
+    let z = rational_rows(&clean(&system.kernel));
     let dot = |a: &dyn Fn(usize) -> BigRational, b: &dyn Fn(usize) -> BigRational| {
         let mut sum = BigRational::zero();
         for i in 0..k {

@@ -24,7 +24,7 @@ fn group(found: &Group) -> String {
         text.push_str(&format!(" ± {}", short(error)));
     }
     if found.at_end && found.identifiable {
-        text.push_str(", the end of its range");
+        text.push_str(", an end of its range");
     }
     let states = [(found.slip, "slip"), (found.stick, "stick"), (found.open, "open")];
     let states: Vec<String> =
@@ -54,14 +54,14 @@ pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Res
         Column::words("residual"),
     ];
     let shown = &found.groups[..found.groups.len().min(COLUMNS)];
-    columns.extend(shown.iter().map(|group| Column::given(&format!("per {}", group.parameter), None).droppable(1)));
+    columns.extend(shown.iter().map(|group| Column::plain(&format!("per {}", group.parameter), None).droppable(1)));
     let mut table = Table::new(columns);
     for row in &found.measurements {
         let number = |value: f64| Cell::from(with_unit(&short(value), row.unit.as_deref()));
         let error = row.error.map_or(String::new(), |error| format!(" ± {}", short(error)));
         let measured = Cell::from(with_unit(&format!("{}{error}", short(row.measured)), row.unit.as_deref()));
         let mut cells = vec![Cell::from(row.quantity.clone()), measured, number(row.computed), number(row.residual)];
-        cells.extend(row.sensitivity[..shown.len()].iter().map(|slope| Cell::number(*slope)));
+        cells.extend(row.sensitivity[..shown.len()].iter().map(|slope| Cell::from(short(*slope))));
         table.rows.push(Row::new(cells));
     }
     table.write(out, style)?;
@@ -89,6 +89,6 @@ pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Res
         );
         style.paragraph(out, Role::Warning, &text)?;
     }
-    let role = if found.global { Role::Plain } else { Role::Muted };
+    let role = if found.global { Role::Plain } else { Role::Warning };
     style.paragraph(out, role, &found.sentence)
 }

@@ -169,17 +169,41 @@ fn open_pairs_tell_nothing() {
     assert!(group["why"].as_str().unwrap().contains("open: nothing shows"), "{found}");
 }
 
+/// The beam slides as a whole where 6 f F < F2, below f = 250/600. More slip at the end than there: the least is at the end of the
+/// path; less than under f = 1: at that of the range. Neither has a standard error, because there the sum of squares slopes.
+#[test]
+fn an_end_of_the_path_or_the_range_has_no_standard_error() {
+    let mut session = beam();
+    report(&mut session, "set F2 250").unwrap();
+    for (command, value) in [
+        ("calibrate f 0..1 where z_t c6 = 0.1 ± 1e-4, z_t c5 = 0.1 ± 1e-4", 250.0 / 600.0),
+        ("calibrate f 0..1 where z_t c6 = 0 ± 1e-4, z_t c5 = 0 ± 1e-4", 1.0),
+    ] {
+        let found = report(&mut session, command).unwrap();
+        let group = &found["groups"][0];
+        near(&group["value"], value, 1e-9);
+        assert!(group["at_end"] == true && group["standard_error"].is_null(), "{command}: {found}");
+        // Why the range is shorter than asked for.
+        let sentence = found["sentence"].as_str().unwrap();
+        assert!(sentence.contains("; the path ends there: ") && sentence.contains("f = 0.4167"), "{sentence}");
+    }
+}
+
 #[test]
 fn what_cannot_be_calibrated_is_refused() {
     for (command, part) in [
         ("calibrate", "nothing was measured"),
-        ("calibrate f where", "nothing was measured"),
         ("calibrate F2 where z_t c6 = 0.001", "F2 is not the friction of any pair"),
         ("calibrate g where z_t c6 = 0.001", "no parameter or load case `g`"),
         ("calibrate f where z_t c9 = 0.001", "no pair `c9`"),
         ("calibrate f where slip c1 = 0.001", "calibrate: "),
         ("calibrate f where z_t c6", "calibrate: `` is no comparison"),
         ("calibrate f where z_t c6 < 1", "expected `where QUANTITY = VALUE"),
+        ("calibrate \"\"", "expected the name of a friction parameter"),
+        ("calibrate f where", "expected `where QUANTITY = VALUE"),
+        ("calibrate f where \"\"", "expected `where QUANTITY = VALUE"),
+        ("calibrate f where z_t c6 = 1 ± 0", "a standard error is greater than 0"),
+        ("calibrate f where z_t c6 = 1 ± -1", "what stands after `±` is not negative"),
         ("calibrate f where state c6 = stick", "expected `where QUANTITY = VALUE"),
         ("calibrate f where limit pull = 300", "not measured on a structure in one state"),
         ("calibrate f where z_t c6 = 0.001, x_t c1 = 5", "of different kinds (a length and a force)"),

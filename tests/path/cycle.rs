@@ -220,6 +220,45 @@ fn uncoupled_the_start_does_not_decide_and_the_static_theorem_proves_it() {
     assert!(found["from_every_start"].is_null() && found["static"]["applies"] == false, "{found}");
 }
 
+fn system(text: &str) -> stickslip::session::Session {
+    session(load_text("t", text, None).unwrap_or_else(|problems| panic!("{problems}")))
+}
+
+/// Klarbring's pair: at no load nothing touches, and at the full one it has lifted off, so that nothing but rounding is
+/// lost, whatever the start.
+#[test]
+fn rounding_decides_nothing() {
+    let mut session = system(
+        r#"{"format": "stickslip/1", "title": "k", "parameters": {"P": 1}, "contact_system": {"pairs": ["c1"], "friction": [0.5],
+            "stiffness": [[1, -1], [-1, 1.5]], "loads": {"load": {"factor": "P", "vector": [0.6, -1]}}}}"#,
+    );
+    let found = report(&mut session, "cycle load 0..1 5 from all").unwrap();
+    assert_eq!(found["decides"], false, "{found}");
+    for start in found["starts"].as_array().unwrap() {
+        assert_eq!((&start["kind"], number(&start["dissipated"])), (&"shakes-down".into(), 0.0), "{found}");
+    }
+    // Elastic from a start that is left behind: what moves is rounding, and is shown as none.
+    let found = report(&mut beam(), "cycle F2 0..1 from c6=0.0005").unwrap();
+    let last = found["cycles"].as_array().unwrap().last().unwrap();
+    assert_eq!(lost(last), 0.0, "{last}");
+    for pair in last["pairs"].as_array().unwrap() {
+        assert!(["there", "back", "net"].iter().all(|key| number(&pair[*key]) == 0.0), "{pair}");
+    }
+}
+
+/// Two motions that only contact holds: from every state that a jump leads to, the rate problem has no answer.
+#[test]
+fn jumps_that_lead_nowhere_have_an_end() {
+    let text = r#"{"format": "stickslip/1", "title": "t", "parameters": {"P": 1}, "contact_system": {"pairs": ["c1", "c2"],
+        "stiffness": [[4, -1, -4, 5], [-1, 2, 1, -3], [-4, 1, 4, -5], [5, -3, -5, 8]],
+        "loads": {"dead": {"factor": 1, "vector": [0, 2, -1, 0]}, "live": {"factor": "P", "vector": [1, -1, 3, 0]}},
+        "friction": [0.25, 0.125], "gap": [-0.25, 0.25], "kernel": [[-1, 1, 0, 1], [1, 0, 1, 0]]}}"#;
+    for command in ["cycle live 0..1 30", "cycle live 0.5..1 5", "limit cycle live 0..1"] {
+        let refusal = report(&mut system(text), command).unwrap_err();
+        assert!(refusal.contains("jumps follow one another"), "{command}: {refusal}");
+    }
+}
+
 #[test]
 fn slips_that_cannot_be_are_refused() {
     let mut session = two_nodes();
@@ -230,6 +269,10 @@ fn slips_that_cannot_be_are_refused() {
         ("cycle L 0..0.8 from a=nan", "`a=nan` is no slip"),
         ("cycle L 0..0.8 from d=1", "no pair `d`"),
         ("cycle L 0..0.8 from everything", "expected `from all`"),
+        ("cycle L 0..0.8 from a", "how far has a slipped? e.g. `from a=0.001`"),
+        ("cycle L 0..0.8 from all a=1", "`from all` chooses the slips itself; `a=1` is one too many"),
+        ("cycle L 0..0.8 from a=1 a=2", "the slip of a is given twice"),
+        ("cycle L 0..0.8 from *=1 b=2", "the slip of b is given twice"),
     ] {
         let refusal = report(&mut session, command).unwrap_err();
         assert!(refusal.contains(part), "{command}: {refusal}");

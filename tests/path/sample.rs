@@ -1,13 +1,15 @@
 //! `sample`: probabilities against closed forms, the same points on any number of threads and shards.
 
 use std::fs;
+use std::sync::Mutex;
 
 use serde_json::{Value, json};
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
-use stickslip::session::Session;
 use stickslip::session::commands::sweep::merge;
-use stickslip::watch::Quiet;
+use stickslip::session::{Output, Session};
+use stickslip::view::style::Style;
+use stickslip::watch::{Quiet, Watch};
 
 use super::find::{near, number, report};
 
@@ -70,6 +72,35 @@ fn other_laws_of_one_parameter_are_exact_too() {
 }
 
 /// A collapse for F2 > 600 f: ∫ (F2/600 − 0.2) dF2 over 120 … 200, over 0.4 · 100.
+/// Φ((1/4 − 0.4)/0.05) = Φ(−3) of the beam's friction do not hold 150 = 6 f F. The normal law has no ends: what lies beyond those
+/// that were followed is told, and is not undecided.
+#[test]
+fn tails_that_were_not_followed_are_told_apart() {
+    let found = report(&mut beam("set F2 150"), "sample f = normal(0.4, 0.05)").unwrap();
+    assert!((value(&found, "collapse") - 0.001_349_898_031_630_094_6).abs() < 2e-9, "{found}");
+    assert_eq!(value(&found, "undecided"), 0.0, "{found}");
+    assert!(found["notes"][0].as_str().unwrap().contains("exact but for a share of 2e-9 beyond the ends"), "{found}");
+}
+
+/// No exact path leads over a length: points are drawn, and progress tells how many are ready.
+#[test]
+fn points_over_a_geometry_are_counted_as_they_are_solved() {
+    #[derive(Default)]
+    struct Heard(Mutex<Vec<String>>);
+    impl Watch for Heard {
+        fn progress(&self, what: &str, _: f64) {
+            self.0.lock().unwrap().push(what.to_owned());
+        }
+    }
+    let mut session = Session::new(embedded::load("arch").unwrap(), &Quiet).unwrap();
+    let (watch, mut out) = (Heard::default(), Vec::new());
+    let mut io = Output::text(&mut out, Style::default(), &watch);
+    session.execute("sample eta=uniform(0.12,0.2) 40 --crude", &mut io).unwrap();
+    let heard = watch.0.lock().unwrap().clone();
+    let points = heard.iter().filter(|what| what.contains(" of 40")).count();
+    assert!(points >= 10, "{heard:?}");
+}
+
 #[test]
 fn two_uniform_parameters_are_an_area() {
     let found = report(&mut beam(""), "sample f=uniform(0.2,0.6) F2=uniform(100,200)").unwrap();
@@ -208,6 +239,10 @@ fn refusals_say_what_is_expected() {
         ("f=uniform(0,1) 100 200", "one number of points"),
         ("f=uniform(0,1) 1e6 --crude", "belong in a file"),
         ("f=uniform(0,1) of safety pull", "no quantity of a single state"),
+        ("f = uniform", "`uniform` is no distribution: expected uniform(LEAST, GREATEST)"),
+        ("f=uniform(0,1) of", "expected a quantity after `of`"),
+        ("f=uniform(0,1) of \"\"", "expected a quantity after `of`"),
+        ("f=uniform(0,1) 0", "`0` is no number of points; expected a whole number from 2 to 1e9"),
         ("f=uniform(0,1) --shard 1/2", "--out"),
     ] {
         let why = report(&mut session, &format!("sample {words}")).unwrap_err();

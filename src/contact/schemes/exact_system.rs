@@ -3,11 +3,11 @@
 
 use nalgebra::DMatrix;
 use num_rational::BigRational;
-use num_traits::{One, Zero};
+use num_traits::Zero;
 
-use crate::lcp::exact::dyadic::{WholeRows, rational};
+use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
-use crate::lcp::exact::rational_solve::rank_modulo_prime;
+use crate::lcp::exact::rational_solve::{clear_denominators, product, rank_modulo_prime};
 
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
@@ -176,16 +176,12 @@ impl PairVariables {
 /// condensed out exactly.
 fn stored(problem: &ContactProblem) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
     let system = &*problem.system;
-    let all = |matrix: &DMatrix<f64>| -> Vec<Vec<BigRational>> {
-        matrix.row_iter().map(|row| row.iter().map(|entry| rational(*entry)).collect()).collect()
-    };
-    let (Some(file), Some(load)) = (&system.file, &problem.file_load) else {
-        return (all(&system.stiffness), problem.load.iter().map(|entry| rational(*entry)).collect());
-    };
+    let own = || (rational_rows(&system.stiffness), problem.load.iter().map(|entry| rational(*entry)).collect());
+    let (Some(file), Some(load)) = (&system.file, &problem.file_load) else { return own() };
     if file.compliance {
-        return (all(&system.stiffness), problem.load.iter().map(|entry| rational(*entry)).collect());
+        return own();
     }
-    let mut rows = all(&file.matrix);
+    let mut rows = rational_rows(&file.matrix);
     rows.iter_mut().zip(load.vector.iter()).for_each(|(row, load)| row.push(rational(*load)));
     for released in file.factor.independent().iter().map(|&row| file.released[row]) {
         let pivot = rows[released].clone();
@@ -205,47 +201,43 @@ fn stored(problem: &ContactProblem) -> (Vec<Vec<BigRational>>, Vec<BigRational>)
     (file.kept.iter().map(row_of).collect(), file.kept.iter().map(|&i| rows[i][last].clone()).collect())
 }
 
-/// R with Z exactly in its kernel. Some joints P as many as there are motions, chosen so that their displacements tell
-/// the motion: Z = [G; 1] over the others N and P. Then only R_NN is taken from R, and R = Tᵀ R_NN T with
-/// T = [1, −G], which differs from what is stored by its rounding.
-fn with_exact_kernel(system: &ContactSystem, stored: Vec<Vec<BigRational>>) -> Vec<Vec<BigRational>> {
-    let k = system.joint_count();
-    let Some((telling, motion)) = telling_joints(&system.kernel) else {
+/// R with Z exactly in its kernel, unless its own digits have it already.
+fn with_exact_kernel(system: &ContactSystem, mut stored: Vec<Vec<BigRational>>) -> Vec<Vec<BigRational>> {
+    let Some((telling, motions)) = telling_joints(&system.kernel) else {
         return stored;
     };
     let mut whole = WholeRows::default();
     stored.iter().for_each(|row| whole.push_rational(row));
-    // Its own digits may have the kernel already.
-    if rank_modulo_prime(&whole.rows) + system.kernel.ncols() == k {
-        return stored;
+    if rank_modulo_prime(&whole.rows) + system.kernel.ncols() != system.joint_count() {
+        let exact = |column: usize| motions.column(column).iter().map(|entry| rational(*entry)).collect();
+        give_kernel(&mut stored, &telling, &(0..telling.len()).map(exact).collect::<Vec<_>>());
     }
-    let others: Vec<usize> = (0..k).filter(|j| !telling.contains(j)).collect();
-    // T over all joints, one row for each of N.
-    let t: Vec<Vec<BigRational>> = others
-        .iter()
-        .map(|&n| {
-            let mut row = vec![BigRational::zero(); k];
-            row[n] = BigRational::one();
-            for (column, &p) in telling.iter().enumerate() {
-                row[p] = -rational(motion[(n, column)]);
-            }
-            row
-        })
-        .collect();
-    let product = |a: &[Vec<BigRational>], i: usize, j: usize, transposed: bool| -> BigRational {
-        (0..others.len())
-            .map(|n| {
-                let left = if transposed { &t[n][i] } else { &a[i][n] };
-                let right = if transposed { &a[n][j] } else { &t[n][j] };
-                if left.is_zero() || right.is_zero() { BigRational::zero() } else { left * right }
-            })
-            .sum()
+    stored
+}
+
+/// Puts motions into the kernel of R: each is 1 at its own joint of P (`telling`) and 0 at the others of P, Z = [G; 1] over
+/// the other joints N and P. Only R_NN is taken from what is stored, R_NP = −R_NN G and R_PP = Gᵀ R_NN G, which
+/// differ from it by its rounding.
+pub(crate) fn give_kernel(stiffness: &mut [Vec<BigRational>], telling: &[usize], motions: &[Vec<BigRational>]) {
+    let others: Vec<usize> = (0..stiffness.len()).filter(|joint| !telling.contains(joint)).collect();
+    let cleared = |entry: &dyn Fn(usize) -> BigRational| {
+        clear_denominators(&others.iter().map(|&joint| entry(joint)).collect::<Vec<_>>())
     };
-    let inner: Vec<Vec<BigRational>> =
-        others.iter().map(|&i| others.iter().map(|&j| stored[i][j].clone()).collect()).collect();
-    let half: Vec<Vec<BigRational>> =
-        (0..others.len()).map(|i| (0..k).map(|j| product(&inner, i, j, false)).collect()).collect();
-    (0..k).map(|i| (0..k).map(|j| product(&half, i, j, true)).collect()).collect()
+    let rows: Vec<_> = others.iter().map(|&n| cleared(&|joint| stiffness[n][joint].clone())).collect();
+    let motions: Vec<_> = motions.iter().map(|motion| cleared(&|joint| motion[joint].clone())).collect();
+    for (motion, &p) in motions.iter().zip(telling) {
+        for (row, &n) in rows.iter().zip(&others) {
+            let entry = -product(row, motion);
+            stiffness[n][p].clone_from(&entry);
+            stiffness[p][n] = entry;
+        }
+    }
+    let columns: Vec<_> = telling.iter().map(|&p| cleared(&|joint| stiffness[joint][p].clone())).collect();
+    for (motion, &p) in motions.iter().zip(telling) {
+        for (column, &other) in columns.iter().zip(telling) {
+            stiffness[p][other] = -product(motion, column);
+        }
+    }
 }
 
 /// Rows P of Z with a safe inverse, and Z Z_P⁻¹; `None` without a kernel.

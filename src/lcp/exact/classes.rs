@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
-use crate::lcp::exact::dyadic::{WholeRows, rational};
+use crate::lcp::exact::dyadic::{WholeRows, rational_rows};
 use crate::lcp::exact::scalar::BigInt;
 
 /// Most rows whose minors are gone through.
@@ -50,8 +50,7 @@ pub fn solvable_class(matrix: &DMatrix<f64>, go_on: &mut dyn FnMut() -> bool) ->
     if n > MOST_MINORS {
         return None;
     }
-    let exact = matrix.row_iter().map(|row| row.iter().map(|v| rational(*v)).collect());
-    is_p_matrix(exact.collect()).then_some(SolvableClass::PMatrix)
+    is_p_matrix(rational_rows(matrix)).then_some(SolvableClass::PMatrix)
 }
 
 /// Leading minors of M + Mᵀ by elimination in integers.

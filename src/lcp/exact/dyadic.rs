@@ -37,6 +37,11 @@ pub fn rational(value: f64) -> BigRational {
     <BigRational as Scalar>::from_f64(value)
 }
 
+/// The numbers that the entries of a matrix stand for, row by row.
+pub fn rational_rows(matrix: &nalgebra::DMatrix<f64>) -> Vec<Vec<BigRational>> {
+    matrix.row_iter().map(|row| row.iter().map(|entry| rational(*entry)).collect()).collect()
+}
+
 /// The nearest f64.
 pub fn nearest(value: &BigRational) -> f64 {
     Scalar::to_f64(value)
@@ -57,10 +62,8 @@ impl WholeRows {
         let parts: Vec<(i64, i64)> = row.iter().map(|value| parts(*value)).collect();
         // At most 0: integers stay as they are.
         let least = parts.iter().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0).min(0);
-        let whole = |&(mantissa, exponent): &(i64, i64)| {
-            if mantissa == 0 { BigInt::default() } else { BigInt::from(mantissa) << (exponent - least) as u64 }
-        };
-        self.rows.push(parts.iter().map(whole).collect());
+        let whole = parts.iter().map(|&(mantissa, exponent)| shifted(i128::from(mantissa), exponent - least));
+        self.rows.push(whole.collect());
         self.scale.push(BigInt::one() << (-least) as u64);
     }
 

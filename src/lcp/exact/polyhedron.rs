@@ -83,9 +83,10 @@ impl Polyhedron {
         self
     }
 
-    /// Without the columns of fixed variables, as the search for corners needs it.
+    /// Without the columns of fixed variables, and of those that are fixed from now on, as the search for corners needs it.
     #[must_use]
     pub fn without_fixed(mut self) -> Self {
+        self.keeps = false;
         while let Some(column) = self.nonbasic.iter().position(|&variable| self.fixed[variable]) {
             self.drop_column(column);
         }

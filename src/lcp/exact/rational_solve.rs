@@ -54,6 +54,13 @@ pub fn clear_denominators(row: &[BigRational]) -> (Vec<BigInt>, BigInt) {
     (whole, common)
 }
 
+/// Σ a b of two rows with their denominators cleared: one greatest common divisor in all.
+pub fn product((a, common): &(Vec<BigInt>, BigInt), (b, other): &(Vec<BigInt>, BigInt)) -> BigRational {
+    let terms = a.iter().zip(b).filter(|(a, b)| !a.is_zero() && !b.is_zero());
+    let sum: BigInt = terms.map(|(a, b)| a * b).sum();
+    if sum.is_zero() { BigRational::zero() } else { BigRational::new(sum, common * other) }
+}
+
 /// Solves `matrix` x = `rhs` (square) exactly. `progress` hears a share of the work in 0 … 1 and may stop it.
 pub fn solve(
     matrix: &[Vec<BigInt>],

@@ -33,6 +33,8 @@ pub(super) struct Along {
     pub(super) points: Vec<(f64, f64)>,
     /// Between which values it was followed.
     pub(super) covered: [f64; 2],
+    /// Why not over the whole range, in sentences.
+    pub(super) ends: Vec<String>,
 }
 
 impl Along {
@@ -162,7 +164,7 @@ impl Model<'_> {
         }
         let mut minima = least_nearby(&points, (ROUNDING * self.size()).powi(2));
         minima.sort_by(|a, b| a.1.total_cmp(&b.1));
-        Ok(Some(Along { minima, covered: route.covered(), points }))
+        Ok(Some(Along { minima, covered: route.covered(), ends: route.ends(), points }))
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Group {
     pub value: f64,
     /// Standard error; `None` where nothing tells it.
     pub standard_error: Option<f64>,
-    /// Whether it stands at an end of its range: beyond there may be a better one.
+    /// Whether it stands at an end of its range, or of its path: beyond there may be a better one.
     pub at_end: bool,
     /// Whether the measurements determine it.
     pub identifiable: bool,
@@ -151,14 +151,15 @@ impl Model<'_> {
         let name = &self.groups[0].0;
         let [low, high] = along.covered;
         let Some(best) = fits.into_iter().next() else { return Err(self.nothing(&self.present())?) };
-        let sentence = format!(
+        let mut sentence = format!(
             "the least sum of squares on the exact path over {name} from {} to {}: every stretch between two breakpoints was \
              looked at",
             short(low),
             short(high)
         );
+        along.ends.iter().for_each(|end| sentence.push_str(&format!("; the path ends there: {end}")));
         let level = level.filter(|[from, to]| to - from > LEVEL * (high - low));
-        self.told(&best, level, (true, others, sentence))
+        self.told(&best, level, (&[along.covered], others, sentence))
     }
 
     /// From several starts, then each friction alone.
@@ -199,8 +200,9 @@ impl Model<'_> {
         }
         let along = if alone { "; each friction alone is at the least of its whole exact path" } else { "" };
         let place = if self.history { ", by differences between histories of their own" } else { "" };
-        let sentence = format!("the best of {tried} descents{place}{along}; a better one elsewhere is not ruled out");
-        self.told(&best, None, (false, Vec::new(), sentence))
+        let sentence =
+            format!("local: the best of {tried} descents{place}{along}; a better one elsewhere is not ruled out");
+        self.told(&best, None, (&[], Vec::new(), sentence))
     }
 
     /// The present values, the middle, and places between it and the corners.
@@ -230,11 +232,12 @@ impl Model<'_> {
         )))
     }
 
+    /// `followed`: the range of the only friction that its path leads over, none where the least is one nearby.
     fn told(
         &self,
         best: &Fit,
         level: Option<[f64; 2]>,
-        (global, other_minima, sentence): (bool, Vec<[f64; 2]>, String),
+        (followed, other_minima, sentence): (&[[f64; 2]], Vec<[f64; 2]>, String),
     ) -> Result<Calibration, PathError> {
         let slopes = self.slopes(&best.at, &best.look)?;
         let seen = Seen::of(self, &slopes);
@@ -249,8 +252,11 @@ impl Model<'_> {
         let mut groups = Vec::new();
         for (k, (name, range)) in self.groups.iter().enumerate() {
             let mut group = self.group(k, &best.look.pairs);
-            (group.parameter, group.value, group.at_end) = (name.clone(), best.at[k], range.contains(&best.at[k]));
+            (group.parameter, group.value) = (name.clone(), best.at[k]);
+            group.at_end = std::iter::once(range).chain(followed).any(|ends| ends.contains(&best.at[k]));
             match why(k) {
+                // At an end the sum of squares slopes: nothing says how far the least would be off.
+                None if group.at_end => {}
                 None => {
                     let [low, high] = *range;
                     group.standard_error = scatter.map(|scatter| (scatter * seen.variance[k]).sqrt() * (high - low));
@@ -274,7 +280,7 @@ impl Model<'_> {
             measurements,
             squares: best.squares,
             degrees_of_freedom,
-            global,
+            global: !followed.is_empty(),
             other_minima,
             sentence,
         })

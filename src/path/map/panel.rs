@@ -74,6 +74,51 @@ fn too_intricate() -> PathError {
     ))
 }
 
+/// Where the sequence of schemes is thought to change between `found` and the lines `ahead`: where a part of the lines on
+/// one side would get no length. Not quite there, but on the side from which the lines come, or past it where they are
+/// near; not nearer than `least`.
+fn change(found: &[Line], ahead: &[Line], least: f64) -> Option<f64> {
+    let side = |lines: &[Line]| -> Option<(f64, f64)> {
+        let last = lines.last()?;
+        let near: Vec<&Line> = lines.iter().rev().take(3).take_while(|line| line.same_sequence(last)).collect();
+        let ends = |part: usize| {
+            let length = |line: &&Line| (line.at, line.parts[part].to - line.parts[part].from);
+            vanishing(&near.iter().map(length).collect::<Vec<_>>())
+        };
+        // The first that vanishes on the way.
+        let all = (0..last.parts.len()).filter_map(ends);
+        all.min_by(|a, b| (a.0 - last.at).abs().total_cmp(&(b.0 - last.at).abs()))
+    };
+    let (start, end) = (found.last()?.at, ahead.last()?.at);
+    let guess = |lines: &[Line], [from, to]: [f64; 2], towards: f64| {
+        let (at, unsure) = side(lines)?;
+        let margin = least.max(unsure) * towards;
+        let place = if (at - from) * towards > 2.0 * margin.abs() { at - margin } else { at + margin };
+        // A little short of where it was missed.
+        let past = (place - to) * towards;
+        let place = if (0.0..16.0 * margin.abs()).contains(&past) { to - margin } else { place };
+        (place > start && place < end).then_some((place, unsure))
+    };
+    let both = [guess(found, [start, end], 1.0), guess(ahead, [end, start], -1.0)];
+    both.into_iter().flatten().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+}
+
+/// Where a length that falls towards the first of these places is 0 beyond it, and how unsure that is.
+fn vanishing(places: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let [(a, f), (b, g), ..] = *places else { return None };
+    if f >= g {
+        return None;
+    }
+    let straight = a + f * (a - b) / (g - f);
+    let Some(&(c, h)) = places.get(2).filter(|place| place.1 > g) else {
+        return Some((straight, 0.1 * (straight - a).abs()));
+    };
+    // x over the length by Lagrange's parabola, at 0.
+    let curved = a * g * h / ((f - g) * (f - h)) + b * f * h / ((g - f) * (g - h)) + c * f * g / ((h - f) * (h - g));
+    let beyond = (curved - a) * (a - b) > 0.0;
+    Some(if beyond { (curved, 2.0 * (curved - straight).abs()) } else { (straight, 0.1 * (straight - a).abs()) })
+}
+
 /// Cuts the map into strips.
 pub struct Cutter<'a> {
     lines: &'a Lines<'a>,
@@ -81,6 +126,8 @@ pub struct Cutter<'a> {
     count: usize,
     /// Sequences within sequences that are being looked at.
     nested: usize,
+    /// Shares of the whole work between which the present pass over the range lies.
+    pass: [f64; 2],
     /// Whether every line was exact.
     pub exact: bool,
 }
@@ -88,23 +135,27 @@ pub struct Cutter<'a> {
 impl<'a> Cutter<'a> {
     /// `range` of the parameter across.
     pub fn new(lines: &'a Lines<'a>, range: [f64; 2]) -> Cutter<'a> {
-        Cutter { lines, range, count: 0, nested: 0, exact: true }
+        Cutter { lines, range, count: 0, nested: 0, pass: [0.0, 0.1], exact: true }
     }
 
-    fn line(&mut self, at: f64) -> Result<Line, PathError> {
-        self.count += 1;
+    /// The lines at these values.
+    fn at(&mut self, places: &[f64]) -> Result<Vec<Line>, PathError> {
+        self.count += places.len();
         if self.count > LINES {
             return Err(too_intricate());
         }
-        if self.lines.case.watch.stop() {
-            return Err(PathError::Interrupted);
-        }
-        let [low, high] = self.range;
-        let done = (at - low) / (high - low);
-        self.lines.case.watch.progress(&format!("{} = {}", self.lines.across, short(at)), done);
-        let (line, exact) = self.lines.line(at)?;
-        self.exact &= exact;
-        Ok(line)
+        let ([low, high], [begun, ended], lines) = (self.range, self.pass, self.lines);
+        let look = |at: &f64| {
+            if lines.case.watch.stop() {
+                return Err(PathError::Interrupted);
+            }
+            let done = begun + (at - low) / (high - low) * (ended - begun);
+            lines.case.watch.progress(&format!("{} = {}", lines.across, short(*at)), done);
+            lines.line(*at)
+        };
+        let found = places.iter().map(look).collect::<Result<Vec<_>, _>>()?;
+        self.exact &= found.iter().all(|(_, exact)| *exact);
+        Ok(found.into_iter().map(|(line, _)| line).collect())
     }
 
     /// All strips, upwards.
@@ -116,12 +167,13 @@ impl<'a> Cutter<'a> {
         // On the border itself a scheme may hold that holds nowhere inside (a friction of 0).
         let inside = ONE_PLACE * (high - low);
         let at = |strip: usize| low + inside + (high - low - 2.0 * inside) * strip as f64 / STRIPS as f64;
-        let mut found = vec![self.line(at(0))?];
-        for strip in 1..=STRIPS {
-            let end = self.line(at(strip))?;
-            self.between(end, &mut found)?;
-        }
+        let mut ahead = self.at(&(0..=STRIPS).map(at).collect::<Vec<_>>())?;
+        ahead.reverse();
+        let mut found = Vec::from_iter(ahead.pop());
+        self.pass = [0.1, 0.4];
+        self.between(ahead, &mut found)?;
         let mut panels: Vec<Panel> = Vec::new();
+        self.pass = [0.4, 1.0];
         self.measure_all(&found, 0, &mut panels)?;
         self.close(&mut panels);
         Ok(panels)
@@ -143,19 +195,26 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// Appends lines up to `end` so that the sequence changes between neighbours at one place only.
-    fn between(&mut self, end: Line, found: &mut Vec<Line>) -> Result<(), PathError> {
-        let Some(start) = found.last() else { return Ok(()) };
-        let apart = end.at - start.at;
-        if apart > ONE_PLACE * (self.range[1] - self.range[0]) && !start.same_sequence(&end) {
+    /// Appends the lines `ahead`, the nearest last, and between them as many that the sequence changes between neighbours at
+    /// one place only.
+    fn between(&mut self, mut ahead: Vec<Line>, found: &mut Vec<Line>) -> Result<(), PathError> {
+        let one_place = ONE_PLACE * (self.range[1] - self.range[0]);
+        let mut looks = 0;
+        while let (Some(start), Some(end)) = (found.last(), ahead.last()) {
+            let inside = |at: &f64| *at > start.at && *at < end.at;
             let middle = 0.5 * (start.at + end.at);
-            if middle > start.at && middle < end.at {
-                let middle = self.line(middle)?;
-                self.between(middle, found)?;
-                return self.between(end, found);
+            let is_same = start.same_sequence(end);
+            if is_same || end.at - start.at <= one_place || !inside(&middle) {
+                found.extend(ahead.pop());
+                looks = if is_same { looks } else { 0 };
+                continue;
             }
+            // Farther from a guess that was missed, and halving now and then: a bad one costs a few lines only.
+            let least = 0.1 * one_place * f64::powi(4.0, looks);
+            looks += 1;
+            let guess = if looks % 4 == 0 { None } else { change(found, &ahead, least) };
+            ahead.extend(self.at(&[guess.filter(inside).unwrap_or(middle)])?);
         }
-        found.push(end);
         Ok(())
     }
 
@@ -163,7 +222,7 @@ impl<'a> Cutter<'a> {
     fn measure(&mut self, start: Line, end: Line, depth: usize, panels: &mut Vec<Panel>) -> Result<(), PathError> {
         let width = end.at - start.at;
         let along = self.lines.range[1] - self.lines.range[0];
-        let mut nodes: Vec<(f64, f64, f64)> = (0..15)
+        let nodes: Vec<(f64, f64, f64)> = (0..15)
             .map(|k| {
                 let (half, sign) = if k < 8 { (k, -1.0) } else { (14 - k, 1.0) };
                 let gauss = if half % 2 == 1 { GAUSS[half / 2] } else { 0.0 };
@@ -171,10 +230,8 @@ impl<'a> Cutter<'a> {
             })
             .collect();
         // Straight bounds need three places: the middle and one beside it.
-        let mut inner: Vec<Line> = Vec::new();
-        for share in [nodes[7].0, nodes[4].0] {
-            inner.push(self.line(start.at + share * width)?);
-        }
+        let place = |k: usize| start.at + nodes[k].0 * width;
+        let inner = self.at(&[place(7), place(4)])?;
         let straight = |line: &Line| {
             let share = (line.at - start.at) / width;
             line.same_sequence(&start)
@@ -187,15 +244,11 @@ impl<'a> Cutter<'a> {
             panels.push(Panel { lines: vec![start, end], areas });
             return Ok(());
         }
-        let mut lines: Vec<Line> = Vec::new();
-        let (middle, beside) = (inner.remove(0), inner.remove(0));
-        for (k, (share, ..)) in nodes.iter_mut().enumerate() {
-            lines.push(match k {
-                7 => middle.clone(),
-                4 => beside.clone(),
-                _ => self.line(start.at + *share * width)?,
-            });
-        }
+        let others: Vec<f64> = (0..nodes.len()).filter(|k| ![7, 4].contains(k)).map(place).collect();
+        let mut lines = self.at(&others)?;
+        lines.extend(inner);
+        lines.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let middle = lines[7].clone();
         if let Some(other) = lines.iter().find(|line| !line.same_sequence(&start)).cloned() {
             return self.cut_again(start, other, end, depth, panels);
         }
@@ -226,8 +279,7 @@ impl<'a> Cutter<'a> {
         panels: &mut Vec<Panel>,
     ) -> Result<(), PathError> {
         let mut found = vec![start];
-        self.between(other, &mut found)?;
-        self.between(end, &mut found)?;
+        self.between(vec![end, other], &mut found)?;
         self.nested += 1;
         if self.nested > NESTED {
             return Err(too_intricate());
@@ -241,7 +293,8 @@ impl<'a> Cutter<'a> {
     fn measure_all(&mut self, found: &[Line], depth: usize, panels: &mut Vec<Panel>) -> Result<(), PathError> {
         for mine in found.chunk_by(Line::same_sequence) {
             let (start, end) = (&mine[0], &mine[mine.len() - 1]);
-            if end.at > start.at {
+            // What is met within one place is where others meet, and has no area.
+            if end.at - start.at > ONE_PLACE * (self.range[1] - self.range[0]) {
                 self.measure(start.clone(), end.clone(), depth, panels)?;
             }
         }

@@ -4,6 +4,8 @@ use std::f64::consts::{PI, SQRT_2};
 use std::fmt;
 use std::str::FromStr;
 
+use crate::text::number::in_full;
+
 /// A law of distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
@@ -229,12 +231,14 @@ impl FromStr for Distribution {
 impl fmt::Display for Distribution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.law {
-            Law::Uniform { low, high } => write!(f, "uniform({low},{high})"),
-            Law::Normal { mean, deviation } => write!(f, "normal({mean},{deviation})"),
-            Law::Lognormal { mean, deviation } => write!(f, "lognormal({mean},{deviation})"),
-            Law::Triangular { least, likeliest, greatest } => write!(f, "triangular({least},{likeliest},{greatest})"),
+            Law::Uniform { low, high } => write!(f, "uniform({},{})", in_full(low), in_full(high)),
+            Law::Normal { mean, deviation } => write!(f, "normal({},{})", in_full(mean), in_full(deviation)),
+            Law::Lognormal { mean, deviation } => write!(f, "lognormal({},{})", in_full(mean), in_full(deviation)),
+            Law::Triangular { least, likeliest, greatest } => {
+                write!(f, "triangular({},{},{})", in_full(least), in_full(likeliest), in_full(greatest))
+            }
         }?;
-        self.least.map_or(Ok(()), |least| write!(f, ">={least}"))
+        self.least.map_or(Ok(()), |least| write!(f, ">={}", in_full(least)))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Points drawn at random, each from a stream of its own, so that a point is the same whatever was drawn before it.
 
+use std::fmt;
+
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -17,6 +19,12 @@ pub struct Variable {
     pub name: String,
     /// How it is distributed.
     pub of: Distribution,
+}
+
+impl fmt::Display for Variable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.name, self.of)
+    }
 }
 
 /// How points are drawn, as the header of a file tells it.

@@ -3,7 +3,7 @@
 use serde_json::Value as Json;
 
 use super::draw::Variable;
-use super::statistics::{Found, QUANTILES, Share, Spread, bars};
+use super::statistics::{Found, QUANTILES, Share, Spread, Words, bars};
 use crate::answer::record::Verdict;
 use crate::model::quantity::Quantity;
 use crate::path::envelope::Axis;
@@ -13,6 +13,7 @@ use crate::path::quantity::Value;
 use crate::path::route::Route;
 use crate::path::start::PathError;
 use crate::solve::Case;
+use crate::text::number::short;
 
 /// A law without an end is followed as far as this share of it on each side.
 const TAIL: f64 = 1e-9;
@@ -55,6 +56,9 @@ pub fn judged(verdict: Option<Verdict>) -> Found {
 pub fn of_one(case: Case<'_>, variable: &Variable, quantities: &[Quantity]) -> Result<Option<Exact>, PathError> {
     let Variable { name, of } = variable;
     let range = of.ends().unwrap_or_else(|| [of.quantile(TAIL), of.quantile(1.0 - TAIL)]);
+    if !is_followed(case, name, range)? {
+        return Ok(None);
+    }
     let lines = Lines { case, along: name, range, across: name };
     let (parts, exact) = lines.over(case)?;
     if !exact {
@@ -76,11 +80,16 @@ pub fn of_one(case: Case<'_>, variable: &Variable, quantities: &[Quantity]) -> R
             }
         }
     }
-    let mut notes = vec![format!("exact: the answer was followed over {name} from {} to {}", range[0], range[1])];
+    let followed = format!("the answer was followed over {name} from {} to {}", short(range[0]), short(range[1]));
+    let tails = of.share(range[0]) + 1.0 - of.share(range[1]);
+    let mut notes = vec![match of.ends() {
+        Some(_) => format!("exact: {followed}"),
+        None => format!("exact but for a share of {tails:.0e} beyond the ends: {followed}"),
+    }];
     if collapse > 0.0 {
         notes.push("that there is no answer is proved at three places of each part without one".to_owned());
     }
-    let undecided = (1.0 - decided).max(0.0);
+    let undecided = (1.0 - decided - if of.ends().is_none() { tails } else { 0.0 }).max(0.0);
     let undecided = if undecided < 8.0 * f64::EPSILON { 0.0 } else { undecided };
     let mut spreads = Vec::new();
     if !quantities.is_empty() && answers > 0.0 && one_way {
@@ -91,6 +100,15 @@ pub fn of_one(case: Case<'_>, variable: &Variable, quantities: &[Quantity]) -> R
         }
     }
     Ok(Some(Exact { collapse, undecided, spreads, notes }))
+}
+
+/// Whether an exact path leads over a parameter.
+fn is_followed(case: Case<'_>, name: &str, range: [f64; 2]) -> Result<bool, PathError> {
+    match Route::new(case, name, range) {
+        Ok(route) => Ok(route.is_some()),
+        Err(PathError::NoStart { .. }) => Ok(true),
+        Err(error) => Err(error),
+    }
 }
 
 /// What is proved of a part without an answer.
@@ -114,6 +132,9 @@ pub fn of_two(case: Case<'_>, variables: [&Variable; 2]) -> Result<Option<Exact>
     let mut axes = Vec::new();
     for variable in variables {
         let Some(range) = variable.of.ends().filter(|_| variable.of.is_uniform()) else { return Ok(None) };
+        if !is_followed(case, &variable.name, range)? {
+            return Ok(None);
+        }
         axes.push(Axis { name: variable.name.clone(), range });
     }
     let Ok(axes) = <[Axis; 2]>::try_from(axes) else { return Ok(None) };
@@ -158,16 +179,14 @@ fn spread(route: &Route<'_>, variable: &Variable, quantity: &Quantity) -> Spread
     let pieces = profile(route, quantity);
     let share = |piece: &Piece| variable.of.share(piece.stretch.to) - variable.of.share(piece.stretch.from);
     let (mut slopes, mut steady) = (Vec::new(), Vec::new());
-    let mut words: Vec<(String, f64)> = Vec::new();
+    let mut words = Words::default();
     for piece in &pieces {
         match &piece.shape {
             Shape::Nothing => {}
             Shape::Steady(Value::Number(value)) => steady.push((*value, share(piece))),
             Shape::Steady(word) => {
-                let Json::String(word) = word.json() else { continue };
-                match words.iter_mut().find(|(known, _)| *known == word) {
-                    Some((_, sum)) => *sum += share(piece),
-                    None => words.push((word, share(piece))),
+                if let Json::String(word) = word.json() {
+                    words.add(&word, share(piece));
                 }
             }
             Shape::Curve(points) => {
@@ -175,14 +194,12 @@ fn spread(route: &Route<'_>, variable: &Variable, quantity: &Quantity) -> Spread
             }
         }
     }
-    let of_words: f64 = words.iter().map(|(_, share)| share).sum();
+    let of_words = words.total();
     let mut found = Profile { route, variable, quantity, slopes, steady, known: 0.0 };
     found.known = found.steady.iter().map(|(_, share)| share).sum::<f64>()
         + found.slopes.iter().map(|slope| found.share(slope.ends[0].0, slope.ends[1].0)).sum::<f64>();
-    words.iter_mut().for_each(|(_, share)| *share /= of_words);
-    words.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut spread =
-        Spread { quantity: quantity.to_string(), known: found.known + of_words, words, ..Spread::default() };
+    let (known, words) = (found.known + of_words, words.shares(of_words));
+    let mut spread = Spread { quantity: quantity.to_string(), known, words, ..Spread::default() };
     found.tell(&mut spread);
     spread
 }

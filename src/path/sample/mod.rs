@@ -23,7 +23,6 @@ use super::sweep::{Format, Sweep};
 use crate::model::quantity::{OfAnswer, Quantity};
 use crate::model::scenario::Scenario;
 use crate::solve::Case;
-use crate::solve::case::There;
 
 /// Points drawn where no number is given.
 pub const DRAWS: usize = 2000;
@@ -132,7 +131,7 @@ impl Request {
         let mut draw = Draw { variables: self.variables.clone(), rule, count: self.count.unwrap_or(DRAWS) };
         let mut near = None;
         if !self.crude
-            && let Some(centre) = rare::centre(case, &draw, &with_verdict(&[]))?
+            && let Some(centre) = rare::centre(case, &draw)?
         {
             draw.rule.centre = Some(centre.place);
             near = Some(centre.load);
@@ -144,10 +143,6 @@ impl Request {
 /// The quantities asked for behind the verdict, which tells a collapse from what is undecided.
 pub fn with_verdict(quantities: &[Quantity]) -> Vec<Quantity> {
     std::iter::once(Quantity::Answer(OfAnswer::Verdict)).chain(quantities.iter().cloned()).collect()
-}
-
-fn solved(case: Case<'_>, settings: &[(&str, f64)]) -> Result<There, PathError> {
-    Ok(case.at_all(settings)?)
 }
 
 /// Draws that are solved at once, in memory.
@@ -311,7 +306,7 @@ impl Sampled {
 
     fn of_shares(request: &Request, collapse: Share, undecided: Share) -> Sampled {
         Sampled {
-            parameters: request.variables.iter().map(|one| format!("{}={}", one.name, one.of)).collect(),
+            parameters: request.variables.iter().map(Variable::to_string).collect(),
             exact: false,
             collapse: collapse.probability,
             standard_error: collapse.standard_error,

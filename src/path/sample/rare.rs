@@ -8,11 +8,11 @@ use rayon::prelude::*;
 
 use super::draw::{Draw, Rule};
 use super::statistics::Found;
-use super::{Sampler, solved};
-use crate::model::quantity::Quantity;
+use super::{Sampler, with_verdict};
 use crate::path::limit::limit;
 use crate::path::start::PathError;
 use crate::solve::Case;
+use crate::solve::case::There;
 
 /// Draws that tell whether collapse is rare …
 const PILOT: usize = 200;
@@ -43,13 +43,13 @@ pub struct Centre {
 ///
 /// # Errors
 /// An interruption.
-pub fn centre(case: Case<'_>, draw: &Draw, verdict: &[Quantity]) -> Result<Option<Centre>, PathError> {
+pub fn centre(case: Case<'_>, draw: &Draw) -> Result<Option<Centre>, PathError> {
     // The search must not cost more than what was asked for.
     if case.prepared.system().is_none() || draw.count < 2 * PILOT {
         return Ok(None);
     }
     let rule = Rule { seed: draw.rule.seed ^ PILOT_SEED, centre: None };
-    let pilot = Sampler { case, draw: Draw { rule, count: PILOT, ..draw.clone() }, quantities: verdict };
+    let pilot = Sampler { case, draw: Draw { rule, count: PILOT, ..draw.clone() }, quantities: &with_verdict(&[]) };
     let found = pilot.run()?;
     if found.iter().filter(|one| one.found == Found::Collapse).count() >= FEW {
         return Ok(None);
@@ -115,9 +115,9 @@ fn safety(case: Case<'_>, draw: &Draw, place: &[f64], load: &str) -> Result<Opti
     let values = draw.at(place);
     let settings: Vec<(&str, f64)> =
         draw.variables.iter().zip(values).map(|(variable, value)| (variable.name.as_str(), value)).collect();
-    let found = solved(case, &settings).and_then(|there| Ok(limit(there.case(case), None, load)?.safety));
-    match found {
+    let limit = |there: There| limit(there.case(case), None, load);
+    match case.at_all(&settings).map_err(PathError::from).and_then(limit) {
         Err(PathError::Interrupted) => Err(PathError::Interrupted),
-        found => Ok(found.ok().flatten()),
+        found => Ok(found.ok().and_then(|found| found.safety)),
     }
 }

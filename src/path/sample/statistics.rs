@@ -92,27 +92,45 @@ impl Share {
     }
 }
 
+/// The words that a quantity was found to be, with what they count.
+#[derive(Debug, Default)]
+pub struct Words(Vec<(String, f64)>);
+
+impl Words {
+    pub fn add(&mut self, word: &str, weight: f64) {
+        match self.0.iter_mut().find(|(known, _)| known == word) {
+            Some((_, sum)) => *sum += weight,
+            None => self.0.push((word.to_owned(), weight)),
+        }
+    }
+
+    pub fn total(&self) -> f64 {
+        self.0.iter().map(|(_, weight)| weight).sum()
+    }
+
+    /// Each as a share of `whole`, the likeliest first.
+    pub fn shares(mut self, whole: f64) -> Vec<(String, f64)> {
+        self.0.iter_mut().for_each(|(_, weight)| *weight /= whole);
+        self.0.sort_by(|a, b| b.1.total_cmp(&a.1));
+        self.0
+    }
+}
+
 impl Spread {
     /// From drawn points; `column` is that of the quantity.
     pub fn of(draws: &[Drawn], column: usize, quantity: String) -> Spread {
         let all: f64 = draws.iter().map(|draw| draw.weight).sum();
         let mut values: Vec<(f64, f64)> = Vec::new();
-        let mut words: Vec<(String, f64)> = Vec::new();
+        let mut words = Words::default();
         for draw in draws.iter().filter(|draw| draw.found == Found::Answer) {
             match &draw.values[column] {
-                Value::String(word) => match words.iter_mut().find(|(known, _)| known == word) {
-                    Some((_, weight)) => *weight += draw.weight,
-                    None => words.push((word.clone(), draw.weight)),
-                },
+                Value::String(word) => words.add(word, draw.weight),
                 value => values.extend(value.as_f64().map(|value| (value, draw.weight))),
             }
         }
-        let told: f64 =
-            values.iter().map(|(_, weight)| weight).sum::<f64>() + words.iter().map(|(_, weight)| weight).sum::<f64>();
+        let told = values.iter().map(|(_, weight)| weight).sum::<f64>() + words.total();
         let known = if all > 0.0 { told / all } else { 0.0 };
-        words.iter_mut().for_each(|(_, weight)| *weight /= told);
-        words.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut spread = Spread { quantity, known, words, ..Spread::default() };
+        let mut spread = Spread { quantity, known, words: words.shares(told), ..Spread::default() };
         spread.take(values);
         spread
     }

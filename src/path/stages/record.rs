@@ -22,7 +22,7 @@ pub struct Moment {
     /// What every pair did on the way here, and what held it where it was open.
     pub(super) way: Vec<(State, Option<State>)>,
     /// Total z and λ over the joints.
-    pub(super) state: JointState,
+    pub(in crate::path) state: JointState,
 }
 
 /// A stage that was followed.

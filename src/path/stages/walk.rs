@@ -26,6 +26,8 @@ use crate::watch::Watch;
 
 /// No stage has more events than this.
 const EVENTS: usize = 100_000;
+/// So many jumps one after the other, with no way between them, lead nowhere.
+const JUMPS: usize = 20;
 
 /// The state from which the history goes on.
 pub(super) struct Walk<'a> {
@@ -108,6 +110,10 @@ impl<'a> Walk<'a> {
         }
         if to == t {
             // Nothing has moved: what was reached stays reached.
+            now.retain(|limit| !reached.contains(limit));
+            if now.is_empty() {
+                return Err(breakdown(t, "the rates lead back to the limits from which they start"));
+            }
             reached.append(&mut now);
             self.standing.classify(self.place.laws, &course.sizes_at(system, t), reached);
             return Ok(Stretch::Event(to));
@@ -245,7 +251,7 @@ impl<'a> Follower<'a> for Walk<'a> {
         let (rate, sizes) = (course.rate(system), course.rate_sizes(system));
         let none = DVector::zeros(system.joint_count());
         let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
-        let (mut t, mut reached, mut events) = (0.0, Vec::new(), 0);
+        let (mut t, mut reached, mut events, mut jumps) = (0.0, Vec::new(), 0, 0);
         if rate.amax() == 0.0 {
             self.place.factors = course.factors_at(1.0);
             way.moments.push(self.moment(1.0, false));
@@ -262,9 +268,21 @@ impl<'a> Follower<'a> for Walk<'a> {
             }
             let last = self.standing.z.clone();
             let to = match self.stretch(course, (&rate, &sizes), t, &mut reached, &mut way)? {
-                Stretch::Event(to) => to,
+                Stretch::Event(to) => {
+                    jumps = if to > t { 0 } else { jumps };
+                    to
+                }
+                Stretch::End { .. } if jumps == JUMPS => {
+                    return Err(breakdown(
+                        t,
+                        &format!("{JUMPS} jumps follow one another, and no rates lead on from any"),
+                    ));
+                }
                 Stretch::End { motion, p } => match self.beyond(course, t, (&motion, p), &mut way)? {
-                    Ok(to) => to,
+                    Ok(to) => {
+                        jumps += 1;
+                        to
+                    }
                     Err(collapse) => return Ok((way, Some((t, collapse)))),
                 },
             };

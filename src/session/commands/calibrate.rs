@@ -66,7 +66,7 @@ fn listed(words: &[String]) -> Vec<Vec<String>> {
             Some(piece) => (piece, true),
             None => (word.as_str(), false),
         };
-        if let Some(part) = parts.last_mut().filter(|_| !piece.is_empty()) {
+        if let Some(part) = parts.last_mut().filter(|_| !piece.trim().is_empty()) {
             part.push(piece.to_owned());
         }
         if ends {
@@ -81,6 +81,8 @@ impl Session {
     /// `calibrate [FRICTION [A..B]] … [where …]`.
     pub(in crate::session) fn calibrate(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let at = words.iter().position(|word| word == "where");
+        let ground = self.ground(io.watch)?;
+        let groups = self.frictions(&words[..at.unwrap_or(words.len())], &ground)?;
         let measured = match at {
             Some(at) => self.measured(&words[at + 1..])?,
             None => self.now.scenario.measured.clone(),
@@ -92,8 +94,6 @@ impl Session {
             );
         }
         let history = self.judge(&measured)?;
-        let ground = self.ground(io.watch)?;
-        let groups = self.frictions(&words[..at.unwrap_or(words.len())], &ground)?;
         let measured: Arc<[Measurement]> = measured.into();
         let found = worker::run(io.watch, move |watch| calibrate(ground.case(watch), &groups, &measured, history))??;
         io.show(&found, |out, style| view::calibrate::write(out, &found, style))?;
@@ -104,12 +104,22 @@ impl Session {
     fn measured(&self, words: &[String]) -> Result<Vec<Measurement>, CommandError> {
         let form = "calibrate: expected `where QUANTITY = VALUE [± ERROR], …`, e.g. `where ux s3 = 0.0121 ± 1e-4`";
         let mut measured = Vec::new();
-        for part in listed(words) {
+        let parts = listed(words);
+        if parts.is_empty() {
+            return refused(form);
+        }
+        for part in parts {
             let read = expect::read(&part, &self.names(), &self.now.values)
                 .map_err(|error| CommandError::Refused(error.said_by("calibrate")))?;
             let Expectation::Number { quantity, bound } = read else { return refused(form) };
             let (Operator::Equal, value, error) = bound.parts() else { return refused(form) };
-            measured.push(Measurement { quantity, value, error: (error > 0.0).then_some(error) });
+            let given = part.iter().any(|word| word.contains('±') || word.contains("+-"));
+            if given && error == 0.0 {
+                return refused(format!(
+                    "calibrate: {quantity}: a standard error is greater than 0; leave `±` out where all measurements weigh the same"
+                ));
+            }
+            measured.push(Measurement { quantity, value, error: given.then_some(error) });
         }
         Ok(measured)
     }
@@ -178,6 +188,9 @@ impl Session {
                     return refused(format!("calibrate: friction is not negative: {word}"));
                 }
                 continue;
+            }
+            if word.trim().is_empty() {
+                return refused("calibrate: expected the name of a friction parameter, found an empty one");
             }
             let name = self.varied(word)?;
             if !is_friction(case, name) {

@@ -208,8 +208,18 @@ impl Session {
         let number = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
         let pairs = self.names().pairs;
         let named = words.iter().any(|word| word.contains('='));
-        if words.is_empty() || !named && words.iter().all(|word| number(word).is_none()) {
-            return refused("cycle: expected `from all`, `from PAIR=SLIP …` or `from` and a slip for each pair");
+        let form = "expected `from all`, `from PAIR=SLIP …` or `from` and a slip for each pair";
+        if words.is_empty() {
+            return refused(format!("cycle: nothing stands behind `from`; {form}"));
+        }
+        if let (["all", other, ..], _) | ([other, ..], false) = (&words[..], named)
+            && number(other).is_none()
+        {
+            return refused(match words[0] {
+                "all" => format!("cycle: `from all` chooses the slips itself; `{other}` is one too many"),
+                _ if pairs.contains(other) => format!("cycle: how far has {other} slipped? e.g. `from {other}=0.001`"),
+                _ => format!("cycle: `{other}` is no slip; {form}"),
+            });
         }
         if !named {
             let slips: Vec<f64> = words.iter().filter_map(|word| number(word)).collect();
@@ -222,7 +232,7 @@ impl Session {
             }
             return Ok(From::Begin(Begin::Slips(slips)));
         }
-        let mut slips = vec![0.0; pairs.len()];
+        let mut slips: Vec<Option<f64>> = vec![None; pairs.len()];
         for word in words {
             let Some((pattern, slip)) = word.split_once('=').and_then(|(id, slip)| Some((id, number(slip)?))) else {
                 return refused(format!("cycle: `{word}` is no slip; expected PAIR=SLIP, e.g. `c1=0.001`"));
@@ -232,9 +242,12 @@ impl Session {
             if fitting.is_empty() {
                 return refused(no_such("pair", pattern, pairs.iter().copied()));
             }
-            fitting.into_iter().for_each(|index| slips[index] = slip);
+            if let Some(twice) = fitting.iter().find(|index| slips[**index].is_some()) {
+                return refused(format!("cycle: the slip of {} is given twice", pairs[*twice]));
+            }
+            fitting.into_iter().for_each(|index| slips[index] = Some(slip));
         }
-        Ok(From::Begin(Begin::Slips(slips)))
+        Ok(From::Begin(Begin::Slips(slips.into_iter().map(Option::unwrap_or_default).collect())))
     }
 
     /// `limit cycle LOAD [A..B]`: from A, 0 if it is left out; B is looked at first.

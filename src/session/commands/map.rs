@@ -98,7 +98,7 @@ impl Session {
         let found = worker::run(io.watch, move |watch| map(ground.case(watch), axes, asked.as_ref()))??;
         let drawn = Arc::new(Drawn { map: found, quantity, values: self.now.values.clone() });
         io.show(&self.map_json(&drawn), |out, style| {
-            view::map::write(out, &drawn.map, &self.map_labels(&drawn), style)
+            view::map::write(out, &drawn.map, &drawn.labels(&self.now.scenario), style)
         })?;
         self.map = Some(drawn);
         Ok(())
@@ -123,11 +123,6 @@ impl Session {
         let axes: Vec<&str> = drawn.map.axes.iter().map(|axis| axis.name.as_str()).collect();
         let stale = self.other_values(&drawn.values, &axes);
         Some((drawn, stale))
-    }
-
-    /// Units of the axes and of the quantity.
-    pub(in crate::session) fn map_labels(&self, drawn: &Drawn) -> view::map::Labels<'_> {
-        drawn.labels(&self.now.scenario)
     }
 
     pub(in crate::session) fn map_json(&self, drawn: &Drawn) -> Json {

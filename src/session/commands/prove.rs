@@ -25,7 +25,8 @@ use crate::text::words::short;
 ///
 /// `examples/check_proof.py FILE.json` reads both and trusts neither: it needs Python and nothing else. What is proved
 /// is proved of these doubles, each taken as the fraction it is; how far they are from the structure is not part of it.
-/// An answer has at most 120 pairs and 15 motions that only contact holds (an LCP 240 rows), a proof of all answers at most 12 (30) and 5000 branches.
+/// An answer has at most 120 pairs and 48 motions that only contact holds (an LCP 240 rows), a proof of all answers at most
+/// 12 (30), 5000 branches and a minute of work.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  prove answer.json\n  load klarbring; prove all answers.json")]
 pub struct Prove {
@@ -68,13 +69,13 @@ struct ProofReport {
 impl Session {
     fn prove(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let (all, file) = match words {
-            [file] => (false, file),
             [all, file] if all == "all" => (true, file),
-            _ => return refused("prove: expected `prove FILE.json` or `prove all FILE.json`"),
+            [file] if file != "all" => (false, file),
+            _ => return refused("prove: expected a file, `prove FILE.json` or `prove all FILE.json`"),
         };
         let path = Path::new(file);
         if path.extension().is_none_or(|ending| ending != "json") {
-            return refused(format!("prove: {file} must end in .json"));
+            return refused(format!("prove: expected the name of a file that ends in .json, found `{file}`"));
         }
         let beside = path.with_extension("system.json");
         if self.followed.is_some() {
@@ -157,7 +158,7 @@ fn sentence(proof: &Proof) -> String {
                 (1, 0) => "there is one answer and no other".to_owned(),
                 (count, 0) => format!("there are {count} answers and no others"),
                 (count, sets) => format!(
-                    "every answer is one of {count} or lies in a set of which these are the corners ({sets} of the branches)"
+                    "every answer is one of {count} or lies in one of {sets} sets, each all that a branch leaves, with some of these in it"
                 ),
             };
             format!("Proved: {count}; {} branches.", all.nodes)

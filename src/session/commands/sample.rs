@@ -88,12 +88,12 @@ fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
     all
 }
 
-/// Words joined again that stand within parentheses.
+/// Words joined again that stand within parentheses or beside an equals sign.
 fn joined(words: &[String]) -> Vec<String> {
     let mut joined: Vec<String> = Vec::new();
     let mut open = 0i32;
     for word in words {
-        match joined.last_mut().filter(|_| open > 0) {
+        match joined.last_mut().filter(|last| open > 0 || word.starts_with('=') || last.ends_with('=')) {
             Some(last) => last.push_str(word),
             None => joined.push(word.clone()),
         }
@@ -106,7 +106,11 @@ fn joined(words: &[String]) -> Vec<String> {
 fn count(word: &str) -> Option<Result<usize, CommandError>> {
     let number = word.parse::<f64>().ok()?;
     let whole = number.fract() == 0.0 && (2.0..=1e9).contains(&number);
-    Some(if whole { Ok(number as usize) } else { refused(format!("sample: `{word}` is no number of points")) })
+    Some(if whole {
+        Ok(number as usize)
+    } else {
+        refused(format!("sample: `{word}` is no number of points; expected a whole number from 2 to 1e9"))
+    })
 }
 
 impl Session {
@@ -115,6 +119,9 @@ impl Session {
             None => (&asked.words[..], Vec::new()),
             Some(at) => (&asked.words[..at], self.quantities(&asked.words[at + 1..])?),
         };
+        if quantities.is_empty() && words.len() < asked.words.len() {
+            return refused("sample: expected a quantity after `of`, e.g. `sample f=uniform(0.2,0.6) of max u`");
+        }
         if let Some(quantity) = quantities.iter().find(|quantity| !quantity.is_of_state()) {
             return refused(format!("sample: `{quantity}` is no quantity of a single state"));
         }

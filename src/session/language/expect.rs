@@ -205,7 +205,7 @@ pub fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, Expect
         },
     };
     if tolerance < 0.0 {
-        return Err(bad());
+        return Err(ExpectationSyntax { what: format!("`{text}`: what stands after `±` is not negative") });
     }
     Ok(Bound { operator, value, tolerance })
 }

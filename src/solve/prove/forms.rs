@@ -14,10 +14,9 @@ use num_traits::{One, Signed, Zero};
 
 use super::system::{ProvedContact, ProvedSystem};
 use crate::contact::law::{PairLaw, TangentialJoint};
-use crate::lcp::exact::dyadic::{WholeRows, rational};
+use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
-use crate::lcp::exact::rational_solve::clear_denominators;
-use crate::lcp::exact::scalar::BigInt;
+use crate::lcp::exact::rational_solve::{clear_denominators, product};
 
 /// One way for a pair or a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,8 +62,8 @@ impl Forms {
             ProvedSystem::Contact(contact) => of_contact(contact, &contact.exact_stiffness()),
             ProvedSystem::Plain { matrix, q, names } => {
                 let n = q.len();
-                let row =
-                    |i: usize| matrix.row(i).iter().chain([&q[i]]).map(|entry| rational(*entry)).collect::<Vec<_>>();
+                let mut forms = rational_rows(matrix);
+                forms.iter_mut().zip(q).for_each(|(form, constant)| form.push(rational(*constant)));
                 let group = |i: usize| Group {
                     name: names[i].clone(),
                     branches: vec![
@@ -76,7 +75,7 @@ impl Forms {
                 Forms {
                     unknowns: n,
                     names: named("z").chain(named("w")).collect(),
-                    forms: (0..n).map(row).collect(),
+                    forms,
                     signed: vec![true; 2 * n],
                     zero: Vec::new(),
                     groups: (0..n).map(group).collect(),
@@ -101,14 +100,8 @@ impl Forms {
 
     /// Value of every variable where the unknowns have these.
     pub fn values(&self, z: &[BigRational]) -> Vec<BigRational> {
-        // In whole numbers: one greatest common divisor a form, not one a term.
-        let (whole, common) = clear_denominators(z);
-        let value = |form: &Vec<BigRational>| {
-            let (coefficients, scale) = clear_denominators(form);
-            let terms = coefficients.iter().zip(&whole).filter(|(a, z)| !a.is_zero() && !z.is_zero());
-            let sum: BigInt = terms.map(|(a, z)| a * z).sum();
-            BigRational::new(sum + &coefficients[self.unknowns] * &common, scale * &common)
-        };
+        let whole = clear_denominators(&z.iter().cloned().chain([One::one()]).collect::<Vec<_>>());
+        let value = |form: &Vec<BigRational>| product(&clear_denominators(form), &whole);
         z.iter().cloned().chain(self.forms.iter().map(value)).collect()
     }
 

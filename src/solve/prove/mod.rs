@@ -9,6 +9,8 @@ pub mod forms;
 pub mod system;
 pub mod tree;
 
+use std::time::Duration;
+
 use num_rational::BigRational;
 
 use super::error::QuestionError;
@@ -20,7 +22,7 @@ use crate::answer::attempt::AttemptEngine;
 use crate::answer::record::{OutcomeKind, RayClass};
 use crate::contact::law::PairLaw;
 use crate::contact::schemes::scheme::PairScheme;
-use crate::watch::Watch;
+use crate::watch::{Budget, Watch};
 use answer::answer_of;
 pub use collapse::Collapse;
 use forms::{Forms, Group};
@@ -32,11 +34,18 @@ pub const MOST_PAIRS: usize = 120;
 /// Most rows of an LCP whose proof is written.
 pub const MOST_ROWS: usize = 240;
 /// Most motions without energy of a structure whose answer is proved.
-pub const MOST_MOTIONS: usize = 15;
+pub const MOST_MOTIONS: usize = 48;
 /// Most pairs whose answers are all proved.
 pub const MOST_PAIRS_OF_ALL: usize = 12;
 /// Most rows of an LCP whose answers are all proved.
 pub const MOST_ROWS_OF_ALL: usize = 30;
+
+/// Time for the tree of all answers: numbers with many digits make each of its branches slow.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// What goes where all answers are too many.
+const ONE_ANSWER: &str = "`prove FILE.json` proves what stands";
+/// What goes where an answer is too large for a file.
+const SIGNS: &str = "`check exact` tests its signs in rationals without writing them down";
 
 /// What is proved.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,8 +73,13 @@ fn refused<T>(text: impl Into<String>) -> Result<T, QuestionError> {
     Err(QuestionError::Refused(text.into()))
 }
 
-fn too_many(what: &str, found: usize, most: usize) -> Result<(), QuestionError> {
-    if found <= most { Ok(()) } else { refused(format!("prove: {found} {what} are too many, at most {most}")) }
+/// `instead`: what goes at this size.
+fn too_many(what: &str, (found, most): (usize, usize), instead: &str) -> Result<(), QuestionError> {
+    if found <= most {
+        Ok(())
+    } else {
+        refused(format!("prove: {found} {what} are too many, at most {most}; {instead}"))
+    }
 }
 
 impl Prepared {
@@ -148,38 +162,60 @@ impl Prepared {
         let system = self.proved_system(solved)?;
         match &system {
             ProvedSystem::Contact(contact) => {
-                too_many("contact pairs for a proof of all answers", contact.ids.len(), MOST_PAIRS_OF_ALL)?;
-                too_many("motions that only contact holds", contact.kernel.len(), MOST_MOTIONS)?;
+                let size = (contact.ids.len(), MOST_PAIRS_OF_ALL);
+                too_many("contact pairs for a proof of all answers", size, ONE_ANSWER)?;
             }
-            ProvedSystem::Plain { q, .. } => too_many("rows for a proof of all answers", q.len(), MOST_ROWS_OF_ALL)?,
+            ProvedSystem::Plain { q, .. } => {
+                too_many("rows for a proof of all answers", (q.len(), MOST_ROWS_OF_ALL), ONE_ANSWER)?;
+            }
         }
         let forms = Forms::of(&system);
-        let mut steps = 0u64;
+        let budget = Budget::new(watch, PATIENCE);
+        let (mut steps, mut done) = (0_u64, (0, 0.0));
         let grown = grow(&forms, &mut |nodes, share| {
             steps += 1;
+            done = (nodes, share);
             if steps.is_multiple_of(64) {
                 watch.progress(&format!("{nodes} branches"), share);
             }
-            !watch.stop()
+            !budget.stop()
         });
         match grown {
             Ok(all) => Ok(Proof { system, forms, claim: Claim::Answers(all) }),
-            Err(NoTree::Stopped) => Err(QuestionError::Interrupted),
-            Err(NoTree::TooLarge) => refused(format!(
-                "prove: the tree would have more than {MOST_NODES} branches; half as many pairs have one that is small. \
-                 `enumerate` goes through them all without writing them down"
-            )),
+            Err(NoTree::Stopped) if !budget.ran_out() => Err(QuestionError::Interrupted),
+            Err(_) => refused(too_large(&forms, &system, done)),
         }
     }
+}
+
+/// Why the tree was given up after so many nodes and such a share of it.
+fn too_large(forms: &Forms, system: &ProvedSystem, (nodes, share): (usize, f64)) -> String {
+    let unit = if matches!(system, ProvedSystem::Plain { .. }) { "rows" } else { "pairs" };
+    let (count, branches) = (forms.groups.len(), forms.groups.iter().map(|group| group.branches.len()).max());
+    let mut always = 0;
+    let (mut level, mut all) = (1, 1);
+    while all <= MOST_NODES {
+        always += 1;
+        level *= branches.unwrap_or(2);
+        all += level;
+    }
+    let always = always - 1;
+    format!(
+        "prove: the tree of all schemes of {count} {unit} is too large: at most {MOST_NODES} branches and {} s, and after {nodes} \
+         {:.0} % of it was done; {always} such {unit} always have few enough. {ONE_ANSWER}, `enumerate` goes through all schemes \
+         without writing them down",
+        PATIENCE.as_secs(),
+        100.0 * share
+    )
 }
 
 fn prove_answer(system: ProvedSystem, solved: &Solved, watch: &dyn Watch) -> Result<Proof, QuestionError> {
     match &system {
         ProvedSystem::Contact(contact) => {
-            too_many("contact pairs", contact.ids.len(), MOST_PAIRS)?;
-            too_many("motions that only contact holds", contact.kernel.len(), MOST_MOTIONS)?;
+            too_many("contact pairs", (contact.ids.len(), MOST_PAIRS), SIGNS)?;
+            too_many("motions that only contact holds", (contact.kernel.len(), MOST_MOTIONS), SIGNS)?;
         }
-        ProvedSystem::Plain { q, .. } => too_many("rows", q.len(), MOST_ROWS)?,
+        ProvedSystem::Plain { q, .. } => too_many("rows", (q.len(), MOST_ROWS), SIGNS)?,
     }
     let forms = Forms::of(&system);
     let scheme = match (&system, &solved.run) {

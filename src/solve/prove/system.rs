@@ -12,10 +12,10 @@ use num_traits::{Signed, Zero};
 
 use crate::contact::law::PairLaw;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::exact_system::telling_joints;
+use crate::contact::schemes::exact_system::{give_kernel, telling_joints};
 use crate::explain::motions::FreeMotions;
 use crate::explain::ray::Built;
-use crate::lcp::exact::dyadic::{WholeRows, rational};
+use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
 use crate::lcp::exact::rational_solve::rank_modulo_prime;
 use crate::lcp::mirrored::MirroredLcp;
 
@@ -85,7 +85,11 @@ impl ProvedContact {
         };
         let mut stiffness = DMatrix::zeros(2 * m, 2 * m);
         for (i, &at) in places.iter().enumerate() {
-            places.iter().enumerate().for_each(|(j, &column)| stiffness[(at, column)] = system.stiffness[(i, j)]);
+            for (j, &column) in places.iter().enumerate() {
+                let entry = system.stiffness[(i, j)];
+                // What the condensation leaves of a zero says nothing and would make all fractions long.
+                stiffness[(at, column)] = if entry.abs() > system.entry_noise(i, j) { entry } else { 0.0 };
+            }
         }
         let kernel = kernel(problem, built).iter().map(|motion| spread(&|joint| motion[joint])).collect();
         ProvedContact { ids, laws, stiffness, kernel, load: spread(&|joint| problem.load[joint]) }
@@ -93,26 +97,9 @@ impl ProvedContact {
 
     /// R with its kernel exact.
     pub fn exact_stiffness(&self) -> Vec<Vec<BigRational>> {
-        let entry = |i: usize, j: usize| rational(self.stiffness[(i, j)]);
-        let k = self.load.len();
+        let mut exact = rational_rows(&self.stiffness);
         let (telling, motions) = reduced(&self.kernel);
-        let others: Vec<usize> = (0..k).filter(|joint| !telling.contains(joint)).collect();
-        let mut exact: Vec<Vec<BigRational>> = (0..k).map(|i| (0..k).map(|j| entry(i, j)).collect()).collect();
-        // Z = [G; 1] over the others N and the telling joints P: R_NP = −R_NN G, R_PP = Gᵀ R_NN G.
-        let sum = |terms: &mut dyn Iterator<Item = (&BigRational, &BigRational)>| -> BigRational {
-            terms.filter(|(a, b)| !a.is_zero() && !b.is_zero()).map(|(a, b)| a * b).sum()
-        };
-        for (motion, &p) in motions.iter().zip(&telling) {
-            for &n in &others {
-                let entry = -sum(&mut others.iter().map(|&j| (&exact[n][j], &motion[j])));
-                (exact[n][p], exact[p][n]) = (entry.clone(), entry);
-            }
-        }
-        for (motion, &p) in motions.iter().zip(&telling) {
-            for &other in &telling {
-                exact[p][other] = -sum(&mut others.iter().map(|&j| (&motion[j], &exact[j][other])));
-            }
-        }
+        give_kernel(&mut exact, &telling, &motions);
         exact
     }
 }

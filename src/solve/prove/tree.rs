@@ -55,7 +55,7 @@ pub struct AllAnswers {
 pub enum NoTree {
     /// It was stopped.
     Stopped,
-    /// It has more than [`MOST_NODES`].
+    /// It would have more than [`MOST_NODES`].
     TooLarge,
 }
 

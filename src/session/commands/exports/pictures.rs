@@ -65,7 +65,7 @@ impl Session {
                 let drawn = self.need_map()?;
                 let [a, b] = &drawn.map.axes;
                 let caption = self.caption(&format!("Working schemes over {} and {}", a.name, b.name));
-                Ok(svg::map::figure(&drawn.map, &self.map_labels(&drawn), &caption))
+                Ok(svg::map::figure(&drawn.map, &drawn.labels(&self.now.scenario), &caption))
             }
             Exported::Mode => self.shape_figure(&self.mode_shape()?),
             Exported::Moment => self.forces_figure(Internal::Moment, of),
