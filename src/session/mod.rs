@@ -138,6 +138,8 @@ pub struct Session {
     map: Option<Arc<commands::map::Drawn>>,
     /// The last `sample`.
     sampled: Option<Arc<crate::path::sample::Sampled>>,
+    /// What the last `map`, `find`, `cycle`, `sample`, `prove` or `calibrate` reported.
+    result: Option<serde_json::Value>,
     /// The table of the last `sweep` that was shown.
     swept: Option<Arc<Table>>,
     /// What would stop the collapse of this answer, once it was looked for.
@@ -199,6 +201,7 @@ impl Session {
             path_values: ParameterValues::default(),
             map: None,
             sampled: None,
+            result: None,
             swept: None,
             remedies: None,
             followed: None,

@@ -15,6 +15,7 @@ mod load_amounts;
 mod map;
 mod prove;
 mod random;
+mod results;
 mod sample;
 mod session;
 mod stages;

@@ -97,6 +97,7 @@ impl Session {
         let measured: Arc<[Measurement]> = measured.into();
         let found = worker::run(io.watch, move |watch| calibrate(ground.case(watch), &groups, &measured, history))??;
         io.show(&found, |out, style| view::calibrate::write(out, &found, style))?;
+        self.keep_result(&found);
         Ok(())
     }
 

@@ -179,11 +179,12 @@ impl Session {
             sentence: &found.sentence,
         };
         io.show(&report, |out, style| view::cycle::write(out, &found, self.now.scenario.unit_of(&name), units, style))?;
+        self.keep_result(&report);
         self.keep_path(PathRecord::of_history(&found.history));
         Ok(())
     }
 
-    fn show_starts(&self, found: &Starts, io: &mut Output<'_>) -> Result<(), CommandError> {
+    fn show_starts(&mut self, found: &Starts, io: &mut Output<'_>) -> Result<(), CommandError> {
         let report = StartsReport {
             load: &found.name,
             from: found.ends[0],
@@ -195,6 +196,7 @@ impl Session {
         };
         let (unit, units) = (self.now.scenario.unit_of(&found.name), &self.now.scenario.units);
         io.show(&report, |out, style| view::cycle::write_starts(out, found, unit, units, style))?;
+        self.keep_result(&report);
         Ok(())
     }
 
@@ -279,6 +281,7 @@ impl Session {
         io.show(&report, |out, style| {
             view::cycle::write_limit(out, &name, &found, self.now.scenario.unit_of(&name), style)
         })?;
+        self.keep_result(&report);
         Ok(())
     }
 }

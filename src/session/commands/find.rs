@@ -158,6 +158,7 @@ impl Session {
             io.show(&report, |out, style| {
                 view::find::write_edge(out, (&request.name, word), unit.as_deref(), &found, style)
             })?;
+            self.keep_result(&report);
             return Ok(());
         }
         let (quantity, wanted) = (request.quantity.clone(), request.wanted.clone());
@@ -168,7 +169,9 @@ impl Session {
         }
         let asked =
             view::find::Asked { name: &request.name, unit: unit.as_deref(), range, condition: &request.condition };
-        io.show(&FindReport::of(&request, &found, None), |out, style| view::find::write(out, &asked, &found, style))?;
+        let report = FindReport::of(&request, &found, None);
+        io.show(&report, |out, style| view::find::write(out, &asked, &found, style))?;
+        self.keep_result(&report);
         Ok(())
     }
 }

@@ -97,9 +97,9 @@ impl Session {
         let asked = quantity.clone();
         let found = worker::run(io.watch, move |watch| map(ground.case(watch), axes, asked.as_ref()))??;
         let drawn = Arc::new(Drawn { map: found, quantity, values: self.now.values.clone() });
-        io.show(&self.map_json(&drawn), |out, style| {
-            view::map::write(out, &drawn.map, &drawn.labels(&self.now.scenario), style)
-        })?;
+        let report = self.map_json(&drawn);
+        io.show(&report, |out, style| view::map::write(out, &drawn.map, &drawn.labels(&self.now.scenario), style))?;
+        self.keep_result(&report);
         self.map = Some(drawn);
         Ok(())
     }

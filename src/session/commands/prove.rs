@@ -109,6 +109,7 @@ impl Session {
                 report.file, report.system, report.file
             )
         })?;
+        self.keep_result(&report);
         Ok(())
     }
 

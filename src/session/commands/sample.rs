@@ -162,6 +162,7 @@ impl Session {
         found.notes.splice(0..0, notes);
         let found = Arc::new(found);
         io.show(&*found, |out, style| view::sample::write(out, &found, style))?;
+        self.keep_result(&*found);
         self.sampled = Some(found);
         Ok(())
     }

@@ -88,7 +88,7 @@ pub struct Unmet {
 }
 
 /// Besides the quantities.
-const OTHERS: &[&str] = &["ray", "error", "collapse", "undecided"];
+const OTHERS: &[&str] = &["ray", "error", "collapse", "undecided", "result"];
 
 /// The words that may follow `expect`, besides the probes.
 pub fn subjects() -> impl Iterator<Item = &'static str> {
