@@ -25,8 +25,7 @@ use crate::session::{CommandError, Next, Output, Session};
 ///   expect ray mechanism|artefact|fault|no-equilibrium
 ///   expect verdict certified|proved|undecided
 ///   expect collapse|undecided OP NUMBER     (probabilities, after `sample`)
-///   expect result KEY OP NUMBER|WORD        (after `map`, `find`, `cycle`, `limit cycle`, `sample`, `prove`, `calibrate`:
-///                                           a key of their JSON, `kind`, `groups[0].value`, `cycles[-1].dissipated[0]`)
+///   expect result KEY OP NUMBER|WORD        (after map, cycle, …: key of its JSON)
 ///   expect stage S …                        (after `stages`: at the end of stage S)
 ///   expect error "part of the message"      (after a command that fails)
 /// NUMBER and TOLERANCE may be formulas of the parameters: `2*f*F`, `q*L^2/8`; a tolerance also `1%`.
