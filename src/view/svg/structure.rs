@@ -75,6 +75,8 @@ impl Place {
         if self.has_no_size {
             return;
         }
+        // below the structure, which may reach into the corner
+        drawing.y += 36.0;
         let length = round_length(60.0 / self.scale);
         let origin = (WIDTH - MARGIN - 70.0, drawing.y - 16.0);
         for (c, name) in ["x", "y", "z"].into_iter().enumerate() {
