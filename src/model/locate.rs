@@ -1,14 +1,14 @@
 //! A JSON text as a tree with places: offset ↔ line and column, offset ↔ JSON path.
 
-use jsonc_parser::ast::{ObjectProp, Value};
-use jsonc_parser::common::Ranged;
 use jsonc_parser::errors::ParseErrorKind;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+
+use super::tree::{Kind, Node, Tree};
 
 /// A parsed JSON text.
 pub struct Document<'t> {
     text: &'t str,
-    root: Value<'t>,
+    tree: Tree<'t>,
 }
 
 /// A text that is not JSON: where and why.
@@ -45,44 +45,28 @@ impl<'t> Document<'t> {
                 help: "save the file as UTF-8 without BOM",
             });
         }
-        // serde_json is the judge of what is JSON; the tree with ranges, whose messages are kinder, comes first.
-        let tree = parse_to_ast(text, &CollectOptions::default(), &OPTIONS);
-        match tree {
-            Err(error) => Err(SyntaxError {
-                offset: error.range().start.min(text.len()),
-                message: format!("not JSON: {}", lower_first(&error.kind().to_string())),
-                help: advice(error.kind(), &text[error.range().start.min(text.len())..]),
-            }),
-            Ok(result) => {
-                let Some(root) = result.value else {
-                    return Err(SyntaxError {
-                        offset: 0,
-                        message: "not JSON: the file is empty".into(),
-                        help: "a scenario is a JSON object: { \"format\": \"stickslip/1\", … }",
-                    });
-                };
-                if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(&strict(text)) {
-                    let place = (error.line(), error.column());
-                    let message = error.to_string();
-                    let message =
-                        message.strip_suffix(&format!(" at line {} column {}", place.0, place.1)).unwrap_or(&message);
-                    // An overflowing number is JSON; its place is found by the typed reading.
-                    if message != "number out of range" {
-                        return Err(SyntaxError {
-                            offset: offset_of_line(text, place.0, place.1),
-                            message: format!("not JSON: {message}"),
-                            help: SYNTAX,
-                        });
-                    }
-                }
-                Ok(Document { text, root })
+        let Some(tree) = Tree::read(text) else { return Err(syntax_error(text)) };
+        // serde_json is the judge of what is JSON; the tree, whose messages are kinder, comes first.
+        if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(&strict(text)) {
+            let place = (error.line(), error.column());
+            let message = error.to_string();
+            let message =
+                message.strip_suffix(&format!(" at line {} column {}", place.0, place.1)).unwrap_or(&message);
+            // An overflowing number is JSON; its place is found by the typed reading.
+            if message != "number out of range" {
+                return Err(SyntaxError {
+                    offset: offset_of_line(text, place.0, place.1),
+                    message: format!("not JSON: {message}"),
+                    help: SYNTAX,
+                });
             }
         }
+        Ok(Document { text, tree })
     }
 
     /// The outermost value.
-    pub fn root(&self) -> &Value<'t> {
-        &self.root
+    pub fn root(&self) -> Node<'_> {
+        self.tree.root()
     }
 
     /// The values without their places.
@@ -94,30 +78,27 @@ impl<'t> Document<'t> {
     /// JSON path of the value, or of the key, that starts at this byte offset.
     pub fn path_at(&self, offset: usize) -> String {
         let mut path = String::new();
-        let mut value = &self.root;
+        let mut value = self.root();
         while value.start() != offset {
-            match value {
-                Value::Object(object) => {
-                    let Some(property) = object
-                        .properties
-                        .iter()
-                        .find(|property| (property.range.start..property.range.end).contains(&offset))
+            match value.kind() {
+                Kind::Object => {
+                    let Some((key, inner)) = value.properties().take_while(|(key, _)| key.start() <= offset).last()
                     else {
                         break;
                     };
-                    push_key(&mut path, property.name.as_str());
-                    if key_start(property) == offset {
+                    push_key(&mut path, key.as_str().unwrap_or_default());
+                    if key.start() == offset {
                         break;
                     }
-                    value = &property.value;
+                    value = inner;
                 }
-                Value::Array(array) => {
-                    let index = array.elements.partition_point(|element| element.end() <= offset);
-                    let Some(element) = array.elements.get(index) else {
+                Kind::Array => {
+                    let before = value.items().enumerate().take_while(|(_, item)| item.start() <= offset);
+                    let Some((index, item)) = before.last() else {
                         break;
                     };
                     path.push_str(&format!("[{index}]"));
-                    value = element;
+                    value = item;
                 }
                 _ => break,
             }
@@ -129,23 +110,20 @@ impl<'t> Document<'t> {
     /// where the path leads nowhere.
     pub fn offset_of(&self, path: &str) -> usize {
         let mut here = String::new();
-        let mut value = &self.root;
+        let mut value = self.root();
         while here != path {
-            let next = match value {
-                Value::Object(object) => object.properties.iter().find_map(|property| {
+            let next = match value.kind() {
+                Kind::Object => value.properties().find_map(|(key, inner)| {
                     let mut child = here.clone();
-                    push_key(&mut child, property.name.as_str());
-                    leads_to(&child, path).then_some((child, &property.value))
+                    push_key(&mut child, key.as_str().unwrap_or_default());
+                    leads_to(&child, path).then_some((child, inner))
                 }),
-                Value::Array(array) => path
+                Kind::Array => path
                     .strip_prefix(here.as_str())
                     .and_then(|rest| rest.strip_prefix('['))
                     .and_then(|rest| rest.split_once(']'))
                     .and_then(|(digits, _)| digits.parse::<usize>().ok())
-                    .and_then(|index| {
-                        let element = array.elements.get(index)?;
-                        Some((format!("{here}[{index}]"), element))
-                    }),
+                    .and_then(|index| Some((format!("{here}[{index}]"), value.items().nth(index)?))),
                 _ => None,
             };
             let Some((child, inner)) = next else { break };
@@ -158,6 +136,24 @@ impl<'t> Document<'t> {
     /// Line and column of a byte offset.
     pub fn position(&self, offset: usize) -> (usize, usize) {
         position(self.text, offset)
+    }
+}
+
+/// What is wrong with a text that is no JSON, in the words of a parser that says more.
+fn syntax_error(text: &str) -> SyntaxError {
+    match parse_to_ast(text, &CollectOptions::default(), &OPTIONS) {
+        Err(error) => SyntaxError {
+            offset: error.range().start.min(text.len()),
+            message: format!("not JSON: {}", lower_first(&error.kind().to_string())),
+            help: advice(error.kind(), &text[error.range().start.min(text.len())..]),
+        },
+        Ok(result) if result.value.is_none() => SyntaxError {
+            offset: 0,
+            message: "not JSON: the file is empty".into(),
+            help: "a scenario is a JSON object: { \"format\": \"stickslip/1\", … }",
+        },
+        // The parser forgives what the tree does not, or the text has 4 GiB.
+        Ok(_) => SyntaxError { offset: 0, message: "not JSON that can be read here".into(), help: SYNTAX },
     }
 }
 
@@ -212,11 +208,6 @@ pub fn position(text: &str, offset: usize) -> (usize, usize) {
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
     (line, before[line_start..].chars().count() + 1)
-}
-
-/// Byte offset at which a key starts (its quotation mark).
-pub fn key_start(property: &ObjectProp<'_>) -> usize {
-    property.range.start
 }
 
 /// Appends a key to a JSON path: `.key`, or `["key"]` where the key is not a plain word.

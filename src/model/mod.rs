@@ -45,6 +45,7 @@ pub mod structure;
 pub mod superelement;
 pub mod support;
 pub mod template;
+mod tree;
 pub mod tributary;
 pub mod units;
 pub mod uses;

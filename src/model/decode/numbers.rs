@@ -1,8 +1,5 @@
 //! Reading numbers and vectors: the one place where a number of the model becomes a value.
 
-use jsonc_parser::ast::Value;
-use jsonc_parser::common::Ranged;
-
 use super::reader::Cursor;
 use super::words::{is_id, quoted, shortened};
 use crate::model::dimension::Dimension;
@@ -22,26 +19,24 @@ const NUMBER: &str = "write a number, like 0.5 or 2e8, the name of a parameter o
 impl<'d> Cursor<'d> {
     /// A finite number, written out.
     pub fn literal(self) -> Option<f64> {
-        match self.value {
-            Value::NumberLit(number) => self.magnitude(number.value),
-            _ => {
-                self.wrong_type("a number", LITERAL);
-                None
-            }
-        }
+        let Some(digits) = self.value.as_number() else {
+            self.wrong_type("a number", LITERAL);
+            return None;
+        };
+        self.magnitude(digits)
     }
 
     /// A number as it stands: written out, a parameter, or an expression. Its region is noted as one in which the
     /// parameters of it stand.
     pub fn symbolic(self) -> Option<Number> {
-        let number = match self.value {
-            Value::NumberLit(number) => return self.magnitude(number.value).map(Number::Value),
-            Value::StringLit(string) => self.named_or_formula(&string.value)?,
-            _ => {
-                self.wrong_type("a number, a parameter or an expression", NUMBER);
-                return None;
-            }
+        if let Some(digits) = self.value.as_number() {
+            return self.magnitude(digits).map(Number::Value);
+        }
+        let Some(text) = self.value.as_str() else {
+            self.wrong_type("a number, a parameter or an expression", NUMBER);
+            return None;
         };
+        let number = self.named_or_formula(text)?;
         let mut uses = self.reading.uses.borrow_mut();
         for name in number.names() {
             uses.entry((name.to_owned(), self.region)).or_insert(self.value.start());
@@ -79,7 +74,7 @@ impl<'d> Cursor<'d> {
             Ok(expression) => Some(expression),
             Err(error) => {
                 // Behind the quotation mark; without a place of its own where escapes shift the characters.
-                let shift = if self.is_written_plainly() { 1 + error.at } else { 0 };
+                let shift = if self.value.is_written_plainly() { 1 + error.at } else { 0 };
                 let message = format!("in {}: {}", quoted(text), error.message);
                 self.reading.findings.add(self.value.start() + shift, message, error.help);
                 None
@@ -90,10 +85,6 @@ impl<'d> Cursor<'d> {
     /// Where the number here is read as its rate along a parameter: that parameter, and what the others do along it.
     fn along(self) -> Option<(&'d str, &'d Along)> {
         self.parameters().along().filter(|_| self.region == Region::Amount)
-    }
-
-    fn is_written_plainly(self) -> bool {
-        matches!(self.value, Value::StringLit(string) if string.range.end - string.range.start == string.value.len() + 2)
     }
 
     /// A finite number under the present values of the parameters.
@@ -142,10 +133,7 @@ impl<'d> Cursor<'d> {
 
     /// What stands here with its value, for messages: `the number 5`, `"2*F" = 10`.
     pub(super) fn found_number(self, value: f64) -> String {
-        match self.value {
-            Value::StringLit(string) => format!("{} = {value}", quoted(&string.value)),
-            _ => self.found(),
-        }
+        self.value.as_str().map_or_else(|| self.found(), |string| format!("{} = {value}", quoted(string)))
     }
 
     fn magnitude(self, literal: &str) -> Option<f64> {

@@ -4,20 +4,18 @@
 //! place; the caller leaves the part out and reads on.
 
 use std::cell::{Cell, OnceCell, RefCell};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Display;
 use std::path::PathBuf;
-
-use jsonc_parser::ast::{ObjectProp, Value};
-use jsonc_parser::common::Ranged;
 
 use super::declared::Parameters;
 pub use super::findings::{Findings, Place};
 use super::words::shortened;
 use super::words::{counted, did_you_mean, listed, quoted};
 use crate::model::dimension::Dimension;
-use crate::model::locate::{self, Document};
+use crate::model::locate::Document;
 use crate::model::mesh::MeshFiles;
+use crate::model::tree::{Kind, Node};
 use crate::model::uses::Region;
 
 /// What one reading of a text collects, besides what it returns.
@@ -39,7 +37,7 @@ pub struct Reading {
 /// A position in the tree: one value, and the region whose numbers are read from it.
 #[derive(Clone, Copy)]
 pub struct Cursor<'d> {
-    pub(super) value: &'d Value<'d>,
+    pub(super) value: Node<'d>,
     pub(super) reading: &'d Reading,
     pub(super) region: Region,
 }
@@ -55,7 +53,7 @@ impl<'d> Cursor<'d> {
         Cursor { region, ..self }
     }
 
-    fn at(self, value: &'d Value<'d>) -> Self {
+    fn at(self, value: Node<'d>) -> Self {
         Cursor { value, ..self }
     }
 
@@ -76,22 +74,20 @@ impl<'d> Cursor<'d> {
 
     /// What stands here, for messages: `the number 5`, `the string "x"`, `an object`.
     pub fn found(self) -> String {
-        match self.value {
-            Value::StringLit(string) => format!("the string {}", quoted(&string.value)),
-            Value::NumberLit(number) => format!("the number {}", shortened(number.value)),
-            Value::BooleanLit(boolean) => format!("`{}`", boolean.value),
-            Value::NullKeyword(_) => "`null`".into(),
-            Value::Array(array) => format!("a list of {}", array.elements.len()),
-            Value::Object(_) => "an object".into(),
+        let value = self.value;
+        match value.kind() {
+            Kind::String => format!("the string {}", quoted(value.as_str().unwrap_or_default())),
+            Kind::Number => format!("the number {}", shortened(value.as_number().unwrap_or_default())),
+            Kind::Boolean => format!("`{}`", value.as_bool().unwrap_or_default()),
+            Kind::Null => "`null`".into(),
+            Kind::Array => format!("a list of {}", value.items().len()),
+            Kind::Object => "an object".into(),
         }
     }
 
     /// The text of the string here in quotation marks; of anything else, what it is.
     pub fn quoted(self) -> String {
-        match self.value {
-            Value::StringLit(string) => quoted(&string.value),
-            _ => self.found(),
-        }
+        self.value.as_str().map_or_else(|| self.found(), quoted)
     }
 
     pub(super) fn wrong_type(self, expected: &str, help: &str) {
@@ -100,22 +96,22 @@ impl<'d> Cursor<'d> {
 
     /// Whether a string stands here.
     pub fn is_string(self) -> bool {
-        matches!(self.value, Value::StringLit(_))
+        self.value.kind() == Kind::String
     }
 
     /// Whether a list stands here.
     pub fn is_list(self) -> bool {
-        matches!(self.value, Value::Array(_))
+        self.value.kind() == Kind::Array
     }
 
     /// Whether an object stands here.
     pub fn is_object(self) -> bool {
-        matches!(self.value, Value::Object(_))
+        self.value.kind() == Kind::Object
     }
 
     /// Whether an object with this key stands here.
     pub fn has_key(self, key: &str) -> bool {
-        matches!(self.value, Value::Object(object) if object.properties.iter().any(|p| p.name.as_str() == key))
+        self.value.get(key).is_some()
     }
 
     /// The parameters of the scenario.
@@ -130,24 +126,20 @@ impl<'d> Cursor<'d> {
 
     /// A string.
     pub fn string(self) -> Option<&'d str> {
-        match self.value {
-            Value::StringLit(string) => Some(string.value.as_ref()),
-            _ => {
-                self.wrong_type("a string", "write a text in \"…\"");
-                None
-            }
+        let string = self.value.as_str();
+        if string.is_none() {
+            self.wrong_type("a string", "write a text in \"…\"");
         }
+        string
     }
 
     /// `true` or `false`.
     pub fn boolean(self) -> Option<bool> {
-        match self.value {
-            Value::BooleanLit(boolean) => Some(boolean.value),
-            _ => {
-                self.wrong_type("`true` or `false`", "write it without quotation marks");
-                None
-            }
+        let boolean = self.value.as_bool();
+        if boolean.is_none() {
+            self.wrong_type("`true` or `false`", "write it without quotation marks");
         }
+        boolean
     }
 
     /// A string that is one of `words`.
@@ -172,11 +164,11 @@ impl<'d> Cursor<'d> {
 
     /// The entries of a list.
     pub fn list(self) -> Option<impl ExactSizeIterator<Item = Cursor<'d>>> {
-        let Value::Array(array) = self.value else {
+        if !self.is_list() {
             self.wrong_type("a list", "write the entries in [ … ]");
             return None;
-        };
-        Some(array.elements.iter().map(move |value| self.at(value)))
+        }
+        Some(self.value.items().map(move |value| self.at(value)))
     }
 
     /// The entries of a list that must have `count` of them; `what` says why.
@@ -195,15 +187,16 @@ impl<'d> Cursor<'d> {
 
     /// The entries of an object as a map from names the author chose; a repeated name is reported.
     pub fn entries(self) -> Option<Vec<Entry<'d>>> {
-        let Value::Object(object) = self.value else {
+        if !self.is_object() {
             self.wrong_type("an object { … }", "write \"key\": value entries in { … }");
             return None;
-        };
-        let mut seen: HashMap<&str, ()> = HashMap::new();
-        let mut entries = Vec::with_capacity(object.properties.len());
-        for property in &object.properties {
-            let entry = Entry { property, cursor: self };
-            if seen.insert(entry.name(), ()).is_some() {
+        }
+        let properties = self.value.properties();
+        let mut seen = HashSet::with_capacity(properties.len());
+        let mut entries = Vec::with_capacity(properties.len());
+        for (key, _) in properties {
+            let entry = Entry { key, cursor: self };
+            if !seen.insert(entry.name()) {
                 entry.key_problem(
                     format!("the key {} appears twice in this object", quoted(entry.name())),
                     "remove or rename one of the two",
@@ -237,7 +230,7 @@ impl<'d> Cursor<'d> {
 /// One `key: value` of an object.
 #[derive(Clone, Copy)]
 pub struct Entry<'d> {
-    property: &'d ObjectProp<'d>,
+    key: Node<'d>,
     /// The object.
     cursor: Cursor<'d>,
 }
@@ -245,12 +238,12 @@ pub struct Entry<'d> {
 impl<'d> Entry<'d> {
     /// The key.
     pub fn name(self) -> &'d str {
-        self.property.name.as_str()
+        self.key.as_str().unwrap_or_default()
     }
 
     /// The value.
     pub fn value(self) -> Cursor<'d> {
-        self.cursor.at(&self.property.value)
+        self.cursor.at(self.key.value())
     }
 
     /// The place of the key.
@@ -260,7 +253,7 @@ impl<'d> Entry<'d> {
 
     /// Byte offset of the key.
     pub fn key_offset(self) -> usize {
-        locate::key_start(self.property)
+        self.key.start()
     }
 
     /// Reports a problem at the key.

@@ -2,16 +2,15 @@
 
 use std::collections::HashMap;
 
-use serde_json::Value;
-
 use super::{Warning, keys, texts};
 use crate::model::parameter::Number;
 use crate::model::scenario::{GivenContactSystem, Scenario, Stage};
 use crate::model::structure::{Load, Structure};
+use crate::model::tree::{Kind, Node};
 
 /// Cases whose loads are nothing whatever the parameters are, items without the property they need, cases that are
 /// counted nowhere.
-pub fn of_structure(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<Warning> {
+pub fn of_structure(scenario: &Scenario, structure: &Structure, file: Node<'_>) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let materials = Materials::of(structure, file);
     for case in &structure.load_cases {
@@ -21,7 +20,7 @@ pub fn of_structure(scenario: &Scenario, structure: &Structure, file: &Value) ->
         let without = without_property(&materials, structure, file, &path, items);
         let mut formulas = Vec::new();
         items.into_iter().for_each(|items| texts_of_numbers(items, &mut formulas));
-        let empty = items.and_then(Value::as_array).is_none_or(Vec::is_empty);
+        let empty = items.is_none_or(|items| items.items().len() == 0);
         if case.loads.is_empty() && empty {
             let help = "give it `items`, or name it as the `case` of a settlement; or remove it";
             warnings.push(Warning::new(&path, format!("the load case `{}` acts on nothing", case.name), help));
@@ -78,12 +77,12 @@ fn counted(scenario: &Scenario, case: &str, factor: &Number, path: &str) -> Opti
 fn without_property(
     materials: &Materials<'_>,
     structure: &Structure,
-    file: &Value,
+    file: Node<'_>,
     path: &str,
-    items: Option<&Value>,
+    items: Option<Node<'_>>,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    for (index, item) in items.and_then(Value::as_array).into_iter().flatten().enumerate() {
+    for (index, item) in items.into_iter().flat_map(Node::items).enumerate() {
         for (load, property) in [("gravity", "density"), ("temperature", "expansion")] {
             let Some(of_load) = item.get(load) else { continue };
             // A name that is no element of the file is one of a mesh: its material is not looked for.
@@ -93,7 +92,8 @@ fn without_property(
                 if load == "gravity" { material.density != 0.0 } else { material.expansion != 0.0 }
             };
             let given = |&material: &usize| {
-                file["materials"][materials.names[material]].get(property).is_some_and(Value::is_string)
+                let of_material = file.get("materials").and_then(|all| all.get(materials.names[material]));
+                of_material.and_then(|of| of.get(property)).is_some_and(|value| value.kind() == Kind::String)
             };
             if on.iter().any(|material| has(material) || given(material)) {
                 continue;
@@ -125,13 +125,13 @@ struct Materials<'v> {
 }
 
 impl<'v> Materials<'v> {
-    fn of(structure: &Structure, file: &'v Value) -> Materials<'v> {
+    fn of(structure: &Structure, file: Node<'v>) -> Materials<'v> {
         let names: Vec<&str> = keys(file, "materials").collect();
         let number: HashMap<&str, usize> = names.iter().enumerate().map(|(index, name)| (*name, index)).collect();
-        let lists = ["bars", "plates", "quads", "triangles"].iter().filter_map(|key| file.get(key)?.as_array());
+        let lists = ["bars", "plates", "quads", "triangles"].iter().filter_map(|key| file.get(key));
         let material =
-            |entry: &'v Value| Some((entry.get("id")?.as_str()?, *number.get(entry.get("material")?.as_str()?)?));
-        let of = lists.flatten().filter_map(material).collect();
+            |entry: Node<'v>| Some((entry.get("id")?.as_str()?, *number.get(entry.get("material")?.as_str()?)?));
+        let of = lists.flat_map(Node::items).filter_map(material).collect();
         let mut used: Vec<usize> = structure.elements.iter().map(|element| element.material).collect();
         used.sort_unstable();
         used.dedup();
@@ -139,23 +139,26 @@ impl<'v> Materials<'v> {
     }
 
     /// Those of the elements that a load is on, by index; `None` where a name cannot be followed.
-    fn on(&self, on: Option<&Value>) -> Option<Vec<usize>> {
+    fn on(&self, on: Option<Node<'_>>) -> Option<Vec<usize>> {
         let Some(on) = on else { return Some(self.used.clone()) };
-        on.as_array()?.iter().map(|id| self.of.get(id.as_str()?).copied()).collect()
+        if on.kind() != Kind::Array {
+            return None;
+        }
+        on.items().map(|id| self.of.get(id.as_str()?).copied()).collect()
     }
 }
 
 /// The texts of a list of loads that may be numbers: all but names.
-fn texts_of_numbers<'v>(items: &'v Value, found: &mut Vec<&'v str>) {
+fn texts_of_numbers<'v>(items: Node<'v>, found: &mut Vec<&'v str>) {
     const NAMES: [&str; 6] = ["at", "edge", "bar", "on", "axes", "face"];
-    match items {
-        Value::Array(list) => list.iter().for_each(|value| texts_of_numbers(value, found)),
-        Value::Object(map) => {
-            map.iter()
-                .filter(|(key, _)| !NAMES.contains(&key.as_str()))
-                .for_each(|(_, value)| texts_of_numbers(value, found));
+    match items.kind() {
+        Kind::Array => items.items().for_each(|value| texts_of_numbers(value, found)),
+        Kind::Object => {
+            let may_be = |key: Node<'_>| key.as_str().is_some_and(|key| !NAMES.contains(&key));
+            let values = items.properties().filter(|(key, _)| may_be(*key));
+            values.for_each(|(_, value)| texts_of_numbers(value, found));
         }
-        other => texts(other, found),
+        _ => texts(items, found),
     }
 }
 

@@ -7,11 +7,10 @@ mod stiffness;
 mod units;
 mod unused;
 
-use serde_json::Value;
-
 use super::locate::Document;
 use super::problem::Problem;
 use super::scenario::{Scenario, Source};
+use super::tree::{Kind, Node};
 
 /// A warning before its place is known as line and column.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,17 +34,17 @@ impl Warning {
 pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
     // The text was parsed when it was loaded.
     let Ok(document) = Document::parse(&scenario.text) else { return Vec::new() };
-    let file = document.value();
+    let file = document.root();
     let mut warnings = unused::parameters(scenario);
-    warnings.extend(units::of_parameters(scenario, &file));
+    warnings.extend(units::of_parameters(scenario, file));
     match &scenario.source {
         Source::Structure(structure) => {
-            warnings.extend(unused::materials_and_sections(structure, &file));
-            warnings.extend(stiffness::materials(scenario, structure, &file));
-            warnings.extend(stiffness::weights(scenario, structure, &file));
-            warnings.extend(stiffness::sections(scenario, structure, &file));
+            warnings.extend(unused::materials_and_sections(structure, file));
+            warnings.extend(stiffness::materials(scenario, structure, file));
+            warnings.extend(stiffness::weights(scenario, structure, file));
+            warnings.extend(stiffness::sections(scenario, structure, file));
             warnings.extend(normals::upside_down(scenario, structure));
-            warnings.extend(loads::of_structure(scenario, structure, &file));
+            warnings.extend(loads::of_structure(scenario, structure, file));
         }
         Source::ContactSystem(system) => warnings.extend(loads::of_contact_system(scenario, system)),
         Source::Lcp(_) => {}
@@ -55,6 +54,9 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
 
 /// The warnings in the order of the file, each with its place.
 pub fn placed(scenario: &Scenario, warnings: Vec<Warning>) -> Vec<Problem> {
+    if warnings.is_empty() {
+        return Vec::new();
+    }
     let Ok(document) = Document::parse(&scenario.text) else { return Vec::new() };
     let mut placed: Vec<(usize, Problem)> = warnings
         .into_iter()
@@ -69,16 +71,15 @@ pub fn placed(scenario: &Scenario, warnings: Vec<Warning>) -> Vec<Problem> {
 }
 
 /// Every text in a value, however deep.
-fn texts<'v>(value: &'v Value, found: &mut Vec<&'v str>) {
-    match value {
-        Value::String(text) => found.push(text),
-        Value::Array(list) => list.iter().for_each(|value| texts(value, found)),
-        Value::Object(map) => map.values().for_each(|value| texts(value, found)),
-        _ => {}
+fn texts<'v>(value: Node<'v>, found: &mut Vec<&'v str>) {
+    match value.kind() {
+        Kind::Array => value.items().for_each(|value| texts(value, found)),
+        Kind::Object => value.properties().for_each(|(_, value)| texts(value, found)),
+        _ => found.extend(value.as_str()),
     }
 }
 
 /// The keys of an object of the file, in its order.
-fn keys<'v>(file: &'v Value, key: &str) -> impl Iterator<Item = &'v str> {
-    file.get(key).and_then(Value::as_object).into_iter().flat_map(|map| map.keys()).map(String::as_str)
+fn keys<'v>(file: Node<'v>, key: &str) -> impl Iterator<Item = &'v str> {
+    file.get(key).into_iter().flat_map(Node::properties).filter_map(|(name, _)| name.as_str())
 }

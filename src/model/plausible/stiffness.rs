@@ -1,11 +1,10 @@
 //! Stiffness, weight and sections against what structures are made of, where both units are named and known.
 
-use serde_json::Value;
-
 use super::units::Sizes;
 use super::{Warning, keys};
 use crate::model::scenario::Scenario;
 use crate::model::structure::{ElementLoad, Load, Structure};
+use crate::model::tree::Node;
 
 /// Word in a material's name, Young's modulus in N/m², weight in N/m³: what such materials commonly have.
 const KNOWN: &[(&str, f64, f64)] = &[
@@ -65,7 +64,7 @@ fn of_range([least, largest]: [f64; 2], unit: &str) -> String {
 }
 
 /// Materials that are stiffer or softer than anything of their name by 10³.
-pub fn materials(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<Warning> {
+pub fn materials(scenario: &Scenario, structure: &Structure, file: Node<'_>) -> Vec<Warning> {
     let Some(sizes) = Sizes::of(&scenario.units) else { return Vec::new() };
     let label = label(scenario, "²");
     let mut warnings = Vec::new();
@@ -94,7 +93,7 @@ pub fn materials(scenario: &Scenario, structure: &Structure, file: &Value) -> Ve
 }
 
 /// Materials whose weight, density times acceleration, is off by 10³: mass in kg where forces are in kN, say.
-pub fn weights(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<Warning> {
+pub fn weights(scenario: &Scenario, structure: &Structure, file: Node<'_>) -> Vec<Warning> {
     let Some(sizes) = Sizes::of(&scenario.units) else { return Vec::new() };
     let label = label(scenario, "³");
     let values = scenario.parameter_values();
@@ -131,7 +130,7 @@ pub fn weights(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<
 }
 
 /// Sections whose numbers do not fit each other, or not the structure: areas in cm² beside lengths in m, say.
-pub fn sections(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec<Warning> {
+pub fn sections(scenario: &Scenario, structure: &Structure, file: Node<'_>) -> Vec<Warning> {
     if Sizes::of(&scenario.units).is_none() {
         return Vec::new();
     }
@@ -142,11 +141,12 @@ pub fn sections(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec
     });
     let extent = extent[0].hypot(extent[1]);
     let length = scenario.units.length.as_deref().unwrap_or_default();
+    let bars: Vec<Node<'_>> = file.get("bars").into_iter().flat_map(Node::items).collect();
     let mut seen: Vec<String> = Vec::new();
     let mut warnings = Vec::new();
     for (element, place) in structure.elements.iter().zip(&scenario.places.elements) {
         let Some((area, inertias)) = element.section() else { continue };
-        let Some(name) = section_at(file, place) else { continue };
+        let Some(name) = section_at(&bars, place) else { continue };
         let path = format!("sections.{name}");
         if seen.contains(&path) {
             continue;
@@ -177,9 +177,9 @@ pub fn sections(scenario: &Scenario, structure: &Structure, file: &Value) -> Vec
 }
 
 /// The section of the bar that stands at a place of the file.
-fn section_at<'v>(file: &'v Value, place: &str) -> Option<&'v str> {
+fn section_at<'v>(bars: &[Node<'v>], place: &str) -> Option<&'v str> {
     let index: usize = place.strip_prefix("bars[")?.strip_suffix(']')?.parse().ok()?;
-    file.get("bars")?.get(index)?.get("section")?.as_str()
+    bars.get(index)?.get("section")?.as_str()
 }
 
 /// `kN/m²` in the units of the scenario.

@@ -1,9 +1,8 @@
 //! Labels of units as numbers, as far as they are known; nothing else in the program converts anything.
 
-use serde_json::Value;
-
 use super::{Warning, texts};
 use crate::model::scenario::Scenario;
+use crate::model::tree::Node;
 use crate::model::units::Units;
 
 /// Lengths in metres, forces in newtons.
@@ -89,10 +88,10 @@ fn dimension(label: &str) -> Option<Dimension> {
 }
 
 /// Parameters whose unit differs by 10³ or more from the one that their number counts in, where it stands as it is.
-pub fn of_parameters(scenario: &Scenario, file: &Value) -> Vec<Warning> {
+pub fn of_parameters(scenario: &Scenario, file: Node<'_>) -> Vec<Warning> {
     let Some(sizes) = Sizes::of(&scenario.units) else { return Vec::new() };
     let mut standing = Vec::new();
-    let parts = file.as_object().into_iter().flatten().filter(|(key, _)| *key != "parameters");
+    let parts = file.properties().filter(|(key, _)| key.as_str() != Some("parameters"));
     parts.for_each(|(_, value)| texts(value, &mut standing));
     let mut warnings = Vec::new();
     for (name, parameter) in scenario.parameters.iter().filter(|(_, parameter)| parameter.formula.is_none()) {

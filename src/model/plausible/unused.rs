@@ -2,11 +2,10 @@
 
 use std::collections::HashSet;
 
-use serde_json::Value;
-
 use super::{Warning, keys};
 use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
+use crate::model::tree::{Kind, Node};
 
 /// Parameters that can be set and stand in no number of the model. A formula that nothing uses is there to be shown.
 pub fn parameters(scenario: &Scenario) -> Vec<Warning> {
@@ -35,7 +34,7 @@ pub fn parameters(scenario: &Scenario) -> Vec<Warning> {
 }
 
 /// Materials without an element, sections without a bar.
-pub fn materials_and_sections(structure: &Structure, file: &Value) -> Vec<Warning> {
+pub fn materials_and_sections(structure: &Structure, file: Node<'_>) -> Vec<Warning> {
     let used: HashSet<usize> = structure.elements.iter().map(|element| element.material).collect();
     let materials = keys(file, "materials").enumerate().filter(|(index, _)| !used.contains(index));
     let materials = materials.map(|(_, name)| ("materials", "element", "material", name));
@@ -56,12 +55,12 @@ pub fn materials_and_sections(structure: &Structure, file: &Value) -> Vec<Warnin
 }
 
 /// The texts under keys `section`, wherever they stand: bars and groups of meshes have them.
-fn sections_of<'v>(value: &'v Value, found: &mut HashSet<&'v str>) {
-    match value {
-        Value::Array(list) => list.iter().for_each(|value| sections_of(value, found)),
-        Value::Object(map) => {
-            found.extend(map.get("section").and_then(Value::as_str));
-            map.values().for_each(|value| sections_of(value, found));
+fn sections_of<'v>(value: Node<'v>, found: &mut HashSet<&'v str>) {
+    match value.kind() {
+        Kind::Array => value.items().for_each(|value| sections_of(value, found)),
+        Kind::Object => {
+            found.extend(value.get("section").and_then(Node::as_str));
+            value.properties().for_each(|(_, value)| sections_of(value, found));
         }
         _ => {}
     }
