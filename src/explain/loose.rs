@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::mode::{pair_words, parts};
 use super::rigid::{RigidMotion, direction_word};
 use crate::contact::system::ContactSystem;
-use crate::fem::MainSystem;
+use crate::fem::Motion;
 use crate::model::pair::joints;
 use crate::model::structure::Structure;
 use crate::text::words::{list, short};
@@ -27,12 +27,12 @@ impl LoosePart {
     }
 }
 
-/// The loose parts of a structure.
-pub fn loose_parts(structure: &Structure, main: &MainSystem) -> Vec<LoosePart> {
+/// The loose parts of a structure, from a basis of the motions that cost nothing.
+pub fn loose_parts(structure: &Structure, motions: &[Motion]) -> Vec<LoosePart> {
     let joints = joints(&structure.pairs);
     let m = structure.pairs.len();
     let mut found: Vec<LoosePart> = Vec::new();
-    for motion in main.kernel_motions() {
+    for motion in motions {
         let opens = joints.iter().take(m).any(|joint| {
             let z: f64 = joint
                 .terms

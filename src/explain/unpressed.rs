@@ -4,13 +4,19 @@
 //! factor, or −R g does where gaps are interferences. An edge contact is pressed where one of its pairs is; so is a joint
 //! of single pairs between two bodies of plates, quads or triangles. What presses a pair only after others slip or open is not seen; where
 //! nothing reaches the pair itself, but joints that it is coupled to, that may be so, and nothing is said.
+//!
+//! That a contact is pressed can be certain without R and RF: where a motion that costs nothing opens it and moves no
+//! other joint, B u = z and uᵀ (Bᵀ RF + F) = 0 give Σ z_n RF_n = −F·u over its pairs, and at least one of them is > 0
+//! where the loads work against the motion.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::contact::system::ContactSystem;
-use crate::model::pair::Pair;
+use crate::fem::{Kinematics, mutual_displacements};
+use crate::model::pair::{Pair, joints};
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::plausible::Warning;
 use crate::model::plausible::normals::{is_down, is_guided, parts};
@@ -23,6 +29,12 @@ use crate::text::words::list;
 const ROUNDING: f64 = 1e4 * f64::EPSILON;
 /// R_ij is zero below this part of √(R_ii R_jj).
 const UNCOUPLED: f64 = 1e-9;
+/// Loads work against a motion where no rounding can have made it so: by this share of the terms of their work.
+const CLEARLY: f64 = 1e-6;
+/// A joint is at rest in a motion that moves it by less than this share of the largest: rounding of the coordinates.
+const STILL: f64 = 1e-12;
+/// More motions or contacts than this are left to R and RF.
+const MANY: usize = 100;
 
 /// What the load cases do to a pair in the main system.
 #[derive(Clone, Copy, PartialEq)]
@@ -53,9 +65,7 @@ pub fn unpressed(scenario: &Scenario, system: &ContactSystem) -> Vec<Warning> {
     let joints = Joints::of(scenario, &effects);
     let places = &scenario.places.pairs;
     let mut found: Vec<Unpressed> = Vec::new();
-    let mut first = 0;
-    while first < effects.len().min(places.len()) {
-        let end = (first..effects.len()).find(|&pair| places[pair] != places[first]).unwrap_or(effects.len());
+    for Range { start: first, end } in contacts(scenario) {
         if !effects[first..end].iter().any(Effect::may_press) && !joints.carry(first) {
             let id = &system.pairs[first].id;
             let id = if end > first + 1 { id.split('[').next().unwrap_or(id) } else { id };
@@ -68,9 +78,77 @@ pub fn unpressed(scenario: &Scenario, system: &ContactSystem) -> Vec<Warning> {
                 _ => found.push(Unpressed { place: first, ids: vec![id.to_owned()], why, next: end }),
             }
         }
-        first = end;
     }
     found.into_iter().map(|of| of.warning(&places[of.place])).collect()
+}
+
+/// The pairs of each contact of the file.
+fn contacts(scenario: &Scenario) -> Vec<Range<usize>> {
+    let mut first = 0;
+    let groups = scenario.places.pairs.chunk_by(|a, b| a == b).map(|pairs| {
+        let group = first..first + pairs.len();
+        first = group.end;
+        group
+    });
+    groups.collect()
+}
+
+/// Whether every contact is certain to be pressed, told from the motions of the parts alone; `false` may mean anything.
+pub fn surely_pressed(scenario: &Scenario, structure: &Structure, kinematics: &Kinematics) -> bool {
+    let motions = kinematics.motions();
+    let contacts = contacts(scenario);
+    if motions.len() > MANY || contacts.len() > MANY {
+        return false;
+    }
+    let values = scenario.parameter_values();
+    let signs: Vec<[bool; 2]> =
+        factors(scenario).map(|(name, factor)| signs(scenario, name, factor, &values)).collect();
+    let joints = joints(&structure.pairs);
+    let traces: Vec<DVector<f64>> = motions.iter().map(|motion| mutual_displacements(&joints, &motion.u)).collect();
+    let traces = if traces.is_empty() { DMatrix::zeros(joints.len(), 0) } else { DMatrix::from_columns(&traces) };
+    let all = traces.transpose() * &traces;
+    contacts.into_iter().all(|pairs| {
+        if pairs.clone().all(|pair| structure.pairs[pair].law.is_bilateral()) {
+            return true;
+        }
+        let Some(amounts) = opening(&traces, &all, pairs) else { return false };
+        let mut motion = vec![[0.0; 3]; structure.nodes.len()];
+        for (amount, of) in amounts.iter().zip(motions) {
+            for (sum, u) in motion.iter_mut().zip(&of.u) {
+                (0..3).for_each(|component| sum[component] += amount * u[component]);
+            }
+        }
+        // The other way round where the factor of the case is negative.
+        let against = |[work, terms]: [f64; 2], [plus, minus]: [bool; 2]| {
+            plus && work < -CLEARLY * terms || minus && work > CLEARLY * terms
+        };
+        kinematics.works(&motion).into_iter().zip(&signs).any(|(work, signs)| against(work, *signs))
+    })
+}
+
+/// Amounts of the motions that together open a contact and move no other joint, nor this one along itself; normal joints
+/// come first, in the order of the pairs. `all`: tracesᵀ traces.
+fn opening(traces: &DMatrix<f64>, all: &DMatrix<f64>, pairs: Range<usize>) -> Option<DVector<f64>> {
+    let own = traces.rows(pairs.start, pairs.len());
+    let others = all - own.transpose() * own;
+    // What the other joints hardly feel; that they feel nothing of it is seen below.
+    let unfelt = 1e-12 * all.trace();
+    let eigen = others.symmetric_eigen();
+    let free: Vec<_> =
+        (0..all.ncols()).filter(|&i| eigen.eigenvalues[i] <= unfelt).map(|i| eigen.eigenvectors.column(i)).collect();
+    if free.is_empty() {
+        return None;
+    }
+    let free = DMatrix::from_columns(&free);
+    // The one of them that is nearest to opening all pairs alike.
+    let even = (own * &free).transpose() * DVector::repeat(pairs.len(), 1.0);
+    let amounts = free * even;
+    let moved = traces * &amounts;
+    let largest = moved.rows(pairs.start, pairs.len()).max();
+    let is_own = |joint: &usize| pairs.contains(joint);
+    let still = (0..moved.len()).filter(|joint| !is_own(joint)).all(|joint| moved[joint].abs() <= STILL * largest);
+    let opens = pairs.clone().all(|pair| moved[pair] >= -STILL * largest);
+    (largest > 0.0 && still && opens).then_some(amounts)
 }
 
 /// Contacts that stand one after the other in the file and are not pressed for the same reason.

@@ -35,10 +35,17 @@ pub struct Motion {
 
 /// Basis of the motions that cost no energy with all joints off: translations along the axes, then rotations,
 /// as far as the cluster allows.
-pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> Vec<Motion> {
+pub struct LooseMotions {
+    pub motions: Vec<Motion>,
+    /// Whether all parts were looked at one by one, so that no mechanism among them can have been missed.
+    pub complete: bool,
+}
+
+/// The motions from the parts.
+pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> LooseMotions {
     let parts = Parts::new(structure);
     let clusters = parts.clusters(structure);
-    let mut motions = Vec::new();
+    let (mut motions, mut complete) = (Vec::new(), true);
     for cluster in clusters {
         let null_space = if structure.dimension.components().len() * cluster.parts.len() <= DENSE {
             cluster.null_space(structure, dofs, &parts)
@@ -48,12 +55,13 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> Vec<Motion> {
         match null_space {
             Some(space) => motions.extend(space),
             None => {
+                complete = false;
                 let (merged, cluster) = cluster.with_whole_groups(structure);
                 motions.extend(cluster.null_space(structure, dofs, &merged).unwrap_or_default());
             }
         }
     }
-    motions
+    LooseMotions { motions, complete }
 }
 
 impl Parts {

@@ -23,9 +23,9 @@ use super::loads::{load_vectors, settlements};
 use super::loose::{Motion, loose_motions};
 use super::order::Places;
 use super::refinement::{Refinement, Verdict};
+use super::outline::Outline;
 use super::repeated::Repeated;
 use super::sparse::SymmetricSparse;
-use super::superelement::refuse_indefinite;
 use crate::doubled::Doubled;
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
@@ -108,18 +108,11 @@ impl MainSystem {
     pub fn new(structure: &Structure, all_joints: &[Joint], watch: &dyn Watch) -> Result<MainSystem, MainSystemError> {
         let clock = Instant::now();
         watch.progress(&format!("assembling {} elements", structure.elements.len()), 0.0);
-        let dofs = Dofs::new(structure);
-        refuse_indefinite(structure, &dofs, watch)?;
-        let repeated = Elimination::repeated(structure, &dofs, all_joints)?;
-        let is_repeated = |index: &usize| repeated.iter().any(|repeated| repeated.joint == *index);
-        let independent: Vec<usize> = (0..all_joints.len()).filter(|index| !is_repeated(index)).collect();
-        let joints: &[Joint] = &independent.iter().map(|&index| all_joints[index].clone()).collect::<Vec<_>>();
-        let elimination = Elimination::new(structure, &dofs, joints)?;
-        let f = load_vectors(structure, &dofs)?;
-        let settled = settlements(structure, &dofs, &elimination)?;
+        let Outline { dofs, elimination, joints, independent, repeated, f, settled } =
+            Outline::new(structure, all_joints, watch)?;
         let k = assemble(structure, &dofs, &|| watch.stop())?;
-        let motions = loose_motions(structure, &dofs);
-        let rigid = kernel::rigid_kernel(structure, joints, &motions)?;
+        let motions = loose_motions(structure, &dofs).motions;
+        let rigid = kernel::rigid_kernel(structure, &joints, &motions)?;
         let mut main = main_matrices(&k, &elimination);
         let seconds = Seconds { assemble: clock.elapsed().as_secs_f64(), ..Seconds::default() };
 
@@ -145,7 +138,7 @@ impl MainSystem {
         let mut system = MainSystem {
             dofs,
             elimination,
-            joints: joints.to_vec(),
+            joints,
             all_joints: all_joints.to_vec(),
             independent,
             repeated,
@@ -168,11 +161,12 @@ impl MainSystem {
         system.seconds.factor = clock.elapsed().as_secs_f64();
 
         let clock = Instant::now();
-        watch.progress(&format!("condensing to {} joints", joints.len()), 0.0);
+        let condensing = format!("condensing to {} joints", system.joints.len());
+        watch.progress(&condensing, 0.0);
         system.condense(structure, main.d, watch)?;
         system.add_internal_mechanisms(structure, watch)?;
         system.seconds.condense = clock.elapsed().as_secs_f64();
-        watch.progress(&format!("condensing to {} joints", joints.len()), 1.0);
+        watch.progress(&condensing, 1.0);
         Ok(system)
     }
 

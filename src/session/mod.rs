@@ -37,7 +37,7 @@ use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 use crate::path::record::PathRecord;
 pub use crate::path::stages::History;
-use crate::solve;
+use crate::solve::look::{Looked, look};
 pub use crate::solve::{Prepared, Solved};
 use crate::view::projection::Viewpoint;
 use crate::watch::Watch;
@@ -85,7 +85,7 @@ enum Missing {
 pub struct Diagnosis {
     /// Its title.
     pub title: String,
-    /// What was put right while it was read.
+    /// What was put right while it was read, and what was not looked into.
     pub notes: Vec<String>,
     /// What only contact holds, in sentences.
     pub loose: Vec<String>,
@@ -99,9 +99,9 @@ pub struct Diagnosis {
 /// A main system that cannot be factorized, an interruption.
 pub fn diagnose(scenario: Scenario, watch: &dyn Watch) -> Result<Diagnosis, CommandError> {
     worker::run(watch, move |watch| {
-        let prepared = solve::prepare(&scenario, watch)?;
-        let (loose, warnings) = (prepared.loose_sentences(), prepared.warnings(&scenario));
-        Ok::<_, CommandError>(Diagnosis { title: scenario.title, notes: scenario.notes, loose, warnings })
+        let Looked { loose, warnings, left_out } = look(&scenario, watch)?;
+        let notes = scenario.notes.into_iter().chain(left_out).collect();
+        Ok::<_, CommandError>(Diagnosis { title: scenario.title, notes, loose, warnings })
     })?
 }
 

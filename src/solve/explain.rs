@@ -144,7 +144,7 @@ impl Prepared {
     /// Parts that only contact holds, each with its motions in words.
     pub fn loose_parts(&self) -> Vec<LoosePart> {
         match &*self.geometry {
-            Geometry::Structure { main, structure, .. } => loose_parts(structure, main),
+            Geometry::Structure { main, structure, .. } => loose_parts(structure, main.kernel_motions()),
             _ => Vec::new(),
         }
     }

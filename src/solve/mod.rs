@@ -31,6 +31,7 @@ mod history_answer;
 mod ladder;
 pub mod line;
 pub mod load_rates;
+pub mod look;
 mod plain;
 pub mod plain_answers;
 pub mod prepared;

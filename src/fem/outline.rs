@@ -1,0 +1,42 @@
+//! A structure with all that holds it, before anything is known of its stiffness.
+
+use super::dof::Dofs;
+use super::elimination::Elimination;
+use super::error::MainSystemError;
+use super::loads::{load_vectors, settlements};
+use super::repeated::Repeated;
+use super::superelement::refuse_indefinite;
+use crate::model::pair::Joint;
+use crate::model::structure::Structure;
+use crate::watch::Watch;
+
+/// See the module; the parts are those of [`MainSystem`](super::MainSystem).
+pub struct Outline {
+    pub dofs: Dofs,
+    pub elimination: Elimination,
+    pub joints: Vec<Joint>,
+    pub independent: Vec<usize>,
+    pub repeated: Vec<Repeated>,
+    pub f: Vec<Vec<f64>>,
+    pub settled: Vec<Option<Vec<f64>>>,
+}
+
+impl Outline {
+    /// Numbers the displacements, tells joints that repeat others from those that are held, eliminates what is held, and
+    /// puts the loads on the nodes.
+    ///
+    /// # Errors
+    /// As [`MainSystem::new`](super::MainSystem::new) up to the assembly.
+    pub fn new(structure: &Structure, all_joints: &[Joint], watch: &dyn Watch) -> Result<Outline, MainSystemError> {
+        let dofs = Dofs::new(structure);
+        refuse_indefinite(structure, &dofs, watch)?;
+        let repeated = Elimination::repeated(structure, &dofs, all_joints)?;
+        let is_repeated = |index: &usize| repeated.iter().any(|repeated| repeated.joint == *index);
+        let independent: Vec<usize> = (0..all_joints.len()).filter(|index| !is_repeated(index)).collect();
+        let joints: Vec<Joint> = independent.iter().map(|&index| all_joints[index].clone()).collect();
+        let elimination = Elimination::new(structure, &dofs, &joints)?;
+        let f = load_vectors(structure, &dofs)?;
+        let settled = settlements(structure, &dofs, &elimination)?;
+        Ok(Outline { dofs, elimination, joints, independent, repeated, f, settled })
+    }
+}

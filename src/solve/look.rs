@@ -1,0 +1,79 @@
+//! A look at a scenario that solves nothing: what only contact holds, and what is hardly meant.
+
+use std::time::Duration;
+
+use super::prepared::{PrepareError, main_system_problem, prepare};
+use crate::explain::loose::{LoosePart, loose_parts};
+use crate::explain::unpressed::surely_pressed;
+use crate::fem::Kinematics;
+use crate::model::pair::joints;
+use crate::model::plausible;
+use crate::model::problem::Problem;
+use crate::model::scenario::{Scenario, Source};
+use crate::model::structure::Structure;
+use crate::watch::{Budget, Watch};
+
+/// Up to so many nodes a factorization is over before anybody waits for it, and looks into everything.
+const FEW_NODES: usize = 2000;
+
+/// For how long at most a large structure is looked into by its numbers.
+pub const LOOK_TIME: Duration = Duration::from_secs(10);
+
+/// What was seen.
+#[derive(Debug)]
+pub struct Looked {
+    /// What only contact holds, in sentences.
+    pub loose: Vec<String>,
+    /// What is allowed and hardly meant, in the order of the file, under the values of the file.
+    pub warnings: Vec<Problem>,
+    /// What was not looked into for want of time, in a sentence.
+    pub left_out: Option<String>,
+}
+
+/// Looks at a scenario under the values of its file. Large structures are told from the motions of their parts; only
+/// where those leave open whether something moves in itself, or whether the loads press every contact, the main system is
+/// factorized, for [`LOOK_TIME`] at most.
+///
+/// # Errors
+/// As [`prepare`], but for what was left out.
+pub fn look(scenario: &Scenario, watch: &dyn Watch) -> Result<Looked, PrepareError> {
+    let large = match &scenario.source {
+        Source::Structure(structure) if structure.nodes.len() > FEW_NODES => Some(structure),
+        _ => None,
+    };
+    let Some(structure) = large else { return by_numbers(scenario, watch) };
+    let kinematics = Kinematics::new(structure, &joints(&structure.pairs), watch)
+        .map_err(|error| main_system_problem(scenario, structure, error))?;
+    if kinematics.is_complete() && surely_pressed(scenario, structure, &kinematics) {
+        return Ok(by_parts(scenario, structure, &kinematics, None));
+    }
+    let budget = Budget::new(watch, LOOK_TIME);
+    match by_numbers(scenario, &budget) {
+        Err(PrepareError::Interrupted) if budget.ran_out() => {
+            let left_out = format!(
+                "whether the loads press every contact, and whether a part moves in itself, was not decided within {} s: \
+                 `solve` does it",
+                LOOK_TIME.as_secs()
+            );
+            Ok(by_parts(scenario, structure, &kinematics, Some(left_out)))
+        }
+        looked => looked,
+    }
+}
+
+fn by_numbers(scenario: &Scenario, watch: &dyn Watch) -> Result<Looked, PrepareError> {
+    let prepared = prepare(scenario, watch)?;
+    Ok(Looked { loose: prepared.loose_sentences(), warnings: prepared.warnings(scenario), left_out: None })
+}
+
+fn by_parts(scenario: &Scenario, structure: &Structure, kinematics: &Kinematics, left_out: Option<String>) -> Looked {
+    Looked {
+        loose: loose_parts(structure, kinematics.motions()).iter().map(LoosePart::sentence).collect(),
+        warnings: plausible::placed(scenario, plausible::warnings(scenario)),
+        left_out,
+    }
+}
+
+#[cfg(test)]
+#[path = "look_tests.rs"]
+mod tests;

@@ -1,0 +1,68 @@
+//! The look at the parts against the look at the numbers, on slabs on one another.
+
+use super::*;
+use crate::model::load::load_text;
+use crate::watch::Quiet;
+
+/// `slabs` of 40 × `rows` elements on one another, the lowest fixed along its base, a traction (x, y) on top.
+fn stack(slabs: usize, rows: usize, traction: [f64; 2], factor: f64) -> Scenario {
+    let plate = |i: usize| {
+        format!(
+            r#"{{"id":"s{i}","origin":[0,{i}],"size":[4,1],"divisions":[40,{rows}],"thickness":0.1,"material":"m","plane":"strain"}}"#
+        )
+    };
+    let contact = |i: usize| format!(r#"{{"id":"j{i}","edge":"s{i}.bottom","against":"s{}.top","friction":0.3}}"#, i - 1);
+    let plates: Vec<String> = (0..slabs).map(plate).collect();
+    let contacts: Vec<String> = (1..slabs).map(contact).collect();
+    let text = format!(
+        r#"{{"format":"stickslip/1","title":"Slabs","materials":{{"m":{{"E":1e5,"nu":0.3}},"idle":{{"E":1,"nu":0}}}},
+"plates":[{}],"supports":[{{"at":"s0.bottom","fixed":["x","y"]}}],"contacts":[{}],
+"loads":{{"w":{{"factor":{factor},"items":[{{"traction":{{"edge":"s{}.top","value":[{},{}]}}}}]}}}}}}"#,
+        plates.join(","),
+        contacts.join(","),
+        slabs - 1,
+        traction[0],
+        traction[1]
+    );
+    load_text("slabs", &text, None).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn is_decided_by_parts(scenario: &Scenario) -> bool {
+    let Source::Structure(structure) = &scenario.source else { panic!("a structure") };
+    let kinematics = Kinematics::new(structure, &joints(&structure.pairs), &Quiet).unwrap();
+    kinematics.is_complete() && surely_pressed(scenario, structure, &kinematics)
+}
+
+#[test]
+fn parts_tell_what_the_numbers_tell() {
+    for (slabs, rows, traction, factor, decided) in [
+        (2, 26, [0.0, -1.0], 1.0, true),
+        (2, 26, [3.0, -1.0], 2.0, true),
+        // Lifted, in two ways: the motions leave that open.
+        (2, 26, [0.0, 1.0], 1.0, false),
+        (2, 26, [0.0, -1.0], -1.0, false),
+        // The middle slab has two contacts, and rises with the upper one.
+        (3, 17, [0.5, -1.0], 1.0, true),
+    ] {
+        let scenario = stack(slabs, rows, traction, factor);
+        let Source::Structure(structure) = &scenario.source else { panic!("a structure") };
+        assert!(structure.nodes.len() > FEW_NODES);
+        assert_eq!(is_decided_by_parts(&scenario), decided, "{slabs} {traction:?} {factor}");
+        let (seen, expected) = (look(&scenario, &Quiet).unwrap(), by_numbers(&scenario, &Quiet).unwrap());
+        assert_eq!((&seen.loose, &seen.warnings), (&expected.loose, &expected.warnings), "{slabs} {traction:?} {factor}");
+        assert!(!seen.loose.is_empty() && seen.left_out.is_none());
+        // The idle material, and the contact that is lifted.
+        let lifted = traction[1] * factor > 0.0;
+        assert_eq!(seen.warnings.len(), 1 + usize::from(lifted), "{:?}", seen.warnings);
+    }
+}
+
+#[test]
+fn a_structure_that_cannot_stand_is_refused_without_numbers() {
+    let mut scenario = stack(2, 26, [0.0, -1.0], 1.0);
+    let Source::Structure(structure) = &mut scenario.source else { panic!("a structure") };
+    // A third slab's worth of elements that nothing holds and no contact touches.
+    structure.pairs.clear();
+    let error = look(&scenario, &Quiet).unwrap_err().to_string();
+    assert!(error.contains("mechanism"), "{error}");
+}
