@@ -50,8 +50,7 @@ impl<'t> Document<'t> {
         if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(&strict(text)) {
             let place = (error.line(), error.column());
             let message = error.to_string();
-            let message =
-                message.strip_suffix(&format!(" at line {} column {}", place.0, place.1)).unwrap_or(&message);
+            let message = message.strip_suffix(&format!(" at line {} column {}", place.0, place.1)).unwrap_or(&message);
             // An overflowing number is JSON; its place is found by the typed reading.
             if message != "number out of range" {
                 return Err(SyntaxError {

@@ -11,7 +11,8 @@ fn stack(slabs: usize, rows: usize, traction: [f64; 2], factor: f64) -> Scenario
             r#"{{"id":"s{i}","origin":[0,{i}],"size":[4,1],"divisions":[40,{rows}],"thickness":0.1,"material":"m","plane":"strain"}}"#
         )
     };
-    let contact = |i: usize| format!(r#"{{"id":"j{i}","edge":"s{i}.bottom","against":"s{}.top","friction":0.3}}"#, i - 1);
+    let contact =
+        |i: usize| format!(r#"{{"id":"j{i}","edge":"s{i}.bottom","against":"s{}.top","friction":0.3}}"#, i - 1);
     let plates: Vec<String> = (0..slabs).map(plate).collect();
     let contacts: Vec<String> = (1..slabs).map(contact).collect();
     let text = format!(
@@ -49,7 +50,11 @@ fn parts_tell_what_the_numbers_tell() {
         assert!(structure.nodes.len() > FEW_NODES);
         assert_eq!(is_decided_by_parts(&scenario), decided, "{slabs} {traction:?} {factor}");
         let (seen, expected) = (look(&scenario, &Quiet).unwrap(), by_numbers(&scenario, &Quiet).unwrap());
-        assert_eq!((&seen.loose, &seen.warnings), (&expected.loose, &expected.warnings), "{slabs} {traction:?} {factor}");
+        assert_eq!(
+            (&seen.loose, &seen.warnings),
+            (&expected.loose, &expected.warnings),
+            "{slabs} {traction:?} {factor}"
+        );
         assert!(!seen.loose.is_empty() && seen.left_out.is_none());
         // The idle material, and the contact that is lifted.
         let lifted = traction[1] * factor > 0.0;
