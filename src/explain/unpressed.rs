@@ -97,15 +97,15 @@ fn contacts(scenario: &Scenario) -> Vec<Range<usize>> {
 pub fn surely_pressed(scenario: &Scenario, structure: &Structure, kinematics: &Kinematics) -> bool {
     let motions = kinematics.motions();
     let contacts = contacts(scenario);
-    if motions.len() > MANY || contacts.len() > MANY {
-        return false;
+    if motions.len() > MANY || contacts.len() > MANY || motions.is_empty() {
+        return contacts.is_empty();
     }
     let values = scenario.parameter_values();
     let signs: Vec<[bool; 2]> =
         factors(scenario).map(|(name, factor)| signs(scenario, name, factor, &values)).collect();
     let joints = joints(&structure.pairs);
     let traces: Vec<DVector<f64>> = motions.iter().map(|motion| mutual_displacements(&joints, &motion.u)).collect();
-    let traces = if traces.is_empty() { DMatrix::zeros(joints.len(), 0) } else { DMatrix::from_columns(&traces) };
+    let traces = DMatrix::from_columns(&traces);
     let all = traces.transpose() * &traces;
     contacts.into_iter().all(|pairs| {
         if pairs.clone().all(|pair| structure.pairs[pair].law.is_bilateral()) {

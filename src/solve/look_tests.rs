@@ -4,8 +4,9 @@ use super::*;
 use crate::model::load::load_text;
 use crate::watch::Quiet;
 
-/// `slabs` of 40 × `rows` elements on one another, the lowest fixed along its base, a traction (x, y) on top.
-fn stack(slabs: usize, rows: usize, traction: [f64; 2], factor: f64) -> Scenario {
+/// `slabs` of 40 × `rows` elements on one another, the lowest fixed along its base and the one that `held` names along its
+/// left side, a traction (x, y) on top.
+fn stack(slabs: usize, rows: usize, held: usize, traction: [f64; 2], factor: f64) -> Scenario {
     let plate = |i: usize| {
         format!(
             r#"{{"id":"s{i}","origin":[0,{i}],"size":[4,1],"divisions":[40,{rows}],"thickness":0.1,"material":"m","plane":"strain"}}"#
@@ -17,7 +18,7 @@ fn stack(slabs: usize, rows: usize, traction: [f64; 2], factor: f64) -> Scenario
     let contacts: Vec<String> = (1..slabs).map(contact).collect();
     let text = format!(
         r#"{{"format":"stickslip/1","title":"Slabs","materials":{{"m":{{"E":1e5,"nu":0.3}},"idle":{{"E":1,"nu":0}}}},
-"plates":[{}],"supports":[{{"at":"s0.bottom","fixed":["x","y"]}}],"contacts":[{}],
+"plates":[{}],"supports":[{{"at":"s0.bottom","fixed":["x","y"]}},{{"at":"s{held}.left","fixed":["x"]}}],"contacts":[{}],
 "loads":{{"w":{{"factor":{factor},"items":[{{"traction":{{"edge":"s{}.top","value":[{},{}]}}}}]}}}}}}"#,
         plates.join(","),
         contacts.join(","),
@@ -36,14 +37,16 @@ fn is_decided_by_parts(scenario: &Scenario) -> bool {
 
 #[test]
 fn parts_tell_what_the_numbers_tell() {
-    for (slabs, rows, traction, factor, decided) in [
-        (2, 26, [0.0, -1.0], 1.0, true),
+    for (slabs, rows, held, traction, factor, decided) in [
+        (2, 26, 0, [0.0, -1.0], 1.0, true),
         // Lifted: the motions leave that open.
-        (2, 26, [0.0, -1.0], -1.0, false),
+        (2, 26, 0, [0.0, -1.0], -1.0, false),
         // The middle slab has two contacts, and rises with the upper one.
-        (3, 17, [0.5, -1.0], 1.0, true),
+        (3, 17, 0, [0.5, -1.0], 1.0, true),
+        // Nothing but the upper slab's way up and down is free.
+        (2, 26, 1, [0.5, -1.0], 1.0, true),
     ] {
-        let scenario = stack(slabs, rows, traction, factor);
+        let scenario = stack(slabs, rows, held, traction, factor);
         let Source::Structure(structure) = &scenario.source else { panic!("a structure") };
         assert!(structure.nodes.len() > FEW_NODES);
         assert_eq!(is_decided_by_parts(&scenario), decided, "{slabs} {traction:?} {factor}");
@@ -54,7 +57,7 @@ fn parts_tell_what_the_numbers_tell() {
             "{slabs} {traction:?} {factor}"
         );
         assert!(!seen.loose.is_empty() && seen.left_out.is_none());
-        // The idle material, and the contact that is lifted.
+        // The material that nothing has, and the contact that is lifted.
         let lifted = traction[1] * factor > 0.0;
         assert_eq!(seen.warnings.len(), 1 + usize::from(lifted), "{:?}", seen.warnings);
     }
@@ -62,10 +65,23 @@ fn parts_tell_what_the_numbers_tell() {
 
 #[test]
 fn a_structure_that_cannot_stand_is_refused_without_numbers() {
-    let mut scenario = stack(2, 26, [0.0, -1.0], 1.0);
+    let mut scenario = stack(2, 26, 0, [0.0, -1.0], 1.0);
     let Source::Structure(structure) = &mut scenario.source else { panic!("a structure") };
     // Without its contact the upper slab is held by nothing.
     structure.pairs.clear();
     let error = look(&scenario, &Quiet).unwrap_err().to_string();
     assert!(error.contains("mechanism"), "{error}");
+}
+
+#[test]
+fn a_structure_that_stands_without_its_contacts_is_looked_into_by_its_numbers() {
+    let mut scenario = stack(1, 50, 0, [0.0, -1.0], 1.0);
+    assert!(is_decided_by_parts(&scenario), "no contact, nothing to decide");
+    let text = scenario.text.replace(
+        r#""contacts":[]"#,
+        r#""contacts":[{"id":"j","edge":"s0.top","against":"ground","normal":[0,-1],"friction":0.3}]"#,
+    );
+    scenario = load_text("slabs", &text, None).unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(!is_decided_by_parts(&scenario));
+    assert_eq!(look(&scenario, &Quiet).unwrap().warnings, by_numbers(&scenario, &Quiet).unwrap().warnings);
 }
