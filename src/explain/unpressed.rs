@@ -107,22 +107,20 @@ pub fn surely_pressed(scenario: &Scenario, structure: &Structure, kinematics: &K
     let traces: Vec<DVector<f64>> = motions.iter().map(|motion| mutual_displacements(&joints, &motion.u)).collect();
     let traces = DMatrix::from_columns(&traces);
     let all = traces.transpose() * &traces;
+    let works = kinematics.works();
     contacts.into_iter().all(|pairs| {
         if pairs.clone().all(|pair| structure.pairs[pair].law.is_bilateral()) {
             return true;
         }
         let Some(amounts) = opening(&traces, &all, pairs) else { return false };
-        let mut motion = vec![[0.0; 3]; structure.nodes.len()];
-        for (amount, of) in amounts.iter().zip(motions) {
-            for (sum, u) in motion.iter_mut().zip(&of.u) {
-                (0..3).for_each(|component| sum[component] += amount * u[component]);
-            }
-        }
         // The other way round where the factor of the case is negative.
-        let against = |[work, terms]: [f64; 2], [plus, minus]: [bool; 2]| {
+        let against = |works: &Vec<[f64; 2]>, [plus, minus]: [bool; 2]| {
+            let parts = works.iter().zip(&amounts);
+            let [work, terms] =
+                parts.fold([0.0, 0.0], |[work, terms], ([w, t], amount)| [work + amount * w, terms + amount.abs() * t]);
             plus && work < -CLEARLY * terms || minus && work > CLEARLY * terms
         };
-        kinematics.works(&motion).into_iter().zip(&signs).any(|(work, signs)| against(work, *signs))
+        works.iter().zip(&signs).any(|(works, signs)| against(works, *signs))
     })
 }
 

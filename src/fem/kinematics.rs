@@ -54,13 +54,13 @@ impl Kinematics {
         self.complete
     }
 
-    /// Work of each load case per unit factor on a motion, and the magnitude of its terms; force · length.
-    pub fn works(&self, motion: &[[f64; 3]]) -> Vec<[f64; 2]> {
-        let u = self.outline.dofs.gather(motion);
-        let work = |f: &Vec<f64>| {
-            std::iter::zip(f, &u).fold([0.0, 0.0], |[sum, size], (f, u)| [sum + f * u, size + (f * u).abs()])
+    /// Work of each load case per unit factor on each of the motions, and the magnitude of its terms; force · length.
+    pub fn works(&self) -> Vec<Vec<[f64; 2]>> {
+        let u: Vec<Vec<f64>> = self.motions.iter().map(|motion| self.outline.dofs.gather(&motion.u)).collect();
+        let work = |f: &Vec<f64>, u: &Vec<f64>| {
+            std::iter::zip(f, u).fold([0.0, 0.0], |[sum, size], (f, u)| [sum + f * u, size + (f * u).abs()])
         };
-        self.outline.f.iter().map(work).collect()
+        self.outline.f.iter().map(|f| u.iter().map(|u| work(f, u)).collect()).collect()
     }
 }
 
