@@ -37,6 +37,10 @@ pub struct Looked {
 /// # Errors
 /// As [`prepare`], but for what was left out.
 pub fn look(scenario: &Scenario, watch: &dyn Watch) -> Result<Looked, PrepareError> {
+    look_within(LOOK_TIME, scenario, watch)
+}
+
+fn look_within(time: Duration, scenario: &Scenario, watch: &dyn Watch) -> Result<Looked, PrepareError> {
     let large = match &scenario.source {
         Source::Structure(structure) if structure.nodes.len() > FEW_NODES => Some(structure),
         _ => None,
@@ -47,13 +51,13 @@ pub fn look(scenario: &Scenario, watch: &dyn Watch) -> Result<Looked, PrepareErr
     if kinematics.is_complete() && surely_pressed(scenario, structure, &kinematics) {
         return Ok(by_parts(scenario, structure, &kinematics, None));
     }
-    let budget = Budget::new(watch, LOOK_TIME);
+    let budget = Budget::new(watch, time);
     match by_numbers(scenario, &budget) {
         Err(PrepareError::Interrupted) if budget.ran_out() => {
             let left_out = format!(
                 "whether the loads press every contact, and whether a part moves in itself, was not decided within {} s: \
                  `solve` does it",
-                LOOK_TIME.as_secs()
+                time.as_secs()
             );
             Ok(by_parts(scenario, structure, &kinematics, Some(left_out)))
         }
