@@ -48,11 +48,17 @@ impl Prepared {
         first: Solved,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        // An answer on a polygon that Newton's method could not take to the cone: of several the finest.
+        // An answer on one of the finest polygons that Newton's method could not take to the cone. One on a coarser polygon
+        // counts no more where the finer ones have none: friction beyond Coulomb's bound held it.
         let mut on_polygon = first.answer.is_answer().then(|| first.clone());
         let mut last = first.clone();
         let mut ladder = Ladder::new(first);
+        let mut facets = usize::from(rules.facets);
         for polygon in polygons(rules.facets, problem.system.pairs.len()) {
+            if polygon.facets() > facets {
+                facets = polygon.facets();
+                on_polygon = None;
+            }
             if watch.stop() {
                 return Err(SolveError::Interrupted);
             }

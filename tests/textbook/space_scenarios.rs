@@ -21,9 +21,9 @@ fn is_answered(session: &mut Session, what: &str) {
 }
 
 fn is_certified_collapse(session: &mut Session, what: &str) {
-    let solved = told(session, "solve");
-    assert_eq!(solved["outcome"], "ray", "{what}");
-    assert_eq!(solved["ray"]["verdict"], "certified", "{what}: {}", solved["ray"]);
+    assert_eq!(outcome(session), "ray", "{what}");
+    let verdict = text(session, "show verdict");
+    assert!(verdict.contains("certified"), "{what}: {verdict}");
 }
 
 fn number(value: &Value) -> f64 {
@@ -111,10 +111,11 @@ fn a_tower_tips_over_its_lee_feet() {
     }
 }
 
-/// A cross of four arms, each foot with its own weight: the twist M that turns it is Σ f N r.
+/// A cross of four arms of the same length, each foot with its own weight: the twist M that turns it is Σ f N r. Balance
+/// alone proves it, for the feet carry Σ N r whatever their shares.
 #[test]
 fn a_cross_turns_at_the_sum_of_friction_times_radius() {
-    let (arms, weights, f) = ([2.0, 1.0, 2.0, 1.0], [10.0, 20.0, 10.0, 20.0], 0.3);
+    let (arms, weights, f) = ([2.0; 4], [10.0, 20.0, 10.0, 20.0], 0.3);
     let limit: f64 = std::iter::zip(arms, weights).map(|(r, n)| f * n * r).sum();
     let directions = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
     let mut nodes = serde_json::Map::new();
@@ -124,7 +125,9 @@ fn a_cross_turns_at_the_sum_of_friction_times_radius() {
         let foot = format!("foot{i}");
         nodes.insert(foot.clone(), json!([r * x, r * y, 0]));
         bars.push(json!({ "id": format!("arm{i}"), "nodes": ["hub", foot], "material": "steel", "section": "arm" }));
-        contacts.push(json!({ "id": format!("c{i}"), "node": foot, "against": "ground", "normal": [0, 0, 1], "friction": f }));
+        contacts.push(
+            json!({ "id": format!("c{i}"), "node": foot, "against": "ground", "normal": [0, 0, 1], "friction": f }),
+        );
         weight.push(json!({ "point": { "at": foot, "force": [0, 0, -weights[i]] } }));
     }
     let scenario = json!({
@@ -142,7 +145,7 @@ fn a_cross_turns_at_the_sum_of_friction_times_radius() {
     text(&mut session, &format!("set M {}", limit * (1.0 - 1e-6)));
     is_answered(&mut session, "twisted");
     obeys_coulomb(&told(&mut session, "pairs"), f, 1e-9);
-    text(&mut session, &format!("set M {}", limit * (1.0 + 1e-2)));
+    text(&mut session, &format!("set M {}", limit * (1.0 + 1e-5)));
     is_certified_collapse(&mut session, "twisted");
 }
 
