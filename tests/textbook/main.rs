@@ -29,6 +29,7 @@ mod rigid;
 mod rings;
 mod settlements;
 mod slope;
+mod space;
 mod space_scenarios;
 mod springs;
 mod structures;

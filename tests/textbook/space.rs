@@ -1,0 +1,251 @@
+//! Structures in space: closed forms, patch tests, and problems of the plane written in space.
+
+use serde_json::{Value, json};
+
+use crate::common::*;
+use stickslip::answer::record::{Answer, EndForces, OutcomeKind, State, Verdict};
+
+/// A structure in space.
+fn space(mut value: Value) -> Case {
+    value["dimension"] = json!(3);
+    Case::json(value)
+}
+
+/// Displacements of a node by component.
+fn moved(answer: &Answer, node: &str) -> [f64; 6] {
+    let all = answer.displacements.as_ref().expect("displacements");
+    all.iter().find(|found| found.node == node).expect("a node").all()
+}
+
+/// One node on springs of stiffness 1, r = 2, F = (3, 4): |F| − r = 3 stretches them along F.
+#[test]
+fn a_node_on_two_springs() {
+    let spring = |direction: [i32; 3]| json!({ "at": "A", "direction": direction, "stiffness": 1 });
+    let case = space(json!({
+        "nodes": { "A": [0, 0, 0] },
+        "springs": [spring([1, 0, 0]), spring([0, 1, 0]), spring([0, 0, 1])],
+        "contacts": [{ "id": "c", "node": "A", "against": "ground", "normal": [0, 0, 1], "law": "bound", "bound": 2 }],
+        "loads": { "F": { "items": [{ "point": { "at": "A", "force": [3, 4, 0] } }] } }
+    }));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    near_all("u", &moved(&answer, "A"), &[1.8, 2.4, 0.0, 0.0, 0.0, 0.0], 1e-12);
+    let pair = &answer.pairs[0];
+    assert_eq!(pair.state, State::Slip);
+    near_all("friction", &pair.friction(), &[-1.2, -1.6], 1e-12);
+    close("direction", pair.direction().expect("a slip"), 0.8_f64.atan2(0.6).to_degrees(), 1e-12);
+}
+
+/// A cantilever along x with a force and a torque at its end: u_x = FL/EA, bending about both axes, θ = TL/GJ. Local y is
+/// the global z, local z is −y.
+#[test]
+fn a_cantilever_bends_both_ways_and_twists() {
+    let (e, nu, l) = (2.1e8, 0.3, 4.0_f64);
+    let (area, iy, iz, j) = (0.01, 2e-5, 1e-4, 3e-5);
+    let case = space(json!({
+        "materials": { "m": { "E": e, "nu": nu } },
+        "sections": { "s": { "area": area, "inertia_y": iy, "inertia_z": iz, "torsion": j } },
+        "nodes": { "A": [0, 0, 0], "B": [l, 0, 0] },
+        "bars": [{ "id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s", "divisions": 3 }],
+        "supports": [{ "at": "A", "fixed": ["x", "y", "z", "rx", "ry", "rz"] }],
+        "loads": { "F": { "items": [{ "point": { "at": "B", "force": [1, 2, 3], "moment": [4, 0, 0] } }] } }
+    }));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    let g = e / (2.0 * (1.0 + nu));
+    let expected = [
+        l / (e * area),
+        2.0 * l.powi(3) / (3.0 * e * iy),
+        3.0 * l.powi(3) / (3.0 * e * iz),
+        4.0 * l / (g * j),
+        -3.0 * l * l / (2.0 * e * iz),
+        2.0 * l * l / (2.0 * e * iy),
+    ];
+    for (found, expected) in moved(&answer, "B").into_iter().zip(expected) {
+        close("tip", found, expected, 1e-10);
+    }
+    let start = answer.members.as_ref().expect("members")[0].start;
+    let expected = EndForces { n: 1.0, q: -3.0, m: 3.0 * l, space: Some([2.0, -2.0 * l, 4.0]) };
+    for ((name, found), (_, expected)) in start.named().into_iter().zip(expected.named()) {
+        close(name, found, expected, 1e-10);
+    }
+    let reaction = &answer.reactions.as_ref().expect("reactions")[0];
+    near_all("force", &reaction.force(), &[-1.0, -2.0, -3.0], 1e-10);
+    // −(x × F + M): x × F = (0, −3L, 2L).
+    near_all("moment", &reaction.moment(), &[-4.0, 3.0 * l, -2.0 * l], 1e-10);
+}
+
+/// Hinged at both ends on supports that hold nothing but its place, under its weight: M = qL²/8 in the middle, and no
+/// mechanism, although nothing but the rotation of its own nodes keeps it from spinning.
+#[test]
+fn a_hinged_bar_between_columns_is_a_simple_beam() {
+    let l = 4.0;
+    let column =
+        |id: &str, foot: &str, head: &str| json!({ "id": id, "nodes": [foot, head], "material": "m", "section": "s" });
+    let clamp = |at: &str| json!({ "at": at, "fixed": ["x", "y", "z", "rx", "ry", "rz"] });
+    let case = space(json!({
+        "materials": { "m": { "E": 2.1e8, "nu": 0.3 } },
+        "sections": { "s": { "area": 0.01, "inertia_y": 1e-4, "inertia_z": 1e-4, "torsion": 1e-4 } },
+        "nodes": { "a": [0, 0, 0], "b": [0, 0, 3], "c": [0, l, 3], "d": [0, l, 0] },
+        "bars": [column("ab", "a", "b"), column("cd", "d", "c"),
+                 { "id": "bc", "nodes": ["b", "c"], "material": "m", "section": "s", "divisions": 4, "hinges": ["start", "end"] }],
+        "supports": [clamp("a"), clamp("d")],
+        "loads": { "q": { "items": [{ "line": { "bar": "bc", "value": [0, 0, -5] } }] } }
+    }));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    let members = answer.members.as_ref().expect("members");
+    let beam: Vec<_> = members.iter().filter(|member| member.bar == "bc").collect();
+    close("middle", beam[1].end.m, 5.0 * l * l / 8.0, 1e-9);
+    near("start", beam[0].start.m, 0.0, 1e-9, 10.0);
+    close("column", members[0].start.n, -5.0 * l / 2.0, 1e-10);
+}
+
+/// A beam on frictional supports in the plane, and the same in space: upright z in the place of y. Its numbers are those
+/// of the plane.
+#[test]
+fn a_problem_of_the_plane_written_in_space() {
+    let place = |is_space: bool, x: f64, y: f64| if is_space { json!([x, 0.0, y]) } else { json!([x, y]) };
+    let of = |is_space: bool| {
+        let v = |x: f64, y: f64| place(is_space, x, y);
+        let section = match is_space {
+            true => json!({ "area": 0.01, "inertia_y": 5e-5, "inertia_z": 1e-4, "torsion": 1e-5 }),
+            false => json!({ "area": 0.01, "inertia": 1e-4 }),
+        };
+        let clamp = if is_space { json!(["x", "y", "z", "rx", "ry", "rz"]) } else { json!(["x", "y", "r"]) };
+        let contact = |id: &str, node: &str| json!({ "id": id, "node": node, "against": "ground", "normal": v(0.0, 1.0), "friction": 0.3 });
+        let mut value = json!({
+            "materials": { "m": { "E": 2.1e8, "nu": 0.3 } },
+            "sections": { "s": section },
+            "nodes": { "a": v(0.0, 0.0), "b": v(2.0, 0.0), "c": v(4.0, 0.0) },
+            "bars": [{ "id": "ac", "polyline": ["a", "b", "c"], "material": "m", "section": "s", "divisions": 2 }],
+            "supports": [{ "at": "a", "fixed": clamp }],
+            "contacts": [contact("p", "b"), contact("q", "c")],
+            "loads": { "w": { "items": [{ "line": { "bar": "ac", "value": v(0.0, -20.0) } }] },
+                       "h": { "items": [{ "point": { "at": "c", "force": v(30.0, 0.0) } }] } }
+        });
+        if is_space {
+            value["dimension"] = json!(3);
+        }
+        Case::json(value).solve(&[])
+    };
+    let (plane, solid) = (of(false), of(true));
+    is_answer(&plane);
+    is_answer(&solid);
+    for (one, other) in plane.pairs.iter().zip(&solid.pairs) {
+        close("x_n", other.x_n, one.x_n, 1e-9);
+        near("x_t", other.friction()[0], one.x_t, 1e-9, one.bound);
+        near("z_t", other.slip()[0], one.z_t, 1e-9, 1e-4);
+        assert_eq!(one.state == State::Stick, other.state == State::Stick, "{}", one.id);
+    }
+    for node in ["b", "c", "ac/1"] {
+        let ([ux, uy, turn], found) = (displacement(&plane, node), moved(&solid, node));
+        near_all(node, &[found[0], found[2], -found[4]], &[ux, uy, turn], 1e-12);
+    }
+    let members = |answer: &Answer| answer.members.clone().expect("members");
+    for (one, other) in members(&plane).iter().zip(members(&solid)) {
+        near_all(
+            "start",
+            &[other.start.n, other.start.q, other.start.m],
+            &[one.start.n, one.start.q, one.start.m],
+            1e-9,
+        );
+    }
+}
+
+fn block(friction: f64) -> Case {
+    space(json!({
+        "parameters": { "H": 0.1, "a": 0.0 },
+        "materials": { "m": { "E": 1000, "nu": 0.2 } },
+        "bricks": [{ "id": "b", "origin": [0, 0, 0], "size": [2, 2, 1], "divisions": [2, 2, 1], "material": "m" }],
+        "contacts": [{ "id": "base", "face": "b.bottom", "against": "ground", "friction": friction }],
+        "loads": { "weight": { "items": [{ "point": { "at": "b.top", "force": [0, 0, -1] } }] },
+                   "push": { "factor": "H", "items": [{ "point": { "at": "b.bottom", "force": ["cos(a)", "sin(a)", 0] } }] } }
+    }))
+}
+
+/// A block on a rough plane slides at f W whatever way it is pushed: it stands at 1 − 1e-6 of that, and its collapse is
+/// certified at 1 + 1e-5.
+#[test]
+fn a_block_slides_at_the_same_force_every_way() {
+    let (f, case) = (0.4, block(0.4));
+    for angle in [0.0, 0.3, std::f64::consts::FRAC_PI_4, 2.5] {
+        let values = case.scenario.parameter_values();
+        let at = |h: f64| {
+            let mut values = values.clone();
+            values.insert("a".to_owned(), angle);
+            values.insert("H".to_owned(), h);
+            case.at(&values).solve(&[("a", angle), ("H", h)])
+        };
+        let below = at(f * (1.0 - 1e-6));
+        is_answer(&below);
+        let total: f64 = of_pairs(&below, |pair| pair.x_n).iter().sum();
+        close("weight", total, 1.0, 1e-10);
+        let friction = |c: usize| -> f64 { below.pairs.iter().map(|pair| pair.friction()[c]).sum() };
+        near_all("friction", &[friction(0), friction(1)], &[-f * angle.cos(), -f * angle.sin()], 1e-5);
+        let beyond = at(f * (1.0 + 1e-5));
+        assert_eq!(beyond.outcome, OutcomeKind::Ray, "{angle}");
+        // Of a polygon that held it nothing is left to be missing: p may be 0.
+        let ray = beyond.ray.as_ref().expect("a ray");
+        assert_eq!(ray.verdict, Some(Verdict::Certified), "{angle}");
+    }
+}
+
+/// A brick pulled along x: σ = E ε exactly, with either element, and the sides draw in by ν ε.
+#[test]
+fn a_brick_pulled_evenly_is_strained_evenly() {
+    for element in ["plain", "incompatible"] {
+        let case = space(json!({
+            "materials": { "m": { "E": 200, "nu": 0.3 } },
+            "bricks": [{ "id": "b", "origin": [1, 1, 1], "size": [3, 2, 1], "divisions": [3, 2, 2], "material": "m", "element": element }],
+            "supports": [{ "at": "b.left", "fixed": ["x"] }, { "at": "b.front", "fixed": ["y"] }, { "at": "b.bottom", "fixed": ["z"] }],
+            "loads": { "pull": { "items": [{ "traction": { "face": "b.right", "value": [10, 0, 0] } }] } }
+        }));
+        let answer = case.solve(&[]);
+        is_answer(&answer);
+        let strain = 10.0 / 200.0;
+        let [x, y, z, ..] = moved(&answer, "b[3,2,2]");
+        near_all(element, &[x, y, z], &[3.0 * strain, -0.3 * 2.0 * strain, -0.3 * strain], 1e-12);
+    }
+}
+
+/// Pressure on the side of a block is balanced by its supports, and water up to half of its height presses with γh²/2.
+#[test]
+fn pressure_and_water_on_faces() {
+    let case = space(json!({
+        "materials": { "m": { "E": 200, "nu": 0.3, "density": 2 } },
+        "bricks": [{ "id": "b", "origin": [0, 0, 0], "size": [1, 2, 4], "divisions": [1, 2, 3], "material": "m" }],
+        "supports": [{ "at": "b.bottom", "fixed": ["x", "y", "z"] }],
+        "loads": { "p": { "items": [{ "pressure": { "face": "b.left", "value": 3 } }] },
+                   "w": { "items": [{ "fluid": { "face": "b.front", "level": 2, "weight": 10 } }] },
+                   "g": { "items": [{ "gravity": { "acceleration": [0, 0, -10] } }] } }
+    }));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    let sum = |c: usize| -> f64 { answer.reactions.iter().flatten().map(|reaction| reaction.force()[c]).sum() };
+    close("pressure", sum(0), -3.0 * 8.0, 1e-11);
+    close("water", sum(1), -10.0 * 2.0 * 2.0 / 2.0, 1e-11);
+    close("weight", sum(2), 2.0 * 10.0 * 8.0, 1e-11);
+}
+
+/// A rigid body of three nodes on three springs, and one of two nodes, whose spin about its own line nothing feels.
+#[test]
+fn rigid_bodies_in_space() {
+    let spring = |at: &str, k: f64| json!({ "at": at, "direction": [0, 0, 1], "stiffness": k });
+    let case = space(json!({
+        "nodes": { "a": [0, 0, 0], "b": [2, 0, 0], "c": [0, 2, 0], "d": [4, 0, 0], "e": [4, 3, 0] },
+        "rigid": [{ "id": "plate", "nodes": ["a", "b", "c"] }, { "id": "line", "nodes": ["d", "e"] }],
+        "supports": [{ "at": "a", "fixed": ["x", "y", "rz"] }, { "at": "d", "fixed": ["x", "y"] }, { "at": "e", "fixed": ["x"] }],
+        "springs": [spring("a", 1.0), spring("b", 2.0), spring("c", 4.0), spring("d", 1.0), spring("e", 1.0)],
+        "loads": { "F": { "items": [{ "point": { "at": "b", "force": [0, 0, -6] } }, { "point": { "at": "e", "force": [0, 0, -1] } }] } }
+    }));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    // All of the force goes into the spring below it.
+    for (node, sag) in [("a", 0.0), ("b", -3.0), ("c", 0.0), ("d", 0.0), ("e", -1.0)] {
+        near(node, moved(&answer, node)[2], sag, 1e-12, 1.0);
+    }
+    // u_z = −θ_y x over the first, θ_x y over the second.
+    near_all("turned", &moved(&answer, "c")[3..], &[0.0, 1.5, 0.0], 1e-12);
+    near_all("turned", &moved(&answer, "d")[3..], &[-1.0 / 3.0, 0.0, 0.0], 1e-12);
+}
